@@ -1,0 +1,13 @@
+# What `cmake --install` puts where. The program looks for the rest beside itself: ../share/heatsoak and
+# ../lib/heatsoak, the latter whatever this system calls its folder of libraries.
+include(GNUInstallDirs)
+
+set(HEATSOAK_SHARE "${CMAKE_INSTALL_DATADIR}/heatsoak")
+set(DATA_ONLY FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv" PATTERN "*.md")
+
+install(TARGETS heatsoak RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+install(TARGETS heatsoak_charts LIBRARY DESTINATION "${CMAKE_INSTALL_BINDIR}/../lib/heatsoak")
+install(DIRECTORY motor_db/ DESTINATION "${HEATSOAK_SHARE}/motor_db" ${DATA_ONLY})
+install(DIRECTORY duty_profiles/ DESTINATION "${HEATSOAK_SHARE}/duty_profiles" ${DATA_ONLY})
+install(DIRECTORY robot_core/robots/ DESTINATION "${HEATSOAK_SHARE}/robots" ${DATA_ONLY})
+install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -1,0 +1,76 @@
+# add_layer(name USES … HIDES … REGISTERS folder:Type …): one static library from src/<name>.
+# A folder that a layer registers is its registry: every file x.cpp in it defines `Type x()` in the
+# namespace heatsoak::<folder>, and a table of them is generated as <name>/<folder>_registry.h.
+set_property(GLOBAL PROPERTY heatsoak_layers "")
+
+function(add_layer name)
+  cmake_parse_arguments(LAYER "" "" "USES;HIDES;REGISTERS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp" "${PROJECT_SOURCE_DIR}/src/${name}/*.h")
+  set(below "")
+  get_property(declared GLOBAL PROPERTY heatsoak_layers)
+  foreach(used IN LISTS LAYER_USES)
+    if(used IN_LIST declared)
+      list(APPEND below ${used})
+      list(APPEND links heatsoak_${used})
+    elseif(EXISTS "${PROJECT_SOURCE_DIR}/src/${used}")
+      message(FATAL_ERROR "layer '${name}' uses '${used}', which is not declared above it")
+    else()
+      list(APPEND links ${used})
+    endif()
+  endforeach()
+  foreach(registration IN LISTS LAYER_REGISTERS)
+    string(REPLACE ":" ";" registration "${registration}")
+    list(GET registration 0 folder)
+    list(GET registration 1 type)
+    file(GLOB entries CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/${folder}/*.cpp")
+    list(APPEND sources ${entries})
+    generate_registry(${name} ${folder} ${type} ${entries})
+  endforeach()
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  add_library(heatsoak_${name} STATIC ${sources})
+  target_include_directories(heatsoak_${name} PUBLIC "${PROJECT_SOURCE_DIR}/src" "${PROJECT_BINARY_DIR}/generated")
+  target_link_libraries(heatsoak_${name} PUBLIC ${links} PRIVATE heatsoak_settings ${LAYER_HIDES})
+  set_property(GLOBAL APPEND PROPERTY heatsoak_layers ${name})
+  set_property(GLOBAL PROPERTY heatsoak_layer_${name}_uses "${below}")
+endfunction()
+
+function(generate_registry layer folder type)
+  set(functions "")
+  set(rows "")
+  list(LENGTH ARGN count)
+  foreach(entry IN LISTS ARGN)
+    get_filename_component(stem "${entry}" NAME_WE)
+    string(APPEND functions "${type} ${stem}();\n")
+    string(APPEND rows "    {\"${stem}\", &${stem}},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/generated/${layer}/${folder}_registry.h" @ONLY CONTENT
+"// Generated from the files of src/@layer@/@folder@.
+#pragma once
+#include <array>
+#include <string_view>
+namespace heatsoak::@folder@ {
+@functions@
+struct Entry {
+  std::string_view name;
+  @type@ (*make)();
+};
+inline constexpr std::array<Entry, @count@> registry{{
+@rows@}};
+}  // namespace heatsoak::@folder@
+")
+endfunction()
+
+function(add_program name)
+  add_executable(${name} "${PROJECT_SOURCE_DIR}/src/${ARGV1}/main.cpp")
+  target_link_libraries(${name} PRIVATE heatsoak_settings heatsoak_${ARGV1})
+endfunction()
+
+function(add_plugin name folder)
+  cmake_parse_arguments(PLUGIN "" "" "USES;HIDES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp" "${PROJECT_SOURCE_DIR}/${folder}/*.h")
+  list(TRANSFORM PLUGIN_USES PREPEND heatsoak_)
+  add_library(${name} MODULE ${sources})
+  target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}/src")
+  target_link_libraries(${name} PRIVATE heatsoak_settings ${PLUGIN_USES} ${PLUGIN_HIDES})
+  set_target_properties(${name} PROPERTIES PREFIX "")
+endfunction()

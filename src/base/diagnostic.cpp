@@ -1,0 +1,84 @@
+#include "base/diagnostic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace heatsoak {
+namespace {
+
+std::string with_list(const std::string& message, const std::vector<Diagnostic>& diagnostics) {
+  std::string text = message;
+  for (const Diagnostic& each : diagnostics) {
+    text += (text.empty() ? "" : "\n") + to_string(each);
+  }
+  return text;
+}
+
+/// Levenshtein distance; the words are short.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string to_string(const Diagnostic& diagnostic) {
+  std::string place = diagnostic.at.file;
+  if (diagnostic.at.line > 0) {
+    place += fmt::format(":{}:{}", diagnostic.at.line, diagnostic.at.column);
+  }
+  return fmt::format("{}{}error: {}{}{}", place, place.empty() ? "" : ": ", diagnostic.key,
+                     diagnostic.key.empty() ? "" : ": ", diagnostic.message);
+}
+
+Failure::Failure(ExitCode code, std::string message, std::vector<Diagnostic> diagnostics)
+    : std::runtime_error(with_list(message, diagnostics)),
+      code_(code),
+      message_(std::move(message)),
+      diagnostics_(std::move(diagnostics)) {}
+
+Failure bad_input(Location at, std::string key, std::string message) {
+  std::vector<Diagnostic> one;
+  one.push_back({std::move(at), std::move(key), std::move(message)});
+  return {ExitCode::bad_input, "", std::move(one)};
+}
+
+void Diagnostics::add(Location at, std::string key, std::string message) {
+  list_.push_back({std::move(at), std::move(key), std::move(message)});
+}
+
+void Diagnostics::throw_if_any() const {
+  if (list_.empty()) {
+    return;
+  }
+  std::vector<Diagnostic> sorted = list_;
+  std::ranges::stable_sort(sorted, {}, [](const Diagnostic& d) { return std::tie(d.at.file, d.at.line, d.at.column); });
+  throw Failure(ExitCode::bad_input, "", std::move(sorted));
+}
+
+std::string did_you_mean(std::string_view given, std::span<const std::string> candidates) {
+  std::size_t best_distance = std::max<std::size_t>(2, given.size() / 3) + 1;
+  const std::string* best = nullptr;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(given, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = &candidate;
+    }
+  }
+  return best ? fmt::format("; did you mean '{}'?", *best) : std::string();
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,25 @@
+#include "base/parameter.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+
+std::string to_string(const Range& range, std::string_view unit) {
+  const auto with_unit = [unit](double value) {
+    return unit.empty() ? significant(value, 6) : fmt::format("{} {}", significant(value, 6), unit_for_display(unit));
+  };
+  const bool below = std::isfinite(range.high);
+  if (!std::isfinite(range.low)) {
+    return below ? fmt::format("{} {}", range.high_is_open ? "below" : "at most", with_unit(range.high)) : "any value";
+  }
+  if (!below) {
+    return fmt::format("{} {}", range.low_is_open ? "more than" : "at least", with_unit(range.low));
+  }
+  return fmt::format("{} to {}", with_unit(range.low), with_unit(range.high));
+}
+
+}  // namespace heatsoak

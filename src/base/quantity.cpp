@@ -1,0 +1,166 @@
+#include "base/quantity.h"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+namespace heatsoak {
+namespace {
+
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+struct FreeConverter {
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+using Converter = std::unique_ptr<cv_converter, FreeConverter>;
+
+/// Reading the unit database takes 5 ms, so it waits for the first quantity.
+ut_system* unit_system() {
+  static ut_system* const system = [] {
+    ut_set_error_message_handler(ut_ignore);
+    ut_system* read = ut_read_xml(nullptr);
+    if (!read) {
+      throw std::runtime_error("the unit database of UDUNITS-2 cannot be read (package libudunits2-data)");
+    }
+    return read;
+  }();
+  return system;
+}
+
+/// Spellings of data sheets that UDUNITS-2 does not know.
+std::string as_udunits(std::string_view unit) {
+  std::string text(unit);
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kSpellings{
+      {{"µNm", "(µN m)"}, {"mNm", "(mN m)"}, {"gcm2", "(g cm2)"}, {"gcm²", "(g cm2)"}, {"Wh", "(W h)"},
+       {"mAh", "(mA h)"}, {"Nm", "(N m)"}}};
+  for (const auto& [sheet, udunits] : kSpellings) {
+    for (std::size_t at = text.find(sheet); at != std::string::npos; at = text.find(sheet, at + udunits.size())) {
+      text.replace(at, sheet.size(), udunits);
+      if (sheet == "Nm" && at > 0 && (text[at - 1] == 'm' || text[at - 1] == 'k')) {
+        const char prefix = text[at - 1];
+        text.erase(at - 1, 1);
+        text.insert(at, 1, prefix);
+      }
+    }
+  }
+  if (text == "deg") {
+    return "arc_degree";
+  }
+  return text;
+}
+
+Unit parse_unit(std::string_view unit) { return Unit(ut_parse(unit_system(), as_udunits(unit).c_str(), UT_UTF8)); }
+
+bool names_an_angle(std::string_view unit) {
+  for (const std::string_view angle : {"rad", "rpm", "deg", "rev", "V s"}) {
+    if (unit.find(angle) != std::string_view::npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) {
+    return {};
+  }
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string example_for(std::string_view wanted_unit) {
+  return wanted_unit.empty() ? "expected a number such as \"8\"" : fmt::format("expected a number with a unit such as \"1.5 {}\"", wanted_unit);
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_unit) {
+  std::string_view rest = trimmed(text);
+  if (rest.starts_with('+')) {
+    rest.remove_prefix(1);
+  }
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (error != std::errc()) {
+    return {0.0, fmt::format("\"{}\" does not begin with a number; {}", text, example_for(wanted_unit))};
+  }
+  if (!std::isfinite(value)) {
+    return {0.0, fmt::format("\"{}\" is not a finite number; {}", text, example_for(wanted_unit))};
+  }
+  const std::string_view unit = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
+  if (unit.empty() && !wanted_unit.empty()) {
+    return {0.0, fmt::format("\"{}\" has no unit; {}", text, example_for(wanted_unit))};
+  }
+  const Unit from = parse_unit(unit);
+  if (!from) {
+    return {0.0, fmt::format("'{}' is not a unit; {}", unit, example_for(wanted_unit))};
+  }
+  const Unit to = parse_unit(wanted_unit);
+  const Converter converter(ut_get_converter(from.get(), to.get()));
+  if (!converter) {
+    return {0.0, fmt::format("'{}' is a unit of something else; {}", unit, example_for(wanted_unit))};
+  }
+  if (wanted_unit.find("rad") != std::string_view::npos && !names_an_angle(unit)) {
+    return {0.0, fmt::format("'{}' names no angle, so a turn could be taken for a radian; write rpm or rad/s", unit)};
+  }
+  return {cv_convert_double(converter.get(), value), {}};
+}
+
+double convert(double value, std::string_view from, std::string_view to) {
+  const Unit from_unit = parse_unit(from);
+  const Unit to_unit = parse_unit(to);
+  const Converter converter(from_unit && to_unit ? ut_get_converter(from_unit.get(), to_unit.get()) : nullptr);
+  if (!converter) {
+    throw std::logic_error(fmt::format("no conversion from '{}' to '{}'", from, to));
+  }
+  return cv_convert_double(converter.get(), value);
+}
+
+std::string unit_for_display(std::string_view unit) {
+  if (unit == "degC") {
+    return "°C";
+  }
+  return std::string(unit);
+}
+
+std::string significant(double value, int digits) {
+  if (value == 0.0 || !std::isfinite(value)) {
+    return fmt::format("{}", value);
+  }
+  const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value))));
+  const int decimals = std::max(0, digits - 1 - magnitude);
+  const double step = std::pow(10.0, magnitude - digits + 1);
+  const double rounded = decimals > 0 ? value : std::round(value / step) * step;
+  std::string text = fmt::format("{:.{}f}", rounded, decimals);
+  if (decimals > 0) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.ends_with('.')) {
+      text.pop_back();
+    }
+  }
+  return text;
+}
+
+}  // namespace heatsoak

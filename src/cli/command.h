@@ -1,0 +1,56 @@
+// What a verb is, and what all verbs share. One file in src/cli/commands each.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "input/data_folders.h"
+#include "select/evaluate.h"
+
+namespace heatsoak {
+
+/// The options that every verb has, and where answers go.
+class Session {
+ public:
+  void add_data_option(CLI::App& app);  ///< --db
+  void add_json_option(CLI::App& app);  ///< --json
+
+  [[nodiscard]] DataFolders folders() const;
+  /// Text for people: stdout, or stderr where the JSON takes stdout.
+  void say(std::string_view text) const;
+  /// Writes the answer where --json asks for it; nothing without --json.
+  void answer(const nlohmann::ordered_json& json) const;
+  void answer_failure(const Failure& failure) const;
+  void set_json_target(std::string target) { json_target_ = std::move(target); }
+
+ private:
+  std::string database_;
+  std::string json_target_;
+};
+
+struct Command {
+  std::string_view name;  ///< the file's name without a trailing "_command"; set by all_commands()
+  std::string_view summary;
+  std::string_view example;  ///< a command line that can be pasted
+  /// Declares the options on `app` and returns what runs once they are parsed.
+  std::function<std::function<ExitCode()>(CLI::App& app, Session& session)> declare;
+};
+std::vector<Command> all_commands();
+
+/// A bar with the time left on stderr; silent where that is no terminal.
+Progress progress_bar(std::string what);
+
+/// The value of a JSON number that may be unknown: null for NaN, else rounded to `decimals`.
+nlohmann::ordered_json rounded(double value, int decimals);
+
+/// The whole program. Never throws.
+int run_program(int argc, const char* const* argv);
+
+}  // namespace heatsoak

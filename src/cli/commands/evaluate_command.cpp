@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/verdict_chart.h"
+#include "duty/duty.h"
+#include "motor/motor.h"
+#include "report/chart.h"
+#include "robot/robot.h"
+#include "select/evaluate.h"
+
+namespace heatsoak::commands {
+namespace {
+
+struct Options {
+  std::string robot;
+  std::string duty;
+  std::vector<std::string> motors{"all"};
+  std::string plot;
+  EvaluateOptions evaluate;
+};
+
+std::vector<Motor> read_motors(const std::vector<std::string>& names, const DataFolders& folders) {
+  const bool all = names.size() == 1 && names.front() == "all";
+  std::vector<Motor> motors;
+  for (const std::string& name : all ? ids_in(folders.motors) : names) {
+    motors.push_back(read_motor(all ? folders.motors / (name + ".toml") : file_of(folders.motors, "motor", name)));
+  }
+  return motors;
+}
+
+std::string peak_text(const Spread95& peak) {
+  return std::isfinite(peak.p05) ? fmt::format("{:4.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95) : fmt::format("{:4.0f}", peak.nominal);
+}
+
+std::string time_text(const std::optional<double>& time_s) {
+  if (!time_s) {
+    return "–";
+  }
+  return *time_s < 120.0 ? fmt::format("{:.0f} s", *time_s) : fmt::format("{:.0f} min", *time_s / 60.0);
+}
+
+std::string row(std::size_t rank, const MotorEvaluation& each) {
+  const std::string probability = std::isfinite(each.probability_over_limit) ? fmt::format("{:.0f} %", 100.0 * each.probability_over_limit) : "–";
+  return fmt::format("{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank, each.motor_id, to_string(each.verdict),
+                     each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor), peak_text(each.winding_peak_C),
+                     each.winding_limit_C, probability, time_text(each.time_to_limit_s), each.margin_K,
+                     each.margin_A ? fmt::format("{:+.1f}", *each.margin_A) : "–", each.current_rms_A, each.data_quality);
+}
+
+std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& robot) {
+  std::string text;
+  bool estimated = false;
+  for (const MotorEvaluation& each : results) {
+    estimated = estimated || each.data_quality == "estimated";
+    if (each.verdict == Verdict::infeasible && each.least_torque_share < 0.995) {
+      text += fmt::format("{}: only {:.0f} % of the demanded torque current at the worst moment ({} limit: {:.1f} V available)\n", each.motor_id,
+                          100.0 * each.least_torque_share, to_string(each.limiting_factor), robot.available_V());
+    } else if (each.verdict == Verdict::infeasible) {
+      text += fmt::format("{}: needs {:.1f} V when hot, {:.1f} V are available\n", each.motor_id, each.highest_voltage_V, robot.available_V());
+    }
+    if (each.destroyed) {
+      text += fmt::format("{}: thermal runaway, the calculation ended at 1000 °C\n", each.motor_id);
+    }
+  }
+  if (estimated) {
+    text += "data \"estimated\": thermal figures that nobody publishes are estimates from similar motors; the verdict rests on them\n"
+            "(`heatsoak describe MOTOR` shows how each was found). Calibrate on a bench before you rely on it.\n";
+  }
+  return text;
+}
+
+std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, const Options& options) {
+  std::string text = fmt::format("{} on {}: {:.0f} min, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duty.duration_s() / 60.0,
+                                 duty.ambient_C.value, options.evaluate.samples > 0
+                                                          ? fmt::format("{} samples of all declared tolerances, seed {}", options.evaluate.samples, options.evaluate.seed)
+                                                          : "nominal figures only",
+                                 duty.origin);
+  text += fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict", "limited by",
+                      "winding peak °C", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    text += row(i + 1, results[i]);
+  }
+  return text + "\n" + remarks(results, robot);
+}
+
+nlohmann::ordered_json json(const Spread95& peak) {
+  return {{"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
+}
+
+nlohmann::ordered_json json(const MotorEvaluation& each) {
+  const auto optional = [](const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : nlohmann::ordered_json(); };
+  return {{"id", each.motor_id},
+          {"winding_limit_C", rounded(each.winding_limit_C, 2)},
+          {"winding_peak_C", json(each.winding_peak_C)},
+          {"stator_peak_C", json(each.stator_peak_C)},
+          {"probability_over_limit", rounded(each.probability_over_limit, 4)},
+          {"time_to_limit_s", optional(each.time_to_limit_s, 3)},
+          {"current_rms_A", rounded(each.current_rms_A, 4)},
+          {"verdict", to_string(each.verdict)},
+          {"limiting_factor", to_string(each.limiting_factor)},
+          {"data_quality", each.data_quality},
+          {"margin_K", rounded(each.margin_K, 2)},
+          {"margin_A", optional(each.margin_A, 4)},
+          {"stator_limit_C", optional(each.stator_limit_C, 2)},
+          {"delivered_share", rounded(each.least_torque_share, 4)},
+          {"voltage_needed_V", rounded(each.highest_voltage_V, 3)},
+          {"runaway", each.destroyed}};
+}
+
+ExitCode run(Options& options, const Session& session) {
+  const DataFolders folders = session.folders();
+  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
+  const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
+  const std::vector<Motor> motors = read_motors(options.motors, folders);
+  options.evaluate.with_curves = !options.plot.empty();
+  const std::vector<MotorEvaluation> results = evaluate(robot, duty, motors, options.evaluate, progress_bar("evaluating"));
+  if (!options.plot.empty()) {
+    write_svg(verdict_chart(results, robot, duty), options.plot);
+  }
+  session.say(report(results, robot, duty, options));
+  if (!options.plot.empty()) {
+    session.say(fmt::format("picture: {}\n", options.plot));
+  }
+  nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"}, {"robot", robot.id},        {"duty", duty.id},
+                                {"duty_origin", duty.origin},      {"seed", options.evaluate.seed}, {"samples", options.evaluate.samples}};
+  bool exceeded = false;
+  answer["motors"] = nlohmann::ordered_json::array();
+  for (const MotorEvaluation& each : results) {
+    answer["motors"].push_back(json(each));
+    exceeded = exceeded || each.verdict == Verdict::fail || each.verdict == Verdict::infeasible;
+  }
+  session.answer(answer);
+  return exceeded ? ExitCode::limit_exceeded : ExitCode::done;
+}
+
+}  // namespace
+
+Command evaluate_command() {
+  return {.name = {},
+          .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
+          .example = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors "
+                     "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+            app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
+            app.add_option("--motors", options->motors, "ids or files separated by commas, or all")->delimiter(',')->type_name("M,M")->default_str("all");
+            app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
+                ->check(CLI::Range(0, 1'000'000))
+                ->capture_default_str();
+            app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")->capture_default_str();
+            app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")->check(CLI::Range(0, 1024))->capture_default_str();
+            app.add_option("--plot", options->plot, "picture of stator and winding temperature over time")->type_name("FILE.svg");
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "duty/duty.h"
+#include "motor/motor.h"
+#include "robot/robot.h"
+#include "thermal/effect.h"
+
+namespace heatsoak::commands {
+namespace {
+
+struct Row {
+  std::string id;
+  std::string summary;
+};
+
+std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
+  std::vector<Row> result;
+  if (what == "motors") {
+    for (const std::string& id : ids_in(folders.motors)) {
+      const Motor motor = read_motor(folders.motors / (id + ".toml"));
+      result.push_back({id, fmt::format("{} {} ({} thermal data)", motor.manufacturer, motor.name, data_quality(motor))});
+    }
+  } else if (what == "robots") {
+    for (const std::string& id : ids_in(folders.robots)) {
+      const Robot robot = read_robot(folders.robots / (id + ".toml"));
+      result.push_back({id, fmt::format("{}, drives with {}", robot.name, robot.drive_motor)});
+    }
+  } else if (what == "duties") {
+    for (const std::string& id : ids_in(folders.duties)) {
+      result.push_back({id, read_duty(folders.duties / (id + ".toml")).summary});
+    }
+  } else if (what == "effects") {
+    for (const EffectType& effect : all_effects()) {
+      result.push_back({std::string(effect.name), std::string(effect.summary)});
+    }
+  } else {
+    for (const ShapeType& shape : all_shapes()) {
+      result.push_back({std::string(shape.name), fmt::format("duty: {}", shape.summary)});
+    }
+    result.push_back({"svg", "picture: --plot FILE.svg"});
+    result.push_back({"json", "answer: --json FILE"});
+    result.push_back({"csv", "trace: simulate --out FILE.csv"});
+  }
+  return result;
+}
+
+ExitCode run(const std::string& what, const Session& session) {
+  const std::vector<Row> all = rows(what, session.folders());
+  std::string text;
+  nlohmann::ordered_json items = nlohmann::ordered_json::array();
+  for (const Row& row : all) {
+    text += fmt::format("{:34} {}\n", row.id, row.summary);
+    items.push_back({{"id", row.id}, {"summary", row.summary}});
+  }
+  session.say(text);
+  session.answer({{"schema", "heatsoak.list/1"}, {"kind", what}, {"items", items}});
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command list() {
+  return {.name = {},
+          .summary = "Lists what there is: motors, robots, duties, effects or formats",
+          .example = "heatsoak list motors",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto what = std::make_shared<std::string>();
+            app.add_option("kind", *what, "motors, robots, duties, effects or formats")
+                ->required()
+                ->check(CLI::IsMember({"motors", "robots", "duties", "effects", "formats"}));
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [what, &session] { return run(*what, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/commands_registry.h"
+#include "input/document.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::string_view kVersion = "heatsoak " HEATSOAK_VERSION;
+
+constexpr std::string_view kFooter =
+    "\nExit codes: 0 done and within limits, 1 a limit is exceeded, 2 bad input or usage,\n"
+    "3 the data cannot answer the question, 4 the numerics failed, 70 a bug.\n\n"
+    "Start here:\n  heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --plot verdict.svg\n";
+
+/// CLI11 throws on bad usage before any option is stored, so the target of a JSON error is looked up by hand.
+std::string json_target(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--json" && i + 1 < argc) {
+      return argv[i + 1];
+    }
+    if (word.starts_with("--json=")) {
+      return std::string(word.substr(7));
+    }
+  }
+  return {};
+}
+
+/// "heatsoak evaluate", as far as the line names a verb.
+std::string verb_of(const CLI::App& app) {
+  const auto verbs = app.get_subcommands();
+  return verbs.empty() ? app.get_name() : fmt::format("{} {}", app.get_name(), verbs.front()->get_name());
+}
+
+/// CLI11 names what it did not expect; the nearest option or verb is what was meant.
+std::string nearest(const CLI::App& app, const std::string& message) {
+  const auto verbs = app.get_subcommands();
+  std::vector<std::string> known;
+  for (const CLI::Option* option : (verbs.empty() ? app : *verbs.front()).get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      known.push_back("--" + name);
+    }
+  }
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    known.push_back(verb->get_name());
+  }
+  const std::size_t colon = message.find(": ");
+  return colon == std::string::npos ? "" : did_you_mean(message.substr(colon + 2, message.find(' ', colon + 2) - colon - 2), known);
+}
+
+int fail(const Session& session, const Failure& failure) {
+  fmt::print(stderr, "{}\n", failure.what());
+  session.answer_failure(failure);
+  return static_cast<int>(failure.code());
+}
+
+int parse_and_run(int argc, const char* const* argv, Session& session) {
+  CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
+  app.set_version_flag("--version", std::string(kVersion));
+  app.require_subcommand(1);
+  app.footer(std::string(kFooter));
+  ExitCode code = ExitCode::done;
+  for (const Command& command : all_commands()) {
+    CLI::App* verb = app.add_subcommand(std::string(command.name), std::string(command.summary));
+    verb->footer(fmt::format("\nExample:\n  {}\n", command.example));
+    const std::function<ExitCode()> run = command.declare(*verb, session);
+    verb->callback([run, &code] { code = run(); });
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {
+      return app.exit(error);
+    }
+    session.set_json_target(json_target(argc, argv));
+    return fail(session, Failure(ExitCode::bad_input, fmt::format("{}{}\n`{} --help` shows the options and an example", error.what(),
+                                                                  nearest(app, error.what()), verb_of(app))));
+  }
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+void Session::add_data_option(CLI::App& app) {
+  app.add_option("--db", database_, "folder with motor_db/ (and duty_profiles/, robots/), or with motor files itself")->type_name("DIR");
+}
+
+void Session::add_json_option(CLI::App& app) {
+  app.add_option("--json", json_target_, "write the answer as JSON; - is stdout, the text then goes to stderr")->type_name("FILE");
+}
+
+DataFolders Session::folders() const { return DataFolders::find(database_); }
+
+void Session::say(std::string_view text) const { fmt::print(json_target_ == "-" ? stderr : stdout, "{}", text); }
+
+void Session::answer(const nlohmann::ordered_json& json) const {
+  if (json_target_.empty()) {
+    return;
+  }
+  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  if (json_target_ == "-") {
+    fmt::print("{}", text);
+  } else {
+    write_file(json_target_, text);
+  }
+}
+
+void Session::answer_failure(const Failure& failure) const {
+  nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
+  for (const Diagnostic& each : failure.diagnostics()) {
+    diagnostics.push_back({{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
+  }
+  const std::string message = failure.message().empty() ? "the input is wrong" : failure.message();
+  try {
+    answer({{"error", {{"code", static_cast<int>(failure.code())}, {"message", message}, {"diagnostics", diagnostics}}}});
+  } catch (const Failure& unwritable) {
+    fmt::print(stderr, "{}\n", unwritable.what());
+  }
+}
+
+std::vector<Command> all_commands() {
+  std::vector<Command> all;
+  for (const auto& [name, make] : commands::registry) {
+    all.push_back(make());
+    // A verb whose name is a word of C++ or clashes with a function has a file name of its own.
+    all.back().name = name.ends_with("_command") ? name.substr(0, name.size() - std::string_view("_command").size()) : name;
+  }
+  return all;
+}
+
+Progress progress_bar(std::string what) {
+  if (isatty(STDERR_FILENO) == 0) {
+    return {};
+  }
+  using Clock = std::chrono::steady_clock;
+  return [what = std::move(what), start = Clock::now(), shown = Clock::now()](std::size_t done, std::size_t total) mutable {
+    const Clock::time_point now = Clock::now();
+    if (done == total) {
+      fmt::print(stderr, "\r{:60}\r", "");
+    } else if (now - shown > std::chrono::milliseconds(200)) {
+      shown = now;
+      const double elapsed_s = std::chrono::duration<double>(now - start).count();
+      const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done);
+      fmt::print(stderr, "\r{}: {:3.0f} %, {:.0f} s left  ", what, 100.0 * static_cast<double>(done) / static_cast<double>(total), std::ceil(left_s));
+    }
+  };
+}
+
+nlohmann::ordered_json rounded(double value, int decimals) {
+  if (!std::isfinite(value)) {
+    return nullptr;
+  }
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale;
+}
+
+int run_program(int argc, const char* const* argv) {
+  Session session;
+  try {
+    return parse_and_run(argc, argv, session);
+  } catch (const Failure& failure) {
+    return fail(session, failure);
+  } catch (const std::bad_alloc&) {
+    return fail(session, Failure(ExitCode::numerics_failed, "out of memory"));
+  } catch (const std::exception& error) {
+    return fail(session, Failure(ExitCode::bug, fmt::format("this is a bug in heatsoak, please report it: {}", error.what())));
+  }
+}
+
+}  // namespace heatsoak

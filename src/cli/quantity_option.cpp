@@ -1,0 +1,27 @@
+#include "cli/quantity_option.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const ParameterSpec& spec) {
+  const auto parse = [flag, spec, &value](const std::string& text) {
+    const std::optional<double> bare = parse_number(text);
+    const ParsedQuantity parsed = bare && std::isfinite(*bare) ? ParsedQuantity{*bare, {}} : parse_quantity(text, spec.unit);
+    if (!parsed.ok()) {
+      throw CLI::ValidationError(flag, parsed.problem);
+    }
+    if (!spec.range.contains(parsed.value)) {
+      throw CLI::ValidationError(flag, fmt::format("{} is out of range; expected {}", text, to_string(spec.range, spec.unit)));
+    }
+    value = parsed.value;
+  };
+  return app.add_option_function<std::string>(flag, parse, std::string(spec.meaning))->type_name(std::string(spec.unit));
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,73 @@
+#include <cmath>
+
+#include "duty/duty.h"
+
+namespace heatsoak::shapes {
+namespace {
+
+/// The spread of a figure as a spread of a factor around 1.
+Figure as_factor(const Figure& figure) {
+  Figure factor = figure;
+  factor.value = 1.0;
+  if (factor.spread && figure.value != 0.0) {
+    factor.spread->low /= figure.value;
+    factor.spread->high /= figure.value;
+    factor.spread->by_ratio = factor.spread->low > 0.0;
+  }
+  return factor;
+}
+
+void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
+  constexpr double kLongest_s = 1e6;
+  const ParameterSpec torque{"torque_on", "N m", Range::positive(), "at one wheel, while it is on"};
+  const ParameterSpec current{"current_on", "A", Range::positive(), "through the motor, while it is on"};
+  const std::optional<Figure> torque_on = table.figure(torque, Need::optional);
+  const std::optional<Figure> current_on = table.figure(current, Need::optional);
+  const std::optional<double> speed_on = table.quantity({"speed_on", "rad/s", Range::non_negative(), "of the wheel, while it is on"}, Need::required);
+  const std::optional<double> on_s = table.quantity({"time_on", "s", Range::positive(), "of one cycle"}, Need::required);
+  const std::optional<double> off_s = table.quantity({"time_off", "s", Range::non_negative(), "of one cycle"}, Need::required);
+  const std::optional<double> repeats = table.quantity({"repeats", "", Range::between(1.0, 1e6), "how many cycles"}, Need::required);
+  if (torque_on.has_value() == current_on.has_value()) {
+    table.problem("torque_on", "expected exactly one of torque_on and current_on");
+    return;
+  }
+  if (!speed_on || !on_s || !off_s || !repeats) {
+    return;
+  }
+  if (*repeats != std::floor(*repeats)) {
+    table.problem("repeats", "is not a whole number");
+    return;
+  }
+  if ((*on_s + *off_s) * *repeats > kLongest_s) {
+    table.problem("repeats", "makes the duty longer than 1 000 000 s; expected something like a match");
+    return;
+  }
+  duty.kind = torque_on ? DutyKind::torque : DutyKind::current;
+  duty.load = as_factor(torque_on ? *torque_on : *current_on);
+  const DutyPiece on{*on_s, torque_on ? torque_on->value : 0.0, *speed_on, current_on ? current_on->value : 0.0};
+  const DutyPiece off{*off_s, 0.0, 0.0, 0.0};
+  for (int i = 0; i < static_cast<int>(*repeats); ++i) {
+    duty.pieces.push_back(on);
+    if (*off_s > 0.0) {
+      duty.pieces.push_back(off);
+    }
+  }
+}
+
+}  // namespace
+
+ShapeType intermittent() {
+  return {.name = {},
+          .summary = "on and off by turns: a torque (or a current) and a speed for time_on, standstill without current for time_off",
+          .example = R"(shape = "intermittent"
+[intermittent]
+torque_on = { value = "120 mN m", origin = "estimated", derivation = "why this figure" }
+speed_on = "40 rad/s"
+time_on = "4 s"
+time_off = "6 s"
+repeats = "240"
+)",
+          .read = read};
+}
+
+}  // namespace heatsoak::shapes

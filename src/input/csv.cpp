@@ -1,0 +1,173 @@
+#include "input/csv.h"
+
+#include <csv.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::size_t kMostProblems = 20;
+
+class Table {
+ public:
+  Table(std::string file, std::span<const std::string> required, std::span<const std::string> optional, const std::function<void(const CsvRow&)>& row)
+      : file_(std::move(file)), required_(required), optional_(optional), row_(row), values_(required.size() + optional.size(), kNothing) {}
+
+  void cell(std::string_view text) {
+    if (!has_header_) {
+      header_.emplace_back(text);
+    } else if (column_ < place_of_.size() && place_of_[column_] >= 0) {
+      const std::optional<double> value = parse_number(text);
+      if (!value || !std::isfinite(*value)) {
+        problem(static_cast<int>(column_) + 1, header_[column_], fmt::format("\"{}\" is not a finite number", text));
+      } else {
+        values_[static_cast<std::size_t>(place_of_[column_])] = *value;
+      }
+    }
+    ++column_;
+  }
+
+  /// `terminator` is the byte that ended the row; CR LF ends it once.
+  void end_of_row(int terminator) {
+    if (column_ > 0) {
+      if (!has_header_) {
+        read_header();
+      } else if (column_ != header_.size()) {
+        problem(1, "", fmt::format("has {} cells where the header has {}", column_, header_.size()));
+      } else {
+        ++rows_;
+        if (problems_.empty()) {
+          row_({line_, values_});
+        }
+      }
+    }
+    column_ = 0;
+    line_ += terminator == '\n' ? 1 : 0;
+  }
+
+  void finish() {
+    if (has_header_ && rows_ == 0 && problems_.empty()) {
+      problem(1, "", "holds no row of numbers");
+    }
+    if (!has_header_) {
+      problem(1, "", "is empty; expected a header row with names such as time_s, current_A");
+    }
+    if (left_out_ > 0) {
+      problems_.push_back({{file_, 0, 0}, "", fmt::format("and {} more problems", left_out_)});
+    }
+    if (!problems_.empty()) {
+      throw Failure(ExitCode::bad_input, "", std::move(problems_));
+    }
+  }
+
+  void problem(int column, std::string key, std::string message) {
+    if (problems_.size() < kMostProblems) {
+      problems_.push_back({{file_, line_, column}, std::move(key), std::move(message)});
+    } else {
+      ++left_out_;
+    }
+  }
+
+ private:
+  static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+  void read_header() {
+    has_header_ = true;
+    place_of_.assign(header_.size(), -1);
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const bool is_required = i < required_.size();
+      const std::string& name = is_required ? required_[i] : optional_[i - required_.size()];
+      const auto found = std::ranges::find(header_, name);
+      if (found == header_.end()) {
+        if (is_required) {
+          problem(1, name, fmt::format("there is no such column{}", did_you_mean(name, header_)));
+        }
+        continue;
+      }
+      if (std::find(found + 1, header_.end(), name) != header_.end()) {
+        problem(1, name, "stands twice in the header");
+      }
+      place_of_[static_cast<std::size_t>(found - header_.begin())] = static_cast<int>(i);
+    }
+  }
+
+  std::string file_;
+  std::span<const std::string> required_;
+  std::span<const std::string> optional_;
+  const std::function<void(const CsvRow&)>& row_;
+  std::vector<std::string> header_;
+  std::vector<int> place_of_;
+  std::vector<double> values_;
+  std::vector<Diagnostic> problems_;
+  std::size_t left_out_ = 0;
+  std::size_t column_ = 0;
+  std::size_t rows_ = 0;
+  int line_ = 1;
+  bool has_header_ = false;
+};
+
+/// libcsv is C: an exception must not pass through it.
+struct Guarded {
+  Table& table;
+  std::exception_ptr error;
+};
+template <class Work>
+void guarded(void* data, Work work) {
+  auto& guard = *static_cast<Guarded*>(data);
+  if (!guard.error) {
+    try {
+      work(guard.table);
+    } catch (...) {
+      guard.error = std::current_exception();
+    }
+  }
+}
+
+}  // namespace
+
+void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
+              const std::function<void(const CsvRow&)>& row) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) {
+    throw bad_input({path.string()}, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+  }
+  Table table(path.string(), required, optional, row);
+  csv_parser parser;
+  csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL);
+  const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);
+  Guarded guard{table, nullptr};
+  const auto cell = [](void* text, std::size_t size, void* data) {
+    guarded(data, [&](Table& t) { t.cell({static_cast<const char*>(text), size}); });
+  };
+  const auto end_of_row = [](int terminator, void* data) { guarded(data, [terminator](Table& t) { t.end_of_row(terminator); }); };
+  std::vector<char> chunk(1 << 18);
+  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), file.get())) {
+    csv_parse(&parser, chunk.data(), got, cell, end_of_row, &guard);
+    if (guard.error) {
+      std::rethrow_exception(guard.error);
+    }
+  }
+  if (std::ferror(file.get()) != 0) {
+    table.problem(0, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+  }
+  csv_fini(&parser, cell, end_of_row, &guard);
+  if (guard.error) {
+    std::rethrow_exception(guard.error);
+  }
+  table.finish();
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,25 @@
+// Columns of numbers out of a CSV file, row by row, with places for messages. libcsv reads the quoting.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace heatsoak {
+
+/// One row: the wanted columns in the wanted order. `line` counts from 1 as an editor does.
+struct CsvRow {
+  int line = 0;
+  std::span<const double> values;
+};
+
+/// Reads a file with one header row and gives every row to `row`. `required` names must be in the header;
+/// `optional` ones give NaN where the header has none. Memory does not grow with the file.
+/// Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
+/// another number of cells, no rows. At most 20 problems are listed, then how many more there are.
+void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
+              const std::function<void(const CsvRow&)>& row);
+
+}  // namespace heatsoak

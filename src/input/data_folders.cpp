@@ -1,0 +1,80 @@
+#include "input/data_folders.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace fs = std::filesystem;
+namespace {
+
+DataFolders source_tree(const fs::path& root) { return {root / "motor_db", root / "robot_core" / "robots", root / "duty_profiles"}; }
+
+DataFolders installed(const fs::path& share) { return {share / "motor_db", share / "robots", share / "duty_profiles"}; }
+
+bool complete(const DataFolders& folders) {
+  return fs::is_directory(folders.motors) && fs::is_directory(folders.robots) && fs::is_directory(folders.duties);
+}
+
+DataFolders beside_the_program() {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  if (const DataFolders found = installed(program.parent_path().parent_path() / "share" / "heatsoak"); complete(found)) {
+    return found;
+  }
+  for (fs::path folder = program.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (const DataFolders found = source_tree(folder); complete(found)) {
+      return found;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+DataFolders DataFolders::find(const fs::path& database) {
+  DataFolders folders = beside_the_program();
+  if (!database.empty()) {
+    if (!fs::is_directory(database)) {
+      throw Failure(ExitCode::bad_input, fmt::format("--db {}: there is no such folder", database.string()));
+    }
+    for (const DataFolders& candidate : {source_tree(database), installed(database)}) {
+      folders.motors = fs::is_directory(candidate.motors) ? candidate.motors : folders.motors;
+      folders.robots = fs::is_directory(candidate.robots) ? candidate.robots : folders.robots;
+      folders.duties = fs::is_directory(candidate.duties) ? candidate.duties : folders.duties;
+    }
+    if (!fs::is_directory(database / "motor_db")) {
+      folders.motors = database;
+    }
+  }
+  if (!complete(folders)) {
+    throw Failure(ExitCode::bad_input, "the folders motor_db, duty_profiles and robots are found neither beside the program nor in share/heatsoak; name them with --db DIR");
+  }
+  return folders;
+}
+
+std::vector<std::string> ids_in(const fs::path& folder) {
+  std::vector<std::string> ids;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".toml") {
+      ids.push_back(entry.path().stem().string());
+    }
+  }
+  std::ranges::sort(ids);
+  return ids;
+}
+
+fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view name) {
+  if (name.find('/') != std::string_view::npos || name.ends_with(".toml")) {
+    return fs::path(name);
+  }
+  const std::vector<std::string> ids = ids_in(folder);
+  if (std::ranges::find(ids, name) == ids.end()) {
+    throw Failure(ExitCode::bad_input, fmt::format("there is no {} '{}' in {}{}; `heatsoak list` shows what there is", kind, name, folder.string(), did_you_mean(name, ids)));
+  }
+  return folder / fmt::format("{}.toml", name);
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,237 @@
+#include "input/reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+
+Reader::Reader(const Value& table, std::string path, Diagnostics& diagnostics)
+    : table_(&table), path_(std::move(path)), diagnostics_(&diagnostics) {}
+
+std::string Reader::full(std::string_view key) const {
+  return path_.empty() ? std::string(key) : key.empty() ? path_ : fmt::format("{}.{}", path_, key);
+}
+
+Location Reader::at(std::string_view key) const {
+  const Value* value = table_->find(key);
+  return value ? value->at : table_->at;
+}
+
+std::vector<std::string> Reader::keys() const {
+  std::vector<std::string> names;
+  for (const auto& member : table_->members) {
+    names.push_back(member.first);
+  }
+  return names;
+}
+
+void Reader::problem(std::string_view key, std::string message) {
+  diagnostics_->add(at(key), full(key), std::move(message));
+}
+
+const Value* Reader::get(std::string_view key, Value::Kind kind, Need need) {
+  asked_.insert(std::string(key));
+  const Value* value = table_->find(key);
+  if (!value) {
+    if (need == Need::required) {
+      problem(key, "is missing");
+    }
+    return nullptr;
+  }
+  if (value->kind != kind) {
+    const bool bare_number = kind == Value::Kind::text && value->kind == Value::Kind::number;
+    problem(key, bare_number ? fmt::format("{} is a bare number; write it as text with its unit, such as \"{} …\"", value->text, value->text)
+                             : fmt::format("is {}, expected {}", to_string(value->kind), to_string(kind)));
+    return nullptr;
+  }
+  return value;
+}
+
+std::optional<std::string> Reader::text(std::string_view key, Need need) {
+  const Value* value = get(key, Value::Kind::text, need);
+  return value ? std::optional(value->text) : std::nullopt;
+}
+
+std::optional<bool> Reader::flag(std::string_view key, Need need) {
+  const Value* value = get(key, Value::Kind::boolean, need);
+  return value ? std::optional(value->boolean) : std::nullopt;
+}
+
+std::vector<std::string> Reader::texts(std::string_view key, Need need) {
+  std::vector<std::string> result;
+  const Value* value = get(key, Value::Kind::array, need);
+  for (const Value& item : value ? value->items : std::vector<Value>{}) {
+    if (item.kind == Value::Kind::text) {
+      result.push_back(item.text);
+    } else {
+      diagnostics_->add(item.at, full(key), fmt::format("holds {}, expected texts", to_string(item.kind)));
+    }
+  }
+  return result;
+}
+
+std::optional<std::string> Reader::choice(std::string_view key, std::span<const std::string_view> choices, Need need) {
+  std::optional<std::string> given = text(key, need);
+  if (given && std::ranges::find(choices, *given) == choices.end()) {
+    const std::vector<std::string> names(choices.begin(), choices.end());
+    problem(key, fmt::format("'{}' is not known; expected one of {}{}", *given, fmt::join(names, ", "), did_you_mean(*given, names)));
+    return std::nullopt;
+  }
+  return given;
+}
+
+std::optional<double> Reader::parse(const Value& value, std::string_view key, std::string_view unit) {
+  if (value.kind != Value::Kind::text) {
+    diagnostics_->add(value.at, full(key),
+                      value.kind == Value::Kind::number
+                          ? fmt::format("{} is a bare number; write it as text with its unit, \"{}{}{}\"", value.text, value.text,
+                                        unit.empty() ? "" : " ", unit)
+                          : fmt::format("is {}, expected a quantity as text", to_string(value.kind)));
+    return std::nullopt;
+  }
+  const ParsedQuantity parsed = parse_quantity(value.text, unit);
+  if (!parsed.ok()) {
+    diagnostics_->add(value.at, full(key), parsed.problem);
+    return std::nullopt;
+  }
+  return parsed.value;
+}
+
+std::optional<double> Reader::quantity(const ParameterSpec& spec, Need need) {
+  asked_.insert(std::string(spec.key));
+  const Value* value = table_->find(spec.key);
+  if (!value) {
+    if (need == Need::required) {
+      problem(spec.key, fmt::format("is missing: {}", spec.meaning));
+    }
+    return std::nullopt;
+  }
+  const std::optional<double> parsed = parse(*value, spec.key, spec.unit);
+  if (parsed && !spec.range.contains(*parsed)) {
+    problem(spec.key, fmt::format("\"{}\" is out of range; expected {} ({})", value->text, to_string(spec.range, spec.unit), spec.meaning));
+    return std::nullopt;
+  }
+  return parsed;
+}
+
+std::optional<Reader> Reader::table(std::string_view key, Need need) {
+  const Value* value = get(key, Value::Kind::table, need);
+  return value ? std::optional<Reader>(std::in_place, *value, full(key), *diagnostics_) : std::nullopt;
+}
+
+std::vector<Reader> Reader::tables(std::string_view key) {
+  std::vector<Reader> readers;
+  if (const Value* value = get(key, Value::Kind::array, Need::optional)) {
+    for (std::size_t i = 0; i < value->items.size(); ++i) {
+      if (value->items[i].kind == Value::Kind::table) {
+        readers.emplace_back(value->items[i], fmt::format("{}[{}]", full(key), i), *diagnostics_);
+      } else {
+        diagnostics_->add(value->items[i].at, full(key), "holds something else than tables");
+      }
+    }
+  }
+  return readers;
+}
+
+std::vector<std::pair<std::string, Reader>> Reader::named_tables() {
+  std::vector<std::pair<std::string, Reader>> result;
+  for (const std::string& key : keys()) {
+    if (std::optional<Reader> member = table(key, Need::required)) {
+      result.emplace_back(key, std::move(*member));
+    }
+  }
+  return result;
+}
+
+std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
+  asked_.insert(std::string(spec.key));
+  const Value* value = table_->find(spec.key);
+  if (!value) {
+    if (need == Need::required) {
+      problem(spec.key, fmt::format("is missing: {}", spec.meaning));
+    }
+    return std::nullopt;
+  }
+  if (value->kind != Value::Kind::table) {
+    problem(spec.key, fmt::format("is {}; expected {{ value = \"… {}\", origin = \"…\", source = \"…\" }}", to_string(value->kind), spec.unit));
+    return std::nullopt;
+  }
+  Reader inner(*value, full(spec.key), *diagnostics_);
+  Figure figure;
+  figure.at = value->at;
+  const std::optional<double> parsed = inner.quantity({"value", spec.unit, spec.range, spec.meaning}, Need::required);
+  const std::optional<std::string> origin = inner.text("origin", Need::required);
+  if (origin) {
+    const std::optional<Origin> known = origin_from(*origin);
+    if (!known) {
+      inner.problem("origin", fmt::format("'{}' is not known; expected measured, datasheet, third_party, derived or estimated", *origin));
+    }
+    figure.origin = known.value_or(Origin::estimated);
+  }
+  const bool calculated = figure.origin == Origin::derived || figure.origin == Origin::estimated;
+  figure.derivation = inner.text("derivation", calculated ? Need::required : Need::optional).value_or("");
+  if (const Value* source = value->find("source"); source && source->kind == Value::Kind::array) {
+    figure.source = fmt::format("{}", fmt::join(inner.texts("source", Need::required), ", "));
+  } else {
+    figure.source = inner.text("source", calculated ? Need::optional : Need::required).value_or("");
+  }
+  if (parsed) {
+    figure.value = *parsed;
+    inner.read_spread(spec, figure);
+  } else {
+    inner.asked_.insert({"tolerance", "range"});
+  }
+  inner.finish();
+  return parsed && origin ? std::optional(figure) : std::nullopt;
+}
+
+void Reader::read_spread(const ParameterSpec& spec, Figure& figure) {
+  const bool is_temperature = spec.unit == "degC";
+  asked_.insert({"tolerance", "range"});
+  const Value* range = table_->find("range");
+  if (table_->find("tolerance")) {
+    if (range) {
+      problem("range", "stands beside a tolerance; expected one of them");
+    }
+    const std::optional<double> share = quantity({"tolerance", is_temperature ? "K" : "", Range::between(0.0, is_temperature ? 100.0 : 0.9), "± part of the value that 95 % of parts keep"}, Need::required);
+    if (share) {
+      const double half = is_temperature ? *share : *share * std::abs(figure.value);
+      figure.spread = {Spread::Kind::tolerance, figure.value - half, figure.value + half, !is_temperature};
+    }
+    return;
+  }
+  if (!range) {
+    return;
+  }
+  if (range->kind != Value::Kind::array || range->items.size() != 2) {
+    problem("range", fmt::format("expected [\"lowest {}\", \"highest {}\"]", spec.unit, spec.unit));
+    return;
+  }
+  const std::optional<double> low = parse(range->items[0], "range", spec.unit);
+  const std::optional<double> high = parse(range->items[1], "range", spec.unit);
+  if (!low || !high) {
+    return;
+  }
+  if (!(*low <= figure.value && figure.value <= *high)) {
+    problem("range", "does not enclose the value; expected lowest ≤ value ≤ highest");
+  } else if (!spec.range.contains(*low) || !spec.range.contains(*high)) {
+    problem("range", fmt::format("leaves what is possible; expected {}", to_string(spec.range, spec.unit)));
+  } else {
+    figure.spread = {Spread::Kind::range, *low, *high, !is_temperature && *low > 0.0};
+  }
+}
+
+void Reader::finish() {
+  const std::vector<std::string> known(asked_.begin(), asked_.end());
+  for (const auto& [key, value] : table_->members) {
+    if (!asked_.contains(key)) {
+      diagnostics_->add(value.at, full(key), fmt::format("is not a key of this table{}", did_you_mean(key, known)));
+    }
+  }
+}
+
+}  // namespace heatsoak

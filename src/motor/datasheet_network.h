@@ -1,0 +1,17 @@
+// From the figures of a data sheet to the thermal network.
+#pragma once
+
+#include "motor/motor.h"
+#include "thermal/network.h"
+
+namespace heatsoak {
+
+/// Winding and stator with C_w = τ_w/R_th1 and C_s = τ_m/R_th2 (the time constants of a sheet are C·R of one
+/// element, not eigenvalues of the network), copper loss in the winding, K_t·I_0·|ω| at the stator, two thermal
+/// resistances, and the effects that the file adds. The order of nodes and effects is the same for every sample.
+Network datasheet_network(const Motor& motor, const MotorSample& sample);
+
+/// Torque that the motor loses inside while it turns: K_t·I_0.
+double drag_torque_Nm(const MotorValues& motor);
+
+}  // namespace heatsoak

@@ -1,0 +1,242 @@
+#include "motor/motor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "input/document.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr Range kPositive = Range::positive();
+constexpr Range kTemperature = Range::between(-60.0, 400.0);
+
+constexpr std::array kSpecs = {
+    MotorFigureSpec{{"nominal_voltage", "V", kPositive, "supply voltage the nominal figures hold for"}, &MotorValues::nominal_voltage_V, Need::required},
+    MotorFigureSpec{{"terminal_resistance", "ohm", kPositive, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
+    MotorFigureSpec{{"terminal_inductance", "H", kPositive, "of the winding"}, &MotorValues::terminal_inductance_H},
+    MotorFigureSpec{{"torque_constant", "N m/A", kPositive, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, Need::required, true},
+    MotorFigureSpec{{"speed_constant", "rad/s/V", kPositive, "speed per volt of back-EMF"}, &MotorValues::speed_constant_rad_per_s_per_V},
+    MotorFigureSpec{{"speed_torque_gradient", "rad/s/(N m)", kPositive, "loss of speed per torque at constant voltage"}, &MotorValues::speed_torque_gradient_rad_per_s_per_Nm},
+    MotorFigureSpec{{"mechanical_time_constant", "s", kPositive, "R·J/K_t²"}, &MotorValues::mechanical_time_constant_s},
+    MotorFigureSpec{{"rotor_inertia", "kg m2", kPositive, "moment of inertia of the rotor"}, &MotorValues::rotor_inertia_kg_m2},
+    MotorFigureSpec{{"no_load_speed", "rad/s", kPositive, "at nominal voltage"}, &MotorValues::no_load_speed_rad_per_s},
+    MotorFigureSpec{{"no_load_current", "A", Range::non_negative(), "at nominal voltage: iron and friction loss"}, &MotorValues::no_load_current_A, Need::required, true},
+    MotorFigureSpec{{"nominal_speed", "rad/s", kPositive, "at nominal voltage and torque"}, &MotorValues::nominal_speed_rad_per_s},
+    MotorFigureSpec{{"nominal_torque", "N m", kPositive, "largest continuous torque at 25 °C ambient"}, &MotorValues::nominal_torque_Nm},
+    MotorFigureSpec{{"nominal_current", "A", kPositive, "largest continuous current at 25 °C ambient"}, &MotorValues::nominal_current_A},
+    MotorFigureSpec{{"stall_torque", "N m", kPositive, "at nominal voltage"}, &MotorValues::stall_torque_Nm},
+    MotorFigureSpec{{"stall_current", "A", kPositive, "at nominal voltage"}, &MotorValues::stall_current_A},
+    MotorFigureSpec{{"max_efficiency", "", Range::between(0.0, 1.0), "at nominal voltage"}, &MotorValues::max_efficiency},
+    MotorFigureSpec{{"peak_current", "A", kPositive, "short-time limit of the manufacturer"}, &MotorValues::peak_current_A},
+    MotorFigureSpec{{"peak_torque", "N m", kPositive, "short-time limit of the manufacturer"}, &MotorValues::peak_torque_Nm},
+    MotorFigureSpec{{"max_speed", "rad/s", kPositive, "mechanical limit"}, &MotorValues::max_speed_rad_per_s},
+    MotorFigureSpec{{"assigned_power", "W", kPositive, "name-plate power"}, &MotorValues::assigned_power_W},
+    MotorFigureSpec{{"pole_pairs", "", Range::between(1.0, 100.0), "of the rotor"}, &MotorValues::pole_pairs},
+    MotorFigureSpec{{"mass", "kg", kPositive, "of the motor"}, &MotorValues::mass_kg},
+    MotorFigureSpec{{"diameter", "m", kPositive, "of the body"}, &MotorValues::diameter_m},
+    MotorFigureSpec{{"length", "m", kPositive, "of the body"}, &MotorValues::length_m},
+    MotorFigureSpec{{"thermal_resistance_winding_stator", "K/W", kPositive, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, Need::required, true},
+    MotorFigureSpec{{"thermal_resistance_stator_ambient", "K/W", kPositive, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, Need::required, true},
+    MotorFigureSpec{{"thermal_time_constant_winding", "s", kPositive, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, Need::required, true},
+    MotorFigureSpec{{"thermal_time_constant_stator", "s", kPositive, "heat capacity of the stator times R_th2"}, &MotorValues::thermal_time_constant_stator_s, Need::required, true},
+    MotorFigureSpec{{"winding_limit", "degC", kTemperature, "highest permissible winding temperature"}, &MotorValues::winding_limit_C, Need::required, true},
+    MotorFigureSpec{{"stator_limit", "degC", kTemperature, "highest permissible stator temperature"}, &MotorValues::stator_limit_C, Need::optional, true},
+    MotorFigureSpec{{"ambient_min", "degC", kTemperature, "lowest permissible ambient temperature"}, &MotorValues::ambient_min_C},
+    MotorFigureSpec{{"ambient_max", "degC", kTemperature, "highest permissible ambient temperature"}, &MotorValues::ambient_max_C},
+    MotorFigureSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; copper's 0.0039 1/K where absent"}, &MotorValues::temperature_coefficient_per_K},
+};
+
+constexpr double kCopper_per_K = 0.0039;
+
+/// Conversions to the conventions of MotorValues. For a sinusoidal back-EMF the torque constant per peak
+/// phase ampere is √3·π/6 = 0.907 of the one per DC ampere of block commutation; RMS is peak/√2.
+constexpr std::array<std::pair<std::string_view, double>, 2> kResistanceConventions{{{"between_terminals", 1.0}, {"phase_to_star", 2.0}}};
+const std::array<std::pair<std::string_view, double>, 3> kTorqueConventions{
+    {{"per_dc_ampere", 1.0},
+     {"per_peak_phase_ampere", 6.0 / (std::numbers::sqrt3 * std::numbers::pi)},
+     {"per_rms_phase_ampere", 6.0 / (std::numbers::sqrt3 * std::numbers::pi) / std::numbers::sqrt2}}};
+
+template <class Conventions>
+double convention_factor(Reader& conventions, std::string_view key, const Conventions& known) {
+  std::vector<std::string_view> names;
+  for (const auto& [name, factor] : known) {
+    names.push_back(name);
+  }
+  const std::optional<std::string> given = conventions.choice(key, names, Need::required);
+  for (const auto& [name, factor] : known) {
+    if (given == name) {
+      return factor;
+    }
+  }
+  return 1.0;
+}
+
+void scale(Figure& figure, double factor) {
+  figure.value *= factor;
+  if (figure.spread) {
+    figure.spread->low *= factor;
+    figure.spread->high *= factor;
+  }
+}
+
+void read_figures(Reader& top, Motor& motor, double resistance_factor, double torque_factor) {
+  std::optional<Reader> figures = top.table("figures", Need::required);
+  if (!figures) {
+    return;
+  }
+  for (const MotorFigureSpec& each : kSpecs) {
+    if (std::optional<Figure> figure = figures->figure(each.spec, each.need)) {
+      if (each.value == &MotorValues::terminal_resistance_ohm || each.value == &MotorValues::terminal_inductance_H) {
+        scale(*figure, resistance_factor);
+      } else if (each.value == &MotorValues::torque_constant_Nm_per_A) {
+        scale(*figure, torque_factor);
+      }
+      motor.nominal.*each.value = figure->value;
+      motor.figures.emplace(each.spec.key, std::move(*figure));
+    }
+  }
+  figures->finish();
+}
+
+/// A source that a figure names must be explained, else the origin leads nowhere.
+void check_sources(const Motor& motor, Diagnostics& diagnostics) {
+  std::vector<std::string> known;
+  for (const auto& [id, text] : motor.sources) {
+    known.push_back(id);
+  }
+  for (const auto& [key, figure] : motor.figures) {
+    for (std::size_t at = 0; at < figure.source.size();) {
+      const std::size_t end = std::min(figure.source.find(", ", at), figure.source.size());
+      const std::string id = figure.source.substr(at, end - at);
+      if (!motor.sources.contains(id)) {
+        diagnostics.add(figure.at, fmt::format("figures.{}.source", key), fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
+      }
+      at = end + 2;
+    }
+  }
+}
+
+void read_effects(Reader& top, Motor& motor) {
+  std::optional<Reader> table = top.table("effects", Need::optional);
+  if (!table) {
+    return;
+  }
+  std::vector<std::string> known;
+  for (const EffectType& type : all_effects()) {
+    known.emplace_back(type.name);
+  }
+  for (auto& [name, reader] : table->named_tables()) {
+    const std::string type_name = reader.text("type", Need::optional).value_or(name);
+    const EffectType* type = find_effect(type_name);
+    if (!type) {
+      table->problem(name, fmt::format("there is no effect '{}'{}; `heatsoak list effects` shows all", type_name, did_you_mean(type_name, known)));
+      continue;
+    }
+    MotorEffect effect{name, type, {}, {}};
+    for (const NodeRole& role : type->nodes) {
+      effect.nodes.push_back(reader.text(role.role, Need::optional).value_or(std::string(role.default_node)));
+      constexpr std::array<std::string_view, 3> kNodes{"winding", "stator", "ambient"};
+      if (std::ranges::find(kNodes, effect.nodes.back()) == kNodes.end()) {
+        reader.problem(role.role, fmt::format("'{}' is no node; expected winding, stator or ambient", effect.nodes.back()));
+      }
+    }
+    for (const ParameterSpec& spec : type->parameters) {
+      effect.parameters.push_back(reader.figure(spec, Need::required).value_or(Figure{}));
+    }
+    reader.finish();
+    motor.effects.push_back(std::move(effect));
+  }
+  table->finish();
+}
+
+}  // namespace
+
+std::span<const MotorFigureSpec> motor_figure_specs() { return kSpecs; }
+
+Motor read_motor(const std::filesystem::path& path) {
+  const Value root = read_toml(path);
+  Diagnostics diagnostics;
+  Reader top(root, "", diagnostics);
+  Motor motor;
+  motor.id = path.stem().string();
+  motor.file = path;
+  motor.manufacturer = top.text("manufacturer", Need::required).value_or("");
+  motor.name = top.text("name", Need::required).value_or("");
+  motor.part_number = top.text("part_number", Need::optional).value_or("");
+  constexpr std::array<std::string_view, 2> kTypes{"brushless", "brushed"};
+  top.choice("type", kTypes, Need::required);
+  motor.notes = top.texts("notes", Need::optional);
+  if (std::optional<Reader> sources = top.table("sources", Need::required)) {
+    for (const std::string& id : sources->keys()) {
+      motor.sources.emplace(id, sources->text(id, Need::required).value_or(""));
+    }
+  }
+  double resistance_factor = 1.0;
+  double torque_factor = 1.0;
+  if (std::optional<Reader> conventions = top.table("conventions", Need::required)) {
+    resistance_factor = convention_factor(*conventions, "terminal_resistance", kResistanceConventions);
+    torque_factor = convention_factor(*conventions, "torque_constant", kTorqueConventions);
+    motor.stall_includes_saturation = conventions->flag("stall_includes_saturation", Need::optional).value_or(false);
+    conventions->finish();
+  }
+  motor.nominal.temperature_coefficient_per_K = kCopper_per_K;
+  read_figures(top, motor, resistance_factor, torque_factor);
+  read_effects(top, motor);
+  top.finish();
+  check_sources(motor, diagnostics);
+  diagnostics.throw_if_any();
+  return motor;
+}
+
+MotorSample nominal_sample(const Motor& motor) {
+  MotorSample sample{motor.nominal, {}};
+  for (const MotorEffect& effect : motor.effects) {
+    std::vector<double>& values = sample.effect_parameters.emplace_back();
+    for (const Figure& figure : effect.parameters) {
+      values.push_back(figure.value);
+    }
+  }
+  return sample;
+}
+
+MotorSample draw_sample(const Motor& motor, Random& random) {
+  MotorSample sample = nominal_sample(motor);
+  for (const MotorFigureSpec& each : kSpecs) {
+    const auto found = motor.figures.find(each.spec.key);
+    if (found != motor.figures.end() && found->second.spread) {
+      sample.values.*each.value = found->second.quantile(random.uniform());
+    }
+  }
+  for (std::size_t e = 0; e < motor.effects.size(); ++e) {
+    for (std::size_t p = 0; p < motor.effects[e].parameters.size(); ++p) {
+      if (motor.effects[e].parameters[p].spread) {
+        sample.effect_parameters[e][p] = motor.effects[e].parameters[p].quantile(random.uniform());
+      }
+    }
+  }
+  return sample;
+}
+
+std::string_view data_quality(const Motor& motor) {
+  bool all_of_sheet = true;
+  for (const MotorFigureSpec& each : kSpecs) {
+    const auto found = motor.figures.find(each.spec.key);
+    if (!each.is_thermal || found == motor.figures.end()) {
+      continue;
+    }
+    const Origin origin = found->second.origin;
+    const bool is_network = each.spec.key.starts_with("thermal_") || each.spec.key == "winding_limit";
+    if (is_network && origin == Origin::estimated) {
+      return "estimated";
+    }
+    all_of_sheet = all_of_sheet && (origin == Origin::datasheet || origin == Origin::measured);
+  }
+  return all_of_sheet ? "datasheet" : "mixed";
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,22 @@
+// An initial value problem, and nothing of what it means.
+#pragma once
+
+#include <span>
+
+namespace heatsoak {
+
+/// dy/dt = f(t, y), with event functions whose zero crossings end a step.
+/// Implementations may throw; the integrator hands the exception through the C solver unharmed.
+class OdeSystem {
+ public:
+  virtual ~OdeSystem() = default;
+
+  [[nodiscard]] virtual int size() const = 0;
+  virtual void derivative(double time_s, std::span<const double> y, std::span<double> dydt) = 0;
+
+  /// Number of event functions; `events` writes one value for each.
+  [[nodiscard]] virtual int event_count() const { return 0; }
+  virtual void events(double /*time_s*/, std::span<const double> /*y*/, std::span<double> /*values*/) {}
+};
+
+}  // namespace heatsoak

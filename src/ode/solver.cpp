@@ -1,0 +1,114 @@
+#include "ode/solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+
+OdeSolver::OdeSolver(OdeSystem& system)
+    : system_(system),
+      y_(N_VNew_Serial(system.size(), context_), N_VDestroy),
+      crossed_(static_cast<std::size_t>(system.event_count())) {
+  N_VConst(0.0, y_.get());
+  // The packages clone this vector: a stage is then summed in one pass rather than one per term.
+  N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
+}
+
+void OdeSolver::start(double time_s, std::span<const double> y) {
+  if (y.size() != state().size()) {
+    throw Failure(ExitCode::bug, fmt::format("start: {} values for {} states", y.size(), state().size()));
+  }
+  time_s_ = time_s;
+  std::ranges::copy(y, values(y_.get()).begin());
+  // A failed run leaves a step size that says nothing about the next one.
+  restart(std::exchange(ready_, false) ? StepSize::keep : StepSize::guess);
+  ready_ = true;
+}
+
+OdeStep OdeSolver::integrate(double stop_s, Stride stride) {
+  if (!ready_) {
+    throw Failure(ExitCode::bug, "integrator: start() has to come before a step");
+  }
+  // Times that were summed in different orders meet only to rounding; no package accepts such a step.
+  const double rounding_s =
+      100.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(time_s_), std::abs(stop_s));
+  if (!(stop_s > time_s_ + rounding_s)) {
+    if (!(stop_s >= time_s_ - rounding_s)) {
+      throw Failure(ExitCode::bug, fmt::format("integrator: stop {} s lies before {} s", stop_s, time_s_));
+    }
+    time_s_ = stop_s;
+    return {.time_s = time_s_, .at_event = false, .crossed = {}};
+  }
+  ready_ = false;
+  // Behind an event the package may already be past the stop: then it interpolates, which ends at the stop.
+  const bool to_step = stop_s > internal_time_s();
+  if (to_step) {
+    set_stop(stop_s);
+  }
+  const bool at_event = evolve(stop_s, to_step ? stride : Stride::until_stop, time_s_);
+  if (at_event) {
+    read_crossed(crossed_.data());
+  }
+  ready_ = true;
+  return {.time_s = time_s_, .at_event = at_event, .crossed = at_event ? crossed_ : std::span<const int>()};
+}
+
+void OdeSolver::check(int flag) {
+  if (thrown_) {
+    reason_.clear();
+    std::rethrow_exception(std::exchange(thrown_, nullptr));
+  }
+  if (flag < 0) {
+    const std::string reason = reason_.empty() ? fmt::format("SUNDIALS code {}", flag) : reason_;
+    reason_.clear();
+    throw Failure(ExitCode::numerics_failed, fmt::format("integration from {} s failed: {}", time_s_, reason));
+  }
+}
+
+/// An exception must not cross the C code: it waits here for check(). A value that is no number is one, too.
+template <typename Write>
+int OdeSolver::shield(const char* what, double time_s, std::span<const double> written, Write write) {
+  try {
+    write();
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      if (!std::isfinite(written[i])) {
+        throw Failure(ExitCode::numerics_failed,
+                      fmt::format("integration failed at {} s: {} {} is {}", time_s, what, i, written[i]));
+      }
+    }
+    return 0;
+  } catch (...) {
+    thrown_ = std::current_exception();
+    return -1;
+  }
+}
+
+int OdeSolver::derivative(realtype time_s, N_Vector y, N_Vector dydt, void* self) {
+  auto& solver = *static_cast<OdeSolver*>(self);
+  ++solver.derivative_count_;
+  const std::span<double> written = values(dydt);
+  return solver.shield("derivative", time_s, written,
+                       [&] { solver.system_.derivative(time_s, values(y), written); });
+}
+
+int OdeSolver::events(realtype time_s, N_Vector y, realtype* event_values, void* self) {
+  auto& solver = *static_cast<OdeSolver*>(self);
+  const std::span<double> written(event_values, solver.crossed_.size());
+  return solver.shield("event", time_s, written, [&] { solver.system_.events(time_s, values(y), written); });
+}
+
+void OdeSolver::keep_reason(int code, const char* /*module*/, const char* /*function*/, char* message, void* self) {
+  auto& solver = *static_cast<OdeSolver*>(self);
+  // Positive codes are warnings. The first error is the cause, later ones are its consequences.
+  if (code < 0 && solver.reason_.empty()) {
+    solver.reason_ = message;
+  }
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,89 @@
+// What CVODES and ARKODE share: the state, the callbacks, events and failures. Private to src/ode.
+#pragma once
+
+#include <nvector/nvector_serial.h>
+
+#include <exception>
+#include <memory>
+#include <span>
+#include <string>
+#include <sundials/sundials_context.hpp>
+#include <vector>
+
+#include "ode/integrator.h"
+
+namespace heatsoak {
+
+/// A SUNDIALS object with the function that frees it.
+template <typename T>
+using SundialsHandle = std::unique_ptr<T, void (*)(T*)>;
+
+/// A package is a subclass that restarts and evolves; it checks every flag it gets with check().
+class OdeSolver {
+ public:
+  enum class Stride { one_step, until_stop };
+
+  explicit OdeSolver(OdeSystem& system);
+  virtual ~OdeSolver() = default;
+  OdeSolver(const OdeSolver&) = delete;
+  OdeSolver& operator=(const OdeSolver&) = delete;
+
+  void start(double time_s, std::span<const double> y);
+  OdeStep integrate(double stop_s, Stride stride);
+
+  [[nodiscard]] std::span<const double> state() const { return values(y_.get()); }
+  [[nodiscard]] double time_s() const { return time_s_; }
+  [[nodiscard]] long derivative_count() const { return derivative_count_; }
+
+ protected:
+  enum class StepSize { guess, keep };
+
+  /// Begins at time_s() with y(). With `keep` the package may begin with the step size it had reached.
+  virtual void restart(StepSize step_size) = 0;
+  /// How far the package has got; behind an event that is later than time_s().
+  [[nodiscard]] virtual double internal_time_s() const = 0;
+  /// The package may not step past this.
+  virtual void set_stop(double stop_s) = 0;
+  /// Writes y() and `reached_s`; true at an event.
+  virtual bool evolve(double stop_s, Stride stride, double& reached_s) = 0;
+  virtual void read_crossed(int* crossed) = 0;
+
+  /// Throws what the system threw during the call, or a Failure where the package gave up.
+  void check(int flag);
+
+  /// A system that needs more per advance() is stuck: hours for the user, not an answer.
+  static constexpr long kMaximumSteps = 10'000'000;
+
+  [[nodiscard]] SUNContext context() { return context_; }
+  /// What the callbacks get; the conversion to void* has to start from OdeSolver.
+  [[nodiscard]] void* self() { return this; }
+  [[nodiscard]] N_Vector y() { return y_.get(); }
+  [[nodiscard]] int event_count() const { return static_cast<int>(crossed_.size()); }
+
+  // The callbacks have one signature in all packages; `self` is the OdeSolver.
+  static int derivative(realtype time_s, N_Vector y, N_Vector dydt, void* self);
+  static int events(realtype time_s, N_Vector y, realtype* event_values, void* self);
+  static void keep_reason(int code, const char* module, const char* function, char* message, void* self);
+
+ private:
+  static std::span<double> values(N_Vector v) {
+    return {N_VGetArrayPointer(v), static_cast<std::size_t>(N_VGetLength(v))};
+  }
+  template <typename Write>
+  int shield(const char* what, double time_s, std::span<const double> written, Write write);
+
+  OdeSystem& system_;
+  sundials::Context context_;
+  SundialsHandle<_generic_N_Vector> y_;
+  std::vector<int> crossed_;
+  double time_s_ = 0.0;
+  bool ready_ = false;
+  long derivative_count_ = 0;
+  std::exception_ptr thrown_;
+  std::string reason_;
+};
+
+std::unique_ptr<OdeSolver> make_cvodes_solver(OdeSystem& system, OdeMethod method, OdeTolerances tolerances);
+std::unique_ptr<OdeSolver> make_arkode_solver(OdeSystem& system, OdeTolerances tolerances);
+
+}  // namespace heatsoak

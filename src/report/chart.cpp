@@ -1,0 +1,145 @@
+#include "report/chart.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "base/diagnostic.h"
+#include "report/chart_plugin.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> plugin_folders() {
+  std::vector<fs::path> folders;
+  if (const char* chosen = std::getenv("HEATSOAK_PLUGINS"); chosen != nullptr && *chosen != '\0') {
+    folders.emplace_back(chosen);
+  }
+  std::error_code unreadable;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unreadable);
+  if (!unreadable) {
+    folders.push_back(program.parent_path().parent_path() / "lib" / "heatsoak");
+    folders.push_back(program.parent_path());
+  }
+  return folders;
+}
+
+fs::path find_plugin() {
+  std::string searched;
+  for (const fs::path& folder : plugin_folders()) {
+    std::error_code ignored;
+    if (fs::exists(folder / chart_plugin_file, ignored)) {
+      return folder / chart_plugin_file;
+    }
+    searched += "\n  " + folder.string();
+  }
+  throw Failure(ExitCode::bug,
+                fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}",
+                            chart_plugin_file, searched));
+}
+
+/// Never closed: VTK's factories do not survive being unloaded. Opening again costs next to nothing.
+DrawSvg open_plugin() {
+  const fs::path plugin = find_plugin();
+  void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* function = library != nullptr ? dlsym(library, chart_plugin_function) : nullptr;
+  if (function == nullptr) {
+    throw Failure(ExitCode::bug, fmt::format("cannot open the drawing library: {}", dlerror()));
+  }
+  return reinterpret_cast<DrawSvg>(function);
+}
+
+void check_lengths(const Chart& chart) {
+  const auto fail = [](const std::string& name) {
+    throw Failure(ExitCode::bug, fmt::format("chart: the columns of '{}' differ in length", name));
+  };
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartCurve& curve : panel.curves) {
+      if (curve.x.size() != curve.y.size()) {
+        fail(curve.name);
+      }
+    }
+    for (const ChartBand& band : panel.bands) {
+      if (band.x.size() != band.low.size() || band.x.size() != band.high.size()) {
+        fail(band.name);
+      }
+    }
+  }
+}
+
+/// A file under a temporary name beside `path`; gone again unless `publish` was reached.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(fs::path path) : path_(std::move(path)), temporary_(path_) {
+    temporary_.replace_filename(fmt::format(".{}.{}.partial", path_.filename().string(), getpid()));
+    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
+      fail();
+    }
+  }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile() {
+    if (descriptor_ >= 0) {
+      close(descriptor_);
+    }
+    if (!published_) {
+      unlink(temporary_.c_str());
+    }
+  }
+
+  void write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t written = ::write(descriptor_, text.data(), text.size());
+      if (written < 0 && errno != EINTR) {
+        fail();
+      }
+      text.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
+    }
+  }
+
+  void publish() {
+    // A full disk may show only here.
+    if (close(std::exchange(descriptor_, -1)) != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+      fail();
+    }
+    published_ = true;
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("cannot write '{}': {}", path_.string(), std::generic_category().message(errno)));
+  }
+
+  fs::path path_;
+  fs::path temporary_;
+  int descriptor_ = -1;
+  bool published_ = false;
+};
+
+}  // namespace
+
+void write_svg(const Chart& chart, const fs::path& path) {
+  check_lengths(chart);
+  // Opened before drawing, so that a wrong path is told at once.
+  UnfinishedFile file(path);
+  std::string text;
+  if (!open_plugin()(&chart, &text)) {
+    throw Failure(ExitCode::bug, "drawing failed: " + text);
+  }
+  file.write(text);
+  file.publish();
+}
+
+}  // namespace heatsoak

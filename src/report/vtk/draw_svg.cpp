@@ -1,0 +1,290 @@
+// Draws a laid-out page with VTK's charts. No display and no OpenGL context is needed: the window that the
+// scene asks for is never rendered, the scene is painted through the SVG device.
+#include <vtkAutoInit.h>
+#include <vtkAxis.h>
+#include <vtkBrush.h>
+#include <vtkChartXY.h>
+#include <vtkContext2D.h>
+#include <vtkContextScene.h>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPen.h>
+#include <vtkPlotArea.h>
+#include <vtkPlotLine.h>
+#include <vtkRenderer.h>
+#include <vtkStdString.h>
+#include <vtkStringArray.h>
+#include <vtkTable.h>
+#include <vtkTextProperty.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLUtilities.h>
+
+#include <array>
+#include <exception>
+#include <initializer_list>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "report/chart_plugin.h"
+#include "report/vtk/page.h"
+#include "report/vtk/reduce.h"
+#include "report/vtk/svg_device.h"
+
+VTK_MODULE_INIT(vtkRenderingOpenGL2)
+VTK_MODULE_INIT(vtkRenderingFreeType)
+
+namespace heatsoak {
+namespace {
+
+using Color = std::array<unsigned char, 3>;
+
+/// Okabe and Ito's palette; vermilion comes late because limits are red, yellow last because paper is white.
+constexpr std::array<Color, 8> palette{{{0x00, 0x72, 0xB2},
+                                        {0xE6, 0x9F, 0x00},
+                                        {0x00, 0x9E, 0x73},
+                                        {0xCC, 0x79, 0xA7},
+                                        {0x56, 0xB4, 0xE9},
+                                        {0x00, 0x00, 0x00},
+                                        {0xD5, 0x5E, 0x00},
+                                        {0xF0, 0xE4, 0x42}}};
+constexpr unsigned char band_opacity = 51;  // 20 %
+constexpr float curve_width_px = 2.0F;
+
+Color palette_color(int index) { return palette[static_cast<unsigned>(index) % palette.size()]; }
+
+void set_pen(vtkPen* pen, const Color& color, float width_px, bool is_dashed) {
+  pen->SetColor(color[0], color[1], color[2]);
+  pen->SetWidth(width_px);
+  pen->SetLineType(is_dashed ? vtkPen::DASH_LINE : vtkPen::SOLID_LINE);
+}
+
+void add_column(vtkTable* table, const char* name, const std::vector<double>& values) {
+  vtkNew<vtkFloatArray> column;
+  column->SetName(name);
+  for (const double value : values) {
+    column->InsertNextValue(static_cast<float>(value));
+  }
+  table->AddColumn(column);
+}
+
+void add_line(vtkChartXY* chart, const std::vector<CurvePoint>& points, const Color& color, float width_px,
+              bool is_dashed) {
+  std::vector<double> x_px, y_px;
+  for (const CurvePoint& point : points) {
+    x_px.push_back(point.x_px);
+    y_px.push_back(point.y_px);
+  }
+  vtkNew<vtkTable> table;
+  add_column(table, "x", x_px);
+  add_column(table, "y", y_px);
+  vtkNew<vtkPlotLine> line;
+  line->SetInputData(table, 0, 1);
+  set_pen(line->GetPen(), color, width_px, is_dashed);
+  chart->AddPlot(line);
+}
+
+/// One plot per unbroken piece: vtkPlotArea itself writes "nan" where a band is broken.
+void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Color& color) {
+  std::vector<double> x_px, low_px, high_px;
+  for (const BandPoint& point : points) {
+    x_px.push_back(point.x_px);
+    low_px.push_back(point.low_px);
+    high_px.push_back(point.high_px);
+  }
+  vtkNew<vtkTable> table;
+  add_column(table, "x", x_px);
+  add_column(table, "low", low_px);
+  add_column(table, "high", high_px);
+  vtkNew<vtkPlotArea> area;
+  area->SetInputData(table);
+  area->SetInputArray(0, "x");
+  area->SetInputArray(1, "low");
+  area->SetInputArray(2, "high");
+  area->GetBrush()->SetColor(color[0], color[1], color[2], band_opacity);
+  chart->AddPlot(area);
+}
+
+/// The axis itself counts pixels, so that VTK's transform of the plots is the identity; an SVG matrix with
+/// unequal scales would stretch pens and dashes.
+void set_axis(vtkAxis* axis, const AxisScale& scale, const std::vector<AxisTick>& axis_ticks) {
+  vtkNew<vtkDoubleArray> positions;
+  vtkNew<vtkStringArray> labels;
+  for (const AxisTick& tick : axis_ticks) {
+    positions->InsertNextValue(scale.to_px(tick.value));
+    labels->InsertNextValue(tick.label);
+  }
+  axis->SetBehavior(vtkAxis::CUSTOM);
+  axis->SetRange(scale.low_px, scale.high_px);
+  axis->SetCustomTickPositions(positions, labels);
+  axis->SetTitle("");
+  axis->GetLabelProperties()->SetFontSize(tick_style.size_px);
+  axis->GetLabelProperties()->SetColor(tick_style.color[0] / 255.0, tick_style.color[1] / 255.0,
+                                       tick_style.color[2] / 255.0);
+  axis->GetPen()->SetColor(0x77, 0x77, 0x77);
+  axis->GetGridPen()->SetColor(0xE4, 0xE4, 0xE4);
+}
+
+void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace& place) {
+  vtkNew<vtkChartXY> chart;
+  const AxisScale& across = place.horizontal;
+  const AxisScale& up = place.vertical;
+  chart->SetLayoutStrategy(vtkChart::AXES_TO_RECT);
+  chart->SetSize(vtkRectf(static_cast<float>(across.low_px), static_cast<float>(up.low_px),
+                          static_cast<float>(across.high_px - across.low_px),
+                          static_cast<float>(up.high_px - up.low_px)));
+  chart->SetBackgroundBrush(nullptr);
+  chart->SetRenderEmpty(true);
+  chart->SetAutoAxes(false);
+  set_axis(chart->GetAxis(vtkAxis::BOTTOM), across, place.x_ticks);
+  set_axis(chart->GetAxis(vtkAxis::LEFT), up, place.y_ticks);
+  for (const ChartBand& band : panel.bands) {
+    for (const std::vector<BandPoint>& piece : reduce(band, across, up)) {
+      add_area(chart, piece, palette_color(band.color_index));
+    }
+  }
+  for (const ChartCurve& curve : panel.curves) {
+    for (const std::vector<CurvePoint>& piece : reduce(curve, across, up)) {
+      add_line(chart, piece, palette_color(curve.color_index), curve_width_px, curve.dashed);
+    }
+  }
+  for (const ChartLevel& level : panel.levels) {
+    const ChartCurve line{.name = "", .x = {across.range.low, across.range.high}, .y = {level.y, level.y}};
+    for (const std::vector<CurvePoint>& piece : reduce(line, across, up)) {
+      add_line(chart, piece, std::to_array(limit_color), 1.5F, true);
+    }
+  }
+  scene->AddItem(chart);
+}
+
+/// Titles, labels, names of limits and the legend: vtkChart centres its title and has one legend per chart.
+class Lettering : public vtkContextItem {
+ public:
+  static Lettering* New();
+  vtkTypeMacro(Lettering, vtkContextItem)
+
+  void set_page(const Page* page) { page_ = page; }
+
+  bool Paint(vtkContext2D* painter) override {
+    for (const LegendSwatch& swatch : page_->swatches) {
+      paint(painter, swatch);
+    }
+    for (const PlacedText& text : page_->texts) {
+      paint(painter, text);
+    }
+    return true;
+  }
+
+ private:
+  static void paint(vtkContext2D* painter, const LegendSwatch& swatch) {
+    const Color color = palette_color(swatch.color_index);
+    const float left_px = static_cast<float>(swatch.x_px);
+    const float right_px = static_cast<float>(swatch.x_px + swatch_width_px);
+    const float y_px = static_cast<float>(swatch.y_px);
+    if (swatch.is_band) {
+      // A strip, because VTK gives quads and polygons an outline.
+      float corners[] = {left_px, y_px - 5, left_px, y_px + 5, right_px, y_px - 5, right_px, y_px + 5};
+      painter->GetBrush()->SetColor(color[0], color[1], color[2], band_opacity);
+      painter->DrawQuadStrip(corners, 4);
+    } else {
+      set_pen(painter->GetPen(), color, curve_width_px, swatch.is_dashed);
+      painter->DrawLine(left_px, y_px, right_px, y_px);
+    }
+  }
+
+  static void paint(vtkContext2D* painter, const PlacedText& text) {
+    vtkTextProperty* property = painter->GetTextProp();
+    property->SetFontSize(text.style.size_px);
+    property->SetBold(text.style.is_bold);
+    property->SetColor(text.style.color[0] / 255.0, text.style.color[1] / 255.0, text.style.color[2] / 255.0);
+    property->SetJustification(text.anchor == Anchor::left     ? VTK_TEXT_LEFT
+                               : text.anchor == Anchor::middle ? VTK_TEXT_CENTERED
+                                                               : VTK_TEXT_RIGHT);
+    property->SetVerticalJustificationToBottom();
+    property->SetOrientation(text.is_upright ? 90.0 : 0.0);
+    property->SetShadow(text.has_rim);
+    painter->DrawString(static_cast<float>(text.x_px), static_cast<float>(text.y_px), text.text);
+    property->SetShadow(false);
+  }
+
+  const Page* page_ = nullptr;
+};
+vtkStandardNewMacro(Lettering);
+
+using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
+
+vtkNew<vtkXMLDataElement> element(const char* name, Attributes attributes) {
+  vtkNew<vtkXMLDataElement> result;
+  result->SetName(name);
+  result->SetAttributeEncoding(VTK_ENCODING_UTF_8);
+  for (const auto& [key, value] : attributes) {
+    result->SetAttribute(key, value.c_str());
+  }
+  return result;
+}
+
+/// Paints the scene into `group`.
+void paint(vtkContextScene* scene, const Page& page, vtkXMLDataElement* group, vtkXMLDataElement* definitions) {
+  vtkNew<vtkGenericOpenGLRenderWindow> window;
+  window->SetSize(page.width_px, page.height_px);
+  window->SetDPI(72);  // one point is one pixel
+  vtkNew<vtkRenderer> renderer;
+  window->AddRenderer(renderer);
+  scene->SetRenderer(renderer);
+  scene->SetGeometry(page.width_px, page.height_px);
+  vtkNew<SvgDevice> device;
+  device->SetSVGContext(group, definitions);
+  device->Begin(renderer);
+  vtkNew<vtkContext2D> painter;
+  painter->Begin(device);
+  scene->Paint(painter);
+  painter->End();
+  device->End();
+  scene->SetRenderer(nullptr);
+}
+
+std::string draw(const Chart& chart) {
+  const Page page = lay_out(chart);
+  vtkNew<vtkContextScene> scene;
+  for (std::size_t i = 0; i < chart.panels.size(); ++i) {
+    add_panel(scene, chart.panels[i], page.panels[i]);
+  }
+  vtkNew<Lettering> lettering;
+  lettering->set_page(&page);
+  scene->AddItem(lettering);
+
+  const std::string width = std::to_string(page.width_px);
+  const std::string height = std::to_string(page.height_px);
+  const auto root = element("svg", {{"xmlns", "http://www.w3.org/2000/svg"}, {"width", width}, {"height", height},
+                                    {"viewBox", "0 0 " + width + " " + height}, {"role", "img"},
+                                    {"aria-label", printable(chart.title)}});
+  const auto paper = element("rect", {{"width", width}, {"height", height}, {"fill", "#ffffff"}});
+  // Half a pixel: lines on whole pixels then fill one row of them instead of greying two.
+  const auto group = element("g", {{"transform", "translate(0.5,0.5)"}, {"fill", "none"}, {"stroke-linejoin", "round"},
+                                   {"font-family", "sans-serif"}, {"xml:space", "preserve"}});
+  const auto definitions = element("defs", {});
+  paint(scene, page, group, definitions);
+  root->AddNestedElement(paper);
+  root->AddNestedElement(group);
+  std::ostringstream text;
+  vtkIndent indent;
+  vtkXMLUtilities::FlattenElement(root, text, &indent);
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + text.str();
+}
+
+}  // namespace
+}  // namespace heatsoak
+
+extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_svg(const heatsoak::Chart* chart,
+                                                                         std::string* text) {
+  try {
+    *text = heatsoak::draw(*chart);
+    return true;
+  } catch (const std::exception& problem) {
+    *text = problem.what();
+    return false;
+  }
+}

@@ -1,0 +1,326 @@
+#include "report/vtk/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <tuple>
+
+#include "report/vtk/reduce.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr TextStyle title_style{.size_px = 20, .is_bold = true, .color = {0x11, 0x11, 0x11}};
+constexpr TextStyle subtitle_style{.size_px = 13, .is_bold = false, .color = {0x6B, 0x6B, 0x6B}};
+constexpr TextStyle panel_title_style{.size_px = 14, .is_bold = true};
+constexpr TextStyle label_style{.size_px = 13};
+constexpr TextStyle limit_style{
+    .size_px = 12, .is_bold = false, .color = {limit_color[0], limit_color[1], limit_color[2]}};
+
+constexpr double margin_px = 24.0;
+constexpr double label_line_px = 18.0;
+constexpr double tick_row_px = 26.0;
+constexpr double tick_distance_x_px = 70.0;  // at least
+constexpr double tick_distance_y_px = 36.0;
+constexpr double least_plot_height_px = 60.0;
+constexpr double headroom = 0.05;
+
+struct LegendEntry {
+  std::string name;
+  LegendSwatch swatch;
+};
+
+/// Every named curve and band of all panels, the same look under the same name once.
+std::vector<LegendEntry> legend_entries(const Chart& chart) {
+  std::vector<LegendEntry> entries;
+  const auto add = [&](const std::string& name, const LegendSwatch& swatch) {
+    const auto same = [&](const LegendEntry& each) {
+      const LegendSwatch& other = each.swatch;
+      return std::tie(each.name, other.color_index, other.is_dashed, other.is_band) ==
+             std::tie(name, swatch.color_index, swatch.is_dashed, swatch.is_band);
+    };
+    if (!name.empty() && std::ranges::none_of(entries, same)) {
+      entries.push_back({name, swatch});
+    }
+  };
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartCurve& curve : panel.curves) {
+      add(curve.name, {.color_index = curve.color_index, .is_dashed = curve.dashed});
+    }
+  }
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartBand& band : panel.bands) {
+      add(band.name, {.color_index = band.color_index, .is_band = true});
+    }
+  }
+  return entries;
+}
+
+AxisRange x_range(const Chart& chart) {
+  AxisRange range;
+  for (const ChartPanel& panel : chart.panels) {
+    for (const ChartCurve& curve : panel.curves) {
+      range.include(curve.x);
+    }
+    for (const ChartBand& band : panel.bands) {
+      range.include(band.x);
+    }
+  }
+  return range.with_headroom(0.0);
+}
+
+AxisRange y_range(const ChartPanel& panel) {
+  AxisRange range;
+  for (const ChartCurve& curve : panel.curves) {
+    range.include(curve.y);
+  }
+  for (const ChartBand& band : panel.bands) {
+    range.include(band.low);
+    range.include(band.high);
+  }
+  for (const ChartLevel& level : panel.levels) {
+    range.include(level.y);
+  }
+  return range.with_headroom(headroom);
+}
+
+/// y counts downwards.
+struct Box {
+  double left_px;
+  double right_px;
+  double top_px;
+  double bottom_px;
+};
+
+bool overlap(const Box& a, const Box& b) {
+  return a.left_px < b.right_px && b.left_px < a.right_px && a.top_px < b.bottom_px && b.top_px < a.bottom_px;
+}
+
+/// Whether the line from `a` to `b` passes through the box.
+bool passes(const CurvePoint& a, const CurvePoint& b, const Box& box) {
+  const auto [left, right] = std::minmax(a, b, [](const auto& p, const auto& q) { return p.x_px < q.x_px; });
+  const double slope = right.x_px > left.x_px ? (right.y_px - left.y_px) / (right.x_px - left.x_px) : 0.0;
+  const double from_px = std::max(left.x_px, box.left_px);
+  const double to_px = std::min(right.x_px, box.right_px);
+  const double y_from_px = left.y_px + slope * (from_px - left.x_px);
+  const double y_to_px = slope == 0.0 ? right.y_px : left.y_px + slope * (to_px - left.x_px);
+  return from_px <= to_px && std::min(y_from_px, y_to_px) < box.bottom_px && std::max(y_from_px, y_to_px) > box.top_px;
+}
+
+bool is_taken(const Box& box, const std::vector<Box>& names, const std::vector<std::vector<CurvePoint>>& curves) {
+  return std::ranges::any_of(names, [&](const Box& name) { return overlap(box, name); }) ||
+         std::ranges::any_of(curves, [&](const std::vector<CurvePoint>& points) {
+           const auto through_box = [&](const CurvePoint& a, const CurvePoint& b) { return passes(a, b, box); };
+           return std::ranges::adjacent_find(points, through_box) != points.end();
+         });
+}
+
+/// The first free place from `box` to the left.
+std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box>& names,
+                              const std::vector<std::vector<CurvePoint>>& curves) {
+  constexpr double step_px = 10.0;
+  for (; box.left_px > left_end_px; box.left_px -= step_px, box.right_px -= step_px) {
+    if (!is_taken(box, names, curves)) {
+      return box;
+    }
+  }
+  return std::nullopt;
+}
+
+/// All unbroken pieces of all curves.
+std::vector<std::vector<CurvePoint>> curves_px(const ChartPanel& panel, const AxisScale& horizontal,
+                                               const AxisScale& vertical) {
+  std::vector<std::vector<CurvePoint>> all;
+  for (const ChartCurve& curve : panel.curves) {
+    std::ranges::move(reduce(curve, horizontal, vertical), std::back_inserter(all));
+  }
+  return all;
+}
+
+/// Builds a Page from top to bottom; y counts downwards here until `finished` turns it round.
+class PageBuilder {
+ public:
+  explicit PageBuilder(const Chart& chart) : chart_(chart) { page_.width_px = std::max(200, chart.width_px); }
+
+  Page build() {
+    add_heading();
+    find_margins();
+    const double legend_top_px = y_px_ + panel_title_height_px(chart_.panels.empty() ? "" : chart_.panels[0].title);
+    for (const ChartPanel& panel : chart_.panels) {
+      add_panel(panel);
+    }
+    add_x_label();
+    add_legend(legend_top_px);
+    return finished();
+  }
+
+ private:
+  void add_heading() {
+    const double width_px = page_.width_px - 2.0 * margin_px;
+    y_px_ = 16.0;
+    for (const std::string& line : wrapped(printable(chart_.title), title_style, width_px)) {
+      y_px_ += 26.0;
+      add({.text = line, .x_px = margin_px, .y_px = y_px_ - 3.0, .style = title_style});
+    }
+    for (const std::string& line : wrapped(printable(chart_.subtitle), subtitle_style, width_px)) {
+      y_px_ += label_line_px;
+      add({.text = line, .x_px = margin_px, .y_px = y_px_, .style = subtitle_style});
+    }
+    y_px_ += 10.0;
+  }
+
+  /// All panels share the left and right edge: room for the widest tick label and the longest legend.
+  void find_margins() {
+    std::size_t y_label_lines = 0;
+    double tick_label_px = 0.0;
+    for (const ChartPanel& panel : chart_.panels) {
+      y_label_lines = std::max(y_label_lines, y_label(panel).size());
+      for (const AxisTick& tick : ticks(y_range(panel), plot_height_px(panel) / tick_distance_y_px)) {
+        tick_label_px = std::max(tick_label_px, text_width_px(tick.label, tick_style));
+      }
+    }
+    y_label_x_px_ = margin_px + label_style.size_px * 0.75;
+    left_px_ = std::ceil(margin_px + static_cast<double>(y_label_lines) * label_line_px + tick_label_px + 14.0);
+
+    entries_ = legend_entries(chart_);
+    double legend_px = 0.0;
+    for (const LegendEntry& entry : entries_) {
+      for (const std::string& line : legend_lines(entry)) {
+        legend_px = std::max(legend_px, text_width_px(line, label_style));
+      }
+    }
+    right_px_ = page_.width_px - margin_px;
+    if (!entries_.empty()) {
+      legend_x_px_ = std::floor(right_px_ - legend_px - swatch_width_px - 8.0);
+      right_px_ = legend_x_px_ - 22.0;
+    }
+    right_px_ = std::max(right_px_, left_px_ + 60.0);
+  }
+
+  void add_panel(const ChartPanel& panel) {
+    const double title_px = panel_title_height_px(panel.title);
+    const double plot_px = plot_height_px(panel);
+    if (!panel.title.empty()) {
+      add({.text = printable(panel.title), .x_px = left_px_, .y_px = y_px_ + 18.0, .style = panel_title_style});
+    }
+    y_px_ += title_px;
+    const double top_px = y_px_;
+    const double bottom_px = y_px_ + plot_px;
+    PanelPlace place;
+    place.horizontal = {x_range(chart_), left_px_, right_px_};
+    place.vertical = {y_range(panel), bottom_px, top_px};
+    place.x_ticks = ticks(place.horizontal.range, (right_px_ - left_px_) / tick_distance_x_px);
+    place.y_ticks = ticks(place.vertical.range, plot_px / tick_distance_y_px);
+    add_y_label(panel, (top_px + bottom_px) / 2.0);
+    add_level_names(panel, place.horizontal, place.vertical);
+    page_.panels.push_back(std::move(place));
+    y_px_ = bottom_px + tick_row_px;
+  }
+
+  void add_y_label(const ChartPanel& panel, double middle_px) {
+    double x_px = y_label_x_px_;
+    for (const std::string& line : y_label(panel)) {
+      add({.text = line, .x_px = x_px, .y_px = middle_px, .style = label_style, .anchor = Anchor::middle,
+           .is_upright = true});
+      x_px += label_line_px;
+    }
+  }
+
+  /// Just above the line at its right end; below where the top is near; further left where a curve or
+  /// another name is in the way, if there is a free place.
+  void add_level_names(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
+    if (panel.levels.empty()) {
+      return;
+    }
+    const auto curves = curves_px(panel, horizontal, vertical);
+    std::vector<Box> names;
+    for (const ChartLevel& level : panel.levels) {
+      if (level.name.empty() || !std::isfinite(level.y)) {
+        continue;
+      }
+      const std::string name = printable(level.name);
+      const double width_px = text_width_px(name, limit_style);
+      const double line_px = vertical.to_px(level.y);
+      const double y_px = line_px - vertical.high_px < limit_style.size_px + 1.0 ? line_px + 14.0 : line_px - 5.0;
+      const Box at_right{right_px_ - 6.0 - width_px, right_px_ - 6.0, y_px - limit_style.size_px, y_px + 3.0};
+      // On a curve it is still readable, on another name it is not.
+      const Box box = free_place(at_right, left_px_, names, curves)
+                          .value_or(free_place(at_right, left_px_, names, {}).value_or(at_right));
+      names.push_back(box);
+      add({.text = name, .x_px = box.right_px, .y_px = y_px, .style = limit_style, .anchor = Anchor::right,
+           .has_rim = true});
+    }
+  }
+
+  void add_x_label() {
+    for (const std::string& line : wrapped(printable(chart_.x_label), label_style, right_px_ - left_px_)) {
+      y_px_ += label_line_px;
+      add({.text = line, .x_px = (left_px_ + right_px_) / 2.0, .y_px = y_px_ - 4.0, .style = label_style,
+           .anchor = Anchor::middle});
+    }
+  }
+
+  void add_legend(double top_px) {
+    double baseline_px = top_px + 12.0;
+    for (const LegendEntry& entry : entries_) {
+      LegendSwatch swatch = entry.swatch;
+      swatch.x_px = legend_x_px_;
+      swatch.y_px = std::round(baseline_px - label_style.size_px * 0.36);
+      page_.swatches.push_back(swatch);
+      for (const std::string& line : legend_lines(entry)) {
+        add({.text = line, .x_px = legend_x_px_ + swatch_width_px + 8.0, .y_px = baseline_px, .style = label_style});
+        baseline_px += label_line_px;
+      }
+      baseline_px += 4.0;
+    }
+    y_px_ = std::max(y_px_, baseline_px - label_line_px);
+  }
+
+  Page finished() {
+    page_.height_px = static_cast<int>(std::ceil(y_px_ + 16.0));
+    const auto turn_round = [this](double& y_px) { y_px = page_.height_px - y_px; };
+    for (PlacedText& text : page_.texts) {
+      turn_round(text.y_px);
+    }
+    for (LegendSwatch& swatch : page_.swatches) {
+      turn_round(swatch.y_px);
+    }
+    for (PanelPlace& place : page_.panels) {
+      turn_round(place.vertical.low_px);
+      turn_round(place.vertical.high_px);
+    }
+    return std::move(page_);
+  }
+
+  void add(PlacedText text) { page_.texts.push_back(std::move(text)); }
+
+  [[nodiscard]] double panel_title_height_px(const std::string& title) const { return title.empty() ? 12.0 : 28.0; }
+
+  [[nodiscard]] double plot_height_px(const ChartPanel& panel) const {
+    return std::max(least_plot_height_px, chart_.panel_height_px - panel_title_height_px(panel.title) - tick_row_px);
+  }
+
+  [[nodiscard]] std::vector<std::string> y_label(const ChartPanel& panel) const {
+    return wrapped(printable(panel.y_label), label_style, plot_height_px(panel));
+  }
+
+  [[nodiscard]] std::vector<std::string> legend_lines(const LegendEntry& entry) const {
+    return wrapped(printable(entry.name), label_style, page_.width_px * 0.3);
+  }
+
+  const Chart& chart_;
+  Page page_;
+  std::vector<LegendEntry> entries_;
+  double y_px_ = 0.0;
+  double left_px_ = 0.0;
+  double right_px_ = 0.0;
+  double legend_x_px_ = 0.0;
+  double y_label_x_px_ = 0.0;
+};
+
+}  // namespace
+
+Page lay_out(const Chart& chart) { return PageBuilder(chart).build(); }
+
+}  // namespace heatsoak

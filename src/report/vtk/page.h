@@ -1,0 +1,59 @@
+// Where everything on the picture goes, before anything is drawn.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/chart.h"
+#include "report/vtk/scale.h"
+#include "report/vtk/text.h"
+
+namespace heatsoak {
+
+enum class Anchor { left, middle, right };
+
+/// One line of text; `y_px` is the base line.
+struct PlacedText {
+  std::string text;
+  double x_px = 0.0;
+  double y_px = 0.0;
+  TextStyle style;
+  Anchor anchor = Anchor::left;
+  bool is_upright = false;  ///< reads from bottom to top
+  bool has_rim = false;     ///< white rim, for text that stands on curves
+};
+
+/// The sample of colour and line before a name in the legend; `y_px` is its middle.
+struct LegendSwatch {
+  double x_px = 0.0;
+  double y_px = 0.0;
+  int color_index = 0;
+  bool is_dashed = false;
+  bool is_band = false;
+};
+
+/// The plot area of one panel.
+struct PanelPlace {
+  AxisScale horizontal;
+  AxisScale vertical;
+  std::vector<AxisTick> x_ticks;
+  std::vector<AxisTick> y_ticks;
+};
+
+/// All pixels count from the lower left corner, as VTK's scene does.
+struct Page {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<PanelPlace> panels;  ///< in the order of the chart's
+  std::vector<PlacedText> texts;
+  std::vector<LegendSwatch> swatches;
+};
+
+inline constexpr double swatch_width_px = 26.0;
+
+inline constexpr TextStyle tick_style{.size_px = 12, .is_bold = false, .color = {0x44, 0x44, 0x44}};
+inline constexpr unsigned char limit_color[3] = {0xC8, 0x10, 0x2E};
+
+Page lay_out(const Chart& chart);
+
+}  // namespace heatsoak

@@ -1,0 +1,28 @@
+// Long curves brought down to what a screen can show.
+#pragma once
+
+#include <vector>
+
+#include "report/chart.h"
+#include "report/vtk/scale.h"
+
+namespace heatsoak {
+
+struct CurvePoint {
+  double x_px = 0.0;
+  double y_px = 0.0;
+};
+
+struct BandPoint {
+  double x_px = 0.0;
+  double low_px = 0.0;
+  double high_px = 0.0;
+};
+
+/// The unbroken pieces of a curve, with the minimum and maximum of each pixel column and both ends.
+std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal,
+                                            const AxisScale& vertical);
+std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal,
+                                           const AxisScale& vertical);
+
+}  // namespace heatsoak

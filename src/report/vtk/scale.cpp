@@ -1,0 +1,76 @@
+#include "report/vtk/scale.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace heatsoak {
+namespace {
+
+double round_step(double step) {
+  const double decade = std::pow(10.0, std::floor(std::log10(step)));
+  for (const double multiple : {1.0, 2.0, 5.0}) {
+    if (multiple * decade >= step * (1.0 - 1e-9)) {
+      return multiple * decade;
+    }
+  }
+  return 10.0 * decade;
+}
+
+/// Plain up to ten digits; beyond that nobody counts the zeros.
+std::string tick_label(double value, double step, double largest) {
+  if (largest >= 1e10 || step < 1e-6) {
+    return fmt::format("{:.6g}", value);
+  }
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+}  // namespace
+
+void AxisRange::include(double value) {
+  if (std::isfinite(value)) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+}
+
+void AxisRange::include(const std::vector<double>& values) {
+  for (const double value : values) {
+    include(value);
+  }
+}
+
+AxisRange AxisRange::with_headroom(double headroom) const {
+  if (low > high) {
+    return {0.0, 1.0};
+  }
+  // A constant of 0.3 A is shown between 0.285 A and 0.315 A, a constant of 0 between -1 and 1.
+  const double least_span = std::max(std::abs(low), std::abs(high)) * 1e-9;
+  if (high - low <= least_span) {
+    const double margin = low == 0.0 ? 1.0 : std::abs(low) * 0.05;
+    return {low - margin, high + margin};
+  }
+  return {low - headroom * (high - low), high + headroom * (high - low)};
+}
+
+double AxisScale::to_px(double value) const {
+  return low_px + (value - range.low) / (range.high - range.low) * (high_px - low_px);
+}
+
+std::vector<AxisTick> ticks(const AxisRange& range, double count) {
+  const double step = round_step((range.high - range.low) / std::max(3.0, count));
+  // The last digits of a range come from rounding; they must not cost the outermost tick.
+  const double first = std::ceil(range.low / step - 1e-6);
+  const double last = std::floor(range.high / step + 1e-6);
+  const double largest = std::max(std::abs(range.low), std::abs(range.high));
+  std::vector<AxisTick> result;
+  for (double i = first; i <= last; i += 1.0) {
+    const double value = i == 0.0 ? 0.0 : i * step;  // no "-0"
+    result.push_back({value, tick_label(value, step, largest)});
+  }
+  return result;
+}
+
+}  // namespace heatsoak

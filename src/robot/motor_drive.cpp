@@ -1,0 +1,63 @@
+#include "robot/motor_drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+
+DrivePoint clamped(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s) {
+  DrivePoint point;
+  point.current_wanted_A = wanted_A;
+  point.motor_speed_rad_per_s = motor_speed_rad_per_s;
+  const double back_emf_V = motor.torque_constant_Nm_per_A * motor_speed_rad_per_s;
+  const double most_A = (robot.available_V() - back_emf_V) / motor.terminal_resistance_ohm;
+  const double least_A = (-robot.available_V() - back_emf_V) / motor.terminal_resistance_ohm;
+  point.current_A = std::clamp(wanted_A, -robot.current_limit_A, robot.current_limit_A);
+  if (point.current_A != wanted_A) {
+    point.limit = DriveLimit::current;
+  }
+  const double within_voltage_A = std::clamp(point.current_A, least_A, most_A);
+  if (within_voltage_A != point.current_A) {
+    point.limit = DriveLimit::voltage;
+    point.current_A = within_voltage_A;
+  }
+  point.motor_torque_Nm = motor.torque_constant_Nm_per_A * point.current_A - drag_torque_Nm(motor) * sign(motor_speed_rad_per_s);
+  return point;
+}
+
+}  // namespace
+
+DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load) {
+  // A gear loses torque on the way to the wheel when driving, and on the way back when braking.
+  const bool drives = load.torque_Nm * load.speed_rad_per_s >= 0.0;
+  const double efficiency = drives ? 1.0 / robot.gear_efficiency : robot.gear_efficiency;
+  const double motor_torque_Nm = load.torque_Nm / robot.gear_ratio * efficiency;
+  const double motor_speed_rad_per_s = load.speed_rad_per_s * robot.gear_ratio;
+  const double wanted_A = (motor_torque_Nm + drag_torque_Nm(motor) * sign(motor_speed_rad_per_s)) / motor.torque_constant_Nm_per_A;
+  return clamped(motor, robot, wanted_A, motor_speed_rad_per_s);
+}
+
+DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s) {
+  return clamped(motor, robot, current_A, wheel_speed_rad_per_s * robot.gear_ratio);
+}
+
+double voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C) {
+  const double resistance_ohm = motor.terminal_resistance_ohm * (1.0 + motor.temperature_coefficient_per_K * (winding_C - 25.0));
+  return std::abs(point.current_A * resistance_ohm + motor.torque_constant_Nm_per_A * point.motor_speed_rad_per_s);
+}
+
+OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C) {
+  // 0.75·R·Î² against R·I² at equal torque, Î = I/(√3·π/6): 0.912 of the heat.
+  static const double kSinusoidal = std::sqrt(0.75) * 6.0 / (std::numbers::sqrt3 * std::numbers::pi);
+  const double heating_A = std::abs(point.current_A) * (robot.commutation == Commutation::sinusoidal ? kSinusoidal : 1.0);
+  const double speed_rad_per_s = std::abs(point.motor_speed_rad_per_s);
+  return {heating_A, speed_rad_per_s, speed_rad_per_s, ambient_C};
+}
+
+}  // namespace heatsoak

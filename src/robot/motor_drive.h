@@ -1,0 +1,42 @@
+// From what a wheel must do to what its motor gets: torque and speed to current, within the limits of voltage
+// and current.
+#pragma once
+
+#include "motor/motor.h"
+#include "robot/robot.h"
+#include "thermal/effect.h"
+
+namespace heatsoak {
+
+/// Demand on one wheel. Torque and speed are positive in the same direction; torque · speed > 0 drives.
+struct WheelLoad {
+  double torque_Nm = 0.0;
+  double speed_rad_per_s = 0.0;
+};
+
+/// What cuts the current: nothing, the available voltage (at 25 °C), or the driver's current limit.
+enum class DriveLimit { none, voltage, current };
+
+struct DrivePoint {
+  double current_A = 0.0;  ///< that flows, equivalent DC current of block commutation, signed like the torque
+  double current_wanted_A = 0.0;
+  double motor_speed_rad_per_s = 0.0;
+  double motor_torque_Nm = 0.0;  ///< at the shaft, of the current that flows
+  DriveLimit limit = DriveLimit::none;
+};
+
+/// Current for a motor torque at a speed: (M + K_t·I_0·sign ω)/K_t, so that drag helps when braking; clamped to
+/// |I| ≤ current limit and to |I·R25 + K_t·ω| ≤ available voltage.
+/// The cold resistance lets more current through than a hot winding would: the error is on the hot side.
+DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load);
+
+/// The same for a prescribed current, which is clamped too.
+DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s);
+
+/// Terminal voltage that the point needs with the winding at a temperature.
+double voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C);
+
+/// What the thermal network sees of it.
+OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C);
+
+}  // namespace heatsoak

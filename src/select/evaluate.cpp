@@ -1,0 +1,349 @@
+#include "select/evaluate.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+#include "motor/datasheet_network.h"
+#include "select/drive_profile.h"
+#include "thermal/ensemble.h"
+
+namespace heatsoak {
+namespace {
+
+enum Node { winding, stator };
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kBandPoints = 240;
+/// A demand counts as met where no more than this share of it is missing.
+constexpr double kTolerableShortage = 0.005;
+
+/// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
+class Block {
+ public:
+  Block(const Motor& motor, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample)
+      : robot_(robot), duty_(duty) {
+    std::vector<Network> networks;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
+      motors_.push_back(draw_sample(motor, random));
+      duties_.push_back(draw_sample(duty, random));
+      networks.push_back(datasheet_network(motor, motors_.back()));
+      const std::vector<double> values = networks.back().values();
+      parameters_.resize(values.size());
+      for (std::size_t p = 0; p < values.size(); ++p) {
+        parameters_[p][lane] = values[p];
+      }
+    }
+    network_ = std::move(networks.front());
+  }
+
+  /// Gives `visit(time_s, state_C)` the end of every piece, in steps no coarser than `longest_visit_s`.
+  template <class Visit>
+  std::vector<Lanes> peaks(const Visit& visit) const {
+    std::vector<Lanes> start_C(static_cast<std::size_t>(network_.state_count()));
+    for (int lane = 0; lane < kLanes; ++lane) {
+      for (Lanes& node : start_C) {
+        node[lane] = duties_[static_cast<std::size_t>(lane)].ambient_C;
+      }
+    }
+    EnsembleRun run(network_, parameters_, start_C);
+    double time_s = 0.0;
+    double step_s = 0.0;
+    const DutyPiece* before = nullptr;
+    OperatingPoint<Lanes> at;
+    for (const DutyPiece& piece : duty_.pieces) {
+      if (!before || piece.torque_Nm != before->torque_Nm || piece.speed_rad_per_s != before->speed_rad_per_s || piece.current_A != before->current_A) {
+        at = point(piece);
+        step_s = longest_step_s(network_, parameters_, at);
+        before = &piece;
+      }
+      run.over(piece.duration_s, at, step_s);
+      time_s += piece.duration_s;
+      visit(time_s, run.state_C());
+    }
+    return run.peak_C();
+  }
+
+  [[nodiscard]] const MotorSample& motor(int lane) const { return motors_[static_cast<std::size_t>(lane)]; }
+
+ private:
+  [[nodiscard]] OperatingPoint<Lanes> point(const DutyPiece& piece) const {
+    OperatingPoint<Lanes> at;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto i = static_cast<std::size_t>(lane);
+      const DrivePoint drive = drive_point(motors_[i].values, robot_, duty_, piece, duties_[i]);
+      const OperatingPoint<double> one = operating_point(drive, robot_, duties_[i].ambient_C);
+      at.current_rms_A[lane] = one.current_rms_A;
+      at.speed_mean_rad_per_s[lane] = one.speed_mean_rad_per_s;
+      at.speed_rms_rad_per_s[lane] = one.speed_rms_rad_per_s;
+      at.ambient_C[lane] = one.ambient_C;
+    }
+    return at;
+  }
+
+  const Robot& robot_;
+  const Duty& duty_;
+  Network network_;
+  std::vector<MotorSample> motors_;
+  std::vector<DutySample> duties_;
+  std::vector<Lanes> parameters_;
+};
+
+/// Everything one motor needs while its samples come in from several threads, each to its own place.
+struct Work {
+  const Motor* motor = nullptr;
+  MotorEvaluation result;
+  std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
+  std::vector<char> over_limit;                       ///< per sample
+  std::vector<float> band_winding_C, band_stator_C;   ///< [grid point][sample]
+};
+
+double quantile(std::vector<double>& sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
+}
+
+Spread95 spread(double nominal, std::vector<double> samples) {
+  if (samples.empty()) {
+    return {nominal, kNothing, kNothing, kNothing};
+  }
+  std::ranges::sort(samples);
+  return {nominal, quantile(samples, 0.05), quantile(samples, 0.5), quantile(samples, 0.95)};
+}
+
+/// The factor on all currents with which the winding just reaches its limit: eight factors at a time, each
+/// round between the two that enclose it. Nothing where even no current is too much.
+std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals, double limit_C) {
+  double low = 0.0;
+  double high = 16.0;
+  std::vector<Lanes> parameters;
+  for (const double value : network.values()) {
+    parameters.push_back(Lanes::Constant(value));
+  }
+  for (int round = 0; round < 5; ++round) {
+    const Lanes factor = Lanes::LinSpaced(low, high);
+    const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(intervals.front().at.ambient_C));
+    EnsembleRun run(network, parameters, start_C);
+    for (const Interval& interval : intervals) {
+      OperatingPoint<Lanes> at;
+      at.current_rms_A = interval.at.current_rms_A * factor;
+      at.speed_mean_rad_per_s = Lanes::Constant(interval.at.speed_mean_rad_per_s);
+      at.speed_rms_rad_per_s = Lanes::Constant(interval.at.speed_rms_rad_per_s);
+      at.ambient_C = Lanes::Constant(interval.at.ambient_C);
+      run.over(interval.duration_s, at, longest_step_s(network, parameters, at));
+    }
+    const Lanes& peak_C = run.peak_C()[winding];
+    int within = -1;
+    while (within + 1 < kLanes && peak_C[within + 1] <= limit_C) {
+      ++within;
+    }
+    if (within < 0) {
+      return std::nullopt;
+    }
+    if (within + 1 == kLanes) {
+      return high;
+    }
+    low = factor[within];
+    high = factor[within + 1];
+  }
+  return 0.5 * (low + high);
+}
+
+void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options) {
+  const Motor& motor = *work.motor;
+  MotorEvaluation& result = work.result;
+  const MotorSample sample = nominal_sample(motor);
+  const Network network = datasheet_network(motor, sample);
+  const DriveProfile profile = drive_profile(sample.values, robot, duty, nominal_sample(duty));
+  TransientOptions run;
+  run.limits.push_back({winding, sample.values.winding_limit_C});
+  if (std::isfinite(sample.values.stator_limit_C)) {
+    run.limits.push_back({stator, sample.values.stator_limit_C});
+    result.stator_limit_C = sample.values.stator_limit_C;
+  }
+  const TransientResult transient = run_transient(network, network.values(), profile.intervals, run, [&](const TransientMoment& moment) {
+    result.highest_voltage_V = std::max(result.highest_voltage_V, voltage_V(sample.values, profile.points[moment.interval], moment.state_C[winding]));
+    if (options.with_curves) {
+      result.curves.time_s.push_back(moment.time_s);
+      result.curves.winding_C.push_back(moment.state_C[winding]);
+      result.curves.stator_C.push_back(moment.state_C[stator]);
+    }
+  });
+  result.motor_id = motor.id;
+  result.data_quality = data_quality(motor);
+  result.winding_limit_C = sample.values.winding_limit_C;
+  result.winding_peak_C.nominal = transient.peak_C[winding];
+  result.stator_peak_C.nominal = transient.peak_C[stator];
+  result.destroyed = transient.destroyed;
+  result.current_rms_A = profile.current_rms_A;
+  result.least_torque_share = profile.least_torque_share;
+  result.margin_K = result.winding_limit_C - transient.peak_C[winding];
+  if (const std::optional<double> factor = bearable_current_factor(network, profile.intervals, result.winding_limit_C)) {
+    result.margin_A = (*factor - 1.0) * profile.current_rms_A;
+  }
+  std::size_t first_limit = 0;
+  for (std::size_t i = 0; i < run.limits.size(); ++i) {
+    const std::optional<double>& time_s = transient.time_to_limit_s[i];
+    if (time_s && (!result.time_to_limit_s || *time_s < *result.time_to_limit_s)) {
+      result.time_to_limit_s = time_s;
+      first_limit = i;
+    }
+  }
+  if (profile.least_torque_share < 1.0 - kTolerableShortage) {
+    result.verdict = Verdict::infeasible;
+    result.limiting_factor = profile.limit == DriveLimit::voltage ? LimitingFactor::voltage : LimitingFactor::current;
+  } else if (result.time_to_limit_s) {
+    result.verdict = Verdict::fail;
+    result.limiting_factor = first_limit == 0 ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
+  } else if (result.highest_voltage_V > robot.available_V() * (1.0 + kTolerableShortage)) {
+    result.verdict = Verdict::infeasible;
+    result.limiting_factor = LimitingFactor::voltage;
+  }
+}
+
+void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
+  const Block block(*work.motor, robot, duty, options, first_sample);
+  const double grid_s = duty.duration_s() / static_cast<double>(kBandPoints);
+  const auto samples = static_cast<std::size_t>(options.samples);
+  std::size_t next = 0;
+  const std::vector<Lanes> peak_C = block.peaks([&](double time_s, const std::vector<Lanes>& state_C) {
+    for (; options.with_curves && next < kBandPoints && time_s >= static_cast<double>(next + 1) * grid_s * (1.0 - 1e-9); ++next) {
+      for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
+        const std::size_t place = next * samples + static_cast<std::size_t>(first_sample + lane);
+        work.band_winding_C[place] = static_cast<float>(state_C[winding][lane]);
+        work.band_stator_C[place] = static_cast<float>(state_C[stator][lane]);
+      }
+    }
+  });
+  for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
+    const auto place = static_cast<std::size_t>(first_sample + lane);
+    const MotorValues& values = block.motor(lane).values;
+    work.winding_peak_C[place] = peak_C[winding][lane];
+    work.stator_peak_C[place] = peak_C[stator][lane];
+    work.over_limit[place] = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
+  }
+}
+
+void finish_band(Work& work, const Duty& duty, int samples) {
+  TemperatureCurves& curves = work.result.curves;
+  const auto count = static_cast<std::ptrdiff_t>(samples);
+  for (std::size_t i = 0; i < kBandPoints; ++i) {
+    curves.band_time_s.push_back(duty.duration_s() * static_cast<double>(i + 1) / static_cast<double>(kBandPoints));
+    const auto at = [&](const std::vector<float>& all) {
+      const auto first = all.begin() + static_cast<std::ptrdiff_t>(i) * count;
+      return spread(0.0, std::vector<double>(first, first + count));
+    };
+    const Spread95 winding_C = at(work.band_winding_C);
+    const Spread95 stator_C = at(work.band_stator_C);
+    curves.winding_p05_C.push_back(winding_C.p05);
+    curves.winding_p95_C.push_back(winding_C.p95);
+    curves.stator_p05_C.push_back(stator_C.p05);
+    curves.stator_p95_C.push_back(stator_C.p95);
+  }
+}
+
+void conclude(Work& work, const Duty& duty, const EvaluateOptions& options) {
+  MotorEvaluation& result = work.result;
+  result.winding_peak_C = spread(result.winding_peak_C.nominal, work.winding_peak_C);
+  result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
+  result.probability_over_limit =
+      options.samples > 0 ? static_cast<double>(std::ranges::count(work.over_limit, char{1})) / options.samples : kNothing;
+  if (result.verdict == Verdict::pass && result.probability_over_limit > kMarginalProbability) {
+    result.verdict = Verdict::marginal;
+    const bool winding_first = !result.stator_limit_C || result.margin_K < *result.stator_limit_C - result.stator_peak_C.nominal;
+    result.limiting_factor = winding_first ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
+  }
+  if (options.with_curves && options.samples > 0) {
+    finish_band(work, duty, options.samples);
+  }
+}
+
+/// Runs `count` jobs on all threads; the first exception ends the rest and is thrown here.
+template <class Job>
+void in_parallel(std::size_t count, int threads, const Progress& progress, const Job& job) {
+  std::atomic<std::size_t> next = 0;
+  std::size_t done = 0;
+  std::mutex mutex;
+  std::exception_ptr error;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        job(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        error = error ? error : std::current_exception();
+        next = count;
+      }
+      const std::lock_guard lock(mutex);
+      ++done;
+      if (progress) {
+        progress(done, count);
+      }
+    }
+  };
+  const std::size_t all = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
+  {
+    std::vector<std::jthread> helpers;
+    for (std::size_t i = 1; i < std::min(all, count); ++i) {
+      helpers.emplace_back(work);
+    }
+    work();
+  }
+  if (error) {
+    std::rethrow_exception(error);
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  constexpr std::array<std::string_view, 4> kNames{"pass", "marginal", "fail", "infeasible"};
+  return kNames.at(static_cast<std::size_t>(verdict));
+}
+
+std::string_view to_string(LimitingFactor factor) {
+  constexpr std::array<std::string_view, 5> kNames{"none", "winding_temperature", "stator_temperature", "voltage", "current"};
+  return kNames.at(static_cast<std::size_t>(factor));
+}
+
+std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const Motor> motors, const EvaluateOptions& options,
+                                      const Progress& progress) {
+  const auto samples = static_cast<std::size_t>(options.samples);
+  const std::size_t blocks = (samples + kLanes - 1) / kLanes;
+  std::vector<Work> works(motors.size());
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    works[i].motor = &motors[i];
+    works[i].winding_peak_C.resize(samples);
+    works[i].stator_peak_C.resize(samples);
+    works[i].over_limit.resize(samples);
+    works[i].band_winding_C.resize(options.with_curves ? samples * kBandPoints : 0);
+    works[i].band_stator_C.resize(options.with_curves ? samples * kBandPoints : 0);
+  }
+  in_parallel(motors.size() * (blocks + 1), options.threads, progress, [&](std::size_t job) {
+    Work& work = works[job / (blocks + 1)];
+    const std::size_t block = job % (blocks + 1);
+    if (block == blocks) {
+      evaluate_nominal(work, robot, duty, options);
+    } else {
+      evaluate_samples(work, robot, duty, options, static_cast<int>(block) * kLanes);
+    }
+  });
+  std::vector<MotorEvaluation> results;
+  for (Work& work : works) {
+    conclude(work, duty, options);
+    results.push_back(std::move(work.result));
+  }
+  std::ranges::stable_sort(results, [](const MotorEvaluation& a, const MotorEvaluation& b) {
+    return std::tuple(a.verdict, -a.margin_K) < std::tuple(b.verdict, -b.margin_K);
+  });
+  return results;
+}
+
+}  // namespace heatsoak

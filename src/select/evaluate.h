@@ -1,0 +1,82 @@
+// Does the motor survive the duty? Ranks candidates with every declared uncertainty.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "duty/duty.h"
+#include "motor/motor.h"
+#include "robot/robot.h"
+
+namespace heatsoak {
+
+enum class Verdict {
+  pass,        ///< nominally within every limit, and at most kMarginalProbability to pass one
+  marginal,    ///< nominally within, but the declared uncertainty reaches over a limit more often
+  fail,        ///< nominally too hot
+  infeasible,  ///< voltage or current do not suffice for the demanded torque
+};
+enum class LimitingFactor { none, winding_temperature, stator_temperature, voltage, current };
+std::string_view to_string(Verdict verdict);
+std::string_view to_string(LimitingFactor factor);
+
+inline constexpr double kMarginalProbability = 0.05;
+
+struct EvaluateOptions {
+  int samples = 500;  ///< 0: nominal only
+  std::uint64_t seed = 1;
+  int threads = 0;          ///< 0: all cores; the result does not depend on it
+  bool with_curves = false;  ///< keep what a picture needs
+};
+
+/// The figure without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
+struct Spread95 {
+  double nominal = 0.0;
+  double p05 = 0.0;
+  double p50 = 0.0;
+  double p95 = 0.0;
+};
+
+struct TemperatureCurves {
+  std::vector<double> time_s;  ///< of the nominal run, every step of the solver
+  std::vector<double> winding_C;
+  std::vector<double> stator_C;
+  std::vector<double> band_time_s;  ///< common grid of the samples
+  std::vector<double> winding_p05_C, winding_p95_C;
+  std::vector<double> stator_p05_C, stator_p95_C;
+};
+
+struct MotorEvaluation {
+  std::string motor_id;
+  Verdict verdict = Verdict::pass;
+  LimitingFactor limiting_factor = LimitingFactor::none;
+  std::string data_quality;
+  double winding_limit_C = 0.0;
+  std::optional<double> stator_limit_C;
+  Spread95 winding_peak_C;
+  Spread95 stator_peak_C;
+  double probability_over_limit = 0.0;        ///< of any temperature limit; NaN without samples
+  std::optional<double> time_to_limit_s;      ///< nominal, first of the limits
+  double current_rms_A = 0.0;                 ///< heating current over the whole duty
+  double margin_K = 0.0;                      ///< winding limit minus nominal peak
+  std::optional<double> margin_A;             ///< how much more rms current the winding bears at the same speeds
+  double least_torque_share = 1.0;            ///< delivered over demanded, worst moment
+  double highest_voltage_V = 0.0;             ///< needed at the terminals, hot
+  bool destroyed = false;                     ///< runaway: the nominal run ended at 1000 °C
+  TemperatureCurves curves;
+};
+
+/// `done` of `total` units of work are finished.
+using Progress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// Best first: pass, marginal, fail, infeasible; within them by margin. `progress` is called from one
+/// thread at a time.
+std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const Motor> motors, const EvaluateOptions& options,
+                                      const Progress& progress = {});
+
+}  // namespace heatsoak

@@ -1,0 +1,37 @@
+#include "thermal/effect.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { stator };
+enum Parameter { drag_torque };
+
+struct NoLoadLoss {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    heat.source(stator, x.parameter(drag_torque) * x.at.speed_mean_rad_per_s);
+  }
+};
+
+}  // namespace
+
+EffectType no_load_loss() {
+  return {
+      .name = {},
+      .summary = "Iron and bearing loss as a data sheet gives them: one constant drag torque K_t·I_0.",
+      .equation = "P_stator = M_drag · |ω|",
+      .reference = "maxon, key information on motor data: iron loss is treated like additional friction",
+      .nodes = {{"stator", "stator"}},
+      .parameters = {{"drag_torque", "N m", Range::non_negative(), "torque constant times no-load current"}},
+      .typical = "1 to 5 W at no-load speed",
+      .look_alike = "Hysteresis loss and dry bearing friction are the same term; eddy-current loss grows with ω².",
+      // 0.008 N m · 500 rad/s = 4 W
+      .example = {.parameters = {0.008},
+                  .at = {.current_rms_A = 0.0, .speed_mean_rad_per_s = 500.0, .speed_rms_rad_per_s = 500.0, .ambient_C = 25.0},
+                  .temperature_C = {40.0},
+                  .expected_heat_W = {4.0}},
+      .laws = laws<NoLoadLoss>(),
+  };
+}
+
+}  // namespace heatsoak::effects

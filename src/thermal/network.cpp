@@ -1,0 +1,112 @@
+#include "thermal/network.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace heatsoak {
+namespace {
+
+/// Room for the heat of every node on the stack: the rate is called a million times and must not allocate.
+constexpr int kMostNodes = 16;
+
+template <class S>
+void book(const EffectInPlace& effect, const OperatingPoint<S>& at, const S* parameters, const S* temperature_C, S* heat_W) {
+  const Situation<S> situation(at, parameters, effect.parameter_index.data(), temperature_C, effect.node_index.data());
+  HeatBook<S> heat_book(heat_W, effect.node_index.data());
+  if constexpr (std::is_same_v<S, double>) {
+    effect.type->laws.one(situation, heat_book);
+  } else {
+    effect.type->laws.lanes(situation, heat_book);
+  }
+}
+
+}  // namespace
+
+int Network::add_parameter(NetworkParameter parameter) {
+  if (!parameter.range.contains(parameter.value)) {
+    throw std::logic_error(fmt::format("{} = {} is out of range", parameter.name, parameter.value));
+  }
+  parameters_.push_back(std::move(parameter));
+  return static_cast<int>(parameters_.size()) - 1;
+}
+
+int Network::add_node(std::string name, double heat_capacity_J_per_K) {
+  if (!effects_.empty() || node_count() >= kMostNodes) {
+    throw std::logic_error("nodes are added before effects, and at most 15 of them");
+  }
+  capacity_index_.push_back(add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K}));
+  node_names_.push_back(std::move(name));
+  return state_count() - 1;
+}
+
+int Network::find_node(std::string_view name) const {
+  if (name == kAmbient) {
+    return state_count();
+  }
+  const auto found = std::ranges::find(node_names_, name);
+  return found == node_names_.end() ? -1 : static_cast<int>(found - node_names_.begin());
+}
+
+std::string_view Network::node_name(int node) const {
+  return node == state_count() ? kAmbient : std::string_view(node_names_.at(static_cast<std::size_t>(node)));
+}
+
+void Network::add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters) {
+  if (nodes.size() != type.nodes.size() || parameters.size() != type.parameters.size()) {
+    throw std::logic_error(fmt::format("{}: {} needs {} nodes and {} parameters", name, type.name, type.nodes.size(), type.parameters.size()));
+  }
+  EffectInPlace effect{.name = std::move(name), .type = &type, .node_index = {}, .parameter_index = {}};
+  for (const std::string& node : nodes) {
+    const int index = find_node(node);
+    if (index < 0) {
+      throw std::logic_error(fmt::format("{}: there is no node '{}'", effect.name, node));
+    }
+    effect.node_index.push_back(index);
+  }
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterSpec& spec = type.parameters[i];
+    effect.parameter_index.push_back(add_parameter({fmt::format("{}.{}", effect.name, spec.key), spec.unit, spec.range, parameters[i]}));
+  }
+  effects_.push_back(std::move(effect));
+}
+
+std::vector<double> Network::values() const {
+  std::vector<double> all;
+  for (const NetworkParameter& parameter : parameters_) {
+    all.push_back(parameter.value);
+  }
+  return all;
+}
+
+template <class S>
+void Network::rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const {
+  std::array<S, kMostNodes> heat_W;
+  const std::size_t states = node_names_.size();
+  std::fill_n(heat_W.begin(), states + 1, S(0.0));
+  temperature_C[states] = at.ambient_C;
+  for (const EffectInPlace& effect : effects_) {
+    book<S>(effect, at, parameters.data(), temperature_C.data(), heat_W.data());
+  }
+  for (std::size_t node = 0; node < states; ++node) {
+    rate[node] = heat_W[node] / parameters[static_cast<std::size_t>(capacity_index_[node])];
+  }
+}
+
+void Network::balance_W(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
+                        std::span<double> heat_W) const {
+  std::array<double, kMostNodes> temperature_C{};
+  std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
+  temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
+  std::ranges::fill(heat_W, 0.0);
+  for (std::size_t e = 0; e < effects_.size(); ++e) {
+    book<double>(effects_[e], at, parameters.data(), temperature_C.data(), heat_W.data() + e * static_cast<std::size_t>(node_count()));
+  }
+}
+
+template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
+template void Network::rate_K_per_s<Lanes>(const OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
+
+}  // namespace heatsoak

@@ -1,0 +1,69 @@
+// Nodes that store heat, effects that book it, and the parameters of both in one flat list.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "thermal/effect.h"
+
+namespace heatsoak {
+
+struct NetworkParameter {
+  std::string name;  ///< "winding_stator.thermal_resistance", "winding.heat_capacity"
+  std::string_view unit;
+  Range range;
+  double value = 0.0;
+};
+
+/// An effect in place: which nodes play its roles, where its parameters stand in the flat list.
+struct EffectInPlace {
+  std::string name;  ///< of this instance, unique in the network
+  const EffectType* type = nullptr;
+  std::vector<int> node_index;
+  std::vector<int> parameter_index;
+};
+
+/// The structure is shared by all samples; the values of the parameters are passed in, so that one network
+/// serves single runs, ensembles and fits. Ambient is the last node; its temperature is prescribed.
+class Network {
+ public:
+  static constexpr std::string_view kAmbient = "ambient";
+
+  /// Returns the node's index. `heat_capacity_J_per_K` > 0.
+  int add_node(std::string name, double heat_capacity_J_per_K);
+  /// `nodes` and `parameters` in the order of the type's declaration. Nodes must exist.
+  void add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters);
+
+  [[nodiscard]] int state_count() const { return static_cast<int>(node_names_.size()); }
+  [[nodiscard]] int node_count() const { return state_count() + 1; }
+  /// -1 where there is no such node; ambient is state_count().
+  [[nodiscard]] int find_node(std::string_view name) const;
+  [[nodiscard]] std::string_view node_name(int node) const;
+  [[nodiscard]] std::span<const EffectInPlace> effects() const { return effects_; }
+  [[nodiscard]] std::span<const NetworkParameter> parameters() const { return parameters_; }
+  [[nodiscard]] std::vector<double> values() const;
+
+  /// dT/dt of every state node in K/s. `temperature_C` has node_count() entries; the last one is ignored and
+  /// overwritten with the point's ambient. S is double or Lanes.
+  template <class S>
+  void rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const;
+
+  /// Heat in W that effect e books into node n, at heat_W[e · node_count() + n]; positive into the node.
+  void balance_W(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
+                 std::span<double> heat_W) const;
+
+ private:
+  int add_parameter(NetworkParameter parameter);
+
+  std::vector<std::string> node_names_;
+  std::vector<int> capacity_index_;
+  std::vector<EffectInPlace> effects_;
+  std::vector<NetworkParameter> parameters_;
+};
+
+extern template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
+extern template void Network::rate_K_per_s<Lanes>(const OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
+
+}  // namespace heatsoak

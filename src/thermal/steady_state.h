@@ -1,0 +1,43 @@
+// Where a network comes to rest under a constant operating point.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "thermal/network.h"
+
+namespace heatsoak {
+
+struct SteadyState {
+  std::vector<double> temperature_C;  ///< one per state node
+};
+
+/// Solves rate = 0 by Newton's method (one step where the network is linear in temperature). Nothing where
+/// there is no stable rest: thermal runaway, the copper loss outgrows what can be led away.
+/// Throws Failure (numerics_failed) where the iteration does not converge.
+std::optional<SteadyState> steady_state(const Network& network, const OperatingPoint<double>& at);
+
+/// The equations (8) to (12) of the RoboTeam Twente paper of 2025 for an on/off current, after maxon.
+/// α is meant at 25 °C; for another ambient temperature it is referred to that one together with R, so that
+/// the equations stay the exact steady state of the network: R_TA = R25·(1+α(T_A−25)), α_TA = α·R25/R_TA.
+struct OnOffCurrent {
+  double current_on_A = 0.0;
+  double time_on_s = 0.0;
+  double time_off_s = 0.0;
+  double ambient_C = 25.0;
+};
+struct TwoNodeMotor {
+  double terminal_resistance_25C_ohm = 0.0;
+  double temperature_coefficient_per_K = 0.0;
+  double thermal_resistance_winding_stator_K_per_W = 0.0;
+  double thermal_resistance_stator_ambient_K_per_W = 0.0;
+};
+struct OnOffSteadyState {
+  double current_rms_A = 0.0;
+  bool runaway = false;  ///< the denominator of equation (9) is not positive; the temperatures mean nothing then
+  double winding_C = 0.0;
+  double stator_C = 0.0;
+};
+OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurrent& current);
+
+}  // namespace heatsoak
