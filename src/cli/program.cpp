@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -40,20 +41,34 @@ std::string verb_of(const CLI::App& app) {
   return verbs.empty() ? app.get_name() : fmt::format("{} {}", app.get_name(), verbs.front()->get_name());
 }
 
-/// CLI11 names what it did not expect; the nearest option or verb is what was meant.
-std::string nearest(const CLI::App& app, const std::string& message) {
-  const auto verbs = app.get_subcommands();
+/// CLI11 speaks of a missing option before it speaks of a misspelt one, so the words are looked at first.
+void check_words(const CLI::App& app, int argc, const char* const* argv) {
+  std::vector<std::string> verbs;
+  const CLI::App* verb = nullptr;
+  for (const CLI::App* each : app.get_subcommands({})) {
+    verbs.push_back(each->get_name());
+    verb = argc > 1 && each->get_name() == argv[1] ? each : verb;
+  }
+  if (!verb && argc > 1 && argv[1][0] != '-') {
+    throw Failure(ExitCode::bad_input, fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", argv[1], did_you_mean(argv[1], verbs)));
+  }
   std::vector<std::string> known;
-  for (const CLI::Option* option : (verbs.empty() ? app : *verbs.front()).get_options()) {
+  for (const CLI::Option* option : (verb ? *verb : app).get_options()) {
     for (const std::string& name : option->get_lnames()) {
       known.push_back("--" + name);
     }
   }
-  for (const CLI::App* verb : app.get_subcommands({})) {
-    known.push_back(verb->get_name());
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const std::string name(word.substr(0, word.find('=')));
+    if (name == "--") {
+      break;
+    }
+    if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) {
+      throw Failure(ExitCode::bad_input, fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known), app.get_name(),
+                                                     verb ? " " + verb->get_name() : ""));
+    }
   }
-  const std::size_t colon = message.find(": ");
-  return colon == std::string::npos ? "" : did_you_mean(message.substr(colon + 2, message.find(' ', colon + 2) - colon - 2), known);
 }
 
 int fail(const Session& session, const Failure& failure) {
@@ -74,15 +89,15 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
     const std::function<ExitCode()> run = command.declare(*verb, session);
     verb->callback([run, &code] { code = run(); });
   }
+  session.set_json_target(json_target(argc, argv));
+  check_words(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
       return app.exit(error);
     }
-    session.set_json_target(json_target(argc, argv));
-    return fail(session, Failure(ExitCode::bad_input, fmt::format("{}{}\n`{} --help` shows the options and an example", error.what(),
-                                                                  nearest(app, error.what()), verb_of(app))));
+    throw Failure(ExitCode::bad_input, fmt::format("{}\n`{} --help` shows the options and an example", error.what(), verb_of(app)));
   }
   return static_cast<int>(code);
 }

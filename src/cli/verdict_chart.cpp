@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
+#include <string>
 
 namespace heatsoak {
 namespace {
@@ -28,7 +29,7 @@ std::vector<const MotorEvaluation*> chosen(const std::vector<MotorEvaluation>& r
 
 ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_winding) {
   ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
-  std::set<double> limits_C;
+  std::map<double, std::vector<std::string>> limits_C;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const TemperatureCurves& curves = shown[i]->curves;
     const std::string name = of_winding ? fmt::format("{}, {:.0f} °C", shown[i]->motor_id, shown[i]->winding_peak_C.nominal) : std::string();
@@ -39,13 +40,14 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
                               of_winding ? curves.winding_p95_C : curves.stator_p95_C, color});
     }
     if (of_winding) {
-      limits_C.insert(shown[i]->winding_limit_C);
+      limits_C[shown[i]->winding_limit_C].push_back(shown[i]->motor_id);
     } else if (shown[i]->stator_limit_C) {
-      limits_C.insert(*shown[i]->stator_limit_C);
+      limits_C[*shown[i]->stator_limit_C].push_back(shown[i]->motor_id);
     }
   }
-  for (const double limit_C : limits_C) {
-    result.levels.push_back({fmt::format("limit {:.0f} °C", limit_C), limit_C});
+  for (const auto& [limit_C, motors] : limits_C) {
+    const std::string whose = limits_C.size() == 1 ? "" : motors.size() == 1 ? " of " + motors.front() : fmt::format(" of {} motors", motors.size());
+    result.levels.push_back({fmt::format("limit {:.0f} °C{}", limit_C, whose), limit_C});
   }
   return result;
 }

@@ -72,7 +72,7 @@ fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view
   }
   const std::vector<std::string> ids = ids_in(folder);
   if (std::ranges::find(ids, name) == ids.end()) {
-    throw Failure(ExitCode::bad_input, fmt::format("there is no {} '{}' in {}{}; `heatsoak list` shows what there is", kind, name, folder.string(), did_you_mean(name, ids)));
+    throw Failure(ExitCode::bad_input, fmt::format("there is no {} '{}' in {}{} (`heatsoak list {}s` shows them)", kind, name, folder.string(), did_you_mean(name, ids), kind == "duty" ? "dutie" : kind));
   }
   return folder / fmt::format("{}.toml", name);
 }

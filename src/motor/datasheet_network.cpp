@@ -1,7 +1,5 @@
 #include "motor/datasheet_network.h"
 
-#include <array>
-
 namespace heatsoak {
 
 double drag_torque_Nm(const MotorValues& motor) { return motor.torque_constant_Nm_per_A * motor.no_load_current_A; }
@@ -11,13 +9,14 @@ Network datasheet_network(const Motor& motor, const MotorSample& sample) {
   Network network;
   network.add_node("winding", values.thermal_time_constant_winding_s / values.thermal_resistance_winding_stator_K_per_W);
   network.add_node("stator", values.thermal_time_constant_stator_s / values.thermal_resistance_stator_ambient_K_per_W);
-  const auto add = [&](std::string name, std::string_view type, std::vector<std::string> nodes, std::vector<double> parameters) {
-    network.add_effect(std::move(name), *find_effect(type), nodes, parameters);
+  const auto add = [&](std::string_view name, std::string_view type, std::vector<std::string> nodes, std::vector<double> parameters) {
+    network.add_effect(std::string(name), *find_effect(type), nodes, parameters);
   };
-  add("copper_loss", "copper_loss", {"winding"}, {values.terminal_resistance_ohm, values.temperature_coefficient_per_K});
-  add("no_load_loss", "no_load_loss", {"stator"}, {drag_torque_Nm(values)});
-  add("winding_stator", "conduction", {"winding", "stator"}, {values.thermal_resistance_winding_stator_K_per_W});
-  add("stator_ambient", "conduction", {"stator", "ambient"}, {values.thermal_resistance_stator_ambient_K_per_W});
+  const auto& [copper, no_load, winding_stator, stator_ambient] = kDatasheetEffects;
+  add(copper, "copper_loss", {"winding"}, {values.terminal_resistance_ohm, values.temperature_coefficient_per_K});
+  add(no_load, "no_load_loss", {"stator"}, {drag_torque_Nm(values)});
+  add(winding_stator, "conduction", {"winding", "stator"}, {values.thermal_resistance_winding_stator_K_per_W});
+  add(stator_ambient, "conduction", {"stator", "ambient"}, {values.thermal_resistance_stator_ambient_K_per_W});
   for (std::size_t i = 0; i < motor.effects.size(); ++i) {
     const MotorEffect& effect = motor.effects[i];
     network.add_effect(effect.name, *effect.type, effect.nodes, sample.effect_parameters[i]);

@@ -1,10 +1,16 @@
 // From the figures of a data sheet to the thermal network.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "motor/motor.h"
 #include "thermal/network.h"
 
 namespace heatsoak {
+
+/// Names of the effects that every datasheet network has.
+inline constexpr std::array<std::string_view, 4> kDatasheetEffects{"copper_loss", "no_load_loss", "winding_stator", "stator_ambient"};
 
 /// Winding and stator with C_w = τ_w/R_th1 and C_s = τ_m/R_th2 (the time constants of a sheet are C·R of one
 /// element, not eigenvalues of the network), copper loss in the winding, K_t·I_0·|ω| at the stator, two thermal

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "input/document.h"
+#include "motor/datasheet_network.h"
 
 namespace heatsoak {
 namespace {
@@ -131,6 +132,10 @@ void read_effects(Reader& top, Motor& motor) {
     known.emplace_back(type.name);
   }
   for (auto& [name, reader] : table->named_tables()) {
+    if (std::ranges::find(kDatasheetEffects, name) != kDatasheetEffects.end()) {
+      table->problem(name, "is the name of an effect that every motor has; give this one another name and say type = \"…\"");
+      continue;
+    }
     const std::string type_name = reader.text("type", Need::optional).value_or(name);
     const EffectType* type = find_effect(type_name);
     if (!type) {

@@ -27,7 +27,8 @@ struct OdeStep {
 
 class OdeSolver;
 
-/// Integrates one system. The system outlives the integrator; no memory is allocated after the first step.
+/// Integrates one system, which outlives the integrator. After the first step no memory is allocated, but for
+/// cvodes_bdf, where SUNDIALS allocates a vector without data for each Jacobian.
 /// Failures of the solver are thrown as Failure (numerics_failed) that say the time and the solver's reason;
 /// what the system throws arrives as thrown. After either, start() is needed before the next step.
 class Integrator {

@@ -70,7 +70,7 @@ class OdeSolver {
     return {N_VGetArrayPointer(v), static_cast<std::size_t>(N_VGetLength(v))};
   }
   template <typename Write>
-  int shield(const char* what, double time_s, std::span<const double> written, Write write);
+  int shield(const char* what, double time_s, std::span<double> written, Write write);
 
   OdeSystem& system_;
   sundials::Context context_;

@@ -47,9 +47,9 @@ DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, 
   return clamped(motor, robot, current_A, wheel_speed_rad_per_s * robot.gear_ratio);
 }
 
-double voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C) {
+double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C) {
   const double resistance_ohm = motor.terminal_resistance_ohm * (1.0 + motor.temperature_coefficient_per_K * (winding_C - 25.0));
-  return std::abs(point.current_A * resistance_ohm + motor.torque_constant_Nm_per_A * point.motor_speed_rad_per_s);
+  return point.current_A * resistance_ohm + motor.torque_constant_Nm_per_A * point.motor_speed_rad_per_s;
 }
 
 OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C) {

@@ -33,8 +33,8 @@ DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const Wheel
 /// The same for a prescribed current, which is clamped too.
 DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s);
 
-/// Terminal voltage that the point needs with the winding at a temperature.
-double voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C);
+/// Terminal voltage that the point needs with the winding at a temperature; signed like the torque.
+double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C);
 
 /// What the thermal network sees of it.
 OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C);

@@ -18,7 +18,7 @@ namespace {
 
 enum Node { winding, stator };
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kBandPoints = 240;
+constexpr std::size_t kBandCells = 160;
 /// A demand counts as met where no more than this share of it is missing.
 constexpr double kTolerableShortage = 0.005;
 
@@ -94,13 +94,28 @@ class Block {
   std::vector<Lanes> parameters_;
 };
 
+/// Lowest and highest temperature of every sample in every cell of the picture's time grid, [cell][sample]:
+/// a value at grid points alone would miss the ripple of an on/off duty.
+struct Envelope {
+  std::vector<float> low_C, high_C;
+
+  void resize(std::size_t count) {
+    low_C.assign(count, std::numeric_limits<float>::max());
+    high_C.assign(count, std::numeric_limits<float>::lowest());
+  }
+  void take(std::size_t place, double value_C) {
+    low_C[place] = std::min(low_C[place], static_cast<float>(value_C));
+    high_C[place] = std::max(high_C[place], static_cast<float>(value_C));
+  }
+};
+
 /// Everything one motor needs while its samples come in from several threads, each to its own place.
 struct Work {
   const Motor* motor = nullptr;
   MotorEvaluation result;
   std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
   std::vector<char> over_limit;                       ///< per sample
-  std::vector<float> band_winding_C, band_stator_C;   ///< [grid point][sample]
+  Envelope winding_envelope_C, stator_envelope_C;
 };
 
 double quantile(std::vector<double>& sorted, double share) {
@@ -169,7 +184,8 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, const Ev
     result.stator_limit_C = sample.values.stator_limit_C;
   }
   const TransientResult transient = run_transient(network, network.values(), profile.intervals, run, [&](const TransientMoment& moment) {
-    result.highest_voltage_V = std::max(result.highest_voltage_V, voltage_V(sample.values, profile.points[moment.interval], moment.state_C[winding]));
+    const double needed_V = terminal_voltage_V(sample.values, profile.points[moment.interval], moment.state_C[winding]);
+    result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(needed_V));
     if (options.with_curves) {
       result.curves.time_s.push_back(moment.time_s);
       result.curves.winding_C.push_back(moment.state_C[winding]);
@@ -210,16 +226,24 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, const Ev
 
 void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
   const Block block(*work.motor, robot, duty, options, first_sample);
-  const double grid_s = duty.duration_s() / static_cast<double>(kBandPoints);
+  const double cell_s = duty.duration_s() / static_cast<double>(kBandCells);
   const auto samples = static_cast<std::size_t>(options.samples);
-  std::size_t next = 0;
+  std::size_t cell = 0;
+  const auto take = [&](const std::vector<Lanes>& state_C) {
+    for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
+      const std::size_t place = cell * samples + static_cast<std::size_t>(first_sample + lane);
+      work.winding_envelope_C.take(place, state_C[winding][lane]);
+      work.stator_envelope_C.take(place, state_C[stator][lane]);
+    }
+  };
   const std::vector<Lanes> peak_C = block.peaks([&](double time_s, const std::vector<Lanes>& state_C) {
-    for (; options.with_curves && next < kBandPoints && time_s >= static_cast<double>(next + 1) * grid_s * (1.0 - 1e-9); ++next) {
-      for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
-        const std::size_t place = next * samples + static_cast<std::size_t>(first_sample + lane);
-        work.band_winding_C[place] = static_cast<float>(state_C[winding][lane]);
-        work.band_stator_C[place] = static_cast<float>(state_C[stator][lane]);
-      }
+    if (!options.with_curves) {
+      return;
+    }
+    take(state_C);
+    while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
+      ++cell;
+      take(state_C);
     }
   });
   for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
@@ -231,22 +255,26 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
   }
 }
 
+/// A percentile over the samples in every cell.
+std::vector<double> percentile(const std::vector<float>& by_cell, int samples, double share) {
+  std::vector<double> result;
+  for (auto first = by_cell.begin(); first != by_cell.end(); first += samples) {
+    std::vector<double> sorted(first, first + samples);
+    std::ranges::sort(sorted);
+    result.push_back(quantile(sorted, share));
+  }
+  return result;
+}
+
 void finish_band(Work& work, const Duty& duty, int samples) {
   TemperatureCurves& curves = work.result.curves;
-  const auto count = static_cast<std::ptrdiff_t>(samples);
-  for (std::size_t i = 0; i < kBandPoints; ++i) {
-    curves.band_time_s.push_back(duty.duration_s() * static_cast<double>(i + 1) / static_cast<double>(kBandPoints));
-    const auto at = [&](const std::vector<float>& all) {
-      const auto first = all.begin() + static_cast<std::ptrdiff_t>(i) * count;
-      return spread(0.0, std::vector<double>(first, first + count));
-    };
-    const Spread95 winding_C = at(work.band_winding_C);
-    const Spread95 stator_C = at(work.band_stator_C);
-    curves.winding_p05_C.push_back(winding_C.p05);
-    curves.winding_p95_C.push_back(winding_C.p95);
-    curves.stator_p05_C.push_back(stator_C.p05);
-    curves.stator_p95_C.push_back(stator_C.p95);
+  for (std::size_t cell = 0; cell < kBandCells; ++cell) {
+    curves.band_time_s.push_back(duty.duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
   }
+  curves.winding_p05_C = percentile(work.winding_envelope_C.low_C, samples, 0.05);
+  curves.winding_p95_C = percentile(work.winding_envelope_C.high_C, samples, 0.95);
+  curves.stator_p05_C = percentile(work.stator_envelope_C.low_C, samples, 0.05);
+  curves.stator_p95_C = percentile(work.stator_envelope_C.high_C, samples, 0.95);
 }
 
 void conclude(Work& work, const Duty& duty, const EvaluateOptions& options) {
@@ -323,8 +351,8 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].winding_peak_C.resize(samples);
     works[i].stator_peak_C.resize(samples);
     works[i].over_limit.resize(samples);
-    works[i].band_winding_C.resize(options.with_curves ? samples * kBandPoints : 0);
-    works[i].band_stator_C.resize(options.with_curves ? samples * kBandPoints : 0);
+    works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
+    works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
   }
   in_parallel(motors.size() * (blocks + 1), options.threads, progress, [&](std::size_t job) {
     Work& work = works[job / (blocks + 1)];

@@ -46,7 +46,7 @@ struct TemperatureCurves {
   std::vector<double> time_s;  ///< of the nominal run, every step of the solver
   std::vector<double> winding_C;
   std::vector<double> stator_C;
-  std::vector<double> band_time_s;  ///< common grid of the samples
+  std::vector<double> band_time_s;  ///< middles of the cells in which the samples' lowest and highest are taken
   std::vector<double> winding_p05_C, winding_p95_C;
   std::vector<double> stator_p05_C, stator_p95_C;
 };

@@ -102,12 +102,12 @@ class Run {
     system_.set(interval.at);
     integrator_.start(start_s, y_);
     system_.derivative(start_s, y_, slope_);
-    observe(start_s, index);
+    observe(start_s, index, true);
     while (result_.end_s < stop_s && !result_.destroyed) {
       const OdeStep step = integrator_.step(stop_s);
       note_crossings(step);
       advance_to(step.time_s);
-      observe(step.time_s, index);
+      observe(step.time_s, index, false);
     }
   }
 
@@ -138,9 +138,9 @@ class Run {
     result_.end_s = time_s;
   }
 
-  void observe(double time_s, std::size_t interval) {
+  void observe(double time_s, std::size_t interval, bool begins_interval) {
     if (observer_) {
-      observer_({time_s, interval, std::span<const double>(y_).first(states_)});
+      observer_({time_s, interval, begins_interval, std::span<const double>(y_).first(states_)});
     }
   }
 

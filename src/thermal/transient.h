@@ -37,6 +37,7 @@ struct TransientOptions {
 struct TransientMoment {
   double time_s = 0.0;
   std::size_t interval = 0;
+  bool begins_interval = false;  ///< the first look at this interval; the same time as the end of the one before
   std::span<const double> state_C;
 };
 

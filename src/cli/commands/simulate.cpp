@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/quantity_option.h"
+#include "cli/verdict_chart.h"
+#include "input/document.h"
+#include "report/chart.h"
+#include "select/trace.h"
+
+namespace heatsoak::commands {
+namespace {
+
+struct Options {
+  std::string motor;
+  std::string robot;
+  std::string duty;
+  std::string out;
+  std::string plot;
+  double every_s = 1.0;
+};
+
+/// Mean heat of every effect at every node it books into, the largest first in the sense of the network.
+std::string balance_text(const Trace& trace) {
+  std::string text = "mean heat into the nodes / W (positive: into)\n";
+  for (const BookedHeat& each : trace.balance) {
+    text += fmt::format("  {:22} {:10} {:+9.3f}\n", each.effect, each.node, each.mean_W);
+  }
+  return text + fmt::format("  {:22} {:10} {:+9.3f}\n", "stored in the motor", "", trace.stored_W);
+}
+
+nlohmann::ordered_json balance_json(const Trace& trace) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const BookedHeat& each : trace.balance) {
+    rows.push_back({{"effect", each.effect}, {"node", each.node}, {"mean_W", rounded(each.mean_W, 6)}});
+  }
+  return rows;
+}
+
+ExitCode run(const Options& options, const Session& session) {
+  const DataFolders folders = session.folders();
+  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
+  const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
+  const Motor motor = read_motor(file_of(folders.motors, "motor", options.motor));
+  const Trace trace = run_trace(robot, duty, motor, options.every_s);
+  if (!options.out.empty()) {
+    write_file(options.out, to_csv(trace));
+  }
+  const std::vector<Motor> one{motor};
+  EvaluateOptions nominal;
+  nominal.samples = 0;
+  nominal.with_curves = !options.plot.empty();
+  const std::vector<MotorEvaluation> results = evaluate(robot, duty, one, nominal);
+  const MotorEvaluation& result = results.front();
+  if (!options.plot.empty()) {
+    write_svg(verdict_chart(results, robot, duty), options.plot);
+  }
+  session.say(fmt::format("{} on {}, {} ({:.0f} min), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms current {:.2f} A: {}\n{}",
+                          motor.id, robot.id, duty.id, duty.duration_s() / 60.0, result.data_quality, duty.origin, result.winding_peak_C.nominal,
+                          result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A, to_string(result.verdict), balance_text(trace)));
+  for (const std::string& file : {options.out, options.plot}) {
+    session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
+  }
+  session.answer({{"schema", "heatsoak.simulate/1"},
+                  {"motor", motor.id},
+                  {"robot", robot.id},
+                  {"duty", duty.id},
+                  {"duty_origin", duty.origin},
+                  {"winding_peak_C", rounded(result.winding_peak_C.nominal, 3)},
+                  {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
+                  {"winding_limit_C", rounded(result.winding_limit_C, 2)},
+                  {"current_rms_A", rounded(result.current_rms_A, 4)},
+                  {"verdict", to_string(result.verdict)},
+                  {"data_quality", result.data_quality},
+                  {"balance", balance_json(trace)},
+                  {"stored_W", rounded(trace.stored_W, 6)}});
+  return result.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
+}
+
+}  // namespace
+
+Command simulate() {
+  return {.name = {},
+          .summary = "One motor through one duty: every signal over time as CSV, and which effect heats which node",
+          .example = "heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty paper_intermittent --out trace.csv --plot trace.svg",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
+            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+            app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
+            app.add_option("--out", options->out, "every signal; names end in units, a row's inputs hold until the next row")->type_name("FILE.csv");
+            app.add_option("--plot", options->plot, "picture of stator and winding temperature")->type_name("FILE.svg");
+            add_quantity(app, "--every", options->every_s, {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

@@ -1,0 +1,84 @@
+#include "motor/lint.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "base/quantity.h"
+#include "motor/lint_checks.h"
+
+namespace heatsoak {
+namespace lint_checks {
+
+void Findings::add(LintFinding::Level level, std::string_view key, std::string message) {
+  const auto figure = motor_.figures.find(key);
+  Location at = figure != motor_.figures.end() ? figure->second.at : Location{motor_.file.string(), 0, 0};
+  list_.push_back({level, std::string(check_), std::move(message), std::move(at)});
+}
+
+bool is_estimate(const Motor& motor, std::string_view key) {
+  const auto figure = motor.figures.find(key);
+  return figure != motor.figures.end() && figure->second.origin == Origin::estimated;
+}
+
+double resistance_ohm(const MotorValues& values, double temperature_C) {
+  return values.terminal_resistance_ohm * (1.0 + values.temperature_coefficient_per_K * (temperature_C - 25.0));
+}
+
+std::string shown(double value, std::string_view unit) { return fmt::format("{} {}", significant(value, 3), unit_for_display(unit)); }
+std::string shown_torque(double torque_Nm) { return shown(torque_Nm * 1e3, "mN m"); }
+std::string shown_speed(double speed_rad_per_s) { return shown(convert(speed_rad_per_s, "rad/s", "rpm"), "rpm"); }
+std::string shown_torque_constant(double constant_Nm_per_A) { return shown(constant_Nm_per_A * 1e3, "mN m/A"); }
+std::string shown_speed_constant(double constant_rad_per_s_per_V) {
+  return shown(convert(constant_rad_per_s_per_V, "rad/s/V", "rpm/V"), "rpm/V");
+}
+std::string shown_gradient(double gradient_rad_per_s_per_Nm) {
+  return shown(convert(gradient_rad_per_s_per_Nm, "rad/s/(N m)", "rpm/(mN m)"), "rpm/(mN m)");
+}
+std::string shown_inertia(double inertia_kg_m2) { return shown(inertia_kg_m2 * 1e7, "g cm2"); }
+
+}  // namespace lint_checks
+
+namespace {
+
+struct NamedCheck {
+  std::string_view name;
+  void (*run)(const Motor&, lint_checks::Findings&);
+};
+
+constexpr std::array kChecks = {
+    NamedCheck{"constants", lint_checks::constants},
+    NamedCheck{"mechanical_time_constant", lint_checks::mechanical_time_constant},
+    NamedCheck{"speed_torque_gradient", lint_checks::speed_torque_gradient},
+    NamedCheck{"stall_current", lint_checks::stall_current},
+    NamedCheck{"stall_torque", lint_checks::stall_torque},
+    NamedCheck{"no_load_speed", lint_checks::no_load_speed},
+    NamedCheck{"max_efficiency", lint_checks::max_efficiency},
+    NamedCheck{"nominal_current", lint_checks::nominal_current},
+    NamedCheck{"peak_point", lint_checks::peak_point},
+    NamedCheck{"power_balance", lint_checks::power_balance},
+    NamedCheck{"assigned_power", lint_checks::assigned_power},
+    NamedCheck{"nominal_speed", lint_checks::nominal_speed},
+    NamedCheck{"nominal_point_heat", lint_checks::nominal_point_heat_check},
+    NamedCheck{"copper_limit", lint_checks::copper_limit},
+    NamedCheck{"heat_capacities", lint_checks::heat_capacities},
+    NamedCheck{"electrical_time_constant", lint_checks::electrical_time_constant},
+    NamedCheck{"density", lint_checks::density},
+    NamedCheck{"rotor_inertia", lint_checks::rotor_inertia},
+    NamedCheck{"limits", lint_checks::limits},
+    NamedCheck{"estimates", lint_checks::estimates},
+    NamedCheck{"spreads", lint_checks::spreads},
+};
+
+}  // namespace
+
+std::vector<LintFinding> lint(const Motor& motor) {
+  std::vector<LintFinding> list;
+  for (const NamedCheck& check : kChecks) {
+    lint_checks::Findings findings(motor, check.name, list);
+    check.run(motor, findings);
+  }
+  return list;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,80 @@
+// What the checks of the lint share; nobody else needs it. A check says something only where all the figures
+// it compares are in the file: absent ones are NaN in MotorValues.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "motor/lint.h"
+
+namespace heatsoak::lint_checks {
+
+/// Takes the findings of one check.
+class Findings {
+ public:
+  Findings(const Motor& motor, std::string_view check, std::vector<LintFinding>& list) : motor_(motor), check_(check), list_(list) {}
+
+  void error(std::string_view key, std::string message) { add(LintFinding::Level::error, key, std::move(message)); }
+  void note(std::string_view key, std::string message) { add(LintFinding::Level::note, key, std::move(message)); }
+  /// `key` is the figure that the finding is about; its place in the file is reported.
+  void add(LintFinding::Level level, std::string_view key, std::string message);
+
+ private:
+  const Motor& motor_;
+  std::string_view check_;
+  std::vector<LintFinding>& list_;
+};
+
+/// Nominal figures of a sheet hold at this ambient temperature.
+inline constexpr double kSheetAmbient_C = 25.0;
+
+struct Bounds {
+  double low = 0.0;
+  double high = 0.0;
+  /// False for NaN on purpose too: what is not given is not outside.
+  [[nodiscard]] bool excludes(double value) const { return value < low || value > high; }
+};
+
+bool is_estimate(const Motor& motor, std::string_view key);
+/// Of the copper at `temperature_C`.
+double resistance_ohm(const MotorValues& values, double temperature_C);
+
+/// Three significant digits with unit, as a sheet prints them.
+std::string shown_torque(double torque_Nm);
+std::string shown_speed(double speed_rad_per_s);
+std::string shown_torque_constant(double constant_Nm_per_A);
+std::string shown_speed_constant(double constant_rad_per_s_per_V);
+std::string shown_gradient(double gradient_rad_per_s_per_Nm);
+std::string shown_inertia(double inertia_kg_m2);
+std::string shown(double value, std::string_view unit);
+
+// Electrical and mechanical figures: lint_electrical.cpp
+void constants(const Motor& motor, Findings& findings);
+void mechanical_time_constant(const Motor& motor, Findings& findings);
+void speed_torque_gradient(const Motor& motor, Findings& findings);
+void stall_current(const Motor& motor, Findings& findings);
+void stall_torque(const Motor& motor, Findings& findings);
+void no_load_speed(const Motor& motor, Findings& findings);
+void max_efficiency(const Motor& motor, Findings& findings);
+
+// The nominal and the peak point: lint_nominal_point.cpp
+void nominal_current(const Motor& motor, Findings& findings);
+void peak_point(const Motor& motor, Findings& findings);
+void power_balance(const Motor& motor, Findings& findings);
+void assigned_power(const Motor& motor, Findings& findings);
+void nominal_speed(const Motor& motor, Findings& findings);
+void nominal_point_heat_check(const Motor& motor, Findings& findings);
+void copper_limit(const Motor& motor, Findings& findings);
+
+// Orders of magnitude, and what the figures rest on: lint_magnitude.cpp
+void heat_capacities(const Motor& motor, Findings& findings);
+void electrical_time_constant(const Motor& motor, Findings& findings);
+void density(const Motor& motor, Findings& findings);
+void rotor_inertia(const Motor& motor, Findings& findings);
+void limits(const Motor& motor, Findings& findings);
+void estimates(const Motor& motor, Findings& findings);
+void spreads(const Motor& motor, Findings& findings);
+
+}  // namespace heatsoak::lint_checks

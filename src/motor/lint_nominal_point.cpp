@@ -1,0 +1,235 @@
+// The nominal point against the constants, the energy it takes and the heat it makes.
+#include <fmt/format.h>
+
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "base/quantity.h"
+#include "motor/datasheet_network.h"
+#include "motor/lint_checks.h"
+#include "thermal/steady_state.h"
+
+namespace heatsoak::lint_checks {
+namespace {
+
+/// motors.yaml: T_n/(K_t·I_n) is 0.98 … 1.09 on EC flat pages, because the listed current is a mean of the supply
+/// during commutation; 0.1 more on each side for other manufacturers' ways to say it.
+constexpr Bounds kNominalTorque{0.85, 1.2};
+/// A peak torque has the same excess (found 1.07, 1.10), but saturation may take most of it (0.37 at stall).
+constexpr Bounds kPeakTorque{0.2, 1.2};
+/// Energy: copper at 25 °C is the least loss there can be, so only rounding of four figures is left.
+constexpr double kPowerTolerance = 0.03;
+/// Shaft, hot copper and drag make 0.93 … 1.03 of the input on known sheets; less than this is power gone nowhere.
+constexpr double kPowerExplained = 0.85;
+/// Rounding of the nominal speed and of the line; the found speeds lie between the two lines of the check.
+constexpr double kSpeedTolerance = 0.03;
+/// A resistance derived from the slowest nominal speed is uncertain by the commutation: ±30 % around two.
+constexpr Bounds kAboutTwo{1.4, 2.6};
+/// motors.yaml: 0.946 … 1.045 on the 12 windings with full data; rounded up for other sheets.
+constexpr Bounds kHeat{0.85, 1.10};
+/// motors.yaml: I_n over the current for copper loss alone is 0.73 … 0.985; ±10 % around it.
+constexpr Bounds kCopperLimit{0.65, 1.05};
+
+/// The current that brings the winding just to its limit in the steady state; 0 where the other losses do so alone.
+double limit_current_A(const Motor& motor, double speed_rad_per_s) {
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const auto winding = static_cast<std::size_t>(network.find_node("winding"));
+  const auto excess_K = [&](double current_A) {
+    const std::optional<SteadyState> rest = steady_state(network, {current_A, speed_rad_per_s, speed_rad_per_s, kSheetAmbient_C});
+    constexpr double kRunaway_K = 1e6;
+    return rest ? rest->temperature_C[winding] - motor.nominal.winding_limit_C : kRunaway_K;
+  };
+  if (excess_K(0.0) >= 0.0) {
+    return 0.0;
+  }
+  double too_much_A = 1.0;
+  while (excess_K(too_much_A) < 0.0) {
+    too_much_A *= 2.0;
+  }
+  constexpr int kBits = 30;
+  return boost::math::tools::bisect(excess_K, 0.0, too_much_A, boost::math::tools::eps_tolerance<double>(kBits)).first;
+}
+
+/// Does the temperature of the nominal point rest on somebody's estimate?
+bool rests_on_estimate(const Motor& motor) {
+  for (const std::string_view key : {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_limit", "terminal_resistance",
+                                     "torque_constant", "no_load_current", "nominal_torque", "nominal_speed", "nominal_current"}) {
+    if (is_estimate(motor, key)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+LintFinding::Level level_of_heat(const Motor& motor) { return rests_on_estimate(motor) ? LintFinding::Level::note : LintFinding::Level::error; }
+
+/// Volts per ampere that commutation costs beyond the copper at most: the overlap of a six-pulse bridge,
+/// (3/π)·ω_electric·L of one phase. 0 where the file gives no inductance or pole pairs.
+double commutation_ohm(const MotorValues& v) {
+  const double overlap_ohm = 3.0 / std::numbers::pi * v.pole_pairs * v.nominal_speed_rad_per_s * 0.5 * v.terminal_inductance_H;
+  return std::isnan(overlap_ohm) ? 0.0 : overlap_ohm;
+}
+
+}  // namespace
+
+void nominal_current(const Motor& motor, Findings& findings) {
+  const MotorValues& v = motor.nominal;
+  if (v.no_load_current_A >= v.nominal_current_A) {
+    findings.error("no_load_current", fmt::format("no-load current {} is not below the nominal current {}; check both", shown(v.no_load_current_A, "A"),
+                                                  shown(v.nominal_current_A, "A")));
+  }
+  const double linear_Nm = v.torque_constant_Nm_per_A * v.nominal_current_A;
+  if (kNominalTorque.excludes(v.nominal_torque_Nm / linear_Nm)) {
+    findings.error("nominal_current",
+                   fmt::format("nominal torque {} is {} times K_t·I_n = {} (with {} and {}), expected 0.85 to 1.2 times; "
+                               "check the nominal current and the convention of the torque constant",
+                               shown_torque(v.nominal_torque_Nm), significant(v.nominal_torque_Nm / linear_Nm, 3), shown_torque(linear_Nm),
+                               shown_torque_constant(v.torque_constant_Nm_per_A), shown(v.nominal_current_A, "A")));
+  }
+}
+
+void peak_point(const Motor& motor, Findings& findings) {
+  const MotorValues& v = motor.nominal;
+  if (v.peak_torque_Nm < v.nominal_torque_Nm) {
+    findings.error("peak_torque", fmt::format("peak torque {} is less than the nominal torque {}; check both", shown_torque(v.peak_torque_Nm),
+                                              shown_torque(v.nominal_torque_Nm)));
+  }
+  if (v.peak_current_A < v.nominal_current_A) {
+    findings.error("peak_current", fmt::format("peak current {} is less than the nominal current {}; check both", shown(v.peak_current_A, "A"),
+                                               shown(v.nominal_current_A, "A")));
+  }
+  const double linear_Nm = v.torque_constant_Nm_per_A * v.peak_current_A;
+  if (kPeakTorque.excludes(v.peak_torque_Nm / linear_Nm)) {
+    findings.error("peak_torque", fmt::format("peak torque {} is {} times K_t·I_peak = {}, expected 0.2 (saturated) to 1.2 times; "
+                                              "check the peak current and the convention of the torque constant",
+                                              shown_torque(v.peak_torque_Nm), significant(v.peak_torque_Nm / linear_Nm, 3), shown_torque(linear_Nm)));
+  }
+}
+
+void power_balance(const Motor& motor, Findings& findings) {
+  const MotorValues& v = motor.nominal;
+  const double input_W = v.nominal_voltage_V * v.nominal_current_A;
+  const double shaft_W = v.nominal_torque_Nm * v.nominal_speed_rad_per_s;
+  const double current_squared_A2 = v.nominal_current_A * v.nominal_current_A;
+  const double copper_W = current_squared_A2 * v.terminal_resistance_ohm;
+  const std::string found = fmt::format("at the nominal point {} go in (U·I_n) and {} come out at the shaft (T_n·ω_n)", shown(input_W, "W"), shown(shaft_W, "W"));
+  if (shaft_W + copper_W > (1.0 + kPowerTolerance) * input_W) {
+    findings.error("nominal_torque", fmt::format("{}, but with {} of copper loss at 25 °C it takes {}, expected at most the input within 3 %; "
+                                                 "check nominal current, speed, torque and resistance",
+                                                 found, shown(copper_W, "W"), shown(shaft_W + copper_W, "W")));
+  }
+  const double most_loss_W = current_squared_A2 * resistance_ohm(v, v.winding_limit_C) + drag_torque_Nm(v) * v.nominal_speed_rad_per_s;
+  if (shaft_W + most_loss_W < kPowerExplained * input_W) {
+    findings.error("nominal_current", fmt::format("{}; hot copper and drag lose {}, which leaves {} unexplained, expected at most 15 % of the input; "
+                                                  "check nominal current, speed and torque",
+                                                  found, shown(most_loss_W, "W"), shown(input_W - shaft_W - most_loss_W, "W")));
+  }
+}
+
+/// The name plate holds for the type: a winding made for low speed does not reach it at its own voltage (the
+/// 48 V, 3440 rpm winding of a 70 W motor gives 36 W). But the type's torque at its highest speed must.
+void assigned_power(const Motor& motor, Findings& findings) {
+  const MotorValues& v = motor.nominal;
+  const double torque_Nm = std::isnan(v.nominal_torque_Nm) ? v.torque_constant_Nm_per_A * v.nominal_current_A : v.nominal_torque_Nm;
+  const double speed_rad_per_s = std::isnan(v.max_speed_rad_per_s) ? v.no_load_speed_rad_per_s : v.max_speed_rad_per_s;
+  if (v.assigned_power_W > (1.0 + kPowerTolerance) * torque_Nm * speed_rad_per_s) {
+    findings.error("assigned_power", fmt::format("{} are assigned, but the nominal torque {} up to the highest speed {} makes {}, expected at least the "
+                                                 "assigned power; this may be the electrical input, check it",
+                                                 shown(v.assigned_power_W, "W"), shown_torque(torque_Nm), shown_speed(speed_rad_per_s),
+                                                 shown(torque_Nm * speed_rad_per_s, "W")));
+    return;
+  }
+  const double input_W = v.nominal_voltage_V * v.nominal_current_A;
+  const double copper_W = v.nominal_current_A * v.nominal_current_A * v.terminal_resistance_ohm;
+  if (v.assigned_power_W + copper_W > (1.0 + kPowerTolerance) * input_W) {
+    findings.note("assigned_power", fmt::format("{} are assigned to the type, but at {} and {} this winding takes {} and loses {} of it in the copper: "
+                                                "it cannot give that power at its nominal voltage; use torque and speed instead",
+                                                shown(v.assigned_power_W, "W"), shown(v.nominal_voltage_V, "V"), shown(v.nominal_current_A, "A"),
+                                                shown(input_W, "W"), shown(copper_W, "W")));
+  }
+}
+
+/// At best the motor loses the speed of its cold resistance, at worst that of hot copper and full commutation
+/// overlap. By the speed constant, which the no-load speed confirms, so that a wrong torque constant does not spoil it.
+void nominal_speed(const Motor& motor, Findings& findings) {
+  const MotorValues& v = motor.nominal;
+  const double constant_rad_per_s_per_V = std::isnan(v.speed_constant_rad_per_s_per_V) ? 1.0 / v.torque_constant_Nm_per_A : v.speed_constant_rad_per_s_per_V;
+  const double loss_rad_per_s_per_ohm = constant_rad_per_s_per_V * constant_rad_per_s_per_V * v.nominal_torque_Nm;
+  const double fastest_rad_per_s = v.no_load_speed_rad_per_s - loss_rad_per_s_per_ohm * v.terminal_resistance_ohm;
+  const double overlap_ohm = commutation_ohm(v);
+  const double slowest_rad_per_s = v.no_load_speed_rad_per_s - loss_rad_per_s_per_ohm * (resistance_ohm(v, v.winding_limit_C) + overlap_ohm);
+  if (v.nominal_speed_rad_per_s > (1.0 + kSpeedTolerance) * fastest_rad_per_s) {
+    findings.error("nominal_speed", fmt::format("{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected "
+                                                "at most 3 % more; check resistance (between terminals?), nominal torque and speed",
+                                                shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s), shown_torque(v.nominal_torque_Nm),
+                                                shown(v.terminal_resistance_ohm, "ohm"), shown_speed(fastest_rad_per_s)));
+  }
+  if (overlap_ohm > 0.0 && v.nominal_speed_rad_per_s < (1.0 - kSpeedTolerance) * slowest_rad_per_s) {
+    const double hot_over_cold = resistance_ohm(v, v.winding_limit_C) / v.terminal_resistance_ohm;
+    const double needed_ohm = ((v.no_load_speed_rad_per_s - v.nominal_speed_rad_per_s) / loss_rad_per_s_per_ohm - overlap_ohm) / hot_over_cold;
+    findings.error("nominal_speed",
+                   fmt::format("{} is listed, but from {} without load {} through {} leave at least {} with hot copper and commutation of {}, expected "
+                               "at most 3 % less; {}",
+                               shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s), shown_torque(v.nominal_torque_Nm),
+                               shown(v.terminal_resistance_ohm, "ohm"), shown_speed(slowest_rad_per_s), shown(v.terminal_inductance_H * 1e3, "mH"),
+                               kAboutTwo.excludes(needed_ohm / v.terminal_resistance_ohm)
+                                   ? fmt::format("it would take {}: check resistance, nominal torque and speed", shown(needed_ohm, "ohm"))
+                                   : fmt::format("it would take {}, about twice as much: if the resistance is that of one phase, set "
+                                                 "conventions.terminal_resistance = \"phase_to_star\"",
+                                                 shown(needed_ohm, "ohm"))));
+  }
+}
+
+void nominal_point_heat_check(const Motor& motor, Findings& findings) {
+  const std::optional<NominalPointHeat> heat = nominal_point_heat(motor);
+  if (!heat) {
+    return;
+  }
+  if (heat->limit_current_A == 0.0) {
+    findings.add(level_of_heat(motor), "thermal_resistance_stator_ambient",
+                 fmt::format("iron and friction loss at {} bring the winding to its limit of {} without any current, expected a nominal point of {} at "
+                             "{} to be possible; check no-load current and thermal resistances",
+                             shown_speed(motor.nominal.nominal_speed_rad_per_s), shown(motor.nominal.winding_limit_C, "degC"),
+                             shown_torque(motor.nominal.nominal_torque_Nm), shown(kSheetAmbient_C, "degC")));
+    return;
+  }
+  const double ratio = heat->equivalent_current_A / heat->limit_current_A;
+  if (kHeat.excludes(ratio)) {
+    findings.add(level_of_heat(motor), "nominal_torque",
+                 fmt::format("the nominal torque {} and the drag take {}, {} times the {} that bring the winding to {} at 25 °C ambient, expected 0.85 to "
+                             "1.1 times; check thermal resistances, winding limit, resistance and nominal point",
+                             shown_torque(motor.nominal.nominal_torque_Nm), shown(heat->equivalent_current_A, "A"), significant(ratio, 3),
+                             shown(heat->limit_current_A, "A"), shown(motor.nominal.winding_limit_C, "degC")));
+  }
+}
+
+/// The coarser sibling for sheets without nominal torque or speed: copper loss alone, at standstill.
+void copper_limit(const Motor& motor, Findings& findings) {
+  const MotorValues& v = motor.nominal;
+  if (std::isnan(v.nominal_current_A) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {
+    return;
+  }
+  const double limit_A = limit_current_A(motor, 0.0);
+  const double ratio = v.nominal_current_A / limit_A;
+  if (kCopperLimit.excludes(ratio)) {
+    findings.add(level_of_heat(motor), "nominal_current",
+                 fmt::format("nominal current {} is {} times the {} that bring the winding to {} by copper loss alone at 25 °C ambient, expected 0.65 to "
+                             "1.05 times; check thermal resistances, winding limit and resistance",
+                             shown(v.nominal_current_A, "A"), significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
+  }
+}
+
+}  // namespace heatsoak::lint_checks
+
+namespace heatsoak {
+
+std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor) {
+  const MotorValues& v = motor.nominal;
+  if (std::isnan(v.nominal_torque_Nm) || std::isnan(v.nominal_speed_rad_per_s) || v.winding_limit_C <= lint_checks::kSheetAmbient_C) {
+    return std::nullopt;
+  }
+  return NominalPointHeat{(v.nominal_torque_Nm + drag_torque_Nm(v)) / v.torque_constant_Nm_per_A, lint_checks::limit_current_A(motor, v.nominal_speed_rad_per_s)};
+}
+
+}  // namespace heatsoak

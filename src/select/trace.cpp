@@ -1,0 +1,87 @@
+#include "select/trace.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+enum Node { winding, stator };
+
+/// The same profile in pieces no longer than `every_s`.
+DriveProfile subdivided(const DriveProfile& profile, double every_s) {
+  DriveProfile fine = profile;
+  fine.points.clear();
+  fine.intervals.clear();
+  for (std::size_t i = 0; i < profile.intervals.size(); ++i) {
+    const double parts = std::max(1.0, std::ceil(profile.intervals[i].duration_s / every_s - 1e-9));
+    for (int part = 0; part < static_cast<int>(parts); ++part) {
+      fine.points.push_back(profile.points[i]);
+      fine.intervals.push_back({profile.intervals[i].duration_s / parts, profile.intervals[i].at});
+    }
+  }
+  return fine;
+}
+
+std::vector<BookedHeat> balance(const Network& network, const TransientResult& result) {
+  std::vector<BookedHeat> booked;
+  const auto nodes = static_cast<std::size_t>(network.node_count());
+  for (std::size_t e = 0; e < network.effects().size(); ++e) {
+    for (const int node : network.effects()[e].node_index) {
+      booked.push_back({network.effects()[e].name, std::string(network.node_name(node)),
+                        result.heat_J[e * nodes + static_cast<std::size_t>(node)] / result.end_s});
+    }
+  }
+  return booked;
+}
+
+}  // namespace
+
+Trace run_trace(const Robot& robot, const Duty& duty, const Motor& motor, double every_s) {
+  const MotorSample sample = nominal_sample(motor);
+  const DutySample demand = nominal_sample(duty);
+  const Network network = datasheet_network(motor, sample);
+  const DriveProfile profile = subdivided(drive_profile(sample.values, robot, duty, demand), every_s);
+  TransientOptions options;
+  options.with_ledger = true;
+  const double end_s = duty.duration_s() * (1.0 - 1e-12);
+  Trace trace;
+  const auto add_row = [&](const TransientMoment& moment) {
+    if (!moment.begins_interval && moment.time_s < end_s) {
+      return;
+    }
+    const DrivePoint& point = profile.points[moment.interval];
+    TraceRow row{.time_s = moment.time_s,
+                 .winding_C = moment.state_C[winding],
+                 .stator_C = moment.state_C[stator],
+                 .ambient_C = demand.ambient_C,
+                 .current_A = point.current_A,
+                 .speed_rad_per_s = point.motor_speed_rad_per_s,
+                 .torque_Nm = point.motor_torque_Nm,
+                 .motor_V = terminal_voltage_V(sample.values, point, moment.state_C[winding])};
+    row.power_in_W = row.motor_V * row.current_A;
+    trace.rows.push_back(row);
+  };
+  const std::vector<double> parameters = network.values();
+  const TransientResult result = run_transient(network, parameters, profile.intervals, options, add_row);
+  trace.balance = balance(network, result);
+  for (int node = 0; node < network.state_count(); ++node) {
+    const double capacity_J_per_K = parameters[static_cast<std::size_t>(node)];
+    trace.stored_W += capacity_J_per_K * (result.end_C[static_cast<std::size_t>(node)] - demand.ambient_C) / result.end_s;
+  }
+  return trace;
+}
+
+std::string to_csv(const Trace& trace) {
+  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W\n";
+  for (const TraceRow& row : trace.rows) {
+    fmt::format_to(std::back_inserter(text), "{:.6g},{:.4f},{:.4f},{:.2f},{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.time_s, row.winding_C, row.stator_C,
+                   row.ambient_C, row.current_A, row.speed_rad_per_s, row.torque_Nm, row.motor_V, row.power_in_W);
+  }
+  return text;
+}
+
+}  // namespace heatsoak

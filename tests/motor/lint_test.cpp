@@ -1,0 +1,295 @@
+#include "motor/lint.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+
+namespace heatsoak {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+Motor motor_of_database(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
+Motor wrong_motor(const std::string& name) { return read_motor(kSource / "tests" / "data" / ("lint_" + name + ".toml")); }
+
+std::set<std::string> checks_with(LintFinding::Level level, const Motor& motor) {
+  std::set<std::string> checks;
+  for (const LintFinding& finding : lint(motor)) {
+    if (finding.level == level) {
+      checks.insert(finding.check);
+    }
+  }
+  return checks;
+}
+std::set<std::string> errors(const Motor& motor) { return checks_with(LintFinding::Level::error, motor); }
+
+/// All messages of one check, for what they advise.
+std::string said_by(const std::string& check, const Motor& motor) {
+  std::string messages;
+  for (const LintFinding& finding : lint(motor)) {
+    messages += finding.check == check ? finding.message + "\n" : "";
+  }
+  return messages;
+}
+
+// Every motor of the database passes.
+
+std::vector<std::string> motors_of_database() {
+  std::vector<std::string> ids;
+  for (const auto& entry : std::filesystem::directory_iterator(kSource / "motor_db")) {
+    if (entry.path().extension() == ".toml") {
+      ids.push_back(entry.path().stem().string());
+    }
+  }
+  std::ranges::sort(ids);
+  return ids;
+}
+
+class MotorOfDatabase : public testing::TestWithParam<std::string> {};
+
+TEST_P(MotorOfDatabase, has_no_contradiction) {
+  for (const LintFinding& finding : lint(motor_of_database(GetParam()))) {
+    EXPECT_EQ(finding.level, LintFinding::Level::note) << finding.at.file << ":" << finding.at.line << ": " << finding.check << ": " << finding.message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(each, MotorOfDatabase, testing::ValuesIn(motors_of_database()), [](const auto& each) {
+  std::string name = each.param;
+  std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+});
+
+// The heat of the nominal point, against the calculation of motors.yaml (key Ieq_over_that).
+
+struct KnownHeat {
+  std::string id;
+  double equivalent_over_limit;
+};
+
+class NominalPointOfSheet : public testing::TestWithParam<KnownHeat> {};
+
+TEST_P(NominalPointOfSheet, meets_the_thermal_limit_of_the_network) {
+  const std::optional<NominalPointHeat> heat = nominal_point_heat(motor_of_database(GetParam().id));
+
+  ASSERT_TRUE(heat);
+  EXPECT_NEAR(heat->equivalent_current_A / heat->limit_current_A, GetParam().equivalent_over_limit, 0.002);
+}
+
+INSTANTIATE_TEST_SUITE_P(ec45_flat, NominalPointOfSheet,
+                         testing::Values(KnownHeat{"maxon_ec45_flat_70w_24v", 1.026}, KnownHeat{"maxon_ec45_flat_70w_30v_402685", 1.028},
+                                         KnownHeat{"maxon_ec45_flat_70w_36v_402686", 1.034}, KnownHeat{"maxon_ec45_flat_70w_48v_402687", 0.946},
+                                         KnownHeat{"maxon_ec45_flat_50w_18v", 1.041}, KnownHeat{"maxon_ec45_flat_50w_24v", 1.033},
+                                         KnownHeat{"maxon_ec45_flat_50w_36v", 1.023}, KnownHeat{"maxon_ec45_flat_50w_48v", 1.018},
+                                         KnownHeat{"maxon_ec45_flat_70w_43mm_24v", 1.045}, KnownHeat{"maxon_ec45_flat_70w_43mm_36v", 1.032},
+                                         KnownHeat{"maxon_ec45_flat_70w_43mm_48v", 1.026}, KnownHeat{"maxon_ec45_flat_70w_43mm_60v", 1.004}),
+                         [](const auto& each) { return each.param.id; });
+
+// By hand for 397172: (128 + 36.9 · 0.234) mN m / 36.9 mN m/A = 3.703 A. Drag 8.635 mN m · 508.9 rad/s = 4.394 W, · 3.56 K/W
+// = 15.64 K; the copper may have (100 − 15.64) K / 7.66 K/W = 11.01 W = I² · 0.608 ohm · 1.39, so I = 3.610 A.
+TEST(NominalPointHeat, worked_example) {
+  const std::optional<NominalPointHeat> heat = nominal_point_heat(motor_of_database("maxon_ec45_flat_70w_24v"));
+
+  ASSERT_TRUE(heat);
+  EXPECT_NEAR(heat->equivalent_current_A, 3.703, 0.001);
+  EXPECT_NEAR(heat->limit_current_A, 3.610, 0.001);
+}
+
+TEST(NominalPointHeat, needs_torque_and_speed) { EXPECT_FALSE(nominal_point_heat(motor_of_database("maxon_dcx19s_24v"))); }
+
+TEST(NominalPointHeat, is_zero_where_drag_alone_is_too_much) {
+  Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+  motor.nominal.no_load_current_A *= 10.0;
+
+  EXPECT_EQ(nominal_point_heat(motor)->limit_current_A, 0.0);
+  EXPECT_THAT(said_by("nominal_point_heat", motor), HasSubstr("without any current"));
+}
+
+// Figures that circulate and are wrong.
+
+TEST(WrongFigures, of_the_wiki) {
+  EXPECT_THAT(errors(wrong_motor("df45l_wiki")), ElementsAre("assigned_power", "density", "nominal_current"));
+}
+
+TEST(WrongFigures, resistance_of_the_wiki_makes_the_nominal_point_too_hot) {
+  EXPECT_THAT(said_by("nominal_point_heat", wrong_motor("df45l_wiki")), HasSubstr("expected 0.85 to 1.1 times"));
+}
+
+TEST(WrongFigures, inertia_of_the_wiki_is_doubtful_but_no_contradiction) {
+  const Motor motor = wrong_motor("df45l_wiki_inertia");
+
+  EXPECT_THAT(errors(motor), ElementsAre());
+  EXPECT_THAT(checks_with(LintFinding::Level::note, motor), Contains("rotor_inertia"));
+}
+
+TEST(WrongFigures, of_one_phase_given_as_if_between_terminals) {
+  const Motor motor = wrong_motor("df45l_phase_constants");
+
+  EXPECT_THAT(errors(motor), ElementsAre("constants", "nominal_current", "nominal_speed", "peak_point"));
+  EXPECT_THAT(said_by("constants", motor), HasSubstr("contradictory conventions: the factor is that of the peak EMF of one phase"));
+  EXPECT_THAT(said_by("nominal_speed", motor), HasSubstr("phase_to_star"));
+}
+
+TEST(WrongFigures, resistance_of_one_phase) {
+  const Motor motor = wrong_motor("df45l_phase_resistance");
+
+  EXPECT_THAT(errors(motor), ElementsAre("nominal_speed"));
+  EXPECT_THAT(said_by("nominal_speed", motor), HasSubstr("0.623 ohm, about twice as much"));
+}
+
+TEST(WrongFigures, torque_constant_per_ampere_of_phase_peak) {
+  const Motor motor = wrong_motor("df45l_peak_phase_ampere");
+
+  EXPECT_THAT(errors(motor), Contains("constants"));
+  EXPECT_THAT(said_by("constants", motor), HasSubstr("\"per_peak_phase_ampere\""));
+}
+
+TEST(WrongFigures, of_a_failed_identification) {
+  const Motor motor = wrong_motor("ecx_flat_42m_24v_misidentified");
+
+  EXPECT_THAT(errors(motor), ElementsAre("constants", "nominal_current"));
+  EXPECT_THAT(said_by("constants", motor), HasSubstr("no known convention explains"));
+}
+
+TEST(WrongFigures, are_found_at_their_line) {
+  const std::vector<LintFinding> findings = lint(wrong_motor("df45l_wiki"));
+
+  const auto density = std::ranges::find(findings, "density", &LintFinding::check);
+  ASSERT_NE(density, findings.end());
+  EXPECT_THAT(density->at.file, HasSubstr("lint_df45l_wiki.toml"));
+  EXPECT_EQ(density->at.line, wrong_motor("df45l_wiki").figures.at("mass").at.line);
+  EXPECT_THAT(density->message, HasSubstr("320 g"));
+}
+
+// One figure of a good sheet (EC 45 flat, 70 W, 24 V) is wrong: the checks that it belongs to fire, and no other.
+
+struct Slip {
+  std::string name;
+  double MotorValues::* figure;
+  double factor;
+  std::vector<std::string> expected;
+};
+
+class SlipOfASheet : public testing::TestWithParam<Slip> {};
+
+TEST_P(SlipOfASheet, fires_its_checks_only) {
+  Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+  motor.nominal.*GetParam().figure *= GetParam().factor;
+
+  EXPECT_THAT(errors(motor), testing::ElementsAreArray(GetParam().expected));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    each, SlipOfASheet,
+    testing::Values(Slip{"speed_constant", &MotorValues::speed_constant_rad_per_s_per_V, 1.05, {"constants", "no_load_speed"}},
+                    Slip{"rotor_inertia", &MotorValues::rotor_inertia_kg_m2, 1.05, {"mechanical_time_constant"}},
+                    Slip{"rotor_inertia_unit", &MotorValues::rotor_inertia_kg_m2, 10.0, {"mechanical_time_constant", "rotor_inertia"}},
+                    Slip{"mechanical_time_constant", &MotorValues::mechanical_time_constant_s, 0.95, {"mechanical_time_constant"}},
+                    Slip{"gradient", &MotorValues::speed_torque_gradient_rad_per_s_per_Nm, 1.05, {"speed_torque_gradient"}},
+                    Slip{"stall_current", &MotorValues::stall_current_A, 1.03, {"stall_current"}},
+                    Slip{"stall_torque", &MotorValues::stall_torque_Nm, 1.03, {"stall_torque"}},
+                    Slip{"stall_torque_saturated", &MotorValues::stall_torque_Nm, 0.5, {"stall_torque"}},
+                    Slip{"max_efficiency", &MotorValues::max_efficiency, 1.05, {"max_efficiency"}},
+                    Slip{"no_load_speed", &MotorValues::no_load_speed_rad_per_s, 1.05, {"no_load_speed"}},
+                    Slip{"nominal_current_low", &MotorValues::nominal_current_A, 0.8, {"nominal_current", "power_balance"}},
+                    Slip{"nominal_current_high", &MotorValues::nominal_current_A, 1.3, {"nominal_current", "power_balance"}},
+                    Slip{"nominal_speed", &MotorValues::nominal_speed_rad_per_s, 1.2, {"nominal_speed", "power_balance"}},
+                    Slip{"assigned_power", &MotorValues::assigned_power_W, 2.0, {"assigned_power"}},
+                    Slip{"thermal_resistance", &MotorValues::thermal_resistance_winding_stator_K_per_W, 2.0, {"nominal_point_heat"}},
+                    Slip{"winding_time_constant", &MotorValues::thermal_time_constant_winding_s, 10.0, {"heat_capacities"}},
+                    Slip{"stator_time_constant", &MotorValues::thermal_time_constant_stator_s, 0.1, {"heat_capacities"}},
+                    Slip{"mass", &MotorValues::mass_kg, 10.0, {"heat_capacities"}},
+                    Slip{"inductance", &MotorValues::terminal_inductance_H, 1000.0, {"electrical_time_constant"}},
+                    Slip{"max_speed", &MotorValues::max_speed_rad_per_s, 0.1, {"assigned_power", "limits"}},
+                    Slip{"winding_limit", &MotorValues::winding_limit_C, 0.1, {"limits"}},
+                    Slip{"ambient_max", &MotorValues::ambient_max_C, 2.0, {"limits"}}),
+    [](const auto& each) { return each.param.name; });
+
+TEST(Slip, half_the_resistance_is_named_one_phase) {
+  Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+  motor.nominal.terminal_resistance_ohm *= 0.5;
+
+  for (const std::string check : {"mechanical_time_constant", "speed_torque_gradient", "stall_current"}) {
+    EXPECT_THAT(said_by(check, motor), HasSubstr("phase_to_star")) << check;
+  }
+}
+
+TEST(Slip, torque_constant_confirmed_by_the_no_load_speed_blames_the_speed_constant) {
+  Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+  motor.nominal.speed_constant_rad_per_s_per_V *= 0.5;
+
+  EXPECT_THAT(said_by("constants", motor), HasSubstr("the speed constant should be 259 rpm/V"));
+}
+
+TEST(Slip, saturation_is_guessed_and_a_wrong_flag_is_found) {
+  Motor straight = motor_of_database("maxon_ec45_flat_70w_24v");
+  straight.stall_includes_saturation = true;
+  Motor saturated = motor_of_database("maxon_ecx_flat_42m_48v");
+  saturated.stall_includes_saturation = false;
+
+  EXPECT_THAT(errors(straight), ElementsAre("stall_torque"));
+  EXPECT_THAT(errors(saturated), ElementsAre("stall_torque"));
+  EXPECT_THAT(said_by("stall_torque", saturated), HasSubstr("stall_includes_saturation = true"));
+}
+
+// A convention declared wrongly is found from either side and named.
+TEST(Slip, torque_constant_in_another_convention_is_named) {
+  const std::vector<std::pair<double, std::string>> factors = {{1.0 / 1.654, "peak EMF of one phase"}, {0.907, "per_peak_phase_ampere"},
+                                                                {1.283, "per_rms_phase_ampere"},       {1.0 / 0.907, "\"per_dc_ampere\""},
+                                                                {1.0 / 1.283, "\"per_dc_ampere\""},    {1.732, "sqrt(3)"},
+                                                                {1.155, "2/sqrt(3)"},                  {0.5, "2 between two phases"}};
+  for (const auto& [factor, name] : factors) {
+    Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+    motor.nominal.torque_constant_Nm_per_A *= factor;
+    const std::string message = said_by("constants", motor);
+    EXPECT_THAT(message, HasSubstr("contradictory conventions")) << factor;
+    EXPECT_THAT(message, HasSubstr(name)) << factor;
+  }
+}
+
+// What is not in the file is not judged.
+TEST(Lint, says_nothing_about_absent_figures) {
+  Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+  for (const MotorFigureSpec& each : motor_figure_specs()) {
+    if (each.need == Need::optional && each.value != &MotorValues::temperature_coefficient_per_K) {
+      motor.nominal.*each.value = kAbsent;
+    }
+  }
+
+  EXPECT_THAT(errors(motor), ElementsAre());
+}
+
+TEST(Lint, notes_estimates_and_missing_spreads) {
+  const Motor estimated = motor_of_database("nanotec_df45l024048_a2");
+
+  const std::string notes = said_by("estimates", estimated);
+  for (const std::string key : {"thermal_resistance_winding_stator", "thermal_time_constant_stator", "winding_limit", "nominal_current"}) {
+    EXPECT_THAT(notes, HasSubstr(key + " is estimated"));
+  }
+  EXPECT_EQ(said_by("spreads", estimated), "");
+  EXPECT_THAT(said_by("spreads", motor_of_database("maxon_ec45_flat_70w_24v")), HasSubstr("winding_limit of 125 °C has neither tolerance nor range"));
+}
+
+// Wherever the temperature rests on estimates, a hot nominal point may be their fault and not the sheet's.
+TEST(Lint, heat_of_estimates_is_only_noted) {
+  Motor estimated = motor_of_database("nanotec_df45l024048_a2");
+  estimated.nominal.thermal_resistance_winding_stator_K_per_W *= 2.0;
+
+  EXPECT_THAT(errors(estimated), ElementsAre());
+  EXPECT_THAT(checks_with(LintFinding::Level::note, estimated), Contains("nominal_point_heat"));
+}
+
+// The 48 V winding of a 70 W motor gives 36 W at its own voltage: worth knowing, but right.
+TEST(Lint, name_plate_of_the_type_is_only_noted) {
+  EXPECT_THAT(said_by("assigned_power", motor_of_database("maxon_ec45_flat_70w_48v_402687")), HasSubstr("70 W are assigned to the type"));
+}
+
+}  // namespace
+}  // namespace heatsoak
