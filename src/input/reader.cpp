@@ -101,13 +101,18 @@ std::optional<double> Reader::parse(const Value& value, std::string_view key, st
   return parsed.value;
 }
 
-std::optional<double> Reader::quantity(const ParameterSpec& spec, Need need) {
+const Value* Reader::find(const ParameterSpec& spec, Need need) {
   asked_.insert(std::string(spec.key));
   const Value* value = table_->find(spec.key);
+  if (!value && need == Need::required) {
+    problem(spec.key, fmt::format("is missing: {}", spec.meaning));
+  }
+  return value;
+}
+
+std::optional<double> Reader::quantity(const ParameterSpec& spec, Need need) {
+  const Value* value = find(spec, need);
   if (!value) {
-    if (need == Need::required) {
-      problem(spec.key, fmt::format("is missing: {}", spec.meaning));
-    }
     return std::nullopt;
   }
   const std::optional<double> parsed = parse(*value, spec.key, spec.unit);
@@ -148,12 +153,8 @@ std::vector<std::pair<std::string, Reader>> Reader::named_tables() {
 }
 
 std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
-  asked_.insert(std::string(spec.key));
-  const Value* value = table_->find(spec.key);
+  const Value* value = find(spec, need);
   if (!value) {
-    if (need == Need::required) {
-      problem(spec.key, fmt::format("is missing: {}", spec.meaning));
-    }
     return std::nullopt;
   }
   if (value->kind != Value::Kind::table) {

@@ -47,6 +47,7 @@ class Reader {
 
  private:
   const Value* get(std::string_view key, Value::Kind kind, Need need);
+  const Value* find(const ParameterSpec& spec, Need need);
   [[nodiscard]] std::string full(std::string_view key) const;
   std::optional<double> parse(const Value& value, std::string_view key, std::string_view unit);
   void read_spread(const ParameterSpec& spec, Figure& figure);

@@ -37,8 +37,8 @@ struct Convention {
   double factor;
   std::string_view meaning;
 };
-constexpr double kPeakPhase = std::numbers::sqrt3 * std::numbers::pi / 6.0;           // 0.907, per peak phase ampere
-constexpr double kPhaseEmf = std::numbers::pi / (3.0 * std::numbers::sqrt3);          // 1/1.654, peak EMF of a phase
+constexpr double kPeakPhase = std::numbers::sqrt3 * std::numbers::pi / 6.0;   // 0.907, per peak phase ampere
+constexpr double kPhaseEmf = std::numbers::pi / (3.0 * std::numbers::sqrt3);  // 1/1.654, peak EMF of a phase
 constexpr double kSqrt2 = std::numbers::sqrt2;
 constexpr double kSqrt3 = std::numbers::sqrt3;
 constexpr std::array kConventions = {
@@ -48,8 +48,10 @@ constexpr std::array kConventions = {
     Convention{kPhaseEmf * kSqrt3, "the peak EMF between terminals; multiply it by 3/pi = 0.955"},
     Convention{kPeakPhase, "a torque constant per ampere of phase peak; set conventions.torque_constant = \"per_peak_phase_ampere\""},
     Convention{kPeakPhase * kSqrt2, "a torque constant per ampere of phase RMS; set conventions.torque_constant = \"per_rms_phase_ampere\""},
-    Convention{1.0 / kPeakPhase, "a torque constant per DC ampere where the file declares per_peak_phase_ampere; set conventions.torque_constant = \"per_dc_ampere\""},
-    Convention{1.0 / (kPeakPhase * kSqrt2), "a torque constant per DC ampere where the file declares per_rms_phase_ampere; set conventions.torque_constant = \"per_dc_ampere\""},
+    Convention{1.0 / kPeakPhase,
+               "a torque constant per DC ampere where the file declares per_peak_phase_ampere; set conventions.torque_constant = \"per_dc_ampere\""},
+    Convention{1.0 / (kPeakPhase * kSqrt2),
+               "a torque constant per DC ampere where the file declares per_rms_phase_ampere; set conventions.torque_constant = \"per_dc_ampere\""},
     Convention{kSqrt3, "sqrt(3) between phase and terminals; divide it by 1.732"},
     Convention{1.0 / kSqrt3, "sqrt(3) between terminals and phase; multiply it by 1.732"},
     Convention{2.0 / kSqrt3, "2/sqrt(3) between two conventions of sinusoidal current; divide it by 1.155"},

@@ -139,7 +139,9 @@ void estimates(const Motor& motor, Findings& findings) {
 void spreads(const Motor& motor, Findings& findings) {
   for (const MotorFigureSpec& each : motor_figure_specs()) {
     const auto figure = motor.figures.find(each.spec.key);
-    if (each.is_thermal && figure != motor.figures.end() && !figure->second.spread) {
+    // A limit is what the manufacturer permits; no part has another one.
+    const bool is_limit = each.spec.unit == "degC";
+    if (each.is_thermal && !is_limit && figure != motor.figures.end() && !figure->second.spread) {
       findings.note(each.spec.key, fmt::format("{} of {} has neither tolerance nor range, so the spread of the temperature leaves it out; expected one of both, "
                                                "add it to the figure",
                                                each.spec.key, shown(figure->second.value, each.spec.unit)));

@@ -274,7 +274,10 @@ TEST(Lint, notes_estimates_and_missing_spreads) {
     EXPECT_THAT(notes, HasSubstr(key + " is estimated"));
   }
   EXPECT_EQ(said_by("spreads", estimated), "");
-  EXPECT_THAT(said_by("spreads", motor_of_database("maxon_ec45_flat_70w_24v")), HasSubstr("winding_limit of 125 °C has neither tolerance nor range"));
+  Motor without_spread = motor_of_database("maxon_ec45_flat_70w_24v");
+  EXPECT_EQ(said_by("spreads", without_spread), "");
+  without_spread.figures.at("terminal_resistance").spread.reset();
+  EXPECT_THAT(said_by("spreads", without_spread), HasSubstr("terminal_resistance of 0.608 ohm has neither tolerance nor range"));
 }
 
 // Wherever the temperature rests on estimates, a hot nominal point may be their fault and not the sheet's.
