@@ -1,7 +1,9 @@
 #include "input/csv.h"
 
 #include <csv.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +14,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
@@ -20,6 +23,8 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kMostProblems = 20;
+constexpr std::size_t kMostColumns = 1000;
+constexpr std::size_t kLongestCell_bytes = 1 << 16;
 
 class Table {
  public:
@@ -27,12 +32,16 @@ class Table {
       : file_(std::move(file)), required_(required), optional_(optional), row_(row), values_(required.size() + optional.size(), kNothing) {}
 
   void cell(std::string_view text) {
+    line_breaks_in_row_ += static_cast<int>(std::ranges::count(text, '\n'));
     if (!has_header_) {
+      if (column_ >= kMostColumns) {
+        stop(fmt::format("has more than {} columns, which no log has", kMostColumns));
+      }
       header_.emplace_back(text);
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0) {
       const std::optional<double> value = parse_number(text);
       if (!value || !std::isfinite(*value)) {
-        problem(static_cast<int>(column_) + 1, header_[column_], fmt::format("\"{}\" is not a finite number", text));
+        problem(static_cast<int>(column_) + 1, header_[column_], fmt::format("\"{}\" is not a finite number", text.substr(0, 40)));
       } else {
         values_[static_cast<std::size_t>(place_of_[column_])] = *value;
       }
@@ -55,8 +64,12 @@ class Table {
       }
     }
     column_ = 0;
-    line_ += terminator == '\n' ? 1 : 0;
+    line_ += line_breaks_in_row_ + (terminator == '\n' ? 1 : 0);
+    line_breaks_in_row_ = 0;
   }
+
+  /// What the rest of the file holds no longer matters.
+  [[noreturn]] void stop(std::string message) const { throw bad_input({file_, line_, 1}, "", std::move(message)); }
 
   void finish() {
     if (has_header_ && rows_ == 0 && problems_.empty()) {
@@ -66,7 +79,9 @@ class Table {
       problem(1, "", "is empty; expected a header row with names such as time_s, current_A");
     }
     if (left_out_ > 0) {
-      problems_.push_back({{file_, 0, 0}, "", fmt::format("and {} more problems", left_out_)});
+      Diagnostic& rest = problems_.emplace_back();
+      rest.at.file = file_;
+      rest.message = fmt::format("and {} more problems", left_out_);
     }
     if (!problems_.empty()) {
       throw Failure(ExitCode::bad_input, "", std::move(problems_));
@@ -116,8 +131,26 @@ class Table {
   std::size_t column_ = 0;
   std::size_t rows_ = 0;
   int line_ = 1;
+  int line_breaks_in_row_ = 0;
   bool has_header_ = false;
 };
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::path& path) {
+  const auto cannot_read = [&](const char* reason) { return bad_input({path.string()}, "", fmt::format("cannot be read: {}", reason)); };
+  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(descriptor < 0 ? nullptr : ::fdopen(descriptor, "rb"), &std::fclose);
+  struct stat about{};
+  if (!file || ::fstat(descriptor, &about) != 0) {
+    throw cannot_read(std::strerror(errno));
+  }
+  if (!S_ISREG(about.st_mode)) {
+    throw cannot_read(S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
+  }
+  return file;
+}
 
 /// libcsv is C: an exception must not pass through it.
 struct Guarded {
@@ -140,13 +173,10 @@ void guarded(void* data, Work work) {
 
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               const std::function<void(const CsvRow&)>& row) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) {
-    throw bad_input({path.string()}, "", fmt::format("cannot be read: {}", std::strerror(errno)));
-  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file = opened(path);
   Table table(path.string(), required, optional, row);
   csv_parser parser;
-  csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL);
+  csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT_FINI);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);
   Guarded guard{table, nullptr};
   const auto cell = [](void* text, std::size_t size, void* data) {
@@ -154,16 +184,28 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
   };
   const auto end_of_row = [](int terminator, void* data) { guarded(data, [terminator](Table& t) { t.end_of_row(terminator); }); };
   std::vector<char> chunk(1 << 18);
+  bool at_start = true;
   while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), file.get())) {
-    csv_parse(&parser, chunk.data(), got, cell, end_of_row, &guard);
+    std::string_view bytes(chunk.data(), got);
+    if (std::exchange(at_start, false) && bytes.starts_with(kByteOrderMark)) {
+      bytes.remove_prefix(kByteOrderMark.size());
+    }
+    csv_parse(&parser, bytes.data(), bytes.size(), cell, end_of_row, &guard);
     if (guard.error) {
       std::rethrow_exception(guard.error);
+    }
+    // One chunk may hold a cell of its own length; what is longer grows with the file.
+    if (csv_get_buffer_size(&parser) > chunk.size() + kLongestCell_bytes) {
+      table.stop(fmt::format("a cell is longer than {} bytes; is it a binary file, or is a quote not closed?", kLongestCell_bytes));
     }
   }
   if (std::ferror(file.get()) != 0) {
     table.problem(0, "", fmt::format("cannot be read: {}", std::strerror(errno)));
   }
-  csv_fini(&parser, cell, end_of_row, &guard);
+  const bool open_quote = csv_fini(&parser, cell, end_of_row, &guard) != 0;
+  if (open_quote && !guard.error) {
+    table.stop("a quote in this row is not closed");
+  }
   if (guard.error) {
     std::rethrow_exception(guard.error);
   }

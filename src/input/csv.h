@@ -16,7 +16,7 @@ struct CsvRow {
 };
 
 /// Reads a file with one header row and gives every row to `row`. `required` names must be in the header;
-/// `optional` ones give NaN where the header has none. Memory does not grow with the file.
+/// `optional` ones give NaN where the header has none. Memory does not grow with the file. A UTF-8 byte order mark and CR LF are fine.
 /// Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
 /// another number of cells, no rows. At most 20 problems are listed, then how many more there are.
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,

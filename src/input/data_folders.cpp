@@ -14,9 +14,13 @@ DataFolders source_tree(const fs::path& root) { return {root / "motor_db", root 
 
 DataFolders installed(const fs::path& share) { return {share / "motor_db", share / "robots", share / "duty_profiles"}; }
 
-bool complete(const DataFolders& folders) {
-  return fs::is_directory(folders.motors) && fs::is_directory(folders.robots) && fs::is_directory(folders.duties);
+/// Never throws: a folder that may not be looked into is none.
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
 }
+
+bool complete(const DataFolders& folders) { return is_folder(folders.motors) && is_folder(folders.robots) && is_folder(folders.duties); }
 
 DataFolders beside_the_program() {
   const fs::path program = fs::read_symlink("/proc/self/exe");
@@ -28,6 +32,10 @@ DataFolders beside_the_program() {
       return found;
     }
   }
+  // A build folder elsewhere: the sources that this file was compiled from.
+  if (const DataFolders found = source_tree(fs::path(__FILE__).parent_path().parent_path().parent_path()); complete(found)) {
+    return found;
+  }
   return {};
 }
 
@@ -36,15 +44,15 @@ DataFolders beside_the_program() {
 DataFolders DataFolders::find(const fs::path& database) {
   DataFolders folders = beside_the_program();
   if (!database.empty()) {
-    if (!fs::is_directory(database)) {
+    if (!is_folder(database)) {
       throw Failure(ExitCode::bad_input, fmt::format("--db {}: there is no such folder", database.string()));
     }
     for (const DataFolders& candidate : {source_tree(database), installed(database)}) {
-      folders.motors = fs::is_directory(candidate.motors) ? candidate.motors : folders.motors;
-      folders.robots = fs::is_directory(candidate.robots) ? candidate.robots : folders.robots;
-      folders.duties = fs::is_directory(candidate.duties) ? candidate.duties : folders.duties;
+      folders.motors = is_folder(candidate.motors) ? candidate.motors : folders.motors;
+      folders.robots = is_folder(candidate.robots) ? candidate.robots : folders.robots;
+      folders.duties = is_folder(candidate.duties) ? candidate.duties : folders.duties;
     }
-    if (!fs::is_directory(database / "motor_db")) {
+    if (!is_folder(database / "motor_db")) {
       folders.motors = database;
     }
   }

@@ -13,7 +13,9 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::size_t kLargestToml_bytes = 16'000'000;
+constexpr std::size_t kLargestToml_bytes = 1'000'000;
+constexpr std::size_t kMostKeys = 1000;  ///< of one table; looking a key up goes through all of them
+constexpr int kMostDots = 16;            ///< of one key
 
 [[noreturn]] void cannot_read(const std::filesystem::path& path, const std::string& reason) {
   throw bad_input({path.string()}, "", "cannot be read: " + reason);
@@ -24,17 +26,50 @@ Location place(const toml::node& node, const std::string& file) {
   return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
 }
 
+/// toml++ bounds nested values but not a.a.a.a…, whose tables are then destroyed one inside the other until the
+/// stack ends. Only keys (and numbers) have dots outside of strings and comments. The line of the first key with
+/// too many, 0 where there is none.
+int line_of_deep_key(std::string_view content) {
+  int line = 1;
+  int dots = 0;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    const char c = content[i];
+    if (c == '#') {
+      i = std::min(content.find('\n', i), content.size()) - 1;
+    } else if (c == '"' || c == '\'') {
+      const std::string_view quotes = content.substr(i, 3) == std::string(3, c) ? content.substr(i, 3) : content.substr(i, 1);
+      for (i += quotes.size(); i < content.size() && content.substr(i, quotes.size()) != quotes; ++i) {
+        line += content[i] == '\n' ? 1 : 0;
+        i += c == '"' && content[i] == '\\' ? 1 : 0;
+        if (i < content.size() && content[i] == '\n' && quotes.size() == 1) {
+          return 0;  // not closed: the parser says where
+        }
+      }
+      i += quotes.size() - 1;
+    } else if (c == '.') {
+      if (++dots > kMostDots) {
+        return line;
+      }
+    } else if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) {
+      dots = 0;
+      line += c == '\n' ? 1 : 0;
+    }
+  }
+  return 0;
+}
+
 Value convert(const toml::node& node, const std::string& file) {
   Value value;
   value.at = place(node, file);
   if (const auto* table = node.as_table()) {
     value.kind = Value::Kind::table;
-    for (const auto& [key, member] : *table) {
-      value.members.emplace_back(std::string(key.str()), convert(member, file));
+    if (table->size() > kMostKeys) {
+      throw bad_input(value.at, "", fmt::format("a table of {} keys; expected at most {}", table->size(), kMostKeys));
     }
-    std::ranges::stable_sort(value.members, {}, [](const auto& member) {
-      return std::pair(member.second.at.line, member.second.at.column);
-    });
+    for (const auto& [key, member] : *table) {
+      value.members.push_back({std::string(key.str()), convert(member, file)});
+    }
+    std::ranges::stable_sort(value.members, {}, [](const Member& member) { return std::pair(member.value.at.line, member.value.at.column); });
   } else if (const auto* array = node.as_array()) {
     value.kind = Value::Kind::array;
     for (const toml::node& item : *array) {
@@ -59,8 +94,8 @@ Value convert(const toml::node& node, const std::string& file) {
 }  // namespace
 
 const Value* Value::find(std::string_view key) const {
-  const auto found = std::ranges::find_if(members, [key](const auto& member) { return member.first == key; });
-  return found == members.end() ? nullptr : &found->second;
+  const auto found = std::ranges::find(members, key, &Member::key);
+  return found == members.end() ? nullptr : &found->value;
 }
 
 std::string_view to_string(Value::Kind kind) {
@@ -82,7 +117,8 @@ std::string_view to_string(Value::Kind kind) {
 }
 
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) {
     cannot_read(path, std::strerror(errno));
   }
@@ -91,8 +127,11 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest_byt
     ~Closer() { ::close(file); }
   } closer{file};
   struct stat about{};
-  if (::fstat(file, &about) != 0 || S_ISDIR(about.st_mode)) {
-    cannot_read(path, S_ISDIR(about.st_mode) ? "it is a folder" : std::strerror(errno));
+  if (::fstat(file, &about) != 0) {
+    cannot_read(path, std::strerror(errno));
+  }
+  if (!S_ISREG(about.st_mode)) {
+    cannot_read(path, S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
   }
   std::string content;
   std::vector<char> chunk(1 << 16);
@@ -112,26 +151,38 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest_byt
 }
 
 void write_file(const std::filesystem::path& path, std::string_view content) {
-  const std::string temporary = path.string() + ".partial";
-  const auto fail = [&](int error) {
-    ::unlink(temporary.c_str());
-    throw bad_input({path.string()}, "", fmt::format("cannot be written: {}", std::strerror(error)));
-  };
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  struct stat about{};
+  const bool exists = ::stat(path.c_str(), &about) == 0;
+  // A device or a pipe takes the bytes as they come: renaming over /dev/null would replace it for everybody.
+  const bool in_place = exists && !S_ISREG(about.st_mode);
+  std::error_code no_link;
+  const std::filesystem::path target = exists && !in_place ? std::filesystem::canonical(path, no_link) : path;
+  const std::string temporary = in_place ? path.string() : fmt::format("{}.{}.partial", (no_link ? path : target).string(), ::getpid());
+  const auto fail = [&](int error) { throw bad_input({path.string()}, "", fmt::format("cannot be written: {}", std::strerror(error))); };
+  if (exists && (S_ISDIR(about.st_mode) || ::access(path.c_str(), W_OK) != 0)) {
+    fail(S_ISDIR(about.st_mode) ? EISDIR : errno);
+  }
+  const int file = ::open(temporary.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) {
     fail(errno);
   }
+  const auto give_up = [&](int error) {
+    if (!in_place) {
+      ::unlink(temporary.c_str());
+    }
+    fail(error);
+  };
   while (!content.empty()) {
     const ssize_t written = ::write(file, content.data(), content.size());
-    if (written < 0) {
+    if (written < 0 && errno != EINTR) {
       const int error = errno;
       ::close(file);
-      fail(error);
+      give_up(error);
     }
-    content.remove_prefix(static_cast<std::size_t>(written));
+    content.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
   }
-  if (::close(file) != 0 || std::rename(temporary.c_str(), path.c_str()) != 0) {
-    fail(errno);
+  if (::close(file) != 0 || (!in_place && std::rename(temporary.c_str(), (no_link ? path : target).c_str()) != 0)) {
+    give_up(errno);
   }
 }
 
@@ -140,6 +191,9 @@ Value read_toml(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (content.find('\0') != std::string::npos) {
     cannot_read(path, "it is a binary file; expected TOML text");
+  }
+  if (const int line = line_of_deep_key(content); line > 0) {
+    throw bad_input({file, line, 1}, "", fmt::format("a key of more than {} dots, which no file of this kind has", kMostDots));
   }
   try {
     const toml::table table = toml::parse(content, file);

@@ -3,12 +3,13 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
 
 namespace heatsoak {
+
+struct Member;
 
 struct Value {
   enum class Kind { text, number, boolean, array, table, other };
@@ -17,23 +18,28 @@ struct Value {
   std::string text;  ///< of a text; of a number as it was written
   bool boolean = false;
   std::vector<Value> items;                             ///< of an array
-  std::vector<std::pair<std::string, Value>> members;  ///< of a table, in the order of the file
-  /// Places of the members' keys are those of their values, which is where an editor should land.
+  std::vector<Member> members;  ///< of a table, in the order of the file
 
   [[nodiscard]] const Value* find(std::string_view key) const;
+};
+
+struct Member {
+  std::string key;
+  Value value;
 };
 
 /// "a text", "a number", …: for messages.
 std::string_view to_string(Value::Kind kind);
 
-/// Reads a TOML file of at most 16 MB. Throws Failure (bad_input) that says the place of the first error
+/// Reads a TOML file of at most 1 MB, 1000 keys per table and 16 dots per key. Throws Failure (bad_input) that says the place of the first error
 /// of syntax, or why the file cannot be read.
 Value read_toml(const std::filesystem::path& path);
 
-/// All bytes of a file, or Failure (bad_input) with the reason.
+/// All bytes of a regular file, or Failure (bad_input) with the reason.
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes);
 
-/// Writes `content` under a temporary name beside `path` and renames it, so that no half file is left.
+/// Writes `content` under a temporary name beside `path` and renames it, so that no half file is left. A link keeps
+/// pointing to its file; a device (/dev/stdout) is written as it is.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace heatsoak

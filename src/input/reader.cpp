@@ -16,6 +16,8 @@ std::string Reader::full(std::string_view key) const {
   return path_.empty() ? std::string(key) : key.empty() ? path_ : fmt::format("{}.{}", path_, key);
 }
 
+void Reader::add(const Diagnostic& found) { diagnostics_->add(found.at, found.key, found.message); }
+
 Location Reader::at(std::string_view key) const {
   const Value* value = table_->find(key);
   return value ? value->at : table_->at;
@@ -23,8 +25,8 @@ Location Reader::at(std::string_view key) const {
 
 std::vector<std::string> Reader::keys() const {
   std::vector<std::string> names;
-  for (const auto& member : table_->members) {
-    names.push_back(member.first);
+  for (const Member& member : table_->members) {
+    names.push_back(member.key);
   }
   return names;
 }
@@ -175,10 +177,18 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
   }
   const bool calculated = figure.origin == Origin::derived || figure.origin == Origin::estimated;
   figure.derivation = inner.text("derivation", calculated ? Need::required : Need::optional).value_or("");
-  if (const Value* source = value->find("source"); source && source->kind == Value::Kind::array) {
+  const Value* source = value->find("source");
+  if (source && source->kind == Value::Kind::array) {
     figure.source = fmt::format("{}", fmt::join(inner.texts("source", Need::required), ", "));
   } else {
     figure.source = inner.text("source", calculated ? Need::optional : Need::required).value_or("");
+  }
+  // An empty text names nothing: the figure would claim an origin that leads nowhere.
+  if (source && figure.source.empty() && (source->kind == Value::Kind::text || source->items.empty())) {
+    inner.problem("source", "is empty; expected ids of [sources]");
+  }
+  if (value->find("derivation") && value->find("derivation")->kind == Value::Kind::text && figure.derivation.empty()) {
+    inner.problem("derivation", "is empty; expected how the figure was found");
   }
   if (parsed) {
     figure.value = *parsed;

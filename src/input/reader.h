@@ -42,6 +42,8 @@ class Reader {
 
   /// A problem of the value of `key`, or of the whole table where it has no such key.
   void problem(std::string_view key, std::string message);
+  /// A problem of another file that this table names.
+  void add(const Diagnostic& found);
   [[nodiscard]] Location at(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 

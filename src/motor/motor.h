@@ -59,7 +59,7 @@ struct MotorValues {
 /// The one declaration of a motor figure: what the file calls it, and where its number goes.
 struct MotorFigureSpec {
   ParameterSpec spec;
-  double MotorValues::* value;
+  double MotorValues::* value = nullptr;
   Need need = Need::optional;
   bool is_thermal = false;  ///< the temperature calculation rests on it
 };
