@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/commands_registry.h"
-#include "input/document.h"
+#include "base/files.h"
 
 namespace heatsoak {
 namespace {

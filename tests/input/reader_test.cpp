@@ -1,3 +1,4 @@
+#include "base/files.h"
 #include "input/reader.h"
 
 #include <gmock/gmock.h>

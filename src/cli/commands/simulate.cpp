@@ -7,7 +7,7 @@
 #include "cli/command.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
-#include "input/document.h"
+#include "base/files.h"
 #include "report/chart.h"
 #include "select/trace.h"
 
