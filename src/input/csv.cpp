@@ -23,6 +23,7 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kMostProblems = 20;
+constexpr std::size_t kHopeless = 1000;  ///< problems after which the rest is not read
 constexpr std::size_t kMostColumns = 1000;
 constexpr std::size_t kLongestCell_bytes = 1 << 16;
 
@@ -84,12 +85,14 @@ class Table {
     if (left_out_ > 0) {
       Diagnostic& rest = problems_.emplace_back();
       rest.at.file = file_;
-      rest.message = fmt::format("and {} more problems", left_out_);
+      rest.message = fmt::format("and {} more problems{}", left_out_, is_hopeless() ? "; the rest was not read" : "");
     }
     if (!problems_.empty()) {
       throw Failure(ExitCode::bad_input, "", std::move(problems_));
     }
   }
+
+  [[nodiscard]] bool is_hopeless() const { return left_out_ >= kHopeless; }
 
   void problem(int column, std::string key, std::string message) {
     if (problems_.size() < kMostProblems) {
@@ -202,6 +205,9 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
     const std::size_t parsed = csv_parse(&parser, bytes.data(), bytes.size(), cell, end_of_row, &guard);
     if (guard.error) {
       std::rethrow_exception(guard.error);
+    }
+    if (table.is_hopeless()) {
+      table.finish();
     }
     if (parsed != bytes.size()) {
       table.stop("a quote stands inside a cell of this row; expected cells quoted as a whole, or not at all");

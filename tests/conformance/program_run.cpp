@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -57,7 +56,6 @@ ProgramRun run(const std::vector<std::string>& arguments, const RunOptions& opti
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
   const fs::path err = folder.path() / "err";
-  const auto start = std::chrono::steady_clock::now();
   const pid_t child = ::fork();
   if (child < 0) {
     throw std::runtime_error("fork failed");
@@ -72,7 +70,6 @@ ProgramRun run(const std::vector<std::string>& arguments, const RunOptions& opti
   }
   ProgramRun result;
   result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.memory_MB = static_cast<double>(used.ru_maxrss) / 1024.0;
   result.out = options.stdout_file.empty() ? content_of(out) : "";
   result.err = options.stderr_file.empty() ? content_of(err) : "";

@@ -22,7 +22,6 @@ struct ProgramRun {
   int exit_code = -1;  ///< 128 + signal where a signal ended it
   std::string out;
   std::string err;
-  double elapsed_s = 0.0;
   double memory_MB = 0.0;  ///< largest resident set
 
   /// The JSON on stdout, and nothing but JSON.
