@@ -3,16 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "duty/shapes_registry.h"
 #include "input/document.h"
 
 namespace heatsoak {
-
-double Duty::duration_s() const {
-  return std::accumulate(pieces.begin(), pieces.end(), 0.0, [](double sum_s, const DutyPiece& piece) { return sum_s + piece.duration_s; });
-}
 
 const std::vector<ShapeType>& all_shapes() {
   static const std::vector<ShapeType> kAll = [] {

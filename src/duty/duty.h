@@ -1,27 +1,29 @@
 // A duty: what a wheel has to do over time, whatever motor drives it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/figure.h"
+#include "duty/demand.h"
 #include "input/reader.h"
+#include "robot/robot.h"
 
 namespace heatsoak {
 
-/// Constant demand on one wheel for a while: a torque and speed, or (for duties given as current) a current.
-struct DutyPiece {
-  double duration_s = 0.0;
-  double torque_Nm = 0.0;
-  double speed_rad_per_s = 0.0;
-  double current_A = 0.0;  ///< only where the duty is given as current
-};
-
 enum class DutyKind { torque, current };
+
+/// A duty that has been read: gives what the wheels of a robot have to do.
+class DutyShape {
+ public:
+  virtual ~DutyShape() = default;
+  /// One demand per wheel, or one for a duty that does not tell wheels apart. Same seed, same demand.
+  [[nodiscard]] virtual std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const = 0;
+};
 
 struct Duty {
   std::string id;  ///< the file's stem
@@ -33,9 +35,9 @@ struct Duty {
   DutyKind kind = DutyKind::torque;
   Figure ambient_C;
   Figure load;  ///< factor on torque or current, 1 with the spread that the file declares
-  std::vector<DutyPiece> pieces;
+  std::shared_ptr<const DutyShape> shape_data;
 
-  [[nodiscard]] double duration_s() const;
+  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const { return shape_data->demand(robot, seed); }
 };
 
 /// A way to write a duty down; one file in src/duty/shapes each.
@@ -43,7 +45,7 @@ struct ShapeType {
   std::string_view name;  ///< the file's name; set by all_shapes()
   std::string_view summary;
   std::string_view example;  ///< lines of TOML that a user can paste
-  /// Reads the keys of its own table and fills kind, load and pieces; problems go to the reader.
+  /// Reads the keys of its own table and fills kind, load and shape_data; problems go to the reader.
   void (*read)(Reader& table, const std::filesystem::path& folder, Duty& duty) = nullptr;
 };
 const std::vector<ShapeType>& all_shapes();

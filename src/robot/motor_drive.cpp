@@ -11,7 +11,11 @@ namespace {
 
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
-DrivePoint clamped(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s) {
+}  // namespace
+
+double shaft_torque_factor(const Robot& robot, bool drives) { return (drives ? 1.0 / robot.gear_efficiency : robot.gear_efficiency) / robot.gear_ratio; }
+
+DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s) {
   DrivePoint point;
   point.current_wanted_A = wanted_A;
   point.motor_speed_rad_per_s = motor_speed_rad_per_s;
@@ -31,20 +35,15 @@ DrivePoint clamped(const MotorValues& motor, const Robot& robot, double wanted_A
   return point;
 }
 
-}  // namespace
-
 DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load) {
-  // A gear loses torque on the way to the wheel when driving, and on the way back when braking.
-  const bool drives = load.torque_Nm * load.speed_rad_per_s >= 0.0;
-  const double efficiency = drives ? 1.0 / robot.gear_efficiency : robot.gear_efficiency;
-  const double motor_torque_Nm = load.torque_Nm / robot.gear_ratio * efficiency;
+  const double motor_torque_Nm = load.torque_Nm * shaft_torque_factor(robot, load.torque_Nm * load.speed_rad_per_s >= 0.0);
   const double motor_speed_rad_per_s = load.speed_rad_per_s * robot.gear_ratio;
   const double wanted_A = (motor_torque_Nm + drag_torque_Nm(motor) * sign(motor_speed_rad_per_s)) / motor.torque_constant_Nm_per_A;
-  return clamped(motor, robot, wanted_A, motor_speed_rad_per_s);
+  return clamped_point(motor, robot, wanted_A, motor_speed_rad_per_s);
 }
 
 DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s) {
-  return clamped(motor, robot, current_A, wheel_speed_rad_per_s * robot.gear_ratio);
+  return clamped_point(motor, robot, current_A, wheel_speed_rad_per_s * robot.gear_ratio);
 }
 
 double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C) {

@@ -33,6 +33,12 @@ DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const Wheel
 /// The same for a prescribed current, which is clamped too.
 DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s);
 
+/// A current at a motor speed, clamped to what the driver and the available voltage let through.
+DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s);
+
+/// Motor torque per wheel torque: a gear loses torque on the way to the wheel when driving, on the way back when braking.
+double shaft_torque_factor(const Robot& robot, bool drives);
+
 /// Terminal voltage that the point needs with the winding at a temperature; signed like the torque.
 double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C);
 

@@ -1,6 +1,9 @@
 #include "select/drive_profile.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "motor/datasheet_network.h"
 
 namespace heatsoak {
 
@@ -13,35 +16,59 @@ DutySample draw_sample(const Duty& duty, Random& random) {
   return sample;
 }
 
-DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const Duty& duty, const DutyPiece& piece, const DutySample& sample) {
-  return duty.kind == DutyKind::torque
-             ? drive_point(motor, robot, {piece.torque_Nm * sample.load, piece.speed_rad_per_s})
-             : drive_point_of_current(motor, robot, piece.current_A * sample.load, piece.speed_rad_per_s);
+OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& robot, DutyKind kind, const LoadBin& bin, const DutySample& sample) {
+  const double to_shaft = shaft_torque_factor(robot, bin.torque_along_motion_Nm >= 0.0) * sample.load;
+  const double torque_rms_Nm = bin.torque_rms_Nm * to_shaft;
+  const double drag_Nm = drag_torque_Nm(motor);
+  const double torque2 = torque_rms_Nm * torque_rms_Nm + 2.0 * drag_Nm * bin.torque_along_motion_Nm * to_shaft + drag_Nm * drag_Nm * bin.moving_share;
+  const double wanted_A = kind == DutyKind::torque ? std::sqrt(std::max(0.0, torque2)) / motor.torque_constant_Nm_per_A : bin.current_rms_A * sample.load;
+  const double direction = bin.torque_along_motion_Nm < 0.0 ? -1.0 : 1.0;
+  const double speed_rad_per_s = bin.speed_mean_rad_per_s * robot.gear_ratio;
+  DrivePoint point = clamped_point(motor, robot, direction * wanted_A, speed_rad_per_s);
+  OperatingPoint<double> at = operating_point(point, robot, sample.ambient_C);
+  at.speed_rms_rad_per_s = bin.speed_rms_rad_per_s * robot.gear_ratio;
+  return at;
 }
 
-DriveProfile drive_profile(const MotorValues& motor, const Robot& robot, const Duty& duty, const DutySample& sample) {
-  DriveProfile profile;
-  profile.points.reserve(duty.pieces.size());
-  profile.intervals.reserve(duty.pieces.size());
-  double charge_A2s = 0.0;
-  double duration_s = 0.0;
-  for (const DutyPiece& piece : duty.pieces) {
-    const DrivePoint point = drive_point(motor, robot, duty, piece, sample);
-    profile.points.push_back(point);
-    profile.intervals.push_back({piece.duration_s, operating_point(point, robot, sample.ambient_C)});
-    const double heating_A = profile.intervals.back().at.current_rms_A;
-    charge_A2s += heating_A * heating_A * piece.duration_s;
-    duration_s += piece.duration_s;
-    if (point.limit != DriveLimit::none && point.current_wanted_A != 0.0) {
-      const double share = point.current_A / point.current_wanted_A;
-      if (share < profile.least_torque_share) {
-        profile.least_torque_share = share;
-        profile.limit = point.limit;
-      }
-    }
+std::vector<Interval> intervals(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample) {
+  std::vector<Interval> result;
+  result.reserve(demand.bins.size());
+  for (const LoadBin& bin : demand.bins) {
+    result.push_back({bin.duration_s, operating_point(motor, robot, kind, bin, sample)});
   }
-  profile.current_rms_A = duration_s > 0.0 ? std::sqrt(charge_A2s / duration_s) : 0.0;
-  return profile;
+  return result;
+}
+
+double current_rms_A(const std::vector<Interval>& intervals) {
+  double current2_s = 0.0;
+  double duration_s = 0.0;
+  for (const Interval& each : intervals) {
+    current2_s += each.at.current_rms_A * each.at.current_rms_A * each.duration_s;
+    duration_s += each.duration_s;
+  }
+  return duration_s > 0.0 ? std::sqrt(current2_s / duration_s) : 0.0;
+}
+
+Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample, double winding_C) {
+  Feasibility result;
+  MotorValues warm = motor;
+  warm.terminal_resistance_ohm *= 1.0 + motor.temperature_coefficient_per_K * (winding_C - 25.0);
+  double short_s = 0.0;
+  for (const LoadPoint& each : demand.points) {
+    const DrivePoint point = kind == DutyKind::torque ? drive_point(warm, robot, {each.torque_Nm * sample.load, each.speed_rad_per_s})
+                                                      : drive_point_of_current(warm, robot, each.current_A * sample.load, each.speed_rad_per_s);
+    DrivePoint wanted = point;
+    wanted.current_A = point.current_wanted_A;
+    result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(terminal_voltage_V(warm, wanted, 25.0)));
+    const double share = point.limit == DriveLimit::none ? 1.0 : point.current_A / point.current_wanted_A;
+    if (share < result.least_share) {
+      result.least_share = share;
+      result.limit = point.limit;
+    }
+    short_s += share < 1.0 - kTolerableShortage ? each.time_s : 0.0;
+  }
+  result.short_time_share = short_s / demand.duration_s();
+  return result;
 }
 
 }  // namespace heatsoak

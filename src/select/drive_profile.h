@@ -1,4 +1,4 @@
-// One motor on one duty of one robot: the intervals that its thermal network sees.
+// One motor at one wheel: what the demand becomes for its thermal network, and whether it can be met at all.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace heatsoak {
 
-/// What one draw of the duty's own unknowns is.
+/// One draw of the duty's own unknowns.
 struct DutySample {
   double ambient_C = 25.0;
   double load = 1.0;  ///< factor on torque or current
@@ -18,16 +18,23 @@ struct DutySample {
 DutySample nominal_sample(const Duty& duty);
 DutySample draw_sample(const Duty& duty, Random& random);
 
-/// What one piece of the duty asks of this motor.
-DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const Duty& duty, const DutyPiece& piece, const DutySample& sample);
+/// What the thermal network sees of a bin: the rms current that its torque takes, clamped to what voltage (at
+/// the bin's mean speed, 25 °C) and driver let through.
+OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& robot, DutyKind kind, const LoadBin& bin, const DutySample& sample);
 
-struct DriveProfile {
-  std::vector<DrivePoint> points;    ///< one per piece
-  std::vector<Interval> intervals;   ///< one per piece
-  double current_rms_A = 0.0;        ///< over the whole duty, heating current
-  double least_torque_share = 1.0;   ///< smallest ratio of delivered to demanded current
+std::vector<Interval> intervals(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample);
+
+/// Root mean square of the heating current over the whole of it.
+double current_rms_A(const std::vector<Interval>& intervals);
+
+/// Whether voltage and current suffice, point by point of the demand.
+struct Feasibility {
+  double least_share = 1.0;         ///< smallest ratio of delivered to demanded current
   DriveLimit limit = DriveLimit::none;  ///< what cut it there
+  double short_time_share = 0.0;    ///< part of the time in which more than kTolerableShortage is missing
+  double highest_voltage_V = 0.0;   ///< demanded at the terminals
 };
-DriveProfile drive_profile(const MotorValues& motor, const Robot& robot, const Duty& duty, const DutySample& sample);
+inline constexpr double kTolerableShortage = 0.005;
+Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample, double winding_C);
 
 }  // namespace heatsoak

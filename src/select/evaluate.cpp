@@ -19,14 +19,12 @@ namespace {
 enum Node { winding, stator };
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
-/// A demand counts as met where no more than this share of it is missing.
-constexpr double kTolerableShortage = 0.005;
 
 /// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
 class Block {
  public:
-  Block(const Motor& motor, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample)
-      : robot_(robot), duty_(duty) {
+  Block(const Motor& motor, const Robot& robot, const Duty& duty, const WheelDemand& demand, const EvaluateOptions& options, int first_sample)
+      : robot_(robot), kind_(duty.kind), demand_(demand) {
     std::vector<Network> networks;
     for (int lane = 0; lane < kLanes; ++lane) {
       Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
@@ -42,7 +40,7 @@ class Block {
     network_ = std::move(networks.front());
   }
 
-  /// Gives `visit(time_s, state_C)` the end of every piece, in steps no coarser than `longest_visit_s`.
+  /// Gives `visit(time_s, state_C)` the end of every bin.
   template <class Visit>
   std::vector<Lanes> peaks(const Visit& visit) const {
     std::vector<Lanes> start_C(static_cast<std::size_t>(network_.state_count()));
@@ -52,18 +50,11 @@ class Block {
       }
     }
     EnsembleRun run(network_, parameters_, start_C);
+    const double step_s = shortest_of_longest_steps_s();
     double time_s = 0.0;
-    double step_s = 0.0;
-    const DutyPiece* before = nullptr;
-    OperatingPoint<Lanes> at;
-    for (const DutyPiece& piece : duty_.pieces) {
-      if (!before || piece.torque_Nm != before->torque_Nm || piece.speed_rad_per_s != before->speed_rad_per_s || piece.current_A != before->current_A) {
-        at = point(piece);
-        step_s = longest_step_s(network_, parameters_, at);
-        before = &piece;
-      }
-      run.over(piece.duration_s, at, step_s);
-      time_s += piece.duration_s;
+    for (const LoadBin& bin : demand_.bins) {
+      run.over(bin.duration_s, point(bin), step_s);
+      time_s += bin.duration_s;
       visit(time_s, run.state_C());
     }
     return run.peak_C();
@@ -72,12 +63,11 @@ class Block {
   [[nodiscard]] const MotorSample& motor(int lane) const { return motors_[static_cast<std::size_t>(lane)]; }
 
  private:
-  [[nodiscard]] OperatingPoint<Lanes> point(const DutyPiece& piece) const {
+  [[nodiscard]] OperatingPoint<Lanes> point(const LoadBin& bin) const {
     OperatingPoint<Lanes> at;
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
-      const DrivePoint drive = drive_point(motors_[i].values, robot_, duty_, piece, duties_[i]);
-      const OperatingPoint<double> one = operating_point(drive, robot_, duties_[i].ambient_C);
+      const OperatingPoint<double> one = operating_point(motors_[i].values, robot_, kind_, bin, duties_[i]);
       at.current_rms_A[lane] = one.current_rms_A;
       at.speed_mean_rad_per_s[lane] = one.speed_mean_rad_per_s;
       at.speed_rms_rad_per_s[lane] = one.speed_rms_rad_per_s;
@@ -86,8 +76,20 @@ class Block {
     return at;
   }
 
+  /// The step that suits every bin: the network is fastest where current or speed is highest, or where there is none.
+  [[nodiscard]] double shortest_of_longest_steps_s() const {
+    const auto by_current = std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
+    const auto by_speed = std::ranges::max_element(demand_.bins, {}, &LoadBin::speed_rms_rad_per_s);
+    double step_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
+    for (const auto& bin : {by_current, by_speed}) {
+      step_s = std::min(step_s, longest_step_s(network_, parameters_, point(*bin)));
+    }
+    return step_s;
+  }
+
   const Robot& robot_;
-  const Duty& duty_;
+  DutyKind kind_;
+  const WheelDemand& demand_;
   Network network_;
   std::vector<MotorSample> motors_;
   std::vector<DutySample> duties_;
@@ -112,6 +114,7 @@ struct Envelope {
 /// Everything one motor needs while its samples come in from several threads, each to its own place.
 struct Work {
   const Motor* motor = nullptr;
+  const WheelDemand* wheel = nullptr;  ///< the hottest one
   MotorEvaluation result;
   std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
   std::vector<char> over_limit;                       ///< per sample
@@ -174,62 +177,89 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
   return std::lerp(low, high, share);
 }
 
-void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options) {
+/// One nominal run at one wheel, through the reference.
+struct NominalRun {
+  std::vector<Interval> intervals;
+  TransientResult transient;
+  TemperatureCurves curves;
+};
+
+NominalRun run_nominal(const Network& network, const MotorSample& sample, const Robot& robot, const Duty& duty, const WheelDemand& demand,
+                       const std::vector<NodeLimit>& limits, bool with_curves) {
+  NominalRun run;
+  run.intervals = intervals(sample.values, robot, duty.kind, demand, nominal_sample(duty));
+  TransientOptions options;
+  options.limits = limits;
+  const auto keep = [&](const TransientMoment& moment) {
+    run.curves.time_s.push_back(moment.time_s);
+    run.curves.winding_C.push_back(moment.state_C[winding]);
+    run.curves.stator_C.push_back(moment.state_C[stator]);
+  };
+  run.transient = run_transient(network, network.values(), run.intervals, options, with_curves ? TransientObserver(keep) : TransientObserver());
+  return run;
+}
+
+void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels, const EvaluateOptions& options) {
   const Motor& motor = *work.motor;
   MotorEvaluation& result = work.result;
   const MotorSample sample = nominal_sample(motor);
   const Network network = datasheet_network(motor, sample);
-  const DriveProfile profile = drive_profile(sample.values, robot, duty, nominal_sample(duty));
-  TransientOptions run;
-  run.limits.push_back({winding, sample.values.winding_limit_C});
+  std::vector<NodeLimit> limits{{winding, sample.values.winding_limit_C}};
   if (std::isfinite(sample.values.stator_limit_C)) {
-    run.limits.push_back({stator, sample.values.stator_limit_C});
+    limits.push_back({stator, sample.values.stator_limit_C});
     result.stator_limit_C = sample.values.stator_limit_C;
   }
-  const TransientResult transient = run_transient(network, network.values(), profile.intervals, run, [&](const TransientMoment& moment) {
-    const double needed_V = terminal_voltage_V(sample.values, profile.points[moment.interval], moment.state_C[winding]);
-    result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(needed_V));
-    if (options.with_curves) {
-      result.curves.time_s.push_back(moment.time_s);
-      result.curves.winding_C.push_back(moment.state_C[winding]);
-      result.curves.stator_C.push_back(moment.state_C[stator]);
+  NominalRun run;
+  for (const WheelDemand& wheel : wheels) {
+    NominalRun candidate = run_nominal(network, sample, robot, duty, wheel, limits, options.with_curves);
+    if (!work.wheel || candidate.transient.peak_C[winding] > run.transient.peak_C[winding]) {
+      work.wheel = &wheel;
+      run = std::move(candidate);
     }
-  });
+  }
+  const TransientResult& transient = run.transient;
+  const DutySample demanded = nominal_sample(duty);
+  const Feasibility cold = feasibility(sample.values, robot, duty.kind, *work.wheel, demanded, 25.0);
+  const Feasibility hot = feasibility(sample.values, robot, duty.kind, *work.wheel, demanded, std::min(transient.peak_C[winding], kDestroyed_C));
+  result.wheel = work.wheel->wheel;
+  result.curves = std::move(run.curves);
+  result.highest_voltage_V = hot.highest_voltage_V;
+  result.short_time_share = cold.short_time_share;
   result.motor_id = motor.id;
   result.data_quality = data_quality(motor);
   result.winding_limit_C = sample.values.winding_limit_C;
   result.winding_peak_C.nominal = transient.peak_C[winding];
   result.stator_peak_C.nominal = transient.peak_C[stator];
   result.destroyed = transient.destroyed;
-  result.current_rms_A = profile.current_rms_A;
-  result.least_torque_share = profile.least_torque_share;
+  result.current_rms_A = current_rms_A(run.intervals);
+  result.least_torque_share = cold.least_share;
   result.margin_K = result.winding_limit_C - transient.peak_C[winding];
-  if (const std::optional<double> factor = bearable_current_factor(network, profile.intervals, result.winding_limit_C)) {
-    result.margin_A = (*factor - 1.0) * profile.current_rms_A;
+  if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, result.winding_limit_C)) {
+    result.margin_A = (*factor - 1.0) * result.current_rms_A;
   }
   std::size_t first_limit = 0;
-  for (std::size_t i = 0; i < run.limits.size(); ++i) {
+  for (std::size_t i = 0; i < limits.size(); ++i) {
     const std::optional<double>& time_s = transient.time_to_limit_s[i];
     if (time_s && (!result.time_to_limit_s || *time_s < *result.time_to_limit_s)) {
       result.time_to_limit_s = time_s;
       first_limit = i;
     }
   }
-  if (profile.least_torque_share < 1.0 - kTolerableShortage) {
+  if (cold.short_time_share > kTolerableShortTime) {
     result.verdict = Verdict::infeasible;
-    result.limiting_factor = profile.limit == DriveLimit::voltage ? LimitingFactor::voltage : LimitingFactor::current;
+    result.limiting_factor = cold.limit == DriveLimit::voltage ? LimitingFactor::voltage : LimitingFactor::current;
   } else if (result.time_to_limit_s) {
     result.verdict = Verdict::fail;
     result.limiting_factor = first_limit == 0 ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
-  } else if (result.highest_voltage_V > robot.available_V() * (1.0 + kTolerableShortage)) {
+  } else if (hot.short_time_share > kTolerableShortTime) {
     result.verdict = Verdict::infeasible;
     result.limiting_factor = LimitingFactor::voltage;
   }
 }
 
 void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
-  const Block block(*work.motor, robot, duty, options, first_sample);
-  const double cell_s = duty.duration_s() / static_cast<double>(kBandCells);
+  const Block block(*work.motor, robot, duty, *work.wheel, options, first_sample);
+  const double cell_s = work.wheel->duration_s() / static_cast<double>(kBandCells);
   const auto samples = static_cast<std::size_t>(options.samples);
   std::size_t cell = 0;
   const auto take = [&](const std::vector<Lanes>& state_C) {
@@ -269,10 +299,10 @@ std::vector<double> percentile(const std::vector<float>& by_cell, int samples, d
   return result;
 }
 
-void finish_band(Work& work, const Duty& duty, int samples) {
+void finish_band(Work& work, int samples) {
   TemperatureCurves& curves = work.result.curves;
   for (std::size_t cell = 0; cell < kBandCells; ++cell) {
-    curves.band_time_s.push_back(duty.duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
+    curves.band_time_s.push_back(work.wheel->duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
   }
   curves.winding_p05_C = percentile(work.winding_envelope_C.low_C, samples, 0.05);
   curves.winding_p95_C = percentile(work.winding_envelope_C.high_C, samples, 0.95);
@@ -280,7 +310,7 @@ void finish_band(Work& work, const Duty& duty, int samples) {
   curves.stator_p95_C = percentile(work.stator_envelope_C.high_C, samples, 0.95);
 }
 
-void conclude(Work& work, const Duty& duty, const EvaluateOptions& options) {
+void conclude(Work& work, const EvaluateOptions& options) {
   MotorEvaluation& result = work.result;
   result.winding_peak_C = spread(result.winding_peak_C.nominal, work.winding_peak_C);
   result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
@@ -292,15 +322,15 @@ void conclude(Work& work, const Duty& duty, const EvaluateOptions& options) {
     result.limiting_factor = winding_first ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
   }
   if (options.with_curves && options.samples > 0) {
-    finish_band(work, duty, options.samples);
+    finish_band(work, options.samples);
   }
 }
 
-/// Runs `count` jobs on all threads; the first exception ends the rest and is thrown here.
+/// Runs `count` jobs on all threads; the first exception ends the rest and is thrown here. For the progress
+/// they are the ones after `done` of `total`.
 template <class Job>
-void in_parallel(std::size_t count, int threads, const Progress& progress, const Job& job) {
+void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress, const Job& job) {
   std::atomic<std::size_t> next = 0;
-  std::size_t done = 0;
   std::mutex mutex;
   std::exception_ptr error;
   const auto work = [&] {
@@ -315,7 +345,7 @@ void in_parallel(std::size_t count, int threads, const Progress& progress, const
       const std::lock_guard lock(mutex);
       ++done;
       if (progress) {
-        progress(done, count);
+        progress(done, total);
       }
     }
   };
@@ -357,18 +387,15 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
   }
-  in_parallel(motors.size() * (blocks + 1), options.threads, progress, [&](std::size_t job) {
-    Work& work = works[job / (blocks + 1)];
-    const std::size_t block = job % (blocks + 1);
-    if (block == blocks) {
-      evaluate_nominal(work, robot, duty, options);
-    } else {
-      evaluate_samples(work, robot, duty, options, static_cast<int>(block) * kLanes);
-    }
-  });
+  const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
+  const std::size_t jobs = motors.size() * (blocks + 1);
+  // The samples need to know the hottest wheel, so every motor's nominal run comes first.
+  in_parallel(motors.size(), options.threads, 0, jobs, progress, [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
+  in_parallel(motors.size() * blocks, options.threads, motors.size(), jobs, progress,
+              [&](std::size_t job) { evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * kLanes); });
   std::vector<MotorEvaluation> results;
   for (Work& work : works) {
-    conclude(work, duty, options);
+    conclude(work, options);
     results.push_back(std::move(work.result));
   }
   std::ranges::stable_sort(results, [](const MotorEvaluation& a, const MotorEvaluation& b) {

@@ -26,6 +26,8 @@ std::string_view to_string(Verdict verdict);
 std::string_view to_string(LimitingFactor factor);
 
 inline constexpr double kMarginalProbability = 0.05;
+/// A demand counts as met where it is missed for no larger part of the time: a lost centimetre, not a lost match.
+inline constexpr double kTolerableShortTime = 0.01;
 
 struct EvaluateOptions {
   int samples = 500;  ///< 0: nominal only
@@ -53,6 +55,7 @@ struct TemperatureCurves {
 
 struct MotorEvaluation {
   std::string motor_id;
+  std::string wheel;  ///< the hottest one, which all temperatures are of
   Verdict verdict = Verdict::pass;
   LimitingFactor limiting_factor = LimitingFactor::none;
   std::string data_quality;
@@ -66,6 +69,7 @@ struct MotorEvaluation {
   double margin_K = 0.0;                      ///< winding limit minus nominal peak
   std::optional<double> margin_A;             ///< how much more rms current the winding bears at the same speeds
   double least_torque_share = 1.0;            ///< delivered over demanded, worst moment
+  double short_time_share = 0.0;              ///< part of the time in which the demand is not met
   double highest_voltage_V = 0.0;             ///< needed at the terminals, hot
   bool destroyed = false;                     ///< runaway: the nominal run ended at 1000 °C
   TemperatureCurves curves;

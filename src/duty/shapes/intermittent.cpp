@@ -18,6 +18,28 @@ Figure as_factor(const Figure& figure) {
   return factor;
 }
 
+class Intermittent final : public DutyShape {
+ public:
+  Intermittent(const LoadBin& on, double off_s, int repeats, const LoadPoint& point) : on_(on), off_s_(off_s), repeats_(repeats), point_(point) {}
+
+  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& /*robot*/, std::uint64_t /*seed*/) const override {
+    WheelDemand wheel{.wheel = "any wheel", .bins = {}, .points = {point_}};
+    for (int i = 0; i < repeats_; ++i) {
+      wheel.bins.push_back(on_);
+      if (off_s_ > 0.0) {
+        wheel.bins.push_back(constant_bin(off_s_, 0.0, 0.0, 0.0));
+      }
+    }
+    return {wheel};
+  }
+
+ private:
+  LoadBin on_;
+  double off_s_;
+  int repeats_;
+  LoadPoint point_;
+};
+
 void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   constexpr double kLongest_s = 1e6;
   const ParameterSpec torque{"torque_on", "N m", Range::positive(), "at one wheel, while it is on"};
@@ -47,14 +69,10 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   }
   duty.kind = torque_on ? DutyKind::torque : DutyKind::current;
   duty.load = as_factor(torque_on ? *torque_on : *current_on);
-  const DutyPiece on{*on_s, torque_on ? torque_on->value : 0.0, *speed_on, current_on ? current_on->value : 0.0};
-  const DutyPiece off{*off_s, 0.0, 0.0, 0.0};
-  for (int i = 0; i < static_cast<int>(*repeats); ++i) {
-    duty.pieces.push_back(on);
-    if (*off_s > 0.0) {
-      duty.pieces.push_back(off);
-    }
-  }
+  const double torque_Nm = torque_on ? torque_on->value : 0.0;
+  const double current_A = current_on ? current_on->value : 0.0;
+  duty.shape_data = std::make_shared<Intermittent>(constant_bin(*on_s, torque_Nm, *speed_on, current_A), *off_s, static_cast<int>(*repeats),
+                                                   LoadPoint{torque_Nm, *speed_on, current_A, *on_s * *repeats});
 }
 
 }  // namespace

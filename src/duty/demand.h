@@ -1,0 +1,72 @@
+// What the wheels of a robot have to do, in the form that a motor's heat depends on.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace heatsoak {
+
+/// Means over a stretch of time at one wheel. With I = (M + M_drag·sign ω)/K_t the mean of I² is
+/// (⟨M²⟩ + 2·M_drag·⟨M·sign ω⟩ + M_drag²·⟨sign² ω⟩)/K_t², so that these means give the copper heat of every motor exactly,
+/// however many moments were merged into the bin.
+struct LoadBin {
+  double duration_s = 0.0;
+  double torque_rms_Nm = 0.0;
+  double torque_along_motion_Nm = 0.0;  ///< mean of M·sign ω: positive drives, negative brakes
+  double moving_share = 0.0;            ///< part of the time with ω ≠ 0
+  double speed_mean_rad_per_s = 0.0;    ///< mean of |ω|
+  double speed_rms_rad_per_s = 0.0;
+  double current_rms_A = 0.0;  ///< only of duties that are given as current
+};
+
+/// A stretch with one torque and speed.
+LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A);
+
+/// How long a wheel is asked for a torque at a speed: tells what voltage and current are needed, and how often.
+/// speed_rad_per_s ≥ 0; a torque < 0 brakes.
+struct LoadPoint {
+  double torque_Nm = 0.0;
+  double speed_rad_per_s = 0.0;
+  double current_A = 0.0;  ///< only of duties that are given as current
+  double time_s = 0.0;
+};
+
+struct WheelDemand {
+  std::string wheel;  ///< "wheel 1 (front right)"
+  std::vector<LoadBin> bins;
+  std::vector<LoadPoint> points;
+
+  [[nodiscard]] double duration_s() const;
+};
+
+/// Merges moments into bins and points as they come; memory grows with the number of bins only.
+/// Points are gathered on a grid of torque and speed and stand for the edge of their cell that asks more.
+class DemandGatherer {
+ public:
+  struct Grid {
+    double torque_step_Nm = 0.005;
+    double speed_step_rad_per_s = 5.0;
+  };
+  DemandGatherer(std::string wheel, double bin_s, Grid grid);
+
+  /// `speed_rad_per_s` and `torque_Nm` hold for `duration_s`; torque · speed > 0 drives.
+  void add(double duration_s, double torque_Nm, double speed_rad_per_s);
+  [[nodiscard]] WheelDemand finish();
+
+ private:
+  struct Sums {
+    double time_s = 0.0;
+    double torque2 = 0.0, along = 0.0, moving_s = 0.0, speed = 0.0, speed2 = 0.0;
+  };
+  void close_bin();
+
+  WheelDemand demand_;
+  double bin_s_;
+  Grid grid_;
+  Sums sums_;
+  std::map<std::pair<int, int>, double> time_at_s_;
+};
+
+}  // namespace heatsoak

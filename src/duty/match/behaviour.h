@@ -1,0 +1,46 @@
+// What a role does in a phase: a stream of targets and duels, with no notion of how the robot gets there.
+#pragma once
+
+#include "duty/match/game.h"
+
+namespace heatsoak {
+
+/// Hold for `duration_s`: go to the target, or push against another robot without moving.
+struct MotionCommand {
+  double duration_s = 0.0;
+  double x_m = 0.0;  ///< field frame: centre of the field, x towards the opponents' goal
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+  double speed_limit_m_per_s = std::numeric_limits<double>::infinity();
+  bool duel = false;
+  double push_direction_rad = 0.0;  ///< field frame
+  double push_share = 0.0;          ///< of the force that the ground transmits
+};
+
+struct FieldPose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+};
+
+class Behaviour {
+ public:
+  Behaviour(const MatchInputs& inputs, const MatchValues& values, Random& random);
+
+  /// The next command, `into_phase_s` after the phase began with `left_s` still to go; never longer than `left_s`.
+  MotionCommand next(Phase phase, double into_phase_s, double left_s, const FieldPose& now);
+
+ private:
+  MotionCommand play(double left_s, const FieldPose& now);
+  MotionCommand walk(double left_s, const FieldPose& now, double distance_m, double speed_limit_m_per_s);
+  MotionCommand stand(double left_s, const FieldPose& now) const;
+  FieldPose near(const FieldPose& now, double distance_m);
+  double exponential(double mean);
+
+  Role role_;
+  MatchValues values_;
+  FieldSize field_;
+  Random& random_;
+};
+
+}  // namespace heatsoak
