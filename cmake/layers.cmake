@@ -1,11 +1,15 @@
-# add_layer(name USES … HIDES … REGISTERS folder:Type …): one static library from src/<name>.
+# add_layer(name USES … HIDES … ROOMS folder … REGISTERS folder:Type …): one static library from src/<name> and its rooms.
 # A folder that a layer registers is its registry: every file x.cpp in it defines `Type x()` in the
 # namespace heatsoak::<folder>, and a table of them is generated as <name>/<folder>_registry.h.
 set_property(GLOBAL PROPERTY heatsoak_layers "")
 
 function(add_layer name)
-  cmake_parse_arguments(LAYER "" "" "USES;HIDES;REGISTERS" ${ARGN})
+  cmake_parse_arguments(LAYER "" "" "USES;HIDES;ROOMS;REGISTERS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp" "${PROJECT_SOURCE_DIR}/src/${name}/*.h")
+  foreach(room IN LISTS LAYER_ROOMS)
+    file(GLOB in_room CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/${room}/*.cpp" "${PROJECT_SOURCE_DIR}/src/${name}/${room}/*.h")
+    list(APPEND sources ${in_room})
+  endforeach()
   set(below "")
   get_property(declared GLOBAL PROPERTY heatsoak_layers)
   foreach(used IN LISTS LAYER_USES)

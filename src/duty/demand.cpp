@@ -17,6 +17,8 @@ LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s
           .moving_share = std::abs(sign),
           .speed_mean_rad_per_s = std::abs(speed_rad_per_s),
           .speed_rms_rad_per_s = std::abs(speed_rad_per_s),
+          .torque_mean_Nm = torque_Nm,
+          .velocity_mean_rad_per_s = speed_rad_per_s,
           .current_rms_A = std::abs(current_A)};
 }
 
@@ -25,35 +27,37 @@ DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid) : bin
 void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_per_s) {
   const double sign = speed_rad_per_s > 0.0 ? 1.0 : speed_rad_per_s < 0.0 ? -1.0 : 0.0;
   const double magnitude_rad_per_s = std::abs(speed_rad_per_s);
-  sums_.time_s += duration_s;
-  sums_.torque2 += duration_s * torque_Nm * torque_Nm;
-  sums_.along += duration_s * torque_Nm * sign;
-  sums_.moving_s += sign != 0.0 ? duration_s : 0.0;
-  sums_.speed += duration_s * magnitude_rad_per_s;
-  sums_.speed2 += duration_s * speed_rad_per_s * speed_rad_per_s;
+  const std::array<double, integral_count> now{1.0,           torque_Nm,      torque_Nm * torque_Nm, torque_Nm * sign,
+                                               std::abs(sign), speed_rad_per_s, magnitude_rad_per_s,   speed_rad_per_s * speed_rad_per_s};
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    integrals_[i] += duration_s * now[i];
+  }
   const double torque_with_motion_Nm = sign < 0.0 ? -torque_Nm : sign > 0.0 ? torque_Nm : std::abs(torque_Nm);
   // Away from zero, so that a cell asks at least as much as anything in it.
   const int torque_cell = static_cast<int>(std::copysign(std::ceil(std::abs(torque_with_motion_Nm) / grid_.torque_step_Nm), torque_with_motion_Nm));
   const int speed_cell = static_cast<int>(std::ceil(magnitude_rad_per_s / grid_.speed_step_rad_per_s));
   time_at_s_[{torque_cell, speed_cell}] += duration_s;
-  if (sums_.time_s >= bin_s_ * (1.0 - 1e-9)) {
+  if (integrals_[time] >= bin_s_ * (1.0 - 1e-9)) {
     close_bin();
   }
 }
 
 void DemandGatherer::close_bin() {
-  const double time_s = sums_.time_s;
+  const double time_s = integrals_[time];
+  const auto mean = [&](Integral which) { return integrals_[which] / time_s; };
   demand_.bins.push_back({.duration_s = time_s,
-                          .torque_rms_Nm = std::sqrt(sums_.torque2 / time_s),
-                          .torque_along_motion_Nm = sums_.along / time_s,
-                          .moving_share = sums_.moving_s / time_s,
-                          .speed_mean_rad_per_s = sums_.speed / time_s,
-                          .speed_rms_rad_per_s = std::sqrt(sums_.speed2 / time_s)});
-  sums_ = {};
+                          .torque_rms_Nm = std::sqrt(mean(torque_squared)),
+                          .torque_along_motion_Nm = mean(torque_along_motion),
+                          .moving_share = mean(moving),
+                          .speed_mean_rad_per_s = mean(speed),
+                          .speed_rms_rad_per_s = std::sqrt(mean(speed_squared)),
+                          .torque_mean_Nm = mean(torque),
+                          .velocity_mean_rad_per_s = mean(velocity)});
+  integrals_ = {};
 }
 
 WheelDemand DemandGatherer::finish() {
-  if (sums_.time_s > 0.0) {
+  if (integrals_[time] > 0.0) {
     close_bin();
   }
   for (const auto& [cell, time_s] : time_at_s_) {

@@ -1,6 +1,7 @@
 // What the wheels of a robot have to do, in the form that a motor's heat depends on.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -18,7 +19,9 @@ struct LoadBin {
   double moving_share = 0.0;            ///< part of the time with ω ≠ 0
   double speed_mean_rad_per_s = 0.0;    ///< mean of |ω|
   double speed_rms_rad_per_s = 0.0;
-  double current_rms_A = 0.0;  ///< only of duties that are given as current
+  double torque_mean_Nm = 0.0;           ///< signed
+  double velocity_mean_rad_per_s = 0.0;  ///< signed mean of ω
+  double current_rms_A = 0.0;            ///< only of duties that are given as current
 };
 
 /// A stretch with one torque and speed.
@@ -56,16 +59,14 @@ class DemandGatherer {
   [[nodiscard]] WheelDemand finish();
 
  private:
-  struct Sums {
-    double time_s = 0.0;
-    double torque2 = 0.0, along = 0.0, moving_s = 0.0, speed = 0.0, speed2 = 0.0;
-  };
+  /// Time integrals over the open bin.
+  enum Integral { time, torque, torque_squared, torque_along_motion, moving, velocity, speed, speed_squared, integral_count };
   void close_bin();
 
   WheelDemand demand_;
   double bin_s_;
   Grid grid_;
-  Sums sums_;
+  std::array<double, integral_count> integrals_{};
   std::map<std::pair<int, int>, double> time_at_s_;
 };
 

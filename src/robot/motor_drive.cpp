@@ -51,12 +51,15 @@ double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, dou
   return point.current_A * resistance_ohm + motor.torque_constant_Nm_per_A * point.motor_speed_rad_per_s;
 }
 
-OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C) {
+double heating_factor(const Robot& robot) {
   // 0.75·R·Î² against R·I² at equal torque, Î = I/(√3·π/6): 0.912 of the heat.
   static const double kSinusoidal = std::sqrt(0.75) * 6.0 / (std::numbers::sqrt3 * std::numbers::pi);
-  const double heating_A = std::abs(point.current_A) * (robot.commutation == Commutation::sinusoidal ? kSinusoidal : 1.0);
+  return robot.commutation == Commutation::sinusoidal ? kSinusoidal : 1.0;
+}
+
+OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C) {
   const double speed_rad_per_s = std::abs(point.motor_speed_rad_per_s);
-  return {heating_A, speed_rad_per_s, speed_rad_per_s, ambient_C};
+  return {std::abs(point.current_A) * heating_factor(robot), speed_rad_per_s, speed_rad_per_s, ambient_C};
 }
 
 }  // namespace heatsoak

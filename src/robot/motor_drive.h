@@ -42,6 +42,9 @@ double shaft_torque_factor(const Robot& robot, bool drives);
 /// Terminal voltage that the point needs with the winding at a temperature; signed like the torque.
 double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C);
 
+/// Current that heats as much through the terminal resistance, per current that makes the torque.
+double heating_factor(const Robot& robot);
+
 /// What the thermal network sees of it.
 OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C);
 

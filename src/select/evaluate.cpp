@@ -374,7 +374,7 @@ std::string_view to_string(LimitingFactor factor) {
   return kNames.at(static_cast<std::size_t>(factor));
 }
 
-std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const Motor> motors, const EvaluateOptions& options,
+std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels, std::span<const Motor> motors, const EvaluateOptions& options,
                                       const Progress& progress) {
   const auto samples = static_cast<std::size_t>(options.samples);
   const std::size_t blocks = (samples + kLanes - 1) / kLanes;
@@ -387,7 +387,6 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
   }
-  const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
   const std::size_t jobs = motors.size() * (blocks + 1);
   // The samples need to know the hottest wheel, so every motor's nominal run comes first.
   in_parallel(motors.size(), options.threads, 0, jobs, progress, [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });

@@ -78,9 +78,9 @@ struct MotorEvaluation {
 /// `done` of `total` units of work are finished.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Best first: pass, marginal, fail, infeasible; within them by margin. `progress` is called from one
-/// thread at a time.
-std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const Motor> motors, const EvaluateOptions& options,
+/// Best first: pass, marginal, fail, infeasible; within them by margin. `wheels` is the duty's demand; every figure is
+/// of the wheel whose winding gets hottest. `progress` is called from one thread at a time.
+std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels, std::span<const Motor> motors, const EvaluateOptions& options,
                                       const Progress& progress = {});
 
 }  // namespace heatsoak

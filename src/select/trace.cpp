@@ -11,19 +11,27 @@ namespace {
 
 enum Node { winding, stator };
 
-/// The same profile in pieces no longer than `every_s`.
-DriveProfile subdivided(const DriveProfile& profile, double every_s) {
-  DriveProfile fine = profile;
-  fine.points.clear();
-  fine.intervals.clear();
-  for (std::size_t i = 0; i < profile.intervals.size(); ++i) {
-    const double parts = std::max(1.0, std::ceil(profile.intervals[i].duration_s / every_s - 1e-9));
-    for (int part = 0; part < static_cast<int>(parts); ++part) {
-      fine.points.push_back(profile.points[i]);
-      fine.intervals.push_back({profile.intervals[i].duration_s / parts, profile.intervals[i].at});
-    }
+/// The same demand in bins no longer than `every_s`.
+WheelDemand subdivided(const WheelDemand& demand, double every_s) {
+  WheelDemand fine{.wheel = demand.wheel, .bins = {}, .points = {}};
+  for (const LoadBin& bin : demand.bins) {
+    const double parts = std::max(1.0, std::ceil(bin.duration_s / every_s - 1e-9));
+    LoadBin part = bin;
+    part.duration_s = bin.duration_s / parts;
+    fine.bins.insert(fine.bins.end(), static_cast<std::size_t>(parts), part);
   }
   return fine;
+}
+
+/// What flows during a bin, with the sign of its mean.
+DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin& bin, const OperatingPoint<double>& at) {
+  DrivePoint point;
+  point.motor_speed_rad_per_s = bin.velocity_mean_rad_per_s * robot.gear_ratio;
+  const double direction = bin.torque_mean_Nm != 0.0 ? bin.torque_mean_Nm : bin.velocity_mean_rad_per_s;
+  point.current_A = std::copysign(at.current_rms_A / heating_factor(robot), direction);
+  const double drag_Nm = bin.velocity_mean_rad_per_s == 0.0 ? 0.0 : std::copysign(drag_torque_Nm(motor), bin.velocity_mean_rad_per_s);
+  point.motor_torque_Nm = motor.torque_constant_Nm_per_A * point.current_A - drag_Nm;
+  return point;
 }
 
 std::vector<BookedHeat> balance(const Network& network, const TransientResult& result) {
@@ -40,20 +48,21 @@ std::vector<BookedHeat> balance(const Network& network, const TransientResult& r
 
 }  // namespace
 
-Trace run_trace(const Robot& robot, const Duty& duty, const Motor& motor, double every_s) {
+Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, const Motor& motor, double every_s) {
   const MotorSample sample = nominal_sample(motor);
   const DutySample demand = nominal_sample(duty);
   const Network network = datasheet_network(motor, sample);
-  const DriveProfile profile = subdivided(drive_profile(sample.values, robot, duty, demand), every_s);
+  const WheelDemand fine = subdivided(wheel, every_s);
+  const std::vector<Interval> all = intervals(sample.values, robot, duty.kind, fine, demand);
   TransientOptions options;
   options.with_ledger = true;
-  const double end_s = duty.duration_s() * (1.0 - 1e-12);
+  const double end_s = wheel.duration_s() * (1.0 - 1e-12);
   Trace trace;
   const auto add_row = [&](const TransientMoment& moment) {
     if (!moment.begins_interval && moment.time_s < end_s) {
       return;
     }
-    const DrivePoint& point = profile.points[moment.interval];
+    const DrivePoint point = point_of(sample.values, robot, fine.bins[moment.interval], all[moment.interval].at);
     TraceRow row{.time_s = moment.time_s,
                  .winding_C = moment.state_C[winding],
                  .stator_C = moment.state_C[stator],
@@ -66,7 +75,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const Motor& motor, double
     trace.rows.push_back(row);
   };
   const std::vector<double> parameters = network.values();
-  const TransientResult result = run_transient(network, parameters, profile.intervals, options, add_row);
+  const TransientResult result = run_transient(network, parameters, all, options, add_row);
   trace.balance = balance(network, result);
   for (int node = 0; node < network.state_count(); ++node) {
     const double capacity_J_per_K = parameters[static_cast<std::size_t>(node)];
@@ -78,7 +87,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const Motor& motor, double
 std::string to_csv(const Trace& trace) {
   std::string text = "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W\n";
   for (const TraceRow& row : trace.rows) {
-    fmt::format_to(std::back_inserter(text), "{:.6g},{:.4f},{:.4f},{:.2f},{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.time_s, row.winding_C, row.stator_C,
+    fmt::format_to(std::back_inserter(text), "{:.10g},{:.4f},{:.4f},{:.2f},{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.time_s, row.winding_C, row.stator_C,
                    row.ambient_C, row.current_A, row.speed_rad_per_s, row.torque_Nm, row.motor_V, row.power_in_W);
   }
   return text;

@@ -35,7 +35,7 @@ struct Trace {
 };
 
 /// Rows stand at every change of the inputs and at most `every_s` apart.
-Trace run_trace(const Robot& robot, const Duty& duty, const Motor& motor, double every_s);
+Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, const Motor& motor, double every_s);
 
 /// The canonical log format: one header row, names end in units.
 std::string to_csv(const Trace& trace);

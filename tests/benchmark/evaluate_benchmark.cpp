@@ -25,7 +25,7 @@ void evaluate_database(benchmark::State& state, int samples, bool with_curves) {
   const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   const std::vector<Motor> motors = all_motors();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(evaluate(robot, duty, motors, {.samples = samples, .with_curves = with_curves}).data());
+    benchmark::DoNotOptimize(evaluate(robot, duty, duty.demand(robot, 1), motors, {.samples = samples, .with_curves = with_curves}).data());
   }
   state.counters["motors"] = static_cast<double>(motors.size());
 }

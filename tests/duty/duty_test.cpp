@@ -34,10 +34,13 @@ class DutyTest : public testing::Test {
   std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("heatsoak_duty_" + std::to_string(::getpid()));
 };
 
+/// The one wheel of a duty that tells none apart.
+WheelDemand wheel_of(const Duty& duty) { return duty.demand({}, 1).at(0); }
+
 double time_on_s(const Duty& duty) {
   double sum_s = 0.0;
-  for (const DutyPiece& piece : duty.pieces) {
-    sum_s += piece.torque_Nm != 0.0 || piece.current_A != 0.0 ? piece.duration_s : 0.0;
+  for (const LoadBin& bin : wheel_of(duty).bins) {
+    sum_s += bin.torque_rms_Nm != 0.0 || bin.current_rms_A != 0.0 ? bin.duration_s : 0.0;
   }
   return sum_s;
 }
@@ -48,14 +51,14 @@ TEST_F(DutyTest, intermittent_sums_to_its_cycles) {
                          "speed_on = \"600 rpm\"\ntime_on = \"4 s\"\ntime_off = \"0.1 min\"\nrepeats = \"240\"\n");
   EXPECT_EQ(duty.id, "mine");
   EXPECT_EQ(duty.kind, DutyKind::torque);
-  EXPECT_THAT(duty.pieces, SizeIs(480));
-  EXPECT_NEAR(duty.duration_s(), 2400.0, 1e-9);
+  EXPECT_THAT(wheel_of(duty).bins, SizeIs(480));
+  EXPECT_NEAR(wheel_of(duty).duration_s(), 2400.0, 1e-9);
   EXPECT_NEAR(time_on_s(duty), 960.0, 1e-9);
-  EXPECT_DOUBLE_EQ(duty.pieces[0].torque_Nm, 0.12);
-  EXPECT_NEAR(duty.pieces[0].speed_rad_per_s, 62.83185307, 1e-6);
-  EXPECT_EQ(duty.pieces[0].current_A, 0.0);
-  EXPECT_EQ(duty.pieces[1].torque_Nm, 0.0);
-  EXPECT_EQ(duty.pieces[1].speed_rad_per_s, 0.0);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(0).torque_mean_Nm, 0.12);
+  EXPECT_NEAR(wheel_of(duty).bins.at(0).velocity_mean_rad_per_s, 62.83185307, 1e-6);
+  EXPECT_EQ(wheel_of(duty).bins.at(0).current_rms_A, 0.0);
+  EXPECT_EQ(wheel_of(duty).bins.at(1).torque_mean_Nm, 0.0);
+  EXPECT_EQ(wheel_of(duty).bins.at(1).velocity_mean_rad_per_s, 0.0);
   EXPECT_DOUBLE_EQ(duty.load.value, 1.0);
   EXPECT_FALSE(duty.load.spread);
 }
@@ -65,9 +68,9 @@ TEST_F(DutyTest, intermittent_without_a_pause_has_no_pieces_of_no_length) {
                          "current_on = { value = \"3 A\", origin = \"estimated\", derivation = \"x\" }\n"
                          "speed_on = \"0 rpm\"\ntime_on = \"4 s\"\ntime_off = \"0 s\"\nrepeats = \"5\"\n");
   EXPECT_EQ(duty.kind, DutyKind::current);
-  EXPECT_THAT(duty.pieces, SizeIs(5));
-  EXPECT_DOUBLE_EQ(duty.pieces[0].current_A, 3.0);
-  EXPECT_DOUBLE_EQ(duty.duration_s(), 20.0);
+  EXPECT_THAT(wheel_of(duty).bins, SizeIs(5));
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(0).current_rms_A, 3.0);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).duration_s(), 20.0);
 }
 
 TEST_F(DutyTest, the_spread_of_the_demand_becomes_a_factor) {
@@ -89,25 +92,25 @@ TEST_F(DutyTest, the_spread_of_the_demand_becomes_a_factor) {
 TEST_F(DutyTest, a_recorded_row_holds_until_the_next) {
   write("log.csv", "speed_rad_per_s,time_s,torque_Nm,note\n10,5,0.1,a\n-20,7,-0.2,b\n30,7.5,0.3,c\n99,10,9,only the end\n");
   const Duty duty = read("recorded", "file = \"log.csv\"\nquantity = \"torque\"\n");
-  ASSERT_THAT(duty.pieces, SizeIs(3));
-  EXPECT_DOUBLE_EQ(duty.pieces[0].duration_s, 2.0);
-  EXPECT_DOUBLE_EQ(duty.pieces[1].duration_s, 0.5);
-  EXPECT_DOUBLE_EQ(duty.pieces[2].duration_s, 2.5);
-  EXPECT_DOUBLE_EQ(duty.pieces[1].torque_Nm, -0.2);
-  EXPECT_DOUBLE_EQ(duty.pieces[1].speed_rad_per_s, -20.0);
-  EXPECT_DOUBLE_EQ(duty.pieces[2].torque_Nm, 0.3);
-  EXPECT_DOUBLE_EQ(duty.duration_s(), 5.0);
+  ASSERT_THAT(wheel_of(duty).bins, SizeIs(3));
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(0).duration_s, 2.0);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(1).duration_s, 0.5);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(2).duration_s, 2.5);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(1).torque_mean_Nm, -0.2);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(1).velocity_mean_rad_per_s, -20.0);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(2).torque_mean_Nm, 0.3);
+  EXPECT_DOUBLE_EQ(wheel_of(duty).duration_s(), 5.0);
 }
 
 TEST_F(DutyTest, a_recording_of_current_is_repeated_whole) {
   write("log.csv", "time_s,current_A,speed_rad_per_s\n0,1,10\n2,3,20\n3,0,0\n");
   const Duty duty = read("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"3\"\n");
   EXPECT_EQ(duty.kind, DutyKind::current);
-  ASSERT_THAT(duty.pieces, SizeIs(6));
-  EXPECT_DOUBLE_EQ(duty.duration_s(), 9.0);
+  ASSERT_THAT(wheel_of(duty).bins, SizeIs(6));
+  EXPECT_DOUBLE_EQ(wheel_of(duty).duration_s(), 9.0);
   for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_DOUBLE_EQ(duty.pieces[i].current_A, i % 2 == 0 ? 1.0 : 3.0);
-    EXPECT_DOUBLE_EQ(duty.pieces[i].duration_s, i % 2 == 0 ? 2.0 : 1.0);
+    EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(i).current_rms_A, i % 2 == 0 ? 1.0 : 3.0);
+    EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(i).duration_s, i % 2 == 0 ? 2.0 : 1.0);
   }
 }
 

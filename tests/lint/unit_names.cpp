@@ -16,7 +16,7 @@ const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "real
 /// A pure number; the last word of the name says which.
 const std::set<std::string, std::less<>> kPureNumbers{
     "count",   "efficiency",           "factor",     "headroom", "load", "probability", "probability_over_limit", "ratio", "share",
-    "uniform", "kMarginalProbability", "pole_pairs", "relative"};
+    "uniform", "kMarginalProbability", "kTolerableShortage", "kTolerableShortTime", "pole_pairs", "relative"};
 
 /// The unit is not known where the name is written, but stands beside it.
 const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit
@@ -26,7 +26,7 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      // of a chart: its axis label has the unit; of an ODE: the system has it
                                                      "x", "y", "dydt", "event_values", "written",
                                                      // mixed units, place by place
-                                                     "parameters", "effect_parameters",
+                                                     "parameters", "effect_parameters", "integrals",
                                                      // stages of a method, in the state's unit
                                                      "rate", "sum",
                                                      // of a square: in the root of its argument's unit

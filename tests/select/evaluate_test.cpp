@@ -9,6 +9,7 @@
 #include <random>
 
 #include "motor/datasheet_network.h"
+#include "given_demand.h"
 #include "select/drive_profile.h"
 #include "thermal/steady_state.h"
 
@@ -61,12 +62,12 @@ Duty constant_current(double current_A, double duration_s = 600.0) {
   duty.kind = DutyKind::current;
   duty.ambient_C.value = 25.0;
   duty.load.value = 1.0;
-  duty.pieces.push_back({duration_s, 0.0, 0.0, current_A});
+  give(duty, {{duration_s, 0.0, 0.0, current_A}});
   return duty;
 }
 
 MotorEvaluation evaluate_one(const Motor& motor, const Robot& robot, const Duty& duty, const EvaluateOptions& options = {.samples = 0}) {
-  return evaluate(robot, duty, std::span(&motor, 1), options).front();
+  return evaluate(robot, duty, duty.demand(robot, options.seed), std::span(&motor, 1), options).front();
 }
 
 /// Winding of the closed form, (9) and (12), for a constant current.
@@ -95,7 +96,7 @@ TEST(Evaluate, a_long_constant_current_peaks_at_the_closed_form) {
 
 TEST(Evaluate, rms_current_is_that_of_the_whole_duty) {
   Duty duty = constant_current(5.0, 4.0);
-  duty.pieces.push_back({12.0, 0.0, 0.0, 0.0});
+  give(duty, {{4.0, 0.0, 0.0, 5.0}, {12.0, 0.0, 0.0, 0.0}});
   EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), duty).current_rms_A, 2.5, 1e-14);
 }
 
@@ -135,7 +136,7 @@ TEST(Evaluate, runaway_is_destroyed) {
 TEST(Evaluate, infeasible_by_voltage) {
   Duty duty = constant_current(5.0);
   duty.kind = DutyKind::torque;
-  duty.pieces = {{1.0, 0.06, 790.0, 0.0}};  // 23.7 V of back-EMF leave 0.3 V: 0.6 of 2 A
+  give(duty, {{1.0, 0.06, 790.0, 0.0}});  // 23.7 V of back-EMF leave 0.3 V: 0.6 of 2 A
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
   EXPECT_EQ(result.verdict, Verdict::infeasible);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::voltage);
@@ -154,7 +155,7 @@ TEST(Evaluate, infeasible_by_current) {
 // Cold it is just enough, hot the resistance takes more: 5 A · 0.5 Ω · 1.35… instead of 2.5 V.
 TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
   Duty duty = constant_current(5.0);
-  duty.pieces = {{600.0, 0.0, 21.4 / 0.03, 5.0}};  // 21.4 V + 2.5 V = 23.9 V
+  give(duty, {{600.0, 0.0, 21.4 / 0.03, 5.0}});  // 21.4 V + 2.5 V = 23.9 V
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
   EXPECT_EQ(result.least_torque_share, 1.0);
   EXPECT_NEAR(result.highest_voltage_V, 21.4 + 2.5 * (1.0 + kAlpha_per_K * (rest_C(kResistance_ohm, 5.0) - 25.0)), 1e-6);
@@ -168,11 +169,11 @@ TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
 double peak_of_scaled_C(const Motor& motor, const Robot& robot, const Duty& duty, double factor) {
   const MotorSample sample = nominal_sample(motor);
   const Network network = datasheet_network(motor, sample);
-  std::vector<Interval> intervals = drive_profile(sample.values, robot, duty, nominal_sample(duty)).intervals;
-  for (Interval& interval : intervals) {
+  std::vector<Interval> scaled = intervals(sample.values, robot, duty.kind, duty.demand(robot, 1).front(), nominal_sample(duty));
+  for (Interval& interval : scaled) {
     interval.at.current_rms_A *= factor;
   }
-  return run_transient(network, network.values(), intervals, {}).peak_C[0];
+  return run_transient(network, network.values(), scaled, {}).peak_C[0];
 }
 
 TEST(Margin, of_a_constant_current_is_that_of_the_closed_form) {
@@ -199,7 +200,7 @@ TEST(Margin, there_is_none_where_drag_alone_is_too_much) {
   Motor motor = simple_motor();
   motor.nominal.no_load_current_A = 10.0;
   Duty duty = constant_current(5.0);
-  duty.pieces = {{600.0, 0.0, 300.0, 5.0}};  // 0.3 N m · 300 rad/s = 90 W behind 2 K/W
+  give(duty, {{600.0, 0.0, 300.0, 5.0}});  // 0.3 N m · 300 rad/s = 90 W behind 2 K/W
   EXPECT_FALSE(evaluate_one(motor, simple_robot(), duty).margin_A.has_value());
 }
 
@@ -208,14 +209,14 @@ TEST(Margin, there_is_none_where_drag_alone_is_too_much) {
 TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
   const Robot robot = robot_of_file("roboteam_twente_v2024");
   Duty duty = duty_of_file("paper_intermittent");
-  duty.pieces.resize(60);
+  shorten(duty, 60);
   const std::vector<Motor> motors{motor_of_file("maxon_ecx_flat_32l_48v"), motor_of_file("maxon_ecx_flat_42m_24v"), motor_of_file("nanotec_df45l024048_a2")};
   EvaluateOptions options{.samples = 61, .seed = 7, .threads = 1, .with_curves = true};
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-  const std::vector<MotorEvaluation> one = evaluate(robot, duty, motors, options);
+  const std::vector<MotorEvaluation> one = evaluate(robot, duty, duty.demand(robot, options.seed), motors, options);
   for (const int threads : {1, 2, 3, 8}) {
     options.threads = threads;
-    const std::vector<MotorEvaluation> many = evaluate(robot, duty, motors, options);
+    const std::vector<MotorEvaluation> many = evaluate(robot, duty, duty.demand(robot, options.seed), motors, options);
     ASSERT_EQ(many.size(), one.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
       EXPECT_EQ(one[i].motor_id, many[i].motor_id);
@@ -236,7 +237,7 @@ TEST(Samples, another_seed_is_another_draw) {
   const Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
   const Robot robot = robot_of_file("roboteam_twente_v2024");
   Duty duty = duty_of_file("paper_intermittent");
-  duty.pieces.resize(20);
+  shorten(duty, 20);
   const MotorEvaluation one = evaluate_one(motor, robot, duty, {.samples = 40, .seed = 1});
   const MotorEvaluation two = evaluate_one(motor, robot, duty, {.samples = 40, .seed = 2});
   EXPECT_NE(one.winding_peak_C.p50, two.winding_peak_C.p50);
@@ -351,7 +352,9 @@ TEST(Ranking, best_first) {
       motors.push_back(read_motor(file.path()));
     }
   }
-  const std::vector<MotorEvaluation> all = evaluate(robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"), motors, {.samples = 0});
+  const Robot robot = robot_of_file("roboteam_twente_v2024");
+  const Duty duty = duty_of_file("paper_intermittent");
+  const std::vector<MotorEvaluation> all = evaluate(robot, duty, duty.demand(robot, 1), motors, {.samples = 0});
   ASSERT_EQ(all.size(), motors.size());
   for (std::size_t i = 1; i < all.size(); ++i) {
     EXPECT_LE(all[i - 1].verdict, all[i].verdict);
@@ -365,7 +368,8 @@ TEST(Progress, counts_up_to_all_of_the_work) {
   const Motor motor = simple_motor();
   std::size_t before = 0;
   std::size_t all = 0;
-  evaluate(simple_robot(), constant_current(5.0), std::span(&motor, 1), {.samples = 50}, [&](std::size_t done, std::size_t total) {
+  const Duty duty = constant_current(5.0);
+  evaluate(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1), {.samples = 50}, [&](std::size_t done, std::size_t total) {
     EXPECT_EQ(done, before + 1);
     before = done;
     all = total;

@@ -1,3 +1,4 @@
+#include "given_demand.h"
 #include "select/trace.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +19,9 @@ class PaperTrace : public testing::Test {
   static void SetUpTestSuite() {
     motor_ = new Motor(read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml"));
     Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
-    duty.pieces.resize(40);
-    trace_ = new Trace(run_trace(read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"), duty, *motor_, 0.1));
+    shorten(duty, 40);
+    const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+    trace_ = new Trace(run_trace(robot, duty, duty.demand(robot, 1).front(), *motor_, 0.1));
   }
   static void TearDownTestSuite() {
     delete trace_;

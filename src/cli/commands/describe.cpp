@@ -86,10 +86,9 @@ Description describe_robot(const Robot& robot) {
 }
 
 Description describe_duty(const Duty& duty) {
-  return {fmt::format("{}: {}\n  shape {}, {} pieces, {:.0f} s, ambient {:.0f} °C\n  load: {}\n  {}\n", duty.id, duty.summary, duty.shape, duty.pieces.size(),
-                      duty.duration_s(), duty.ambient_C.value, duty.origin, fmt::join(duty.notes, "\n  ")),
+  return {fmt::format("{}: {}\n  shape {}, ambient {:.0f} °C\n  load: {}\n  {}\n", duty.id, duty.summary, duty.shape, duty.ambient_C.value, duty.origin, fmt::join(duty.notes, "\n  ")),
           {{"kind", "duty"}, {"id", duty.id}, {"summary", duty.summary}, {"origin", duty.origin}, {"shape", duty.shape},
-           {"pieces", duty.pieces.size()}, {"duration_s", duty.duration_s()}, {"notes", duty.notes}}};
+           {"ambient_C", duty.ambient_C.value}, {"notes", duty.notes}}};
 }
 
 Description describe_effect(const EffectType& effect) {

@@ -78,8 +78,8 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
   return text;
 }
 
-std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, const Options& options) {
-  std::string text = fmt::format("{} on {}: {:.0f} min, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duty.duration_s() / 60.0,
+std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, double duration_s, const Options& options) {
+  std::string text = fmt::format("{} on {}: {:.0f} min, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duration_s / 60.0,
                                  duty.ambient_C.value, options.evaluate.samples > 0
                                                           ? fmt::format("{} samples of all declared tolerances, seed {}", options.evaluate.samples, options.evaluate.seed)
                                                           : "nominal figures only",
@@ -108,10 +108,12 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"verdict", to_string(each.verdict)},
           {"limiting_factor", to_string(each.limiting_factor)},
           {"data_quality", each.data_quality},
+          {"wheel", each.wheel},
           {"margin_K", rounded(each.margin_K, 2)},
           {"margin_A", optional(each.margin_A, 4)},
           {"stator_limit_C", optional(each.stator_limit_C, 2)},
           {"delivered_share", rounded(each.least_torque_share, 4)},
+          {"short_time_share", rounded(each.short_time_share, 4)},
           {"voltage_needed_V", rounded(each.highest_voltage_V, 3)},
           {"runaway", each.destroyed}};
 }
@@ -130,11 +132,12 @@ ExitCode run(Options& options, const Session& session) {
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
   const std::vector<Motor> motors = read_motors(options.motors, folders);
   options.evaluate.with_curves = !options.plot.empty();
-  const std::vector<MotorEvaluation> results = evaluate(robot, duty, motors, options.evaluate, progress_bar("evaluating"));
+  const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
+  const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
   if (!options.plot.empty()) {
     write_svg(verdict_chart(results, robot, duty), options.plot);
   }
-  session.say(report(results, robot, duty, options));
+  session.say(report(results, robot, duty, wheels.front().duration_s(), options));
   if (!options.plot.empty()) {
     session.say(fmt::format("picture: {}\n", options.plot));
   }

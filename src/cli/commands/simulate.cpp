@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,6 +22,7 @@ struct Options {
   std::string out;
   std::string plot;
   double every_s = 1.0;
+  std::uint64_t seed = 1;
 };
 
 /// Mean heat of every effect at every node it books into, the largest first in the sense of the network.
@@ -46,24 +48,26 @@ ExitCode run(const Options& options, const Session& session) {
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
   const Motor motor = read_motor(file_of(folders.motors, "motor", options.motor));
   constexpr double kMostRows = 5e6;  // some 1 GB
-  if (duty.duration_s() / options.every_s > kMostRows) {
-    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time", options.every_s, kMostRows, duty.duration_s()));
-  }
-  const Trace trace = run_trace(robot, duty, motor, options.every_s);
-  if (!options.out.empty()) {
-    write_file(options.out, to_csv(trace));
+  const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
+  const double duration_s = wheels.front().duration_s();
+  if (duration_s / options.every_s > kMostRows) {
+    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time", options.every_s, kMostRows, duration_s));
   }
   const std::vector<Motor> one{motor};
   EvaluateOptions nominal;
   nominal.samples = 0;
   nominal.with_curves = !options.plot.empty();
-  const std::vector<MotorEvaluation> results = evaluate(robot, duty, one, nominal);
+  const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, one, nominal);
   const MotorEvaluation& result = results.front();
+  const Trace trace = run_trace(robot, duty, *std::ranges::find(wheels, result.wheel, &WheelDemand::wheel), motor, options.every_s);
+  if (!options.out.empty()) {
+    write_file(options.out, to_csv(trace));
+  }
   if (!options.plot.empty()) {
     write_svg(verdict_chart(results, robot, duty), options.plot);
   }
-  session.say(fmt::format("{} on {}, {} ({:.0f} min), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms current {:.2f} A: {}\n{}",
-                          motor.id, robot.id, duty.id, duty.duration_s() / 60.0, result.data_quality, duty.origin, result.winding_peak_C.nominal,
+  session.say(fmt::format("{} on {}, {} ({:.0f} min, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms current {:.2f} A: {}\n{}",
+                          motor.id, robot.id, duty.id, duration_s / 60.0, result.wheel, result.data_quality, duty.origin, result.winding_peak_C.nominal,
                           result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A, to_string(result.verdict), balance_text(trace)));
   for (const std::string& file : {options.out, options.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
@@ -73,6 +77,7 @@ ExitCode run(const Options& options, const Session& session) {
                   {"robot", robot.id},
                   {"duty", duty.id},
                   {"duty_origin", duty.origin},
+                  {"wheel", result.wheel},
                   {"winding_peak_C", rounded(result.winding_peak_C.nominal, 3)},
                   {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
                   {"winding_limit_C", rounded(result.winding_limit_C, 2)},
@@ -97,6 +102,7 @@ Command simulate() {
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
             app.add_option("--out", options->out, "every signal; names end in units, a row's inputs hold until the next row")->type_name("FILE.csv");
             app.add_option("--plot", options->plot, "picture of stator and winding temperature")->type_name("FILE.svg");
+            app.add_option("--seed", options->seed, "of a generated match; same seed, same bytes")->capture_default_str();
             add_quantity(app, "--every", options->every_s, {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
             session.add_data_option(app);
             session.add_json_option(app);

@@ -68,7 +68,7 @@ MotionCommand Behaviour::walk(double left_s, const FieldPose& now, double distan
 
 MotionCommand Behaviour::play(double left_s, const FieldPose& now) {
   const RoleShape shape = shape_of(role_);
-  const double duels_per_command = values_.duels_per_minute / 60.0 * shape.duel_factor * values_.retarget_mean_s;
+  const double duels_per_command = values_.duels_per_min / 60.0 * shape.duel_factor * values_.retarget_mean_s;
   if (random_.uniform() < duels_per_command) {
     MotionCommand duel = stand(std::min(left_s, exponential(values_.duel_mean_s)), now);
     duel.duel = true;

@@ -43,11 +43,11 @@ class Game {
 
   void interruption(double half_s, double& left_s) {
     const double interruptions_per_half = half_s / values_.running_mean_s;
-    if (random_.uniform() < values_.halts_per_half / interruptions_per_half) {
+    if (random_.uniform() < values_.halt_count / interruptions_per_half) {
       add(Phase::halt, exponential(values_.halt_mean_s, random_));
     }
     add(Phase::stop, kShortestStop_s + exponential(values_.stop_mean_s, random_));
-    if (random_.uniform() < values_.timeouts_per_game / (2.0 * interruptions_per_half) && timeout_left_s_ > 0.0) {
+    if (random_.uniform() < values_.timeout_count / (2.0 * interruptions_per_half) && timeout_left_s_ > 0.0) {
       const double length_s = std::min(timeout_left_s_, kTimeoutBudget_s / 4.0 * (0.5 + random_.uniform()));
       timeout_left_s_ -= length_s;
       add(Phase::timeout, length_s);

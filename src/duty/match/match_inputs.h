@@ -22,13 +22,13 @@ struct MatchValues {
   double stop_mean_s = 0.0;           ///< of a stop, beyond the 2 s in which robots slow down
   double placement_share = 0.0;       ///< part of the interruptions that end with ball placement
   double placement_mean_s = 0.0;      ///< cut at the rules' 30 s
-  double halts_per_half = 0.0;        ///< mean number
+  double halt_count = 0.0;        ///< mean number
   double halt_mean_s = 0.0;
-  double timeouts_per_game = 0.0;     ///< mean number, of both teams
+  double timeout_count = 0.0;     ///< mean number, of both teams
   double retarget_mean_s = 0.0;       ///< between two new targets while play runs
   double distance_median_m = 0.0;     ///< to a new target of an attacker; a defender's is half, a keeper's a quarter
   double aggressiveness = 0.0;        ///< part of the robot's limits of speed and acceleration that is used
-  double duels_per_minute = 0.0;      ///< of play, of an attacker; a defender has half, a keeper a tenth
+  double duels_per_min = 0.0;      ///< of play, of an attacker; a defender has half, a keeper a tenth
   double duel_mean_s = 0.0;           ///< pushing against a robot at standstill
   double duel_push_share = 0.0;       ///< of the force that the ground transmits
 };
