@@ -1,0 +1,106 @@
+#include "robot/inverse_dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace heatsoak {
+namespace {
+
+Wrench operator-(const Wrench& a, const Wrench& b) { return {a.x_N - b.x_N, a.y_N - b.y_N, a.yaw_Nm - b.yaw_Nm}; }
+
+/// Drag of rollers that do not slide.
+PerWheel roller_drags_N(const BodyConfig& body, const PerWheel& lateral_m_per_s, const PerWheel& normal_N) {
+  PerWheel drag_N{};
+  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+    drag_N[i] = contact_ratios(body.traction, 0.0, lateral_m_per_s[i]).lateral_ratio * normal_N[i];
+  }
+  return drag_N;
+}
+
+/// Largest κ in 0 … 1 with |rest + κ·part| ≤ limit; −1 where rest alone is beyond.
+double largest_share(double rest_N, double part_N, double limit_N) {
+  if (std::abs(rest_N) > limit_N) {
+    return std::abs(rest_N + part_N) <= limit_N ? 1.0 : -1.0;
+  }
+  const double room_N = limit_N - (part_N > 0.0 ? rest_N : -rest_N);
+  return std::abs(part_N) <= room_N ? 1.0 : room_N / std::abs(part_N);
+}
+
+/// What is asked of the contacts: for drag and push alone, and for the acceleration on top.
+struct Demand {
+  Wrench acceleration;
+  PerWheel rest_N{};
+  PerWheel part_N{};
+  PerWheel limit_N{};
+};
+
+Demand demand_on_contacts(const BodyConfig& body, const BodyMotion& motion, WheelDemands& out) {
+  Demand demand;
+  demand.acceleration = wrench_of_acceleration(body, motion.velocity.yaw_rad_per_s, motion.acceleration);
+  const NormalLoads loads =
+      normal_loads(body.weight, load_moment(body.weight, demand.acceleration - motion.external, motion.external, motion.external_height_m));
+  out.normal_force_N = loads.force_N;
+  out.lifted = loads.lifted;
+  Wrench rest = Wrench{} - motion.external;
+  if (body.traction.roller_drag_ratio > 0.0) {
+    const PerWheel drag_N = roller_drags_N(body, lateral_speeds_m_per_s(body.kinematics, motion.velocity), loads.force_N);
+    rest = rest - wrench_of_lateral_forces(body.kinematics, drag_N);
+  }
+  demand.rest_N = rolling_forces_N(body.kinematics, rest);
+  demand.part_N = rolling_forces_N(body.kinematics, demand.acceleration);
+  const double mu = body.traction.traction_ratio;
+  const double c = body.traction.roller_drag_ratio;
+  const double grip_ratio = std::sqrt(std::max(mu * mu - c * c, 0.0));
+  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+    demand.limit_N[i] = grip_ratio * loads.force_N[i];
+    out.traction_use_ratio[i] = std::abs(demand.rest_N[i] + demand.part_N[i]) / demand.limit_N[i];
+  }
+  return demand;
+}
+
+/// Scales the acceleration to what the contacts pass on, or lets them slide.
+void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
+  double share = 1.0;
+  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+    share = std::min(share, largest_share(demand.rest_N[i], demand.part_N[i], demand.limit_N[i]));
+  }
+  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+    const double wanted_N = demand.rest_N[i] + std::max(share, 0.0) * demand.part_N[i];
+    out.rolling_force_N[i] = share < 0.0 ? std::clamp(wanted_N + demand.part_N[i], -demand.limit_N[i], demand.limit_N[i]) : wanted_N;
+  }
+  out.achievable = motion.acceleration;
+  out.transmitted_share = std::max(share, 0.0);
+  if (share < 1.0) {
+    PerWheel missing_N{};
+    for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+      missing_N[i] = demand.rest_N[i] + demand.part_N[i] - out.rolling_force_N[i];
+    }
+    out.untransmitted = wrench_of_rolling_forces(body.kinematics, missing_N);
+    out.achievable = acceleration_of_wrench(body, motion.velocity.yaw_rad_per_s, demand.acceleration - out.untransmitted);
+  }
+}
+
+}  // namespace
+
+BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global, const BodyAcceleration& acceleration_global) {
+  return {to_local(velocity_global, pose.yaw_rad), to_local(acceleration_global, pose.yaw_rad), {}, body.weight.center_of_gravity_height_m};
+}
+
+WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) {
+  WheelDemands out;
+  out.speed_rad_per_s = wheel_speeds_rad_per_s(body.kinematics, motion.velocity);
+  const Demand demand = demand_on_contacts(body, motion, out);
+  deliver(body, motion, demand, out);
+  const BodyAcceleration rates = rates_from_acceleration(motion.velocity, out.achievable);
+  const PerWheel rim_m_per_s2 = rolling_speeds_m_per_s(body.kinematics, {rates.x_m_per_s2, rates.y_m_per_s2, rates.yaw_rad_per_s2});
+  const PerWheel friction_Nm = friction_torques_Nm(body.friction, body.kinematics, motion.velocity, out.speed_rad_per_s);
+  const double radius_m = body.kinematics.wheel_radius_m;
+  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+    const double ground_Nm = out.rolling_force_N[i] * radius_m;
+    out.torque_Nm[i] = ground_Nm + transmission_loss_Nm(body.rolling_efficiency, ground_Nm, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) +
+                       friction_Nm[i] + body.wheel_inertia_kg_m2 * rim_m_per_s2[i] / radius_m;
+  }
+  return out;
+}
+
+}  // namespace heatsoak
