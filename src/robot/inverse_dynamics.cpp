@@ -17,13 +17,20 @@ PerWheel roller_drags_N(const BodyConfig& body, const PerWheel& lateral_m_per_s,
   return drag_N;
 }
 
-/// Largest κ in 0 … 1 with |rest + κ·part| ≤ limit; −1 where rest alone is beyond.
-double largest_share(double rest_N, double part_N, double limit_N) {
-  if (std::abs(rest_N) > limit_N) {
-    return std::abs(rest_N + part_N) <= limit_N ? 1.0 : -1.0;
+/// Shares κ of the acceleration in 0 … 1 that a contact can pass on; low > high where there are none.
+struct Shares {
+  double low = 0.0;
+  double high = 1.0;
+};
+
+/// |rest + κ·part| ≤ limit.
+Shares possible_shares(double rest_N, double part_N, double limit_N) {
+  if (part_N == 0.0) {
+    return std::abs(rest_N) <= limit_N ? Shares{} : Shares{1.0, 0.0};
   }
-  const double room_N = limit_N - (part_N > 0.0 ? rest_N : -rest_N);
-  return std::abs(part_N) <= room_N ? 1.0 : room_N / std::abs(part_N);
+  const double one = (limit_N - rest_N) / part_N;
+  const double other = (-limit_N - rest_N) / part_N;
+  return {std::max(std::min(one, other), 0.0), std::min(std::max(one, other), 1.0)};
 }
 
 /// What is asked of the contacts: for drag and push alone, and for the acceleration on top.
@@ -60,16 +67,19 @@ Demand demand_on_contacts(const BodyConfig& body, const BodyMotion& motion, Whee
 
 /// Scales the acceleration to what the contacts pass on, or lets them slide.
 void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
-  double share = 1.0;
+  Shares shares;
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    share = std::min(share, largest_share(demand.rest_N[i], demand.part_N[i], demand.limit_N[i]));
+    const Shares of_wheel = possible_shares(demand.rest_N[i], demand.part_N[i], demand.limit_N[i]);
+    shares = {std::max(shares.low, of_wheel.low), std::min(shares.high, of_wheel.high)};
   }
+  const bool slides = shares.low > shares.high;
+  const double share = slides ? 0.0 : shares.high;
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    const double wanted_N = demand.rest_N[i] + std::max(share, 0.0) * demand.part_N[i];
-    out.rolling_force_N[i] = share < 0.0 ? std::clamp(wanted_N + demand.part_N[i], -demand.limit_N[i], demand.limit_N[i]) : wanted_N;
+    out.rolling_force_N[i] = slides ? std::clamp(demand.rest_N[i] + demand.part_N[i], -demand.limit_N[i], demand.limit_N[i])
+                                    : demand.rest_N[i] + share * demand.part_N[i];
   }
   out.achievable = motion.acceleration;
-  out.transmitted_share = std::max(share, 0.0);
+  out.transmitted_share = share;
   if (share < 1.0) {
     PerWheel missing_N{};
     for (int i = 0; i < body.kinematics.wheel_count; ++i) {

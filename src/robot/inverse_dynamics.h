@@ -24,16 +24,16 @@ struct WheelDemands {
   PerWheel traction_use_ratio{};   ///< demanded rolling force per force that the contact can pass on; > 1 slips
   BodyAcceleration achievable;     ///< the demanded acceleration, or what is left of it
   Wrench untransmitted;            ///< demanded minus delivered, 0 where the contacts suffice
-  double transmitted_share = 1.0;  ///< of the demanded acceleration; 0 where not even the rest (drag, push) is held
+  double transmitted_share = 1.0;  ///< of the demanded acceleration; 0 where no share of it can be had
   bool lifted = false;             ///< a wheel has left the ground
 };
 
 /// Wheel torque T_i = loss(η, f_i·r) + f_i·r + friction_i(θ, ω) + J·dω_i/dt with the least Σf² that gives
 ///   Jᵀ·f = wrench(a) − external − roller drag.
 /// Loads N_i follow from the acceleration demanded. A contact passes on √(μ² − c²)·N_i. Where that is too little, the
-/// acceleration is scaled down, direction kept, until all contacts suffice; where drag and push alone are too much,
-/// each contact gives what it can and the body accelerates as the rest decides. A push at standstill is a stall:
-/// torque without speed.
+/// acceleration is scaled down, direction kept, until all contacts suffice; where no share of it does that, because
+/// drag and push alone are too much, each contact gives what it can and the body accelerates as the sum decides. A push
+/// at standstill is a stall: torque without speed.
 WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion);
 
 }  // namespace heatsoak

@@ -1,5 +1,6 @@
 #include "robot/plant.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -30,38 +31,80 @@ PlantState unpacked(const Vector& y) {
 struct Stage {
   PlantOutput output;
   Vector rate{};
-  PerWheel stiffness_per_s{};  ///< ∂(dω/dt)/∂ω of each wheel, ≤ 0
+  PerWheel contact_N_s_per_m{};      ///< rolling force over slip
+  PerWheel resistance_Nm_s_per_rad{};  ///< of motor and friction against a wheel's turning
 };
 
-/// Motors and battery at the bus voltage that they bring about together.
-void settle_electrics(const PlantConfig& plant, const PlantState& state, const PlantInput& input, Stage& stage,
-                      std::array<MotorPoint, kMostWheels>& points) {
-  const int count = plant.body.kinematics.wheel_count;
-  std::array<MotorCommand, kMostWheels> command = input.command;
-  BatteryLoad load{open_circuit_V(plant.battery, state.battery_charge_A_s), 0.0, false};
-  // The bus sags only where it limits a motor; contraction R_battery/R_motor per round.
-  for (int round = 0; round < 12; ++round) {
-    const double bus_V = load.terminal_V;
-    double power_W = 0.0;
-    bool at_bus = false;
-    for (int i = 0; i < count; ++i) {
-      const double motor_rad_per_s = state.wheel_speed_rad_per_s[i] * plant.gear_ratio;
-      points[i] = motor_point(plant.motor, plant.driver, command[i], motor_rad_per_s, input.winding_C[i], input.magnet_C[i], bus_V);
-      power_W += points[i].input_W;
-      at_bus = at_bus || std::abs(points[i].bridge_V) >= bus_V;
-    }
-    load = battery_load(plant.battery, state.battery_charge_A_s, power_W);
-    if (load.collapsed) {
-      command.fill({});
-      stage.output.undervoltage = true;
-    } else if (!at_bus || std::abs(load.terminal_V - bus_V) < 1e-12 * bus_V) {
+struct Electrics {
+  std::array<MotorPoint, kMostWheels> points;
+  double power_W = 0.0;
+  bool at_bus = false;  ///< the bus limits a motor
+};
+
+Electrics motors_at(const PlantConfig& plant, const PlantState& state, const PlantInput& input, const std::array<MotorCommand, kMostWheels>& command,
+                    double bus_V) {
+  Electrics made;
+  for (int i = 0; i < plant.body.kinematics.wheel_count; ++i) {
+    const double motor_rad_per_s = state.wheel_speed_rad_per_s[i] * plant.gear_ratio;
+    made.points[i] = motor_point(plant.motor, plant.driver, command[i], motor_rad_per_s, input.winding_C[i], input.magnet_C[i], bus_V);
+    made.power_W += made.points[i].input_W;
+    made.at_bus = made.at_bus || std::abs(made.points[i].bridge_V) >= bus_V;
+  }
+  return made;
+}
+
+/// The bus voltage that the motors it limits bring about: V + R·P(V)/V = E, by the Illinois rule.
+Electrics sagging_bus(const PlantConfig& plant, const PlantState& state, const PlantInput& input) {
+  const double source_V = open_circuit_V(plant.battery, state.battery_charge_A_s);
+  const auto excess_V = [&](const Electrics& at, double bus_V) { return bus_V - source_V + plant.battery.internal_resistance_ohm * at.power_W / bus_V; };
+  double low_V = 0.01 * source_V;
+  double high_V = source_V;
+  Electrics at = motors_at(plant, state, input, input.command, high_V);
+  double high_excess_V = excess_V(at, high_V);
+  double low_excess_V = excess_V(motors_at(plant, state, input, input.command, low_V), low_V);
+  if (high_excess_V <= 0.0 || low_excess_V >= 0.0) {
+    return at;  // braking lifts the bus: it limits nobody in the end
+  }
+  for (int round = 0; round < 60 && high_V - low_V > 1e-13 * source_V; ++round) {
+    const double bus_V = high_V - high_excess_V * (high_V - low_V) / (high_excess_V - low_excess_V);
+    at = motors_at(plant, state, input, input.command, bus_V);
+    const double now_V = excess_V(at, bus_V);
+    if (std::abs(now_V) < 1e-12 * source_V) {
       break;
     }
+    if (now_V > 0.0) {
+      high_V = bus_V;
+      high_excess_V = now_V;
+      low_excess_V *= 0.5;
+    } else {
+      low_V = bus_V;
+      low_excess_V = now_V;
+      high_excess_V *= 0.5;
+    }
   }
-  stage.output.battery_V = load.terminal_V;
-  stage.output.battery_current_A = load.current_A;
-  stage.output.battery_source_W = open_circuit_V(plant.battery, state.battery_charge_A_s) * load.current_A;
-  stage.output.battery_loss_W = plant.battery.internal_resistance_ohm * load.current_A * load.current_A;
+  return at;
+}
+
+/// Motors and battery at the voltage that they bring about together.
+std::array<MotorPoint, kMostWheels> settle_electrics(const PlantConfig& plant, const PlantState& state, const PlantInput& input, PlantOutput& out) {
+  const double source_V = open_circuit_V(plant.battery, state.battery_charge_A_s);
+  Electrics made = motors_at(plant, state, input, input.command, source_V);
+  BatteryLoad load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
+  // With the bus found, what it limits is limited by it; else only whoever is between source and bus.
+  if (made.at_bus || motors_at(plant, state, input, input.command, load.terminal_V).at_bus) {
+    made = sagging_bus(plant, state, input);
+    load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
+  }
+  if (load.collapsed) {
+    out.undervoltage = true;
+    made = motors_at(plant, state, input, {}, source_V);
+    load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
+  }
+  out.battery_V = load.terminal_V;
+  out.battery_current_A = load.current_A;
+  out.battery_source_W = source_V * load.current_A;
+  out.battery_loss_W = plant.battery.internal_resistance_ohm * load.current_A * load.current_A;
+  return made.points;
 }
 
 /// Contacts: their forces per normal force are known, the loads follow from the forces: F = Σ N_i(F)·g_i, a 2×2 system.
@@ -138,19 +181,17 @@ void accelerate_wheel(const PlantConfig& plant, int i, const PlantState& state, 
   out.gear_W[i] = gear_loss_Nm * speed_rad_per_s;
   out.rolling_W[i] = rolling_loss_Nm * speed_rad_per_s;
   out.friction_W[i] = friction_Nm * speed_rad_per_s;
-  const double contact_Nm_s = ratios.rolling_slope_s_per_m * out.normal_force_N[i] * radius_m * radius_m;
-  const double geared_constant = point.torque_constant_Nm_per_A * plant.gear_ratio;
+  const double geared_constant_Nm_per_A = point.torque_constant_Nm_per_A * plant.gear_ratio;
   const double dry_Nm = plant.body.friction.wheel_torque_Nm + plant.body.friction.heading.constant_Nm + plant.motor.drag_torque_Nm * plant.gear_ratio;
-  const double dry_slope_Nm_s = dry_Nm * smoothing * smoothing / (root_rad_per_s * root_rad_per_s * root_rad_per_s);
-  stage.stiffness_per_s[i] =
-      -(contact_Nm_s + dry_slope_Nm_s + plant.body.friction.wheel_damping_Nm_s_per_rad + geared_constant * geared_constant / point.resistance_ohm) / inertia_kg_m2;
+  stage.contact_N_s_per_m[i] = ratios.rolling_slope_s_per_m * out.normal_force_N[i];
+  stage.resistance_Nm_s_per_rad[i] = dry_Nm * smoothing * smoothing / (root_rad_per_s * root_rad_per_s * root_rad_per_s) +
+                                     plant.body.friction.wheel_damping_Nm_s_per_rad + geared_constant_Nm_per_A * geared_constant_Nm_per_A / point.resistance_ohm;
 }
 
 Stage evaluate(const PlantConfig& plant, const PlantState& state, const PlantInput& input) {
   Stage stage;
   const BodyConfig& body = plant.body;
-  std::array<MotorPoint, kMostWheels> points;
-  settle_electrics(plant, state, input, stage, points);
+  const std::array<MotorPoint, kMostWheels> points = settle_electrics(plant, state, input, stage.output);
   const PerWheel rolling_m_per_s = rolling_speeds_m_per_s(body.kinematics, state.velocity);
   const PerWheel lateral_m_per_s = lateral_speeds_m_per_s(body.kinematics, state.velocity);
   std::array<ContactRatios, kMostWheels> ratios;
@@ -170,6 +211,52 @@ Stage evaluate(const PlantConfig& plant, const PlantState& state, const PlantInp
   }
   return stage;
 }
+
+/// (1 − γ·h·A)·k = b, where A holds what is stiff: the contacts, k_i·(r·ω_i − J_i·v), which couple wheels and body, and
+/// what resists each wheel. The wheels are eliminated, three equations for the body's velocity are left.
+class StiffPart {
+ public:
+  StiffPart(const BodyConfig& body, const Stage& stage, double h_s) : body_(body), contact_N_s_per_m_(stage.contact_N_s_per_m) {
+    static const double kGamma = 1.0 - std::sqrt(0.5);
+    share_s_ = kGamma * h_s;
+    inverse_mass_ << 1.0 / body.weight.mass_kg, 1.0 / body.weight.mass_kg, 1.0 / body.yaw_inertia_kg_m2;
+    const double radius_m = body.kinematics.wheel_radius_m;
+    Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+      const WheelDirections& wheel = body.kinematics.wheels[i];
+      rows_[i] << wheel.rolling_x_share, wheel.rolling_y_share, body.kinematics.contact_radius_m;
+      const double resisted_factor = 1.0 + share_s_ * stage.resistance_Nm_s_per_rad[i] / body.wheel_inertia_kg_m2;
+      wheel_factor_[i] = resisted_factor + share_s_ * contact_N_s_per_m_[i] * radius_m * radius_m / body.wheel_inertia_kg_m2;
+      matrix += rows_[i] * rows_[i].transpose() * (share_s_ * contact_N_s_per_m_[i] * resisted_factor / wheel_factor_[i]);
+    }
+    inverse_ = (Eigen::Matrix3d::Identity() + inverse_mass_.asDiagonal() * matrix).inverse();
+  }
+
+  [[nodiscard]] Vector solved(const Vector& right) const {
+    const double radius_m = body_.kinematics.wheel_radius_m;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    for (int i = 0; i < body_.kinematics.wheel_count; ++i) {
+      force += rows_[i] * (share_s_ * contact_N_s_per_m_[i] * radius_m * right[kFirstWheel + i] / wheel_factor_[i]);
+    }
+    const Eigen::Vector3d velocity = inverse_ * (Eigen::Vector3d(right[3], right[4], right[5]) + inverse_mass_.cwiseProduct(force));
+    Vector solution = right;
+    std::copy(velocity.data(), velocity.data() + 3, solution.begin() + 3);
+    for (int i = 0; i < body_.kinematics.wheel_count; ++i) {
+      const double by_body = share_s_ * contact_N_s_per_m_[i] * radius_m / body_.wheel_inertia_kg_m2 * rows_[i].dot(velocity);
+      solution[kFirstWheel + i] = (right[kFirstWheel + i] + by_body) / wheel_factor_[i];
+    }
+    return solution;
+  }
+
+ private:
+  const BodyConfig& body_;
+  PerWheel contact_N_s_per_m_;
+  double share_s_ = 0.0;
+  Eigen::Vector3d inverse_mass_;
+  std::array<Eigen::Vector3d, kMostWheels> rows_;
+  PerWheel wheel_factor_{};
+  Eigen::Matrix3d inverse_;
+};
 
 void average(PerWheel& a, const PerWheel& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -228,27 +315,25 @@ double heat_W(const PlantOutput& output) {
 }
 
 PlantOutput step(const PlantConfig& plant, PlantState& state, const PlantInput& input) {
-  // y₁ = y + h·(3/2·k₁ + 1/2·k₂), (1 − γ·h·A)·k₁ = f(y), (1 − γ·h·A)·k₂ = f(y + h·k₁) − 2·k₁, γ = 1 − 1/√2, A diagonal.
-  static const double kGamma = 1.0 - std::sqrt(0.5);
+  // y₁ = y + h·(3/2·k₁ + 1/2·k₂), (1 − γ·h·A)·k₁ = f(y), (1 − γ·h·A)·k₂ = f(y + h·k₁) − 2·k₁, γ = 1 − 1/√2.
   const double h_s = plant.period_s;
   const Vector y = packed(state);
   const Stage first = evaluate(plant, state, input);
-  Vector damping;
-  damping.fill(1.0);
-  for (int i = 0; i < kMostWheels; ++i) {
-    damping[kFirstWheel + i] = 1.0 / (1.0 - kGamma * h_s * first.stiffness_per_s[i]);
-  }
-  Vector k_1;
+  const StiffPart stiff(plant.body, first, h_s);
+  const Vector k_1 = stiff.solved(first.rate);
   Vector between;
   for (int j = 0; j < kSize; ++j) {
-    k_1[j] = damping[j] * first.rate[j];
     between[j] = y[j] + h_s * k_1[j];
   }
   const Stage second = evaluate(plant, unpacked(between), input);
+  Vector right;
+  for (int j = 0; j < kSize; ++j) {
+    right[j] = second.rate[j] - 2.0 * k_1[j];
+  }
+  const Vector k_2 = stiff.solved(right);
   Vector next;
   for (int j = 0; j < kSize; ++j) {
-    const double k_2 = damping[j] * (second.rate[j] - 2.0 * k_1[j]);
-    next[j] = y[j] + h_s * (1.5 * k_1[j] + 0.5 * k_2);
+    next[j] = y[j] + h_s * (1.5 * k_1[j] + 0.5 * k_2[j]);
   }
   state = unpacked(next);
   return mean(first.output, second.output);

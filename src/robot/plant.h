@@ -77,8 +77,8 @@ double heat_W(const PlantOutput& output);
 /// One step of the period:
 ///   J·dω_i/dt = M_i·n·η_gear − friction_i − f_i·r·η_roll,  m, I: acceleration of Jᵀ·f + drag + external,
 /// f and drag by contact_ratios() at the slip r·ω_i − t·v − R·yaw rate, loads from the forces themselves.
-/// Method: ROS2 (Verwer, Spee, Blom, Hundsdorfer 1999), second order for any approximation of the Jacobian; here the
-/// diagonal of the wheels' speeds, because the contact is what is stiff. Powers are integrated by the same
+/// Method: ROS2 (Verwer, Spee, Blom, Hundsdorfer 1999), second order for any approximation of the Jacobian; here
+/// that of the contacts and of what resists the wheels, because they are stiff. Powers are integrated by the same
 /// method, so that the balance above closes to second order in the period. Currents and battery have settled.
 PlantOutput step(const PlantConfig& plant, PlantState& state, const PlantInput& input);
 
