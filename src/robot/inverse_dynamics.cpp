@@ -60,7 +60,8 @@ Demand demand_on_contacts(const BodyConfig& body, const BodyMotion& motion, Whee
   const double grip_ratio = std::sqrt(std::max(mu * mu - c * c, 0.0));
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
     demand.limit_N[i] = grip_ratio * loads.force_N[i];
-    out.traction_use_ratio[i] = std::abs(demand.rest_N[i] + demand.part_N[i]) / demand.limit_N[i];
+    const double demanded_N = std::abs(demand.rest_N[i] + demand.part_N[i]);
+    out.traction_use_ratio[i] = demanded_N == 0.0 ? 0.0 : demanded_N / demand.limit_N[i];
   }
   return demand;
 }

@@ -21,7 +21,7 @@ struct WheelDemands {
   PerWheel speed_rad_per_s{};      ///< of a wheel that does not slip
   PerWheel normal_force_N{};
   PerWheel rolling_force_N{};      ///< on the ground contact, as delivered
-  PerWheel traction_use_ratio{};   ///< demanded rolling force per force that the contact can pass on; > 1 slips
+  PerWheel traction_use_ratio{};   ///< demanded rolling force per force that the contact can pass on; > 1 slips, infinite on a lifted wheel
   BodyAcceleration achievable;     ///< the demanded acceleration, or what is left of it
   Wrench untransmitted;            ///< demanded minus delivered, 0 where the contacts suffice
   double transmitted_share = 1.0;  ///< of the demanded acceleration; 0 where no share of it can be had
