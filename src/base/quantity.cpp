@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -39,17 +41,13 @@ ut_system* unit_system() {
 /// Spellings of data sheets that UDUNITS-2 does not know.
 std::string as_udunits(std::string_view unit) {
   std::string text(unit);
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kSpellings{
-      {{"µNm", "(µN m)"}, {"mNm", "(mN m)"}, {"gcm2", "(g cm2)"}, {"gcm²", "(g cm2)"}, {"Wh", "(W h)"},
-       {"mAh", "(mA h)"}, {"Nm", "(N m)"}}};
+  // Longer ones first: none may appear in what replaced another. µ is U+00B5 or the Greek letter U+03BC.
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSpellings{
+      {{"mNm", "(mN m)"}, {"µNm", "(µN m)"}, {"μNm", "(µN m)"}, {"uNm", "(µN m)"}, {"kNm", "(kN m)"}, {"Nm", "(N m)"}, {"gcm2", "(g cm2)"},
+       {"gcm²", "(g cm2)"}, {"kWh", "(kW h)"}, {"Wh", "(W h)"}, {"mAh", "(mA h)"}, {"Ah", "(A h)"}}};
   for (const auto& [sheet, udunits] : kSpellings) {
     for (std::size_t at = text.find(sheet); at != std::string::npos; at = text.find(sheet, at + udunits.size())) {
       text.replace(at, sheet.size(), udunits);
-      if (sheet == "Nm" && at > 0 && (text[at - 1] == 'm' || text[at - 1] == 'k')) {
-        const char prefix = text[at - 1];
-        text.erase(at - 1, 1);
-        text.insert(at, 1, prefix);
-      }
     }
   }
   if (text == "deg") {
@@ -77,6 +75,47 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+/// "+5" as "5", which std::from_chars does not know; "+-5" stays what it is, no number.
+std::string_view without_plus(std::string_view text) {
+  return text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text;
+}
+
+/// UDUNITS takes "000 ohm" for zero ohm and "ohm @ 3" for a shifted scale, so "1 000 ohm" would silently be 0.
+/// A unit has digits in its exponents only ("cm2", "s-1") and as the leading "1/". What is wrong, or nothing.
+std::string misread_as_unit(std::string_view unit) {
+  if (unit.starts_with(',')) {
+    return "has a decimal comma; write a point";
+  }
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::size_t i = unit.starts_with("1/") ? 2 : 0; i < unit.size(); ++i) {
+    const auto c = static_cast<unsigned char>(unit[i]);
+    if (c < 0x20 || c == 0x7f) {
+      return "holds a control character";
+    }
+    std::size_t before = i;  // of the exponent's sign
+    if (is_digit(unit[i]) && before > 0 && (unit[before - 1] == '-' || unit[before - 1] == '+')) {
+      --before;
+    }
+    const unsigned char last = before > 0 ? static_cast<unsigned char>(unit[before - 1]) : ' ';
+    const bool is_exponent = std::isalnum(last) != 0 || last == '^' || last >= 0x80;
+    if ((is_digit(unit[i]) && !is_exponent) || unit[i] == '@') {
+      return "has a second number where the unit should stand; write the number in one piece";
+    }
+  }
+  return {};
+}
+
+/// A text of the user inside a message: one short line.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  std::string line(text.substr(0, kLongest));
+  while (line.size() < text.size() && !line.empty() && (static_cast<unsigned char>(text[line.size()]) & 0xC0U) == 0x80U) {
+    line.pop_back();  // not inside a UTF-8 character
+  }
+  std::ranges::replace_if(line, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  return line.size() < text.size() ? line + "…" : line;
+}
+
 std::string example_for(std::string_view wanted_unit) {
   return wanted_unit.empty() ? "expected a number such as \"8\"" : fmt::format("expected a number with a unit such as \"1.5 {}\"", wanted_unit);
 }
@@ -84,10 +123,7 @@ std::string example_for(std::string_view wanted_unit) {
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) {
-    text.remove_prefix(1);
-  }
+  text = without_plus(trimmed(text));
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
@@ -97,35 +133,43 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_unit) {
-  std::string_view rest = trimmed(text);
-  if (rest.starts_with('+')) {
-    rest.remove_prefix(1);
-  }
+  const std::string_view rest = without_plus(trimmed(text));
   double value = 0.0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (error == std::errc::result_out_of_range) {
+    return {0.0, fmt::format("\"{}\" is too large or too small a number", shown(text))};
+  }
   if (error != std::errc()) {
-    return {0.0, fmt::format("\"{}\" does not begin with a number; {}", text, example_for(wanted_unit))};
+    return {0.0, fmt::format("\"{}\" does not begin with a number; {}", shown(text), example_for(wanted_unit))};
   }
   if (!std::isfinite(value)) {
-    return {0.0, fmt::format("\"{}\" is not a finite number; {}", text, example_for(wanted_unit))};
+    return {0.0, fmt::format("\"{}\" is not a finite number; {}", shown(text), example_for(wanted_unit))};
   }
   const std::string_view unit = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
   if (unit.empty() && !wanted_unit.empty()) {
-    return {0.0, fmt::format("\"{}\" has no unit; {}", text, example_for(wanted_unit))};
+    return {0.0, fmt::format("\"{}\" has no unit; {}", shown(text), example_for(wanted_unit))};
+  }
+  if (const std::string wrong = misread_as_unit(unit); !wrong.empty()) {
+    return {0.0, fmt::format("\"{}\" {}; {}", shown(text), wrong, example_for(wanted_unit))};
   }
   const Unit from = parse_unit(unit);
   if (!from) {
-    return {0.0, fmt::format("'{}' is not a unit; {}", unit, example_for(wanted_unit))};
+    return {0.0, fmt::format("'{}' is not a unit; {}", shown(unit), example_for(wanted_unit))};
   }
   const Unit to = parse_unit(wanted_unit);
   const Converter converter(ut_get_converter(from.get(), to.get()));
-  if (!converter) {
-    return {0.0, fmt::format("'{}' is a unit of something else; {}", unit, example_for(wanted_unit))};
+  // UDUNITS-2 also converts to the reciprocal ("5 W/K" to 0.2 K/W); that one sends zero to infinity.
+  if (!converter || !std::isfinite(cv_convert_double(converter.get(), 0.0))) {
+    return {0.0, fmt::format("'{}' is a unit of something else; {}", shown(unit), example_for(wanted_unit))};
   }
   if (wanted_unit.find("rad") != std::string_view::npos && !names_an_angle(unit)) {
-    return {0.0, fmt::format("'{}' names no angle, so a turn could be taken for a radian; write rpm or rad/s", unit)};
+    return {0.0, fmt::format("'{}' names no angle, so a turn could be taken for a radian; write rpm or rad/s", shown(unit))};
   }
-  return {cv_convert_double(converter.get(), value), {}};
+  const double converted = cv_convert_double(converter.get(), value);
+  if (!std::isfinite(converted)) {
+    return {0.0, fmt::format("\"{}\" is too large a number", shown(text))};
+  }
+  return {converted, {}};
 }
 
 double convert(double value, std::string_view from, std::string_view to) {
@@ -146,7 +190,10 @@ std::string unit_for_display(std::string_view unit) {
 }
 
 std::string significant(double value, int digits) {
-  if (value == 0.0 || !std::isfinite(value)) {
+  if (value == 0.0) {
+    return "0";
+  }
+  if (!std::isfinite(value)) {
     return fmt::format("{}", value);
   }
   const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value))));

@@ -9,7 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/commands_registry.h"
-#include "input/document.h"
+#include "base/files.h"
 
 namespace heatsoak {
 namespace {
@@ -71,8 +71,11 @@ void check_words(const CLI::App& app, int argc, const char* const* argv) {
   }
 }
 
+/// Unlike fmt::print this does not throw: a full disk is found at the end (see written_out), a full stderr is borne.
+void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
+
 int fail(const Session& session, const Failure& failure) {
-  fmt::print(stderr, "{}\n", failure.what());
+  put(stderr, std::string(failure.what()) + "\n");
   session.answer_failure(failure);
   return static_cast<int>(failure.code());
 }
@@ -114,7 +117,7 @@ void Session::add_json_option(CLI::App& app) {
 
 DataFolders Session::folders() const { return DataFolders::find(database_); }
 
-void Session::say(std::string_view text) const { fmt::print(json_target_ == "-" ? stderr : stdout, "{}", text); }
+void Session::say(std::string_view text) const { put(json_target_ == "-" ? stderr : stdout, text); }
 
 void Session::answer(const nlohmann::ordered_json& json) const {
   if (json_target_.empty()) {
@@ -122,7 +125,7 @@ void Session::answer(const nlohmann::ordered_json& json) const {
   }
   const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (json_target_ == "-") {
-    fmt::print("{}", text);
+    put(stdout, text);
   } else {
     write_file(json_target_, text);
   }
@@ -137,7 +140,9 @@ void Session::answer_failure(const Failure& failure) const {
   try {
     answer({{"error", {{"code", static_cast<int>(failure.code())}, {"message", message}, {"diagnostics", diagnostics}}}});
   } catch (const Failure& unwritable) {
-    fmt::print(stderr, "{}\n", unwritable.what());
+    if (std::string_view(unwritable.what()) != failure.what()) {
+      put(stderr, std::string(unwritable.what()) + "\n");
+    }
   }
 }
 
@@ -180,7 +185,13 @@ nlohmann::ordered_json rounded(double value, int decimals) {
 int run_program(int argc, const char* const* argv) {
   Session session;
   try {
-    return parse_and_run(argc, argv, session);
+    const int code = parse_and_run(argc, argv, session);
+    std::fflush(stdout);
+    if (std::ferror(stdout) != 0) {
+      put(stderr, "stdout cannot be written: is the disk full?\n");
+      return static_cast<int>(ExitCode::bad_input);
+    }
+    return code;
   } catch (const Failure& failure) {
     return fail(session, failure);
   } catch (const std::bad_alloc&) {

@@ -23,8 +23,12 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kMostProblems = 20;
+constexpr std::size_t kHopeless = 1000;  ///< problems after which the rest is not read
 constexpr std::size_t kMostColumns = 1000;
 constexpr std::size_t kLongestCell_bytes = 1 << 16;
+
+/// Enough of a cell for a message.
+std::string_view first_line(std::string_view cell) { return cell.substr(0, std::min<std::size_t>(cell.find_first_of("\r\n"), 40)); }
 
 class Table {
  public:
@@ -41,7 +45,7 @@ class Table {
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0) {
       const std::optional<double> value = parse_number(text);
       if (!value || !std::isfinite(*value)) {
-        problem(static_cast<int>(column_) + 1, header_[column_], fmt::format("\"{}\" is not a finite number", text.substr(0, 40)));
+        problem(static_cast<int>(column_) + 1, header_[column_], fmt::format("\"{}\" is not a finite number", first_line(text)));
       } else {
         values_[static_cast<std::size_t>(place_of_[column_])] = *value;
       }
@@ -81,12 +85,14 @@ class Table {
     if (left_out_ > 0) {
       Diagnostic& rest = problems_.emplace_back();
       rest.at.file = file_;
-      rest.message = fmt::format("and {} more problems", left_out_);
+      rest.message = fmt::format("and {} more problems{}", left_out_, is_hopeless() ? "; the rest was not read" : "");
     }
     if (!problems_.empty()) {
       throw Failure(ExitCode::bad_input, "", std::move(problems_));
     }
   }
+
+  [[nodiscard]] bool is_hopeless() const { return left_out_ >= kHopeless; }
 
   void problem(int column, std::string key, std::string message) {
     if (problems_.size() < kMostProblems) {
@@ -101,6 +107,9 @@ class Table {
 
   void read_header() {
     has_header_ = true;
+    if (header_.size() == 1 && header_[0].find_first_of(";\t") != std::string::npos) {
+      stop("the header has no comma; expected columns separated by commas, and points in numbers");
+    }
     place_of_.assign(header_.size(), -1);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const bool is_required = i < required_.size();
@@ -176,7 +185,7 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file = opened(path);
   Table table(path.string(), required, optional, row);
   csv_parser parser;
-  csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT_FINI);
+  csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT | CSV_STRICT_FINI);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);
   Guarded guard{table, nullptr};
   const auto cell = [](void* text, std::size_t size, void* data) {
@@ -190,9 +199,18 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
     if (std::exchange(at_start, false) && bytes.starts_with(kByteOrderMark)) {
       bytes.remove_prefix(kByteOrderMark.size());
     }
-    csv_parse(&parser, bytes.data(), bytes.size(), cell, end_of_row, &guard);
+    if (bytes.find('\0') != std::string_view::npos) {
+      throw bad_input({path.string()}, "", "cannot be read: it is a binary file; expected CSV text");
+    }
+    const std::size_t parsed = csv_parse(&parser, bytes.data(), bytes.size(), cell, end_of_row, &guard);
     if (guard.error) {
       std::rethrow_exception(guard.error);
+    }
+    if (table.is_hopeless()) {
+      table.finish();
+    }
+    if (parsed != bytes.size()) {
+      table.stop("a quote stands inside a cell of this row; expected cells quoted as a whole, or not at all");
     }
     // One chunk may hold a cell of its own length; what is longer grows with the file.
     if (csv_get_buffer_size(&parser) > chunk.size() + kLongestCell_bytes) {

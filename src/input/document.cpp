@@ -1,14 +1,11 @@
 #include "input/document.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <toml++/toml.h>
+
+#include "base/files.h"
 
 namespace heatsoak {
 namespace {
@@ -16,10 +13,6 @@ namespace {
 constexpr std::size_t kLargestToml_bytes = 1'000'000;
 constexpr std::size_t kMostKeys = 1000;  ///< of one table; looking a key up goes through all of them
 constexpr int kMostDots = 16;            ///< of one key
-
-[[noreturn]] void cannot_read(const std::filesystem::path& path, const std::string& reason) {
-  throw bad_input({path.string()}, "", "cannot be read: " + reason);
-}
 
 Location place(const toml::node& node, const std::string& file) {
   const toml::source_position at = node.source().begin;
@@ -116,81 +109,11 @@ std::string_view to_string(Value::Kind kind) {
   return "?";
 }
 
-std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes) {
-  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) {
-    cannot_read(path, std::strerror(errno));
-  }
-  struct Closer {
-    int file;
-    ~Closer() { ::close(file); }
-  } closer{file};
-  struct stat about{};
-  if (::fstat(file, &about) != 0) {
-    cannot_read(path, std::strerror(errno));
-  }
-  if (!S_ISREG(about.st_mode)) {
-    cannot_read(path, S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
-  }
-  std::string content;
-  std::vector<char> chunk(1 << 16);
-  for (;;) {
-    const ssize_t got = ::read(file, chunk.data(), chunk.size());
-    if (got < 0) {
-      cannot_read(path, std::strerror(errno));
-    }
-    if (got == 0) {
-      return content;
-    }
-    content.append(chunk.data(), static_cast<std::size_t>(got));
-    if (content.size() > largest_bytes) {
-      cannot_read(path, fmt::format("it is larger than {} MB, which no file of this kind is", largest_bytes / 1'000'000));
-    }
-  }
-}
-
-void write_file(const std::filesystem::path& path, std::string_view content) {
-  struct stat about{};
-  const bool exists = ::stat(path.c_str(), &about) == 0;
-  // A device or a pipe takes the bytes as they come: renaming over /dev/null would replace it for everybody.
-  const bool in_place = exists && !S_ISREG(about.st_mode);
-  std::error_code no_link;
-  const std::filesystem::path target = exists && !in_place ? std::filesystem::canonical(path, no_link) : path;
-  const std::string temporary = in_place ? path.string() : fmt::format("{}.{}.partial", (no_link ? path : target).string(), ::getpid());
-  const auto fail = [&](int error) { throw bad_input({path.string()}, "", fmt::format("cannot be written: {}", std::strerror(error))); };
-  if (exists && (S_ISDIR(about.st_mode) || ::access(path.c_str(), W_OK) != 0)) {
-    fail(S_ISDIR(about.st_mode) ? EISDIR : errno);
-  }
-  const int file = ::open(temporary.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) {
-    fail(errno);
-  }
-  const auto give_up = [&](int error) {
-    if (!in_place) {
-      ::unlink(temporary.c_str());
-    }
-    fail(error);
-  };
-  while (!content.empty()) {
-    const ssize_t written = ::write(file, content.data(), content.size());
-    if (written < 0 && errno != EINTR) {
-      const int error = errno;
-      ::close(file);
-      give_up(error);
-    }
-    content.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
-  }
-  if (::close(file) != 0 || (!in_place && std::rename(temporary.c_str(), (no_link ? path : target).c_str()) != 0)) {
-    give_up(errno);
-  }
-}
-
 Value read_toml(const std::filesystem::path& path) {
   const std::string content = read_file(path, kLargestToml_bytes);
   const std::string file = path.string();
   if (content.find('\0') != std::string::npos) {
-    cannot_read(path, "it is a binary file; expected TOML text");
+    throw bad_input({file}, "", "cannot be read: it is a binary file; expected TOML text");
   }
   if (const int line = line_of_deep_key(content); line > 0) {
     throw bad_input({file, line, 1}, "", fmt::format("a key of more than {} dots, which no file of this kind has", kMostDots));

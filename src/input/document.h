@@ -35,11 +35,4 @@ std::string_view to_string(Value::Kind kind);
 /// of syntax, or why the file cannot be read.
 Value read_toml(const std::filesystem::path& path);
 
-/// All bytes of a regular file, or Failure (bad_input) with the reason.
-std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes);
-
-/// Writes `content` under a temporary name beside `path` and renames it, so that no half file is left. A link keeps
-/// pointing to its file; a device (/dev/stdout) is written as it is.
-void write_file(const std::filesystem::path& path, std::string_view content);
-
 }  // namespace heatsoak

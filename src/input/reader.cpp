@@ -175,8 +175,9 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
     }
     figure.origin = known.value_or(Origin::estimated);
   }
+  const bool has_origin = origin && origin_from(*origin);  // without one, what else is needed is not known
   const bool calculated = figure.origin == Origin::derived || figure.origin == Origin::estimated;
-  figure.derivation = inner.text("derivation", calculated ? Need::required : Need::optional).value_or("");
+  figure.derivation = inner.text("derivation", has_origin && calculated ? Need::required : Need::optional).value_or("");
   const Value* source = value->find("source");
   if (source && source->kind == Value::Kind::array) {
     figure.source = fmt::format("{}", fmt::join(inner.texts("source", Need::required), ", "));

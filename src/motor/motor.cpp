@@ -14,6 +14,9 @@ namespace heatsoak {
 namespace {
 
 constexpr Range kPositive = Range::positive();
+/// From a drop of copper to a locomotive: what lies outside is a slip of the unit.
+constexpr Range kThermalResistance = Range::between(1e-3, 1e3);
+constexpr Range kThermalTime = Range::between(0.1, 1e6);
 constexpr Range kTemperature = Range::between(-60.0, 400.0);
 
 constexpr std::array kSpecs = {
@@ -41,10 +44,10 @@ constexpr std::array kSpecs = {
     MotorFigureSpec{{"mass", "kg", kPositive, "of the motor"}, &MotorValues::mass_kg},
     MotorFigureSpec{{"diameter", "m", kPositive, "of the body"}, &MotorValues::diameter_m},
     MotorFigureSpec{{"length", "m", kPositive, "of the body"}, &MotorValues::length_m},
-    MotorFigureSpec{{"thermal_resistance_winding_stator", "K/W", kPositive, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, Need::required, true},
-    MotorFigureSpec{{"thermal_resistance_stator_ambient", "K/W", kPositive, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, Need::required, true},
-    MotorFigureSpec{{"thermal_time_constant_winding", "s", kPositive, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, Need::required, true},
-    MotorFigureSpec{{"thermal_time_constant_stator", "s", kPositive, "heat capacity of the stator times R_th2"}, &MotorValues::thermal_time_constant_stator_s, Need::required, true},
+    MotorFigureSpec{{"thermal_resistance_winding_stator", "K/W", kThermalResistance, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, Need::required, true},
+    MotorFigureSpec{{"thermal_resistance_stator_ambient", "K/W", kThermalResistance, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, Need::required, true},
+    MotorFigureSpec{{"thermal_time_constant_winding", "s", kThermalTime, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, Need::required, true},
+    MotorFigureSpec{{"thermal_time_constant_stator", "s", kThermalTime, "heat capacity of the stator times R_th2"}, &MotorValues::thermal_time_constant_stator_s, Need::required, true},
     MotorFigureSpec{{"winding_limit", "degC", kTemperature, "highest permissible winding temperature"}, &MotorValues::winding_limit_C, Need::required, true},
     MotorFigureSpec{{"stator_limit", "degC", kTemperature, "highest permissible stator temperature"}, &MotorValues::stator_limit_C, Need::optional, true},
     MotorFigureSpec{{"ambient_min", "degC", kTemperature, "lowest permissible ambient temperature"}, &MotorValues::ambient_min_C},
@@ -110,14 +113,22 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   for (const auto& [id, text] : motor.sources) {
     known.push_back(id);
   }
-  for (const auto& [key, figure] : motor.figures) {
+  const auto check = [&](const std::string& key, const Figure& figure) {
     for (std::size_t at = 0; at < figure.source.size();) {
       const std::size_t end = std::min(figure.source.find(", ", at), figure.source.size());
       const std::string id = figure.source.substr(at, end - at);
       if (!motor.sources.contains(id)) {
-        diagnostics.add(figure.at, fmt::format("figures.{}.source", key), fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
+        diagnostics.add(figure.at, key + ".source", fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
       }
       at = end + 2;
+    }
+  };
+  for (const auto& [key, figure] : motor.figures) {
+    check(fmt::format("figures.{}", key), figure);
+  }
+  for (const MotorEffect& effect : motor.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      check(fmt::format("effects.{}.{}", effect.name, effect.type->parameters[i].key), effect.parameters[i]);
     }
   }
 }
@@ -139,7 +150,7 @@ void read_effects(Reader& top, Motor& motor) {
     const std::string type_name = reader.text("type", Need::optional).value_or(name);
     const EffectType* type = find_effect(type_name);
     if (!type) {
-      table->problem(name, fmt::format("there is no effect '{}'{}; `heatsoak list effects` shows all", type_name, did_you_mean(type_name, known)));
+      table->problem(name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
       continue;
     }
     MotorEffect effect{name, type, {}, {}};

@@ -1,18 +1,14 @@
 #include "report/chart.h"
 
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include "base/diagnostic.h"
+#include "base/files.h"
 #include "report/chart_plugin.h"
 
 namespace heatsoak {
@@ -77,69 +73,15 @@ void check_lengths(const Chart& chart) {
   }
 }
 
-/// A file under a temporary name beside `path`; gone again unless `publish` was reached.
-class UnfinishedFile {
- public:
-  explicit UnfinishedFile(fs::path path) : path_(std::move(path)), temporary_(path_) {
-    temporary_.replace_filename(fmt::format(".{}.{}.partial", path_.filename().string(), getpid()));
-    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) {
-      fail();
-    }
-  }
-  UnfinishedFile(const UnfinishedFile&) = delete;
-  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
-  ~UnfinishedFile() {
-    if (descriptor_ >= 0) {
-      close(descriptor_);
-    }
-    if (!published_) {
-      unlink(temporary_.c_str());
-    }
-  }
-
-  void write(std::string_view text) {
-    while (!text.empty()) {
-      const ssize_t written = ::write(descriptor_, text.data(), text.size());
-      if (written < 0 && errno != EINTR) {
-        fail();
-      }
-      text.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
-    }
-  }
-
-  void publish() {
-    // A full disk may show only here.
-    if (close(std::exchange(descriptor_, -1)) != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
-      fail();
-    }
-    published_ = true;
-  }
-
- private:
-  [[noreturn]] void fail() const {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("cannot write '{}': {}", path_.string(), std::generic_category().message(errno)));
-  }
-
-  fs::path path_;
-  fs::path temporary_;
-  int descriptor_ = -1;
-  bool published_ = false;
-};
-
 }  // namespace
 
 void write_svg(const Chart& chart, const fs::path& path) {
   check_lengths(chart);
-  // Opened before drawing, so that a wrong path is told at once.
-  UnfinishedFile file(path);
   std::string text;
   if (!open_plugin()(&chart, &text)) {
     throw Failure(ExitCode::bug, "drawing failed: " + text);
   }
-  file.write(text);
-  file.publish();
+  write_file(path, text);
 }
 
 }  // namespace heatsoak

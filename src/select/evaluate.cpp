@@ -134,15 +134,17 @@ Spread95 spread(double nominal, std::vector<double> samples) {
 }
 
 /// The factor on all currents with which the winding just reaches its limit: eight factors at a time, each
-/// round between the two that enclose it. Nothing where even no current is too much.
+/// round between the two that enclose it, at last by their temperatures. Nothing where even no current is too much.
 std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals, double limit_C) {
+  constexpr int kRounds = 4;
   double low = 0.0;
   double high = 16.0;
+  double share = 0.5;
   std::vector<Lanes> parameters;
   for (const double value : network.values()) {
     parameters.push_back(Lanes::Constant(value));
   }
-  for (int round = 0; round < 5; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     const Lanes factor = Lanes::LinSpaced(low, high);
     const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(intervals.front().at.ambient_C));
     EnsembleRun run(network, parameters, start_C);
@@ -167,8 +169,9 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
     }
     low = factor[within];
     high = factor[within + 1];
+    share = (limit_C - peak_C[within]) / (peak_C[within + 1] - peak_C[within]);
   }
-  return 0.5 * (low + high);
+  return std::lerp(low, high, share);
 }
 
 void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options) {

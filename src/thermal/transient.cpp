@@ -108,6 +108,11 @@ class Run {
       note_crossings(step);
       advance_to(step.time_s);
       observe(step.time_s, index, false);
+      if (step.at_event) {
+        // Where a limit is crossed so slowly that its event is still zero a step of rounding later, SUNDIALS gives up
+        // ("root found at and very near"); begun again, it takes the zero for what it is.
+        integrator_.start(step.time_s, y_);
+      }
     }
   }
 
@@ -134,8 +139,20 @@ class Run {
       }
       result_.destroyed = result_.destroyed || state[node] > kDestroyed_C;
     }
+    note_passed_limits();
     std::ranges::copy(state, y_.begin());
     result_.end_s = time_s;
+  }
+
+  /// What root finding cannot see: a limit passed and left again within one step, or left upwards from its very value.
+  void note_passed_limits() {
+    for (std::size_t i = 0; i < options_.limits.size(); ++i) {
+      const auto& [node, limit_C] = options_.limits[i];
+      const auto place = static_cast<std::size_t>(node);
+      if (!result_.time_to_limit_s[i] && result_.peak_C[place] > limit_C) {
+        result_.time_to_limit_s[i] = y_[place] < limit_C ? result_.peak_time_s[place] : result_.end_s;
+      }
+    }
   }
 
   void observe(double time_s, std::size_t interval, bool begins_interval) {

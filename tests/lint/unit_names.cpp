@@ -29,6 +29,8 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      "parameters", "effect_parameters",
                                                      // stages of a method, in the state's unit
                                                      "rate", "sum",
+                                                     // of a square: in the root of its argument's unit
+                                                     "root",
                                                      // VTK's own signature
                                                      "point",
                                                      // not a number

@@ -370,7 +370,7 @@ void expect_failure(const Chart& chart, const fs::path& path, ExitCode code, con
 
 TEST_F(ChartTest, UnwritablePathIsToldAndLeavesNothing) {
   const fs::path missing = folder_ / "missing" / "chart.svg";
-  expect_failure(warm_up(), missing, ExitCode::bad_input, missing.string() + "': No such file");
+  expect_failure(warm_up(), missing, ExitCode::bad_input, missing.string() + ": error: cannot be written: No such file");
   fs::create_directories(folder_ / "taken" / "inside");
   expect_failure(warm_up(), folder_ / "taken", ExitCode::bad_input, "Is a directory");
   EXPECT_EQ(files(), 1);

@@ -54,7 +54,8 @@ Description describe_motor(const Motor& motor) {
     }
   }
   result.text += "\nthermal network\n";
-  for (const NetworkParameter& each : datasheet_network(motor, nominal_sample(motor)).parameters()) {
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  for (const NetworkParameter& each : network.parameters()) {
     result.text += fmt::format("  {:36} {:>22}\n", each.name, with_unit(each.value, each.unit));
     result.json["network"].push_back({{"name", each.name}, {"value", each.value}, {"unit", each.unit}});
   }

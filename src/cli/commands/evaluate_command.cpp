@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -28,6 +30,9 @@ std::vector<Motor> read_motors(const std::vector<std::string>& names, const Data
   std::vector<Motor> motors;
   for (const std::string& name : all ? ids_in(folders.motors) : names) {
     motors.push_back(read_motor(all ? folders.motors / (name + ".toml") : file_of(folders.motors, "motor", name)));
+  }
+  if (motors.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", folders.motors.string()));
   }
   return motors;
 }
@@ -111,6 +116,14 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"runaway", each.destroyed}};
 }
 
+/// CLI11 takes -1 for 2^64 − 1, a number too large for the largest one, and 010 for 8.
+std::string whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good = error == std::errc() && end == text.data() + text.size() && (text == "0" || text.front() != '0');
+  return good ? "" : fmt::format("'{}' is not a whole number from 0 to 18446744073709551615", text);
+}
+
 ExitCode run(Options& options, const Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
@@ -150,10 +163,11 @@ Command evaluate_command() {
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
             app.add_option("--motors", options->motors, "ids or files separated by commas, or all")->delimiter(',')->type_name("M,M")->default_str("all");
             app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
+                ->check(whole_number)
                 ->check(CLI::Range(0, 1'000'000))
                 ->capture_default_str();
-            app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")->capture_default_str();
-            app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")->check(CLI::Range(0, 1024))->capture_default_str();
+            app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")->check(whole_number)->capture_default_str();
+            app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")->check(whole_number)->check(CLI::Range(0, 1024))->capture_default_str();
             app.add_option("--plot", options->plot, "picture of stator and winding temperature over time")->type_name("FILE.svg");
             session.add_data_option(app);
             session.add_json_option(app);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,8 @@ namespace {
 /// Reads the file as what its keys say it is; the findings of a motor's figures are the lint proper.
 std::vector<LintFinding> look_into(const std::filesystem::path& file) {
   const Value root = read_toml(file);
-  if (root.find("shape")) {
+  const auto names_a_shape = [&](const ShapeType& shape) { return root.find(shape.name) != nullptr; };
+  if (root.find("shape") || std::ranges::any_of(all_shapes(), names_a_shape)) {
     read_duty(file);
     return {};
   }

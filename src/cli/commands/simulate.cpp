@@ -7,7 +7,7 @@
 #include "cli/command.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
-#include "input/document.h"
+#include "base/files.h"
 #include "report/chart.h"
 #include "select/trace.h"
 
@@ -45,6 +45,10 @@ ExitCode run(const Options& options, const Session& session) {
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
   const Motor motor = read_motor(file_of(folders.motors, "motor", options.motor));
+  constexpr double kMostRows = 5e6;  // some 1 GB
+  if (duty.duration_s() / options.every_s > kMostRows) {
+    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time", options.every_s, kMostRows, duty.duration_s()));
+  }
   const Trace trace = run_trace(robot, duty, motor, options.every_s);
   if (!options.out.empty()) {
     write_file(options.out, to_csv(trace));

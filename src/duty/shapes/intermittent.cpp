@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "duty/duty.h"
@@ -27,11 +28,13 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   const std::optional<double> on_s = table.quantity({"time_on", "s", Range::positive(), "of one cycle"}, Need::required);
   const std::optional<double> off_s = table.quantity({"time_off", "s", Range::non_negative(), "of one cycle"}, Need::required);
   const std::optional<double> repeats = table.quantity({"repeats", "", Range::between(1.0, 1e6), "how many cycles"}, Need::required);
-  if (torque_on.has_value() == current_on.has_value()) {
+  const std::vector<std::string> keys = table.keys();
+  const auto gives = [&](std::string_view key) { return std::ranges::find(keys, key) != keys.end(); };
+  if (gives("torque_on") == gives("current_on")) {
     table.problem("torque_on", "expected exactly one of torque_on and current_on");
     return;
   }
-  if (!speed_on || !on_s || !off_s || !repeats) {
+  if ((!torque_on && !current_on) || !speed_on || !on_s || !off_s || !repeats) {
     return;
   }
   if (*repeats != std::floor(*repeats)) {

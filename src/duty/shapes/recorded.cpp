@@ -9,7 +9,7 @@
 namespace heatsoak::shapes {
 namespace {
 
-enum Column { time, torque, speed, current };
+constexpr std::size_t kMostPieces = 2'000'000;  ///< a day at 20 rows a second; more would fill the memory
 
 /// A row holds until the next one; the last row only ends the duty.
 void read_rows(const std::filesystem::path& file, DutyKind kind, Duty& duty) {
@@ -19,6 +19,9 @@ void read_rows(const std::filesystem::path& file, DutyKind kind, Duty& duty) {
   Diagnostics diagnostics;
   read_csv(file, kind == DutyKind::torque ? torque_columns : current_columns, {}, [&](const CsvRow& row) {
     const double now_s = row.values[0];
+    if (duty.pieces.size() > kMostPieces) {
+      throw bad_input({file.string(), row.line, 1}, "", fmt::format("has more than {} rows; expected something like a match", kMostPieces));
+    }
     if (now_s <= before_s && diagnostics.list().size() < 20) {
       diagnostics.add({file.string(), row.line, 1}, "time_s", fmt::format("{} s does not come after {} s; time must increase", now_s, before_s));
     }
@@ -41,6 +44,9 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
   constexpr std::array<std::string_view, 2> kQuantities{"torque", "current"};
   const std::optional<std::string> quantity = table.choice("quantity", kQuantities, Need::required);
   const double repeats = table.quantity({"repeats", "", Range::between(1.0, 1e4), "how often the recording is run"}, Need::optional).value_or(1.0);
+  if (repeats != std::floor(repeats)) {
+    table.problem("repeats", "is not a whole number");
+  }
   if (!file || !quantity) {
     return;
   }
@@ -49,8 +55,16 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
     read_rows(folder / *file, duty.kind, duty);
   } catch (const Failure& failure) {
     for (const Diagnostic& each : failure.diagnostics()) {
-      table.problem("file", to_string(each));
+      if (each.at.line > 0) {
+        table.add(each);
+      } else {
+        table.problem("file", to_string(each));
+      }
     }
+    return;
+  }
+  if (static_cast<double>(duty.pieces.size()) * repeats > static_cast<double>(kMostPieces)) {
+    table.problem("repeats", fmt::format("makes more than {} rows; expected something like a match", kMostPieces));
     return;
   }
   const std::vector<DutyPiece> once = duty.pieces;

@@ -1,0 +1,133 @@
+#include "base/files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace {
+
+[[noreturn]] void cannot_read(const std::filesystem::path& path, const std::string& reason) {
+  throw bad_input({path.string()}, "", "cannot be read: " + reason);
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes) {
+  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) {
+    cannot_read(path, std::strerror(errno));
+  }
+  struct Closer {
+    int file;
+    ~Closer() { ::close(file); }
+  } closer{file};
+  struct stat about{};
+  if (::fstat(file, &about) != 0) {
+    cannot_read(path, std::strerror(errno));
+  }
+  if (!S_ISREG(about.st_mode)) {
+    cannot_read(path, S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
+  }
+  std::string content;
+  std::vector<char> chunk(1 << 16);
+  for (;;) {
+    const ssize_t got = ::read(file, chunk.data(), chunk.size());
+    if (got < 0) {
+      cannot_read(path, std::strerror(errno));
+    }
+    if (got == 0) {
+      return content;
+    }
+    content.append(chunk.data(), static_cast<std::size_t>(got));
+    if (content.size() > largest_bytes) {
+      cannot_read(path, fmt::format("it is larger than {} MB, which no file of this kind is", largest_bytes / 1'000'000));
+    }
+  }
+}
+
+namespace {
+
+[[noreturn]] void cannot_write(const std::filesystem::path& path, int error) {
+  throw bad_input({path.string()}, "", fmt::format("cannot be written: {}", std::strerror(error)));
+}
+
+/// An open file under a temporary name; gone again unless publish() was reached.
+class UnfinishedFile {
+ public:
+  /// `in_place` for what must not be replaced by a renamed file: devices and pipes.
+  UnfinishedFile(std::filesystem::path target, bool in_place)
+      : target_(std::move(target)), temporary_(in_place ? target_.string() : fmt::format("{}.{}.partial", target_.string(), ::getpid())), published_(in_place) {
+    descriptor_ = ::open(temporary_.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
+      published_ = true;
+      cannot_write(target_, errno);
+    }
+  }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile() {
+    if (descriptor_ >= 0) {
+      ::close(descriptor_);
+    }
+    if (!published_) {
+      ::unlink(temporary_.c_str());
+    }
+  }
+
+  void write(std::string_view content) {
+    while (!content.empty()) {
+      const ssize_t written = ::write(descriptor_, content.data(), content.size());
+      if (written < 0 && errno != EINTR) {
+        cannot_write(target_, errno);
+      }
+      content.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
+    }
+  }
+
+  void publish() {
+    // A full disk may show only here.
+    if (::close(std::exchange(descriptor_, -1)) != 0 || (!published_ && std::rename(temporary_.c_str(), target_.c_str()) != 0)) {
+      cannot_write(target_, errno);
+    }
+    published_ = true;
+  }
+
+ private:
+  std::filesystem::path target_;
+  std::string temporary_;
+  int descriptor_ = -1;
+  bool published_ = false;
+};
+
+}  // namespace
+
+void write_file(const std::filesystem::path& path, std::string_view content) {
+  struct stat about{};
+  const bool exists = ::stat(path.c_str(), &about) == 0;
+  if (exists && S_ISDIR(about.st_mode)) {
+    cannot_write(path, EISDIR);
+  }
+  if (exists && ::access(path.c_str(), W_OK) != 0) {
+    cannot_write(path, errno);
+  }
+  const bool in_place = exists && !S_ISREG(about.st_mode);
+  std::error_code no_link;
+  const std::filesystem::path target = exists && !in_place ? std::filesystem::canonical(path, no_link) : path;
+  UnfinishedFile file(no_link ? path : target, in_place);
+  file.write(content);
+  file.publish();
+}
+
+}  // namespace heatsoak

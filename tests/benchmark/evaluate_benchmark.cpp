@@ -1,0 +1,44 @@
+// The whole database on the duty of the paper.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+
+#include "select/evaluate.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+std::vector<Motor> all_motors() {
+  std::vector<Motor> motors;
+  for (const auto& file : std::filesystem::directory_iterator(kSource / "motor_db")) {
+    if (file.path().extension() == ".toml") {
+      motors.push_back(read_motor(file.path()));
+    }
+  }
+  return motors;
+}
+
+void evaluate_database(benchmark::State& state, int samples, bool with_curves) {
+  const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  const std::vector<Motor> motors = all_motors();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(evaluate(robot, duty, motors, {.samples = samples, .with_curves = with_curves}).data());
+  }
+  state.counters["motors"] = static_cast<double>(motors.size());
+}
+BENCHMARK_CAPTURE(evaluate_database, nominal, 0, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(evaluate_database, samples_500, 500, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(evaluate_database, samples_500_with_curves, 500, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void read_database(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(all_motors().data());
+  }
+}
+BENCHMARK(read_database)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,545 @@
+// What every verb keeps to (interfaces.md), found through the program's own help.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "program_run.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::Not;
+using testing::UnorderedElementsAre;
+using Words = std::vector<std::string>;
+
+const fs::path kSource = HEATSOAK_SOURCE_DIR;
+
+Words operator+(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+const Words kSteady{"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6A", "--time-on", "4s", "--time-off", "6s"};
+const Words kEvaluate{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors", "maxon_ec45_flat_70w_24v,maxon_ecx_flat_32l_48v"};
+const Words kSimulate{"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent"};
+
+/// A folder as the examples expect it: the data folders within reach.
+void link_data(const fs::path& folder) {
+  for (const char* each : {"motor_db", "duty_profiles", "robot_core"}) {
+    fs::create_directory_symlink(kSource / each, folder / each);
+  }
+}
+
+// Verbs.
+
+std::vector<std::string> verbs() {
+  std::istringstream help(run({"--help"}).out);
+  std::vector<std::string> result;
+  bool listed = false;
+  for (std::string line; std::getline(help, line);) {
+    if (line == "Subcommands:") {
+      listed = true;
+    } else if (listed && line.starts_with("  ")) {
+      result.push_back(line.substr(2, line.find(' ', 2) - 2));
+    } else if (listed && line.empty()) {
+      break;
+    }
+  }
+  return result;
+}
+
+/// The lines below "Example:".
+std::vector<std::string> examples(const std::string& verb) {
+  std::istringstream help(run({verb, "--help"}).out);
+  std::vector<std::string> result;
+  bool listed = false;
+  for (std::string line; std::getline(help, line);) {
+    if (line.starts_with("Example")) {
+      listed = true;
+    } else if (listed && line.starts_with("  ")) {
+      result.push_back(line.substr(2));
+    }
+  }
+  return result;
+}
+
+class Verb : public testing::TestWithParam<std::string> {};
+
+TEST_P(Verb, has_help_on_stdout) {
+  for (const char* option : {"--help", "-h"}) {
+    const ProgramRun result = run({GetParam(), option});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err, "");
+    EXPECT_THAT(result.out, HasSubstr("Usage: heatsoak " + GetParam()));
+  }
+}
+
+TEST_P(Verb, has_an_example_that_runs) {
+  const std::vector<std::string> lines = examples(GetParam());
+  ASSERT_THAT(lines, Not(IsEmpty()));
+  for (const std::string& line : lines) {
+    const TemporaryFolder folder;
+    link_data(folder.path());
+    RunOptions options;
+    options.folder = folder.path();
+    options.environment = {"DISPLAY", "WAYLAND_DISPLAY"};
+    options.time_limit_s = 280;
+    EXPECT_THAT(line, HasSubstr("heatsoak " + GetParam()));
+    const ProgramRun result = run_line(line, options);
+    EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << line << "\nends with " << result.exit_code << "\n" << result.err;
+    EXPECT_THAT(folder.names(), Not(Contains(HasSubstr("partial"))));
+    // what the example says it writes is there
+    std::istringstream words(line);
+    std::string before;
+    for (std::string word; words >> word; before = word) {
+      if (before == "--plot" || before == "--out" || (before == "--json" && word != "-")) {
+        EXPECT_TRUE(fs::exists(folder.path() / word)) << word;
+      }
+    }
+  }
+}
+
+TEST_P(Verb, suggests_the_option_that_was_meant) {
+  const ProgramRun result = run({GetParam(), "--hepl"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("did you mean '--help'?"));
+}
+
+TEST_P(Verb, refuses_unknown_words) {
+  for (const Words& wrong : {Words{"--surprise"}, Words{"-Q"}, Words{"--surprise=1"}, Words{"a", "b", "c", "d"}}) {
+    const ProgramRun result = run(Words{GetParam()} + wrong);
+    EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(wrong) << result.out;
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, Not(IsEmpty()));
+    EXPECT_THAT(result.err, Not(HasSubstr("bug")));
+  }
+}
+
+TEST_P(Verb, bears_a_full_disk) {
+  RunOptions full;
+  full.stdout_file = "/dev/full";
+  const ProgramRun result = run({GetParam(), "--help"}, full);
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("stdout cannot be written"));
+}
+
+INSTANTIATE_TEST_SUITE_P(help, Verb, testing::ValuesIn(verbs()), [](const auto& instance) { return test_name(instance.param); });
+
+// The data folders: one test for every file.
+
+struct DataFile {
+  std::string kind;  ///< as `list` calls it
+  fs::path file;
+};
+
+class Data : public testing::TestWithParam<DataFile> {};
+
+TEST_P(Data, loads_is_sound_and_is_described) {
+  const auto& [kind, file] = GetParam();
+  const ProgramRun lint = run({"lint", file.string()});
+  EXPECT_EQ(lint.exit_code, 0) << lint.out << lint.err;
+  const ProgramRun description = run({"describe", file.stem().string(), "--json", "-"});
+  EXPECT_EQ(description.exit_code, 0) << description.err;
+  EXPECT_EQ(description.json().at("id"), file.stem().string());
+}
+
+TEST_P(Data, is_evaluated) {
+  const auto& [kind, file] = GetParam();
+  const ProgramRun result = run({"evaluate", "--motors", kind == "motors" ? file.string() : "maxon_ec45_flat_70w_24v", "--robot", kind == "robots" ? file.string() : "roboteam_twente_v2024",
+                                 "--duty", kind == "duties" ? file.string() : "paper_intermittent", "--samples", "3", "--json", "-"});
+  EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.err;
+  EXPECT_EQ(result.json().at("motors").size(), 1U);
+}
+
+std::vector<DataFile> data_files() {
+  std::vector<DataFile> all;
+  for (const auto& [kind, folder] : {std::pair{"motors", kSource / "motor_db"}, {"robots", kSource / "robot_core" / "robots"}, {"duties", kSource / "duty_profiles"}}) {
+    for (const std::string& name : files_of(folder, "", ".toml")) {
+      all.push_back({kind, folder / name});
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(folders, Data, testing::ValuesIn(data_files()), [](const auto& instance) { return test_name(instance.param.file.filename().string()); });
+
+TEST(List, shows_every_file_of_the_data_folders) {
+  for (const DataFile& each : data_files()) {
+    const json items = run({"list", each.kind, "--json", "-"}).json().at("items");
+    EXPECT_TRUE(std::ranges::any_of(items, [&](const json& item) { return item.at("id") == each.file.stem().string(); })) << each.file;
+  }
+}
+
+TEST(List, effects_and_formats_are_described) {
+  for (const char* kind : {"effects", "formats"}) {
+    EXPECT_THAT(run({"list", kind, "--json", "-"}).json().at("items"), Not(IsEmpty()));
+  }
+  const json effects = run({"list", "effects", "--json", "-"}).json();
+  for (const json& item : effects.at("items")) {
+    EXPECT_EQ(run({"describe", item.at("id")}).exit_code, 0) << item;
+  }
+}
+
+// Exit codes and JSON.
+
+TEST(ExitCode, says_whether_a_limit_is_exceeded) {
+  EXPECT_EQ(run(kSteady).exit_code, 0);
+  EXPECT_EQ(run({"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "30", "--time-on", "1", "--time-off", "0"}).exit_code, 1);
+  EXPECT_EQ(run(kEvaluate + Words{"--samples", "0"}).exit_code, 1);  // the paper's motor fails
+}
+
+void expect_number_or_null(const json& value, const std::string& key) { EXPECT_TRUE(value.at(key).is_number() || value.at(key).is_null()) << key; }
+
+TEST(Json, of_steady_keeps_the_contract) {
+  const ProgramRun result = run(kSteady + Words{"--json", "-"});
+  const json answer = result.json();
+  EXPECT_EQ(answer.at("schema"), "heatsoak.steady/1");
+  for (const char* key : {"current_rms_A", "winding_C", "stator_C"}) {
+    EXPECT_TRUE(answer.at(key).is_number()) << key;
+  }
+  EXPECT_EQ(answer.at("runaway"), false);
+  EXPECT_THAT(result.err, HasSubstr("winding"));  // the text for people
+}
+
+TEST(Json, of_a_runaway_has_no_temperatures) {
+  const ProgramRun result = run({"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "60", "--time-on", "1", "--time-off", "0", "--json", "-"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.json().at("runaway"), true);
+  EXPECT_TRUE(result.json().at("winding_C").is_null());
+  EXPECT_TRUE(result.json().at("stator_C").is_null());
+}
+
+void expect_evaluate_contract(const json& answer, bool sampled) {
+  EXPECT_EQ(answer.at("schema"), "heatsoak.evaluate/1");
+  EXPECT_TRUE(answer.at("robot").is_string());
+  EXPECT_TRUE(answer.at("duty").is_string());
+  EXPECT_TRUE(answer.at("seed").is_number_unsigned());
+  ASSERT_TRUE(answer.at("motors").is_array());
+  for (const json& motor : answer["motors"]) {
+    EXPECT_TRUE(motor.at("id").is_string());
+    EXPECT_TRUE(motor.at("winding_limit_C").is_number());
+    for (const char* peak : {"winding_peak_C", "stator_peak_C"}) {
+      EXPECT_TRUE(motor.at(peak).at("nominal").is_number());
+      for (const char* percentile : {"p05", "p50", "p95"}) {
+        EXPECT_EQ(motor[peak].at(percentile).is_number(), sampled) << peak << " " << percentile;
+      }
+    }
+    EXPECT_EQ(motor.at("probability_over_limit").is_number(), sampled);
+    expect_number_or_null(motor, "time_to_limit_s");
+    EXPECT_TRUE(motor.at("current_rms_A").is_number());
+    EXPECT_THAT(motor.at("verdict").get<std::string>(), MatchesRegex("pass|marginal|fail|infeasible"));
+    EXPECT_THAT(motor.at("limiting_factor").get<std::string>(), MatchesRegex("winding_temperature|stator_temperature|voltage|current|none"));
+    EXPECT_THAT(motor.at("data_quality").get<std::string>(), MatchesRegex("datasheet|mixed|estimated"));
+  }
+}
+
+TEST(Json, of_evaluate_keeps_the_contract) {
+  const json answer = run(kEvaluate + Words{"--samples", "40", "--seed", "7", "--json", "-"}).json();
+  expect_evaluate_contract(answer, true);
+  EXPECT_EQ(answer.at("seed"), 7);
+  EXPECT_EQ(answer.at("motors").size(), 2U);
+}
+
+TEST(Json, of_evaluate_without_samples_has_null_for_what_only_samples_tell) {
+  expect_evaluate_contract(run(kEvaluate + Words{"--samples", "0", "--json", "-"}).json(), false);
+}
+
+TEST(Json, goes_to_stdout_alone_or_to_its_file) {
+  const TemporaryFolder folder;
+  RunOptions inside;
+  inside.folder = folder.path();
+  const std::vector<Words> lines{kSteady, kEvaluate + Words{"--samples", "0"}, kSimulate, {"list", "robots"}, {"describe", "tigers_v2020"}, {"lint", (kSource / "duty_profiles" / "paper_intermittent.toml").string()}};
+  for (const Words& words : lines) {
+    const ProgramRun on_stdout = run(words + Words{"--json", "-"}, inside);
+    const ProgramRun in_file = run(words + Words{"--json=answer.json"}, inside);
+    const ProgramRun none = run(words, inside);
+    EXPECT_EQ(on_stdout.out, content_of(folder.path() / "answer.json"));
+    EXPECT_TRUE(on_stdout.json().at("schema").is_string()) << words[0];
+    EXPECT_EQ(on_stdout.err, in_file.out);
+    EXPECT_EQ(in_file.out, none.out);
+    EXPECT_EQ(in_file.err, "");
+    EXPECT_EQ(on_stdout.exit_code, none.exit_code);
+    EXPECT_EQ(in_file.exit_code, none.exit_code);
+  }
+  EXPECT_THAT(folder.names(), UnorderedElementsAre("answer.json"));
+}
+
+TEST(Json, tells_errors_of_usage_too) {
+  const TemporaryFolder folder;
+  RunOptions inside;
+  inside.folder = folder.path();
+  for (const Words& wrong : {Words{"evaluate"}, Words{"evaluate", "--robt", "x"}, Words{"steady", "--motor", "x", "--current-on", "6V"}, Words{"evalute"},
+                             Words{"steady", "--motor", "nosuch", "--current-on", "1", "--time-on", "1", "--time-off", "1"}, Words{"list", "\xff"}}) {
+    const ProgramRun result = run(wrong + Words{"--json", "-"}, inside);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.json().at("error").at("code"), 2);
+    EXPECT_TRUE(result.json().at("error").at("diagnostics").is_array());
+    EXPECT_THAT(result.json().at("error").at("message").get<std::string>(), Not(IsEmpty()));
+    EXPECT_EQ(run(wrong + Words{"--json", "error.json"}, inside).out, "");
+    EXPECT_EQ(json::parse(content_of(folder.path() / "error.json")), result.json());
+  }
+}
+
+// Chance.
+
+TEST(Seed, gives_the_same_bytes_for_any_number_of_threads) {
+  const Words sampled = kEvaluate + Words{"--samples", "100", "--seed", "42", "--json", "-"};
+  const ProgramRun one = run(sampled + Words{"--threads", "1"});
+  for (const char* threads : {"2", "5", "0", "1024"}) {
+    const ProgramRun other = run(sampled + Words{"--threads", threads});
+    EXPECT_EQ(other.out, one.out) << threads;
+    EXPECT_EQ(other.err, one.err) << threads;
+  }
+  EXPECT_NE(run(kEvaluate + Words{"--samples", "100", "--seed", "43", "--json", "-"}).out, one.out);
+}
+
+TEST(Seed, gives_a_motor_the_same_figures_in_any_company) {
+  const auto of = [](const std::string& motors) {
+    const json answer = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "60", "--json", "-", "--motors", motors}).json();
+    for (const json& motor : answer.at("motors")) {
+      if (motor.at("id") == "maxon_ec45_flat_70w_24v") {
+        return motor;
+      }
+    }
+    return json();
+  };
+  const json alone = of("maxon_ec45_flat_70w_24v");
+  EXPECT_EQ(of("maxon_ecx_flat_32l_48v,maxon_ec45_flat_70w_24v"), alone);
+  EXPECT_EQ(of("maxon_ec45_flat_70w_24v,nanotec_df45l024048_a2"), alone);
+}
+
+// Usage.
+
+TEST(Usage, version) {
+  const ProgramRun result = run({"--version"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, MatchesRegex("heatsoak [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+struct Mistake {
+  std::string name;
+  Words words;
+  std::string said;
+};
+class Usage : public testing::TestWithParam<Mistake> {};
+
+TEST_P(Usage, is_refused_with_a_hint) {
+  const ProgramRun result = run(GetParam().words);
+  EXPECT_EQ(result.exit_code, 2) << result.out << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr(GetParam().said));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    mistakes, Usage,
+    testing::Values(
+        Mistake{"nothing", {}, "--help"}, Mistake{"unknown_verb", {"evaluat"}, "did you mean 'evaluate'?"}, Mistake{"far_verb", {"zzzzzzzz"}, "--help"},
+        Mistake{"empty_verb", {""}, "--help"}, Mistake{"option_before_verb", {"--db", "/tmp", "list", "motors"}, "--db"},
+        Mistake{"unknown_option", kEvaluate + Words{"--sample", "5"}, "did you mean '--samples'?"},
+        Mistake{"missing_value", kSteady + Words{"--json"}, "--json"}, Mistake{"option_twice", kSteady + Words{"--current-on", "5"}, "--current-on"},
+        Mistake{"missing_option", {"steady", "--motor", "maxon_ec45_flat_70w_24v"}, "is required"},
+        Mistake{"unknown_kind", {"list", "motor"}, "motors"},
+        Mistake{"unknown_motor", {"steady", "--motor", "maxon_ec45_flat_70w_24", "--current-on", "1", "--time-on", "1", "--time-off", "1"}, "did you mean 'maxon_ec45_flat_70w_24v'?"},
+        Mistake{"unknown_robot", {"evaluate", "--robot", "tigers_v2021", "--duty", "paper_intermittent"}, "did you mean 'tigers_v2020'?"},
+        Mistake{"unknown_duty", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermitent"}, "did you mean 'paper_intermittent'?"},
+        Mistake{"unknown_name", {"describe", "conducton"}, "did you mean 'conduction'?"},
+        Mistake{"empty_motor", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""}, "there is no motor ''"},
+        Mistake{"current_in_volt", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"}, "unit of something else"},
+        Mistake{"negative_current", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "-6", "--time-on", "1", "--time-off", "1"}, "out of range"},
+        Mistake{"current_nan", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "nan", "--time-on", "1", "--time-off", "1"}, "not a finite number"},
+        Mistake{"current_1e400", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "1e400", "--time-on", "1", "--time-off", "1"}, "too large"},
+        Mistake{"decimal_comma", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6,5A", "--time-on", "1", "--time-off", "1"}, "decimal comma"},
+        Mistake{"zero_time_on", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6", "--time-on", "0", "--time-off", "1"}, "out of range"},
+        Mistake{"cold_ambient", kSteady + Words{"--ambient", "-300 degC"}, "out of range"}, Mistake{"negative_samples", kEvaluate + Words{"--samples", "-1"}, "--samples"},
+        Mistake{"half_samples", kEvaluate + Words{"--samples", "2.5"}, "--samples"}, Mistake{"too_many_samples", kEvaluate + Words{"--samples", "1000001"}, "--samples"},
+        Mistake{"octal_samples", kEvaluate + Words{"--samples", "010"}, "--samples"}, Mistake{"too_many_threads", kEvaluate + Words{"--threads", "1025"}, "--threads"},
+        Mistake{"negative_seed", kEvaluate + Words{"--seed", "-1"}, "--seed"}, Mistake{"huge_seed", kEvaluate + Words{"--seed", "99999999999999999999"}, "--seed"},
+        Mistake{"every_zero", kSimulate + Words{"--every", "0"}, "out of range"}, Mistake{"db_missing", {"list", "motors", "--db", "/nonexistent"}, "no such folder"},
+        Mistake{"db_is_a_file", {"list", "motors", "--db", "/dev/null"}, "no such folder"},
+        Mistake{"db_name_too_long", {"list", "motors", "--db", std::string(5000, 'a')}, "no such folder"},
+        Mistake{"motor_name_too_long", {"lint", std::string(5000, 'a') + ".toml"}, "File name too long"}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(UsageOf, a_trace_that_would_fill_the_memory_is_refused) {
+  const TemporaryFolder folder;
+  write(folder.path() / "long.toml",
+        "summary = \"x\"\norigin = \"x\"\nshape = \"intermittent\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = \"x\" }\n[intermittent]\n"
+        "torque_on = { value = \"50 mN m\", origin = \"estimated\", derivation = \"x\" }\nspeed_on = \"40 rad/s\"\ntime_on = \"4 s\"\ntime_off = \"6 s\"\nrepeats = \"90000\"\n");
+  const ProgramRun result = run({"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", "roboteam_twente_v2024", "--duty", (folder.path() / "long.toml").string(), "--every", "1 ms"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--every"));
+  EXPECT_LT(result.memory_MB, 300.0);
+}
+
+TEST(UsageOf, negative_temperature_needs_no_quoting) {
+  EXPECT_EQ(run(kSteady + Words{"--ambient", "-10degC"}).exit_code, 0);
+  EXPECT_EQ(run(kSteady + Words{"--ambient", "-10"}).out, run(kSteady + Words{"--ambient=-10 degC"}).out);
+}
+
+// Where output cannot go.
+
+TEST(Unwritable, target_is_told_and_leaves_nothing) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "taken");
+  RunOptions inside;
+  inside.folder = folder.path();
+  for (const std::string target : {"no_such_folder/x", "taken", "taken/", "/proc/x"}) {
+    for (const Words& words : {kSteady + Words{"--json", target}, kEvaluate + Words{"--samples", "0", "--plot", target}, kSimulate + Words{"--out", target}, kSimulate + Words{"--plot", target}}) {
+      const ProgramRun result = run(words, inside);
+      EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(words) << result.err;
+      EXPECT_THAT(result.err, HasSubstr("writ")) << target;
+      EXPECT_THAT(folder.names(), UnorderedElementsAre("taken")) << target;
+    }
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path() / "taken"));
+}
+
+TEST(Unwritable, full_disk_is_told_and_the_device_survives) {
+  RunOptions full;
+  full.stdout_file = "/dev/full";
+  for (const Words& words : {kSteady, kSteady + Words{"--json", "-"}, Words{"list", "motors"}, Words{"completion"}, Words{"--version"}}) {
+    const ProgramRun result = run(words, full);
+    EXPECT_EQ(result.exit_code, 2) << words[0] << result.err;
+    EXPECT_THAT(result.err, HasSubstr("stdout cannot be written"));
+  }
+  const ProgramRun result = run(kSteady + Words{"--json", "/dev/full"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("No space left"));
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(Unwritable, stderr_does_not_crash_it) {
+  RunOptions full;
+  full.stderr_file = "/dev/full";
+  EXPECT_EQ(run({"evaluat"}, full).exit_code, 2);
+  EXPECT_EQ(run(kSteady + Words{"--json", "-"}, full).exit_code, 0);
+}
+
+TEST(Output, keeps_links_and_devices) {
+  const TemporaryFolder folder;
+  write(folder.path() / "real.json", "old");
+  fs::create_symlink("real.json", folder.path() / "link.json");
+  RunOptions inside;
+  inside.folder = folder.path();
+  EXPECT_EQ(run(kSteady + Words{"--json", "link.json"}, inside).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link.json"));
+  EXPECT_TRUE(json::parse(content_of(folder.path() / "real.json")).contains("schema"));
+  EXPECT_EQ(run(kSteady + Words{"--json", "/dev/null"}, inside).exit_code, 0);
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  EXPECT_THAT(folder.names(), UnorderedElementsAre("link.json", "real.json"));
+}
+
+// Surroundings.
+
+TEST(Surroundings, no_display_no_home_no_colours) {
+  const TemporaryFolder folder;
+  RunOptions bare;
+  bare.folder = folder.path();
+  bare.environment = {"DISPLAY", "WAYLAND_DISPLAY", "HOME", "TERM", "LANG", "NO_COLOR=1", "LC_ALL=C"};
+  const ProgramRun result = run(kEvaluate + Words{"--samples", "5", "--plot", "verdict.svg"}, bare);
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_EQ(result.err, "");  // no progress where there is no terminal
+  EXPECT_THAT(result.out, Not(HasSubstr("\x1b[")));
+  EXPECT_THAT(content_of(folder.path() / "verdict.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(folder.names(), UnorderedElementsAre("verdict.svg"));
+  RunOptions coloured;
+  coloured.environment = {"TERM=xterm-256color"};
+  EXPECT_THAT(run(kEvaluate + Words{"--samples", "5"}, coloured).out, Not(HasSubstr("\x1b[")));
+}
+
+TEST(Surroundings, a_locale_with_a_decimal_comma_changes_nothing) {
+  RunOptions german;
+  german.environment = {"LC_ALL=de_DE.UTF-8", "LANG=de_DE.UTF-8"};
+  EXPECT_EQ(run(kSteady + Words{"--json", "-"}, german).out, run(kSteady + Words{"--json", "-"}).out);
+}
+
+TEST(Surroundings, any_working_directory) {
+  RunOptions at_root;
+  at_root.folder = "/";
+  EXPECT_EQ(run(kSteady, at_root).out, run(kSteady).out);
+}
+
+std::vector<std::string> ids(const json& list) {
+  std::vector<std::string> result;
+  for (const json& item : list.at("items")) {
+    result.push_back(item.at("id"));
+  }
+  return result;
+}
+
+TEST(Database, may_be_a_copied_tree) {
+  const TemporaryFolder folder;
+  const std::string motor = "maxon_ec45_flat_70w_24v.toml";
+  fs::create_directories(folder.path() / "motor_db");
+  fs::create_directories(folder.path() / "duty_profiles");
+  fs::copy_file(kSource / "motor_db" / motor, folder.path() / "motor_db" / "mine.toml");
+  fs::copy_file(kSource / "duty_profiles" / "paper_intermittent.toml", folder.path() / "duty_profiles" / "my_duty.toml");
+  const Words database{"--db", folder.path().string()};
+  EXPECT_THAT(ids(run(Words{"list", "motors", "--json", "-"} + database).json()), UnorderedElementsAre("mine"));
+  EXPECT_THAT(ids(run(Words{"list", "duties", "--json", "-"} + database).json()), UnorderedElementsAre("my_duty"));
+  EXPECT_THAT(ids(run(Words{"list", "robots", "--json", "-"} + database).json()), Contains("tigers_v2020"));  // not in the copy: the usual ones
+  const ProgramRun result = run(Words{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "my_duty", "--samples", "0", "--json", "-"} + database);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.json().at("motors").at(0).at("id"), "mine");
+}
+
+TEST(Database, may_be_a_folder_of_motor_files_alone) {
+  const TemporaryFolder folder;
+  fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "mine.toml");
+  const Words database{"--db", folder.path().string()};
+  EXPECT_THAT(ids(run(Words{"list", "motors", "--json", "-"} + database).json()), UnorderedElementsAre("mine"));
+  EXPECT_EQ(run(Words{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "0"} + database).exit_code, 0);
+  EXPECT_EQ(run(Words{"steady", "--motor", "mine", "--current-on", "6A", "--time-on", "4s", "--time-off", "6s"} + database).exit_code, 0);
+}
+
+TEST(Database, without_any_motor_passes_no_verdict) {
+  const TemporaryFolder folder;
+  const ProgramRun result = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--db", folder.path().string()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("there is no motor file"));
+}
+
+TEST(Database, a_motor_may_be_a_path) {
+  const TemporaryFolder folder;
+  RunOptions inside;
+  inside.folder = folder.path();
+  fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "mine with blanks, ä.toml");
+  const Words rest{"--current-on", "6A", "--time-on", "4s", "--time-off", "6s", "--json", "-"};
+  for (const std::string& path : {std::string("mine with blanks, ä.toml"), std::string("./mine with blanks, ä.toml"), (folder.path() / "mine with blanks, ä.toml").string()}) {
+    const ProgramRun result = run(Words{"steady", "--motor", path} + rest, inside);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.json().at("motor"), "mine with blanks, ä");
+  }
+}
+
+TEST(Database, a_broken_file_is_told_and_not_passed_over) {
+  const TemporaryFolder folder;
+  fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "good.toml");
+  write(folder.path() / "broken.toml", "x =");
+  for (const Words& words : {Words{"list", "motors"}, Words{"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent"}}) {
+    const ProgramRun result = run(words + Words{"--db", folder.path().string()});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, HasSubstr("broken.toml:1:"));
+  }
+}
+
+TEST(Completion, offers_every_verb_and_runs_in_bash) {
+  const ProgramRun result = run_line("source <(heatsoak completion); COMP_WORDS=(heatsoak ''); COMP_CWORD=1; _heatsoak; echo \"${COMPREPLY[@]}\"");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const std::string& verb : verbs()) {
+    EXPECT_THAT(result.out, HasSubstr(verb));
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,131 @@
+#include "duty/duty.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace heatsoak {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+
+class DutyTest : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& name, const std::string& content) { std::ofstream(folder_ / name, std::ios::binary) << content; }
+  Duty read(const std::string& shape, const std::string& lines) {
+    write("mine.toml", "summary = \"a test\"\norigin = \"made up\"\nshape = \"" + shape +
+                           "\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = \"made up\" }\n[" + shape + "]\n" + lines);
+    return read_duty(folder_ / "mine.toml");
+  }
+  std::string problem(const std::string& shape, const std::string& lines) {
+    try {
+      read(shape, lines);
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("heatsoak_duty_" + std::to_string(::getpid()));
+};
+
+double time_on_s(const Duty& duty) {
+  double sum_s = 0.0;
+  for (const DutyPiece& piece : duty.pieces) {
+    sum_s += piece.torque_Nm != 0.0 || piece.current_A != 0.0 ? piece.duration_s : 0.0;
+  }
+  return sum_s;
+}
+
+TEST_F(DutyTest, intermittent_sums_to_its_cycles) {
+  const Duty duty = read("intermittent",
+                         "torque_on = { value = \"120 mN m\", origin = \"estimated\", derivation = \"x\" }\n"
+                         "speed_on = \"600 rpm\"\ntime_on = \"4 s\"\ntime_off = \"0.1 min\"\nrepeats = \"240\"\n");
+  EXPECT_EQ(duty.id, "mine");
+  EXPECT_EQ(duty.kind, DutyKind::torque);
+  EXPECT_THAT(duty.pieces, SizeIs(480));
+  EXPECT_NEAR(duty.duration_s(), 2400.0, 1e-9);
+  EXPECT_NEAR(time_on_s(duty), 960.0, 1e-9);
+  EXPECT_DOUBLE_EQ(duty.pieces[0].torque_Nm, 0.12);
+  EXPECT_NEAR(duty.pieces[0].speed_rad_per_s, 62.83185307, 1e-6);
+  EXPECT_EQ(duty.pieces[0].current_A, 0.0);
+  EXPECT_EQ(duty.pieces[1].torque_Nm, 0.0);
+  EXPECT_EQ(duty.pieces[1].speed_rad_per_s, 0.0);
+  EXPECT_DOUBLE_EQ(duty.load.value, 1.0);
+  EXPECT_FALSE(duty.load.spread);
+}
+
+TEST_F(DutyTest, intermittent_without_a_pause_has_no_pieces_of_no_length) {
+  const Duty duty = read("intermittent",
+                         "current_on = { value = \"3 A\", origin = \"estimated\", derivation = \"x\" }\n"
+                         "speed_on = \"0 rpm\"\ntime_on = \"4 s\"\ntime_off = \"0 s\"\nrepeats = \"5\"\n");
+  EXPECT_EQ(duty.kind, DutyKind::current);
+  EXPECT_THAT(duty.pieces, SizeIs(5));
+  EXPECT_DOUBLE_EQ(duty.pieces[0].current_A, 3.0);
+  EXPECT_DOUBLE_EQ(duty.duration_s(), 20.0);
+}
+
+TEST_F(DutyTest, the_spread_of_the_demand_becomes_a_factor) {
+  const std::string rest = "speed_on = \"0 rpm\"\ntime_on = \"4 s\"\ntime_off = \"6 s\"\nrepeats = \"2\"\n";
+  const Duty range = read("intermittent", "torque_on = { value = \"100 mN m\", origin = \"estimated\", derivation = \"x\", range = [\"50 mN m\", \"0.13 N m\"] }\n" + rest);
+  ASSERT_TRUE(range.load.spread);
+  EXPECT_DOUBLE_EQ(range.load.value, 1.0);
+  EXPECT_DOUBLE_EQ(range.load.spread->low, 0.5);
+  EXPECT_DOUBLE_EQ(range.load.spread->high, 1.3);
+  EXPECT_NEAR(range.load.quantile(0.5), 1.0, 1e-12);
+  EXPECT_NEAR(range.load.quantile(1e-12), 0.5, 1e-6);
+  EXPECT_NEAR(range.load.quantile(1.0 - 1e-12), 1.3, 1e-6);
+  const Duty tolerance = read("intermittent", "current_on = { value = \"2 A\", origin = \"estimated\", derivation = \"x\", tolerance = \"20 %\" }\n" + rest);
+  ASSERT_TRUE(tolerance.load.spread);
+  EXPECT_NEAR(tolerance.load.spread->low, 0.8, 1e-12);
+  EXPECT_NEAR(tolerance.load.spread->high, 1.2, 1e-12);
+}
+
+TEST_F(DutyTest, a_recorded_row_holds_until_the_next) {
+  write("log.csv", "speed_rad_per_s,time_s,torque_Nm,note\n10,5,0.1,a\n-20,7,-0.2,b\n30,7.5,0.3,c\n99,10,9,only the end\n");
+  const Duty duty = read("recorded", "file = \"log.csv\"\nquantity = \"torque\"\n");
+  ASSERT_THAT(duty.pieces, SizeIs(3));
+  EXPECT_DOUBLE_EQ(duty.pieces[0].duration_s, 2.0);
+  EXPECT_DOUBLE_EQ(duty.pieces[1].duration_s, 0.5);
+  EXPECT_DOUBLE_EQ(duty.pieces[2].duration_s, 2.5);
+  EXPECT_DOUBLE_EQ(duty.pieces[1].torque_Nm, -0.2);
+  EXPECT_DOUBLE_EQ(duty.pieces[1].speed_rad_per_s, -20.0);
+  EXPECT_DOUBLE_EQ(duty.pieces[2].torque_Nm, 0.3);
+  EXPECT_DOUBLE_EQ(duty.duration_s(), 5.0);
+}
+
+TEST_F(DutyTest, a_recording_of_current_is_repeated_whole) {
+  write("log.csv", "time_s,current_A,speed_rad_per_s\n0,1,10\n2,3,20\n3,0,0\n");
+  const Duty duty = read("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"3\"\n");
+  EXPECT_EQ(duty.kind, DutyKind::current);
+  ASSERT_THAT(duty.pieces, SizeIs(6));
+  EXPECT_DOUBLE_EQ(duty.duration_s(), 9.0);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_DOUBLE_EQ(duty.pieces[i].current_A, i % 2 == 0 ? 1.0 : 3.0);
+    EXPECT_DOUBLE_EQ(duty.pieces[i].duration_s, i % 2 == 0 ? 2.0 : 1.0);
+  }
+}
+
+TEST_F(DutyTest, problems_of_the_log_have_their_place_in_the_log) {
+  write("log.csv", "time_s,current_A,speed_rad_per_s\n0,1,10\n2,x,20\n1,0,0\n");
+  const std::string said = problem("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"1.5\"\n");
+  EXPECT_THAT(said, HasSubstr((folder_ / "log.csv").string() + ":3:2: error: current_A: \"x\""));
+  EXPECT_THAT(said, HasSubstr((folder_ / "mine.toml").string() + ":8:11: error: recorded.repeats: is not a whole number"));
+}
+
+TEST_F(DutyTest, a_recording_too_long_for_the_memory_is_refused) {
+  std::string content = "time_s,current_A,speed_rad_per_s\n";
+  for (int i = 0; i <= 1000; ++i) {
+    content += std::to_string(i) + ",1,10\n";
+  }
+  write("log.csv", content);
+  EXPECT_THAT(problem("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"10000\"\n"), HasSubstr("recorded.repeats: makes more than"));
+}
+
+}  // namespace
+}  // namespace heatsoak

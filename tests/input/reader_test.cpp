@@ -1,0 +1,152 @@
+#include "base/files.h"
+#include "input/reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <optional>
+
+namespace heatsoak {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// The text as a file, read.
+class ReaderTest : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(file_); }
+  Reader read(const std::string& toml) {
+    std::ofstream(file_, std::ios::binary) << toml;
+    root_ = read_toml(file_);
+    return {root_, "", diagnostics_};
+  }
+  /// "line:column key" of every problem.
+  [[nodiscard]] std::vector<std::string> places() const {
+    std::vector<std::string> result;
+    for (const Diagnostic& each : diagnostics_.list()) {
+      result.push_back(std::to_string(each.at.line) + ":" + std::to_string(each.at.column) + " " + each.key);
+    }
+    return result;
+  }
+  [[nodiscard]] std::string message() const { return diagnostics_.empty() ? "" : diagnostics_.list().front().message; }
+
+  std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("heatsoak_reader_" + std::to_string(::getpid()) + ".toml");
+  Value root_;
+  Diagnostics diagnostics_;
+};
+
+const ParameterSpec kResistance{"resistance", "ohm", Range::positive(), "of the test"};
+const ParameterSpec kTemperature{"temperature", "degC", Range::between(-40.0, 100.0), "of the test"};
+
+TEST_F(ReaderTest, converts_a_quantity) {
+  EXPECT_DOUBLE_EQ(read("resistance = \"608 mohm\"").quantity(kResistance, Need::required).value(), 0.608);
+  EXPECT_TRUE(diagnostics_.empty());
+}
+
+TEST_F(ReaderTest, counts_columns_in_characters_as_an_editor_does) {
+  read("x = { \"ä\" = \"ü\", resistance = \"1 V\" }").table("x", Need::required)->quantity(kResistance, Need::required);
+  EXPECT_THAT(places(), ElementsAre("1:31 x.resistance"));
+}
+
+TEST_F(ReaderTest, a_missing_key_is_reported_where_its_table_begins) {
+  Reader top = read("\n[a]\nx = 1\n\n[a.b]\ny = 2\n");
+  top.text("name", Need::required);
+  top.table("a", Need::required)->table("b", Need::required)->text("z", Need::required);
+  EXPECT_THAT(places(), ElementsAre("1:1 name", "5:1 a.b.z"));
+}
+
+TEST_F(ReaderTest, optional_keys_may_be_absent) {
+  Reader top = read("");
+  EXPECT_FALSE(top.text("a", Need::optional));
+  EXPECT_FALSE(top.flag("b", Need::optional));
+  EXPECT_FALSE(top.quantity(kResistance, Need::optional));
+  EXPECT_FALSE(top.figure(kResistance, Need::optional));
+  EXPECT_FALSE(top.table("d", Need::optional));
+  EXPECT_THAT(top.texts("e", Need::optional), IsEmpty());
+  EXPECT_THAT(top.tables("f"), IsEmpty());
+  top.finish();
+  EXPECT_TRUE(diagnostics_.empty());
+}
+
+TEST_F(ReaderTest, names_unknown_keys_with_the_nearest_known_one) {
+  Reader top = read("resistence = \"1 ohm\"\n");
+  top.quantity(kResistance, Need::optional);
+  top.finish();
+  EXPECT_THAT(places(), ElementsAre("1:14 resistence"));
+  EXPECT_THAT(message(), HasSubstr("did you mean 'resistance'?"));
+}
+
+TEST_F(ReaderTest, items_of_a_list_are_named_one_by_one) {
+  read("names = [\"a\", 1,\n  true, \"b\"]\n").texts("names", Need::required);
+  EXPECT_THAT(places(), ElementsAre("1:15 names", "2:3 names"));
+}
+
+TEST_F(ReaderTest, tables_of_a_list_are_numbered) {
+  Reader top = read("[[wheel]]\n[[wheel]]\nresistance = \"-1 ohm\"\n");
+  std::vector<Reader> wheels = top.tables("wheel");
+  ASSERT_THAT(wheels, SizeIs(2));
+  wheels[1].quantity(kResistance, Need::required);
+  EXPECT_THAT(places(), ElementsAre("3:14 wheel[1].resistance"));
+}
+
+Figure figure_of(std::optional<Figure> figure) { return figure.value_or(Figure{}); }
+
+TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
+  Reader top = read(
+      "resistance = { value = \"2 ohm\", origin = \"datasheet\", source = \"s\", tolerance = \"10 %\" }\n"
+      "temperature = { value = \"20 degC\", origin = \"datasheet\", source = [\"s\", \"t\"], tolerance = \"3 K\" }\n");
+  const Figure resistance = figure_of(top.figure(kResistance, Need::required));
+  const Figure temperature = figure_of(top.figure(kTemperature, Need::required));
+  ASSERT_TRUE(diagnostics_.empty()) << message();
+  EXPECT_DOUBLE_EQ(resistance.spread->low, 1.8);
+  EXPECT_DOUBLE_EQ(resistance.spread->high, 2.2);
+  EXPECT_DOUBLE_EQ(temperature.spread->low, 17.0);
+  EXPECT_DOUBLE_EQ(temperature.spread->high, 23.0);
+  EXPECT_EQ(temperature.source, "s, t");
+}
+
+TEST_F(ReaderTest, a_range_has_units_of_its_own) {
+  const Figure figure = figure_of(read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }").figure(kResistance, Need::required));
+  ASSERT_TRUE(diagnostics_.empty()) << message();
+  EXPECT_DOUBLE_EQ(figure.spread->low, 1.9);
+  EXPECT_DOUBLE_EQ(figure.spread->high, 2.5);
+}
+
+TEST_F(ReaderTest, an_unknown_origin_is_one_problem_not_three) {
+  read("resistance = { value = \"2 ohm\", origin = \"internet\" , source = \"s\"}").figure(kResistance, Need::required);
+  EXPECT_THAT(places(), ElementsAre("1:42 resistance.origin"));
+}
+
+TEST_F(ReaderTest, problems_come_sorted_by_place) {
+  Reader top = read("a = 1\nb = 2\nresistance = \"1 V\"\n");
+  top.quantity(kResistance, Need::required);
+  top.text("b", Need::required);
+  top.text("a", Need::required);
+  try {
+    diagnostics_.throw_if_any();
+    FAIL() << "nothing thrown";
+  } catch (const Failure& failure) {
+    std::vector<std::string> keys;
+    for (const Diagnostic& each : failure.diagnostics()) {
+      keys.push_back(each.key);
+    }
+    EXPECT_THAT(keys, ElementsAre("a", "b", "resistance"));
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  }
+}
+
+TEST_F(ReaderTest, nothing_is_left_of_a_file_that_cannot_be_written) {
+  EXPECT_THROW(write_file("/proc/no_such_place/x", "text"), Failure);
+  write_file(file_, "first");
+  write_file(file_, "second");
+  EXPECT_EQ(read_file(file_, 100), "second");
+  EXPECT_THROW(read_file(file_, 5), Failure);
+}
+
+}  // namespace
+}  // namespace heatsoak

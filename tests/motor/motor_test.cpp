@@ -1,0 +1,122 @@
+#include "motor/motor.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+namespace heatsoak {
+namespace {
+
+/// A motor file with the conventions of the arguments, 0.5 ohm ± 10 % and 30 mN m/A ± 7 %.
+Motor motor_with(const std::string& resistance, const std::string& torque, const std::string& more = "") {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / ("motor_" + std::to_string(getpid()) + ".toml");
+  std::ofstream(path) << R"(manufacturer = "x"
+name = "y"
+type = "brushless"
+[sources]
+sheet = "a sheet"
+[conventions]
+terminal_resistance = ")" << resistance << "\"\ntorque_constant = \"" << torque << R"("
+[figures]
+nominal_voltage = { value = "24 V", origin = "datasheet", source = "sheet" }
+terminal_resistance = { value = "0.5 ohm", origin = "datasheet", source = "sheet", tolerance = "10 %" }
+terminal_inductance = { value = "0.2 mH", origin = "datasheet", source = "sheet" }
+torque_constant = { value = "30 mNm/A", origin = "datasheet", source = "sheet", tolerance = "7 %" }
+no_load_current = { value = "0.2 A", origin = "datasheet", source = "sheet" }
+thermal_resistance_winding_stator = { value = "4 K/W", origin = "datasheet", source = "sheet", range = ["3 K/W", "6 K/W"] }
+thermal_resistance_stator_ambient = { value = "2 K/W", origin = "datasheet", source = "sheet" }
+thermal_time_constant_winding = { value = "12 s", origin = "datasheet", source = "sheet" }
+thermal_time_constant_stator = { value = "80 s", origin = "datasheet", source = "sheet" }
+winding_limit = { value = "155 degC", origin = "datasheet", source = "sheet" }
+)" << more;
+  const Motor motor = read_motor(path);
+  std::filesystem::remove(path);
+  return motor;
+}
+
+TEST(MotorConventions, between_terminals_and_per_dc_ampere_are_ours) {
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere");
+  EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 0.5);
+  EXPECT_DOUBLE_EQ(motor.nominal.torque_constant_Nm_per_A, 0.03);
+  EXPECT_EQ(motor.nominal.temperature_coefficient_per_K, 0.0039);
+  EXPECT_TRUE(std::isnan(motor.nominal.stator_limit_C));
+}
+
+TEST(MotorConventions, phase_values_are_two_in_series) {
+  const Motor motor = motor_with("phase_to_star", "per_dc_ampere");
+  EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 1.0);
+  EXPECT_DOUBLE_EQ(motor.nominal.terminal_inductance_H, 0.4e-3);
+  const Figure& figure = motor.figures.at("terminal_resistance");
+  EXPECT_DOUBLE_EQ(figure.spread->low, 0.9);
+  EXPECT_DOUBLE_EQ(figure.spread->high, 1.1);
+}
+
+// Block commutation on a sinusoidal back-EMF of amplitude E between two terminals: the mean torque over the 60° around
+// the crest is 3/π of the crest's, so per DC ampere K = (3/π)·E/ω. A sinusoidal phase current of peak Î against phase
+// amplitudes E/√3 gives M·ω = 1.5·Î·E/√3, so per peak ampere (√3/2)·E/ω: the ratio is 2√3/π = 1.1027.
+TEST(MotorConventions, per_peak_and_per_rms_ampere_from_the_power_of_a_sinusoidal_machine) {
+  const double per_dc = motor_with("between_terminals", "per_dc_ampere").nominal.torque_constant_Nm_per_A;
+  const double of_peak = motor_with("between_terminals", "per_peak_phase_ampere").nominal.torque_constant_Nm_per_A;
+  const double of_rms = motor_with("between_terminals", "per_rms_phase_ampere").nominal.torque_constant_Nm_per_A;
+  EXPECT_NEAR(of_peak / per_dc, 2.0 * std::numbers::sqrt3 / std::numbers::pi, 1e-14);
+  EXPECT_NEAR(of_rms * std::numbers::sqrt2, of_peak, 1e-16) << "an rms ampere is √2 peak amperes";
+}
+
+TEST(MotorSample, without_spread_is_the_figure_and_with_spread_within_it) {
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere");
+  double lowest_ohm = 1.0;
+  double highest_ohm = 0.0;
+  for (std::uint64_t stream = 0; stream < 2000; ++stream) {
+    Random random(3, stream);
+    const MotorSample sample = draw_sample(motor, random);
+    lowest_ohm = std::min(lowest_ohm, sample.values.terminal_resistance_ohm);
+    highest_ohm = std::max(highest_ohm, sample.values.terminal_resistance_ohm);
+    EXPECT_EQ(sample.values.no_load_current_A, 0.2);
+    EXPECT_GE(sample.values.thermal_resistance_winding_stator_K_per_W, 3.0);
+    EXPECT_LE(sample.values.thermal_resistance_winding_stator_K_per_W, 6.0);
+    EXPECT_GE(sample.values.torque_constant_Nm_per_A, 0.0279 * (1.0 - 1e-12));
+    EXPECT_LE(sample.values.torque_constant_Nm_per_A, 0.0321 * (1.0 + 1e-12));
+  }
+  EXPECT_GE(lowest_ohm, 0.45 * (1.0 - 1e-12));
+  EXPECT_LT(lowest_ohm, 0.455);
+  EXPECT_LE(highest_ohm, 0.55 * (1.0 + 1e-12));
+  EXPECT_GT(highest_ohm, 0.545);
+}
+
+TEST(MotorSample, effect_parameters_are_drawn_too) {
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere", R"([effects.flange]
+type = "conduction"
+hot = "winding"
+cold = "ambient"
+thermal_resistance = { value = "40 K/W", origin = "estimated", derivation = "guess", range = ["20 K/W", "80 K/W"] }
+)");
+  ASSERT_EQ(motor.effects.size(), 1U);
+  EXPECT_EQ(motor.effects[0].nodes, (std::vector<std::string>{"winding", "ambient"}));
+  EXPECT_EQ(nominal_sample(motor).effect_parameters[0][0], 40.0);
+  Random random(1, 1);
+  const double first = draw_sample(motor, random).effect_parameters[0][0];
+  const double second = draw_sample(motor, random).effect_parameters[0][0];
+  EXPECT_NE(first, second);
+  EXPECT_GE(std::min(first, second), 20.0);
+  EXPECT_LE(std::max(first, second), 80.0);
+}
+
+TEST(DataQuality, is_that_of_the_worst_thermal_figure) {
+  Motor motor = motor_with("between_terminals", "per_dc_ampere");
+  EXPECT_EQ(data_quality(motor), "datasheet");
+  motor.figures.at("terminal_resistance").origin = Origin::measured;
+  EXPECT_EQ(data_quality(motor), "datasheet");
+  motor.figures.at("terminal_resistance").origin = Origin::third_party;
+  EXPECT_EQ(data_quality(motor), "mixed");
+  motor.figures.at("thermal_time_constant_stator").origin = Origin::estimated;
+  EXPECT_EQ(data_quality(motor), "estimated");
+  motor.figures.at("thermal_time_constant_stator").origin = Origin::datasheet;
+  motor.figures.at("winding_limit").origin = Origin::estimated;
+  EXPECT_EQ(data_quality(motor), "estimated");
+}
+
+}  // namespace
+}  // namespace heatsoak

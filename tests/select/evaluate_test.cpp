@@ -1,0 +1,393 @@
+#include "select/evaluate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "motor/datasheet_network.h"
+#include "select/drive_profile.h"
+#include "thermal/steady_state.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+Motor motor_of_file(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
+Robot robot_of_file(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
+Duty duty_of_file(const std::string& id) { return read_duty(kSource / "duty_profiles" / (id + ".toml")); }
+
+constexpr double kResistance_ohm = 0.5;
+constexpr double kAlpha_per_K = 0.0039;
+constexpr double kInner_K_per_W = 4.0;
+constexpr double kOuter_K_per_W = 2.0;
+
+void give(Motor& motor, std::string_view key, double MotorValues::* value, const Figure& figure) {
+  motor.figures[key] = figure;
+  motor.nominal.*value = figure.value;
+}
+
+/// Heats up in a minute or two; no drag.
+Motor simple_motor() {
+  Motor motor;
+  motor.id = "simple";
+  MotorValues& values = motor.nominal;
+  values.terminal_resistance_ohm = kResistance_ohm;
+  values.torque_constant_Nm_per_A = 0.03;
+  values.no_load_current_A = 0.0;
+  values.temperature_coefficient_per_K = kAlpha_per_K;
+  values.thermal_resistance_winding_stator_K_per_W = kInner_K_per_W;
+  values.thermal_resistance_stator_ambient_K_per_W = kOuter_K_per_W;
+  values.thermal_time_constant_winding_s = 4.0;
+  values.thermal_time_constant_stator_s = 20.0;
+  values.winding_limit_C = 155.0;
+  return motor;
+}
+
+Robot simple_robot() {
+  Robot robot;
+  robot.id = "simple";
+  robot.wheel_radius_m = 0.03;
+  robot.battery_V = 24.0;
+  return robot;
+}
+
+Duty constant_current(double current_A, double duration_s = 600.0) {
+  Duty duty;
+  duty.kind = DutyKind::current;
+  duty.ambient_C.value = 25.0;
+  duty.load.value = 1.0;
+  duty.pieces.push_back({duration_s, 0.0, 0.0, current_A});
+  return duty;
+}
+
+MotorEvaluation evaluate_one(const Motor& motor, const Robot& robot, const Duty& duty, const EvaluateOptions& options = {.samples = 0}) {
+  return evaluate(robot, duty, std::span(&motor, 1), options).front();
+}
+
+/// Winding of the closed form, (9) and (12), for a constant current.
+double rest_C(double resistance_ohm, double current_A) {
+  return on_off_steady_state({resistance_ohm, kAlpha_per_K, kInner_K_per_W, kOuter_K_per_W}, {current_A, 1.0, 0.0, 25.0}).winding_C;
+}
+
+double quantile_of(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+// --- nominal ----------------------------------------------------------------------------------------------
+
+TEST(Evaluate, a_long_constant_current_peaks_at_the_closed_form) {
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(5.0));
+  EXPECT_NEAR(result.winding_peak_C.nominal, rest_C(kResistance_ohm, 5.0), 1e-5);
+  EXPECT_NEAR(result.margin_K, 155.0 - rest_C(kResistance_ohm, 5.0), 1e-5);
+  EXPECT_EQ(result.current_rms_A, 5.0);
+  EXPECT_EQ(result.verdict, Verdict::pass);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::none);
+  EXPECT_FALSE(result.time_to_limit_s.has_value());
+  EXPECT_TRUE(std::isnan(result.winding_peak_C.p50));
+  EXPECT_TRUE(std::isnan(result.probability_over_limit));
+}
+
+TEST(Evaluate, rms_current_is_that_of_the_whole_duty) {
+  Duty duty = constant_current(5.0, 4.0);
+  duty.pieces.push_back({12.0, 0.0, 0.0, 0.0});
+  EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), duty).current_rms_A, 2.5, 1e-14);
+}
+
+// 9/π² of the heat of block commutation is 3/π of its rms current; a limited current heats as much as flows.
+TEST(Evaluate, rms_current_is_the_one_that_heats) {
+  Robot robot = simple_robot();
+  robot.commutation = Commutation::sinusoidal;
+  EXPECT_NEAR(evaluate_one(simple_motor(), robot, constant_current(5.0)).current_rms_A, 15.0 / std::numbers::pi, 1e-13);
+  robot.commutation = Commutation::block;
+  robot.current_limit_A = 4.0;
+  EXPECT_NEAR(evaluate_one(simple_motor(), robot, constant_current(5.0)).current_rms_A, 4.0, 1e-14);
+}
+
+TEST(Evaluate, too_hot_fails_and_says_when) {
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(8.0));
+  EXPECT_EQ(result.verdict, Verdict::fail);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::winding_temperature);
+  ASSERT_TRUE(result.time_to_limit_s.has_value());
+  // Cut the duty there: it ends on the limit.
+  EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), constant_current(8.0, *result.time_to_limit_s)).winding_peak_C.nominal, 155.0, 1e-4);
+}
+
+TEST(Evaluate, stator_limit_is_a_limit_too) {
+  Motor motor = simple_motor();
+  motor.nominal.stator_limit_C = 40.0;
+  const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(5.0));
+  EXPECT_EQ(result.verdict, Verdict::fail);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::stator_temperature);
+}
+
+TEST(Evaluate, runaway_is_destroyed) {
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(20.0));
+  EXPECT_TRUE(result.destroyed);
+  EXPECT_EQ(result.verdict, Verdict::fail);
+}
+
+TEST(Evaluate, infeasible_by_voltage) {
+  Duty duty = constant_current(5.0);
+  duty.kind = DutyKind::torque;
+  duty.pieces = {{1.0, 0.06, 790.0, 0.0}};  // 23.7 V of back-EMF leave 0.3 V: 0.6 of 2 A
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
+  EXPECT_EQ(result.verdict, Verdict::infeasible);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::voltage);
+  EXPECT_NEAR(result.least_torque_share, 0.3, 1e-9);
+}
+
+TEST(Evaluate, infeasible_by_current) {
+  Robot robot = simple_robot();
+  robot.current_limit_A = 4.0;
+  const MotorEvaluation result = evaluate_one(simple_motor(), robot, constant_current(5.0));
+  EXPECT_EQ(result.verdict, Verdict::infeasible);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::current);
+  EXPECT_NEAR(result.least_torque_share, 0.8, 1e-12);
+}
+
+// Cold it is just enough, hot the resistance takes more: 5 A · 0.5 Ω · 1.35… instead of 2.5 V.
+TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
+  Duty duty = constant_current(5.0);
+  duty.pieces = {{600.0, 0.0, 21.4 / 0.03, 5.0}};  // 21.4 V + 2.5 V = 23.9 V
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
+  EXPECT_EQ(result.least_torque_share, 1.0);
+  EXPECT_NEAR(result.highest_voltage_V, 21.4 + 2.5 * (1.0 + kAlpha_per_K * (rest_C(kResistance_ohm, 5.0) - 25.0)), 1e-6);
+  EXPECT_EQ(result.verdict, Verdict::infeasible);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::voltage);
+}
+
+// --- margin -----------------------------------------------------------------------------------------------
+
+/// Peak with all currents of the duty scaled.
+double peak_of_scaled_C(const Motor& motor, const Robot& robot, const Duty& duty, double factor) {
+  const MotorSample sample = nominal_sample(motor);
+  const Network network = datasheet_network(motor, sample);
+  std::vector<Interval> intervals = drive_profile(sample.values, robot, duty, nominal_sample(duty)).intervals;
+  for (Interval& interval : intervals) {
+    interval.at.current_rms_A *= factor;
+  }
+  return run_transient(network, network.values(), intervals, {}).peak_C[0];
+}
+
+TEST(Margin, of_a_constant_current_is_that_of_the_closed_form) {
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(5.0));
+  ASSERT_TRUE(result.margin_A.has_value());
+  // ΔT = c/(1 − α·c) at the limit: c = 130/(1 + 0.0039·130) K = 6 K/W · 0.5 Ω · I²
+  const double bearable_A = std::sqrt(130.0 / (1.0 + 0.0039 * 130.0) / 3.0);
+  EXPECT_NEAR(*result.margin_A, bearable_A - 5.0, 1e-3);
+}
+
+TEST(Margin, scaling_the_current_by_it_lands_on_the_limit) {
+  const Robot robot = robot_of_file("roboteam_twente_v2024");
+  const Duty duty = duty_of_file("paper_intermittent");
+  for (const char* id : {"maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2"}) {
+    const Motor motor = motor_of_file(id);
+    const MotorEvaluation result = evaluate_one(motor, robot, duty);
+    ASSERT_TRUE(result.margin_A.has_value()) << id;
+    EXPECT_NEAR(peak_of_scaled_C(motor, robot, duty, 1.0 + *result.margin_A / result.current_rms_A), result.winding_limit_C, 0.02) << id;
+    EXPECT_EQ(*result.margin_A > 0.0, result.margin_K > 0.0) << id;
+  }
+}
+
+TEST(Margin, there_is_none_where_drag_alone_is_too_much) {
+  Motor motor = simple_motor();
+  motor.nominal.no_load_current_A = 10.0;
+  Duty duty = constant_current(5.0);
+  duty.pieces = {{600.0, 0.0, 300.0, 5.0}};  // 0.3 N m · 300 rad/s = 90 W behind 2 K/W
+  EXPECT_FALSE(evaluate_one(motor, simple_robot(), duty).margin_A.has_value());
+}
+
+// --- the uncertain ----------------------------------------------------------------------------------------
+
+TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
+  const Robot robot = robot_of_file("roboteam_twente_v2024");
+  Duty duty = duty_of_file("paper_intermittent");
+  duty.pieces.resize(60);
+  const std::vector<Motor> motors{motor_of_file("maxon_ecx_flat_32l_48v"), motor_of_file("maxon_ecx_flat_42m_24v"), motor_of_file("nanotec_df45l024048_a2")};
+  EvaluateOptions options{.samples = 61, .seed = 7, .threads = 1, .with_curves = true};
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  const std::vector<MotorEvaluation> one = evaluate(robot, duty, motors, options);
+  for (const int threads : {1, 2, 3, 8}) {
+    options.threads = threads;
+    const std::vector<MotorEvaluation> many = evaluate(robot, duty, motors, options);
+    ASSERT_EQ(many.size(), one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i].motor_id, many[i].motor_id);
+      for (const auto& [a, b] : {std::pair{one[i].winding_peak_C, many[i].winding_peak_C}, std::pair{one[i].stator_peak_C, many[i].stator_peak_C}}) {
+        EXPECT_EQ(bits(a.nominal), bits(b.nominal));
+        EXPECT_EQ(bits(a.p05), bits(b.p05));
+        EXPECT_EQ(bits(a.p50), bits(b.p50));
+        EXPECT_EQ(bits(a.p95), bits(b.p95));
+      }
+      EXPECT_EQ(bits(one[i].probability_over_limit), bits(many[i].probability_over_limit));
+      EXPECT_EQ(one[i].curves.winding_p95_C, many[i].curves.winding_p95_C);
+      EXPECT_EQ(one[i].curves.winding_C, many[i].curves.winding_C);
+    }
+  }
+}
+
+TEST(Samples, another_seed_is_another_draw) {
+  const Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
+  const Robot robot = robot_of_file("roboteam_twente_v2024");
+  Duty duty = duty_of_file("paper_intermittent");
+  duty.pieces.resize(20);
+  const MotorEvaluation one = evaluate_one(motor, robot, duty, {.samples = 40, .seed = 1});
+  const MotorEvaluation two = evaluate_one(motor, robot, duty, {.samples = 40, .seed = 2});
+  EXPECT_NE(one.winding_peak_C.p50, two.winding_peak_C.p50);
+  EXPECT_EQ(one.winding_peak_C.nominal, two.winding_peak_C.nominal);
+}
+
+TEST(Samples, without_any_spread_all_are_the_nominal_one) {
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(5.0), {.samples = 20});
+  EXPECT_NEAR(result.winding_peak_C.p05, result.winding_peak_C.nominal, 0.01);
+  EXPECT_NEAR(result.winding_peak_C.p95, result.winding_peak_C.nominal, 0.01);
+  EXPECT_EQ(result.probability_over_limit, 0.0);
+}
+
+Figure resistance_within_10_percent() {
+  Figure figure;
+  figure.value = kResistance_ohm;
+  figure.spread = Spread{Spread::Kind::tolerance, 0.9 * kResistance_ohm, 1.1 * kResistance_ohm, true};
+  return figure;
+}
+
+// Independent: the standard library's normal distribution, cut off by rejection at the tolerance, through the closed form.
+TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_carlo) {
+  Motor motor = simple_motor();
+  give(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(7.0), {.samples = 4000, .seed = 11});
+  std::mt19937_64 engine(12);
+  std::normal_distribution<double> share(0.0, 0.05);
+  std::vector<double> peaks_C;
+  int over = 0;
+  while (peaks_C.size() < 200000) {
+    const double deviation = share(engine);
+    if (std::abs(deviation) <= 0.1) {
+      peaks_C.push_back(rest_C(kResistance_ohm * (1.0 + deviation), 7.0));
+      over += peaks_C.back() > 155.0 ? 1 : 0;
+    }
+  }
+  const double width_K = quantile_of(peaks_C, 0.95) - quantile_of(peaks_C, 0.05);
+  ASSERT_GT(width_K, 20.0);
+  // Standard error of a 5 % quantile of 4000 draws: √(0.05·0.95/4000)/density ≈ 0.011 of the width; four of them.
+  EXPECT_NEAR(result.winding_peak_C.p05, quantile_of(peaks_C, 0.05), 0.05 * width_K);
+  EXPECT_NEAR(result.winding_peak_C.p50, quantile_of(peaks_C, 0.50), 0.03 * width_K);
+  EXPECT_NEAR(result.winding_peak_C.p95, quantile_of(peaks_C, 0.95), 0.05 * width_K);
+  const double probability = static_cast<double>(over) / static_cast<double>(peaks_C.size());
+  ASSERT_GT(probability, 0.02);
+  EXPECT_NEAR(result.probability_over_limit, probability, 4.0 * std::sqrt(probability * (1.0 - probability) / 4000.0));
+}
+
+TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
+  Motor motor = simple_motor();
+  give(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  Figure inner;
+  inner.value = kInner_K_per_W;
+  inner.spread = Spread{Spread::Kind::tolerance, 0.9 * kInner_K_per_W, 1.1 * kInner_K_per_W, true};
+  give(motor, "thermal_resistance_winding_stator", &MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
+  const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(5.0), {.samples = 2000, .seed = 5});
+  EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 0.01 * (result.winding_peak_C.nominal - 25.0));
+  EXPECT_LT(result.winding_peak_C.p05, result.winding_peak_C.nominal - 3.0);
+  EXPECT_GT(result.winding_peak_C.p95, result.winding_peak_C.nominal + 3.0);
+}
+
+// The limit lies between 105 and 155 °C in half of the draws, evenly: below 130 °C in a quarter of them.
+TEST(Samples, a_limit_that_may_be_lower_makes_a_pass_marginal) {
+  Motor motor = simple_motor();
+  Figure limit;
+  limit.value = 155.0;
+  limit.spread = Spread{Spread::Kind::range, 105.0, 165.0, false};
+  give(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
+  const double current_A = std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0);  // rests at 130 °C
+  const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(current_A), {.samples = 2000, .seed = 3});
+  EXPECT_EQ(result.verdict, Verdict::marginal);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::winding_temperature);
+  EXPECT_NEAR(result.probability_over_limit, 0.25, 4.0 * std::sqrt(0.25 * 0.75 / 2000.0));
+}
+
+TEST(Samples, ambient_of_the_duty_moves_the_peak_with_it) {
+  Duty duty = constant_current(5.0);
+  duty.ambient_C.spread = Spread{Spread::Kind::range, 15.0, 35.0, false};
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty, {.samples = 2000, .seed = 3});
+  // T_W = T_A + c·(1+α(T_A−25))/(1−α·c) with c = 75 K: 1 + α·75/(1−α·75) = 1.4134 K per K; 5 % of 15 … 35 °C is 16 °C.
+  EXPECT_NEAR(result.winding_peak_C.p05, result.winding_peak_C.nominal - 9.0 * 1.4134, 1.0);
+  EXPECT_NEAR(result.winding_peak_C.p95, result.winding_peak_C.nominal + 9.0 * 1.4134, 1.0);
+}
+
+// --- the case it was born from ----------------------------------------------------------------------------
+
+TEST(PaperCase, ecx_flat_32l_peaks_at_162_C_and_fails_by_its_winding) {
+  const MotorEvaluation result =
+      evaluate_one(motor_of_file("maxon_ecx_flat_32l_48v"), robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"));
+  EXPECT_NEAR(result.winding_peak_C.nominal, 162.0, 0.5);
+  EXPECT_EQ(result.winding_limit_C, 155.0);
+  EXPECT_EQ(result.verdict, Verdict::fail);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::winding_temperature);
+  EXPECT_TRUE(result.time_to_limit_s.has_value());
+  EXPECT_LT(*result.margin_A, 0.0);
+  EXPECT_EQ(result.data_quality, "estimated");
+}
+
+TEST(PaperCase, the_larger_motors_pass) {
+  const Robot robot = robot_of_file("roboteam_twente_v2024");
+  const Duty duty = duty_of_file("paper_intermittent");
+  for (const char* id : {"maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2"}) {
+    const MotorEvaluation result = evaluate_one(motor_of_file(id), robot, duty);
+    EXPECT_EQ(result.verdict, Verdict::pass) << id;
+    EXPECT_GT(result.margin_K, 0.0) << id;
+  }
+}
+
+TEST(Ranking, best_first) {
+  std::vector<Motor> motors;
+  for (const auto& file : std::filesystem::directory_iterator(kSource / "motor_db")) {
+    if (file.path().extension() == ".toml") {
+      motors.push_back(read_motor(file.path()));
+    }
+  }
+  const std::vector<MotorEvaluation> all = evaluate(robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"), motors, {.samples = 0});
+  ASSERT_EQ(all.size(), motors.size());
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_LE(all[i - 1].verdict, all[i].verdict);
+    if (all[i - 1].verdict == all[i].verdict) {
+      EXPECT_GE(all[i - 1].margin_K, all[i].margin_K);
+    }
+  }
+}
+
+TEST(Progress, counts_up_to_all_of_the_work) {
+  const Motor motor = simple_motor();
+  std::size_t before = 0;
+  std::size_t all = 0;
+  evaluate(simple_robot(), constant_current(5.0), std::span(&motor, 1), {.samples = 50}, [&](std::size_t done, std::size_t total) {
+    EXPECT_EQ(done, before + 1);
+    before = done;
+    all = total;
+  });
+  EXPECT_EQ(before, all);
+  EXPECT_GT(all, 0U);
+}
+
+// --- curves -----------------------------------------------------------------------------------------------
+
+TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
+  const Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
+  const MotorEvaluation result = evaluate_one(motor, robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"),
+                                              {.samples = 100, .seed = 1, .with_curves = true});
+  EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_C), result.winding_peak_C.nominal, 1e-3);
+  EXPECT_TRUE(std::ranges::is_sorted(result.curves.time_s));
+  for (std::size_t i = 0; i < result.curves.band_time_s.size(); ++i) {
+    EXPECT_LT(result.curves.winding_p05_C[i], result.curves.winding_p95_C[i]);
+    EXPECT_LT(result.curves.stator_p05_C[i], result.curves.stator_p95_C[i]);
+  }
+  EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_p95_C), result.winding_peak_C.p95, 8.0);
+}
+
+}  // namespace
+}  // namespace heatsoak

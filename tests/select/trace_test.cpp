@@ -1,0 +1,82 @@
+#include "select/trace.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+class PaperTrace : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    motor_ = new Motor(read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml"));
+    Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+    duty.pieces.resize(40);
+    trace_ = new Trace(run_trace(read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"), duty, *motor_, 0.1));
+  }
+  static void TearDownTestSuite() {
+    delete trace_;
+    delete motor_;
+  }
+  static const Trace& trace() { return *trace_; }
+  static const Motor& motor() { return *motor_; }
+
+ private:
+  static inline const Trace* trace_ = nullptr;
+  static inline const Motor* motor_ = nullptr;
+};
+
+TEST_F(PaperTrace, what_is_booked_is_what_is_stored) {
+  double into_motor_W = 0.0;
+  double all_W = 0.0;
+  for (const BookedHeat& each : trace().balance) {
+    into_motor_W += each.node == "ambient" ? 0.0 : each.mean_W;
+    all_W += std::abs(each.mean_W);
+  }
+  EXPECT_NEAR(into_motor_W, trace().stored_W, 1e-9 * all_W);
+}
+
+// Electrical energy in = copper and drag heat + work at the shaft; the drive holds rows of 0.1 s, so the resistance's
+// drift within a row is all that is missing.
+TEST_F(PaperTrace, power_into_the_terminals_is_heat_and_work) {
+  double in_J = 0.0;
+  double work_J = 0.0;
+  double duration_s = 0.0;
+  for (std::size_t i = 0; i + 1 < trace().rows.size(); ++i) {
+    const TraceRow& row = trace().rows[i];
+    const double step_s = trace().rows[i + 1].time_s - row.time_s;
+    in_J += row.power_in_W * step_s;
+    work_J += row.torque_Nm * row.speed_rad_per_s * step_s;
+    duration_s += step_s;
+  }
+  double lost_W = 0.0;
+  for (const BookedHeat& each : trace().balance) {
+    lost_W += each.effect == "copper_loss" || each.effect == "no_load_loss" ? each.mean_W : 0.0;
+  }
+  EXPECT_NEAR(in_J / duration_s, lost_W + work_J / duration_s, 0.01 * lost_W);
+}
+
+TEST_F(PaperTrace, rows_are_no_further_apart_than_asked_and_reach_the_end) {
+  for (std::size_t i = 1; i < trace().rows.size(); ++i) {
+    EXPECT_GT(trace().rows[i].time_s, trace().rows[i - 1].time_s);
+    EXPECT_LE(trace().rows[i].time_s, trace().rows[i - 1].time_s + 0.1 + 1e-9);
+  }
+  EXPECT_NEAR(trace().rows.back().time_s, 200.0, 1e-6);
+  EXPECT_EQ(trace().rows.front().winding_C, 25.0);
+}
+
+TEST_F(PaperTrace, csv_has_a_row_for_each_and_a_header) {
+  const std::string csv = to_csv(trace());
+  EXPECT_EQ(csv.rfind("time_s,winding_C,stator_C,ambient_C,", 0), 0U);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), trace().rows.size() + 1);
+}
+
+}  // namespace
+}  // namespace heatsoak
