@@ -4,13 +4,91 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
+#include <cmath>
 
 #include "base/quantity.h"
 #include "input/document.h"
 
 namespace heatsoak {
 namespace {
+
+constexpr std::array<RobotFigureSpec, 27> kSpecs{{
+    {"body", {"yaw_inertia", "kg m2", Range::positive(), "about the vertical through the centre of gravity"}, &Robot::yaw_inertia_kg_m2},
+    {"body", {"center_of_gravity_height", "m", Range::non_negative(), "above the ground"}, &Robot::center_of_gravity_height_m},
+    {"body", {"center_of_gravity_x", "m", Range::any(), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
+    {"body", {"center_of_gravity_y", "m", Range::any(), "left of the robot's axis"}, &Robot::center_of_gravity_y_m},
+    {"wheels", {"inertia", "kg m2", Range::positive(), "of one wheel about its axle, without the rotor"}, &Robot::wheel_inertia_kg_m2},
+    {"friction", {"wheel_torque", "N m", Range::non_negative(), "against the turning of one wheel, without the motor's own drag"}, &Robot::wheel_friction_torque_Nm},
+    {"friction", {"wheel_damping", "N m s/rad", Range::non_negative(), "and what grows with the wheel's speed"}, &Robot::wheel_damping_Nm_s_per_rad},
+    {"friction", {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"}, &Robot::roller_drag_ratio},
+    {"friction", {"rolling_efficiency", "", Range::between(0.1, 1.0), "of the wheel's torque that reaches the ground"}, &Robot::rolling_efficiency},
+    {"friction.heading", {"constant", "N m", Range::non_negative(), "friction in translation, mean over the directions"}, &Robot::heading_constant_Nm},
+    {"friction.heading", {"sine", "N m", Range::any(), "part that grows with the wheel's share of rolling"}, &Robot::heading_sine_Nm},
+    {"friction.heading", {"double_angle", "N m", Range::non_negative(), "amplitude of the part with twice the direction"}, &Robot::heading_double_angle_Nm},
+    {"friction.heading", {"rotation", "N m", Range::non_negative(), "friction in pure rotation"}, &Robot::heading_rotation_Nm},
+    {"traction", {"coefficient", "", Range::positive(), "largest rolling force per normal force"}, &Robot::traction_ratio},
+    {"traction", {"slip_speed", "m/s", Range::positive(), "slip at which 0.71 of it is used"}, &Robot::slip_speed_m_per_s},
+    {"drive", {"driver_resistance", "ohm", Range::non_negative(), "of switches and traces in series with one motor"}, &Robot::driver_resistance_ohm},
+    {"drive", {"driver_standby_power", "W", Range::non_negative(), "of one motor's driver without current"}, &Robot::driver_standby_W},
+    {"battery", {"full_voltage", "V", Range::positive(), "open circuit, full"}, &Robot::battery_full_V},
+    {"battery", {"empty_voltage", "V", Range::positive(), "open circuit, empty"}, &Robot::battery_empty_V},
+    {"battery", {"internal_resistance", "ohm", Range::non_negative(), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
+    {"battery", {"capacity", "A s", Range::positive(), "from full to empty"}, &Robot::battery_capacity_A_s},
+    {"limits", {"speed", "m/s", Range::positive(), "largest speed that the team plans"}, &Robot::speed_limit_m_per_s},
+    {"limits", {"acceleration", "m/s2", Range::positive(), "when speeding up"}, &Robot::acceleration_limit_m_per_s2},
+    {"limits", {"braking", "m/s2", Range::positive(), "when slowing down"}, &Robot::braking_limit_m_per_s2},
+    {"limits", {"jerk", "m/s3", Range::positive(), "change of the acceleration"}, &Robot::jerk_limit_m_per_s3},
+    {"limits", {"yaw_rate", "rad/s", Range::positive(), "largest rate of turning"}, &Robot::yaw_rate_limit_rad_per_s},
+    {"limits", {"yaw_acceleration", "rad/s2", Range::positive(), "change of the rate of turning"}, &Robot::yaw_acceleration_limit_rad_per_s2},
+}};
+
+constexpr std::array<std::string_view, 3> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency"};
+
+void read_figures(Reader& reader, std::string_view table, Robot& robot) {
+  for (const RobotFigureSpec& each : kSpecs) {
+    if (each.table != table) {
+      continue;
+    }
+    if (std::optional<Figure> figure = reader.figure(each.spec, table == "friction.heading" ? Need::required : Need::optional)) {
+      robot.*each.value = figure->value;
+      robot.figures.emplace(fmt::format("{}.{}", table, each.spec.key), std::move(*figure));
+    }
+  }
+}
+
+/// Angles as texts, one per wheel.
+std::vector<double> read_angles_rad(Reader& reader, std::string_view key) {
+  std::vector<double> angles_rad;
+  for (const std::string& text : reader.texts(key, Need::required)) {
+    const ParsedQuantity angle = parse_quantity(text, "rad");
+    if (angle.ok()) {
+      angles_rad.push_back(angle.value);
+    } else {
+      reader.problem(key, angle.problem);
+    }
+  }
+  return angles_rad;
+}
+
+void read_friction(Reader& top, Robot& robot) {
+  std::optional<Reader> friction = top.table("friction", Need::optional);
+  if (!friction) {
+    return;
+  }
+  read_figures(*friction, "friction", robot);
+  if (std::optional<Reader> heading = friction->table("heading", Need::optional)) {
+    read_figures(*heading, "friction.heading", robot);
+    robot.heading_phase_rad = read_angles_rad(*heading, "double_angle_phases");
+    if (robot.heading_phase_rad.size() != robot.wheel_axis_rad.size()) {
+      heading->problem("double_angle_phases", "expected one phase per wheel");
+    }
+    if (robot.heading_double_angle_Nm > robot.heading_constant_Nm) {
+      heading->problem("double_angle", "is larger than the constant part, so that friction would drive the wheel");
+    }
+    heading->finish();
+  }
+  friction->finish();
+}
 
 void read_wheels(Reader& top, Robot& robot) {
   std::optional<Reader> wheels = top.table("wheels", Need::required);
@@ -20,17 +98,11 @@ void read_wheels(Reader& top, Robot& robot) {
   robot.wheel_radius_m = wheels->quantity({"radius", "m", Range::positive(), "of a wheel"}, Need::required).value_or(1.0);
   robot.wheel_contact_radius_m =
       wheels->quantity({"contact_radius", "m", Range::positive(), "from the robot's axis to the contact points"}, Need::required).value_or(1.0);
-  for (const std::string& text : wheels->texts("axis_angles", Need::required)) {
-    const ParsedQuantity angle = parse_quantity(text, "rad");
-    if (angle.ok()) {
-      robot.wheel_axis_rad.push_back(angle.value);
-    } else {
-      wheels->problem("axis_angles", angle.problem);
-    }
-  }
+  robot.wheel_axis_rad = read_angles_rad(*wheels, "axis_angles");
   if (robot.wheel_axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
+  read_figures(*wheels, "wheels", robot);
   wheels->finish();
 }
 
@@ -47,10 +119,36 @@ void read_drive(Reader& top, Robot& robot) {
   robot.current_limit_A = drive->quantity({"current_limit", "A", Range::positive(), "largest equivalent DC current of one motor"}, Need::optional).value_or(robot.current_limit_A);
   constexpr std::array<std::string_view, 2> kCommutations{"block", "sinusoidal"};
   robot.commutation = drive->choice("commutation", kCommutations, Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
+  read_figures(*drive, "drive", robot);
   drive->finish();
 }
 
 }  // namespace
+
+std::span<const RobotFigureSpec> robot_figure_specs() { return kSpecs; }
+
+void require_figures(const Robot& robot, std::span<const std::string_view> tables) {
+  Diagnostics diagnostics;
+  for (const RobotFigureSpec& each : kSpecs) {
+    const bool asked = std::ranges::find(tables, each.table) != tables.end();
+    const bool optional = std::ranges::find(kOptionalKeys, each.spec.key) != kOptionalKeys.end();
+    if (asked && !optional && std::isnan(robot.*each.value)) {
+      diagnostics.add({robot.file.string()}, fmt::format("{}.{}", each.table, each.spec.key), fmt::format("is missing: {}", each.spec.meaning));
+    }
+  }
+  diagnostics.throw_if_any();
+}
+
+Robot draw_sample(const Robot& robot, Random& random) {
+  Robot drawn = robot;
+  for (const RobotFigureSpec& each : kSpecs) {
+    const auto found = robot.figures.find(fmt::format("{}.{}", each.table, each.spec.key));
+    if (found != robot.figures.end() && found->second.spread) {
+      drawn.*each.value = found->second.quantile(random.uniform());
+    }
+  }
+  return drawn;
+}
 
 double Robot::available_V() const { return std::min(battery_V, voltage_limit_V); }
 
@@ -69,8 +167,16 @@ Robot read_robot(const std::filesystem::path& path) {
   read_drive(top, robot);
   if (std::optional<Reader> battery = top.table("battery", Need::required)) {
     robot.battery_V = battery->quantity({"nominal_voltage", "V", Range::positive(), "of the battery"}, Need::required).value_or(1.0);
+    read_figures(*battery, "battery", robot);
     battery->finish();
   }
+  for (const std::string_view name : {"body", "traction", "limits"}) {
+    if (std::optional<Reader> table = top.table(name, Need::optional)) {
+      read_figures(*table, name, robot);
+      table->finish();
+    }
+  }
+  read_friction(top, robot);
   top.finish();
   diagnostics.throw_if_any();
   return robot;

@@ -1,12 +1,20 @@
 // A robot as its file declares it: what carries the motor, feeds it and limits it.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/figure.h"
+#include "base/parameter.h"
+#include "base/random.h"
 #include "input/reader.h"
+#include "motor/motor.h"
 
 namespace heatsoak {
 
@@ -31,8 +39,54 @@ struct Robot {
   double wheel_contact_radius_m = 0.0;  ///< from the robot's axis to the wheels' contact points
   std::vector<double> wheel_axis_rad;  ///< direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first
 
+  // Figures with origin, kAbsent where the file has none: what moving the robot needs, but a prescribed duty does not.
+  double yaw_inertia_kg_m2 = kAbsent;  ///< about the vertical through the centre of gravity, wheels included
+  double center_of_gravity_height_m = kAbsent;
+  double center_of_gravity_x_m = kAbsent;  ///< ahead of the axis; 0 where absent
+  double center_of_gravity_y_m = kAbsent;  ///< left of it; 0 where absent
+  double wheel_inertia_kg_m2 = kAbsent;    ///< one wheel about its axle, without the motor's rotor
+  double wheel_friction_torque_Nm = kAbsent;  ///< at the wheel, without the motor's own drag
+  double wheel_damping_Nm_s_per_rad = kAbsent;
+  double roller_drag_ratio = kAbsent;   ///< drag along the axle per normal force
+  double rolling_efficiency = kAbsent;  ///< of the wheel's torque that reaches the ground; 1 where absent
+  double traction_ratio = kAbsent;      ///< largest rolling force per normal force
+  double slip_speed_m_per_s = kAbsent;  ///< slip at which 0.71 of it is used
+  double driver_resistance_ohm = kAbsent;  ///< switches and traces of one motor, in series with the winding
+  double driver_standby_W = kAbsent;       ///< per motor: gate drive, logic, switching
+  double battery_full_V = kAbsent;
+  double battery_empty_V = kAbsent;
+  double battery_resistance_ohm = kAbsent;
+  double battery_capacity_A_s = kAbsent;
+  double speed_limit_m_per_s = kAbsent;  ///< of the team's planner, as are the others
+  double acceleration_limit_m_per_s2 = kAbsent;
+  double braking_limit_m_per_s2 = kAbsent;
+  double jerk_limit_m_per_s3 = kAbsent;
+  double yaw_rate_limit_rad_per_s = kAbsent;
+  double yaw_acceleration_limit_rad_per_s2 = kAbsent;
+  // A measured curve of friction over the direction of travel, all or none; friction.h has its formula.
+  double heading_constant_Nm = kAbsent;
+  double heading_sine_Nm = kAbsent;
+  double heading_double_angle_Nm = kAbsent;
+  double heading_rotation_Nm = kAbsent;
+  std::vector<double> heading_phase_rad;  ///< per wheel
+  std::map<std::string, Figure, std::less<>> figures;  ///< by "table.key"
+
   [[nodiscard]] double available_V() const;
 };
+
+/// The one declaration of a robot figure: where the file has it, and where its number goes.
+struct RobotFigureSpec {
+  std::string_view table;
+  ParameterSpec spec;
+  double Robot::* value;
+};
+std::span<const RobotFigureSpec> robot_figure_specs();
+
+/// Throws Failure (bad_input) that names every figure of `tables` that the robot lacks, optional ones apart.
+void require_figures(const Robot& robot, std::span<const std::string_view> tables);
+
+/// The robot with one draw of every declared tolerance and range.
+Robot draw_sample(const Robot& robot, Random& random);
 
 /// Throws Failure (bad_input) with every problem of the file.
 Robot read_robot(const std::filesystem::path& path);

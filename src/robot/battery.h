@@ -1,0 +1,28 @@
+// A battery that sags under load and empties.
+#pragma once
+
+namespace heatsoak {
+
+/// Open-circuit voltage linear over the charge that is left, one internal resistance.
+struct BatteryConfig {
+  double full_V = 0.0;
+  double empty_V = 0.0;
+  double internal_resistance_ohm = 0.0;
+  double capacity_A_s = 1.0;
+};
+
+double open_circuit_V(const BatteryConfig& battery, double charge_A_s);
+
+/// Energy that the charge can still give, ∫E dq: its loss is what a step takes out, E·I.
+double stored_energy_J(const BatteryConfig& battery, double charge_A_s);
+
+struct BatteryLoad {
+  double terminal_V = 0.0;
+  double current_A = 0.0;  ///< > 0 discharges
+  bool collapsed = false;  ///< more power was asked for than E²/(4·R) can give
+};
+/// P = V·I with V = E − R·I: V = (E + √(E² − 4·R·P))/2. Where there is no such V, the load gets V = E/2 and the most
+/// there is; the caller must shed load.
+BatteryLoad battery_load(const BatteryConfig& battery, double charge_A_s, double power_W);
+
+}  // namespace heatsoak

@@ -1,0 +1,52 @@
+// What it costs to keep a wheel turning at constant speed, apart from what happens in its motor.
+#pragma once
+
+#include "motor/motor.h"
+#include "robot/kinematics.h"
+
+namespace heatsoak {
+
+// Two descriptions. The physical one: a torque against the turning of each wheel, and the drag of the rollers along
+// the axles (traction.h). The drag is a force on the body that the wheels must make up for; how it falls on them
+// depends on the direction of travel, and so friction "depends on the driving angle" although no wheel knows it. It
+// vanishes in pure rotation, where the rollers do not turn. With it
+//   RoboTeam Twente:  0.3 V in rotation, 1.23 V in translation, more ahead than sideways,
+//   TIGERs:           0.097 N m in rotation (9.8 mN m per wheel), 2.65 N in translation,
+//   a Festo Robotino: currents over 72 headings (tests/robot/robotino_test.cpp)
+// are one model. The other description is the curve that a team measured, taken as it is.
+
+/// The curve of one wheel over the direction of travel θ (local frame), as torque at the wheel:
+///   f(θ) = sign(s)·(b + a·|s| + A·sin(2θ + φ)),     s = sin(θ + φ_i) = t_i·v/|v|,
+/// with a and b of ETDP 2025, equation (3), whose phase φ_i is the wheel's rolling direction, and A of the firmware.
+/// In rotation it goes over to a constant c: (1 − γ)·f + γ·sign(ω)·c, γ = ½·(1 − cos(π·min(1, R·|yaw rate|/|v|))).
+/// The firmware counts θ from the left to straight ahead: its phase is −φ here.
+struct HeadingFriction {
+  double constant_Nm = 0.0;  ///< b
+  double sine_Nm = 0.0;      ///< a
+  double double_angle_Nm = 0.0;  ///< A, at most b
+  PerWheel double_angle_phase_rad{};  ///< φ, wheel by wheel
+  double rotation_Nm = 0.0;  ///< c
+};
+
+struct FrictionConfig {
+  double wheel_torque_Nm = 0.0;             ///< against the turning, at each wheel
+  double wheel_damping_Nm_s_per_rad = 0.0;  ///< and what grows with the speed
+  double smoothing_rad_per_s = 0.5;         ///< sign ω is ω/√(ω² + smoothing²)
+  bool by_heading = false;                  ///< `heading` stands in place of wheel torque and roller drag
+  HeadingFriction heading;
+};
+
+/// Torque against the turning of each wheel, signed like the wheel's speed: subtract it from what drives the wheel.
+PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,
+                             const PerWheel& wheel_speed_rad_per_s);
+
+/// Friction that a team states as voltage at the motor, as torque at the wheel: at standstill the voltage drives the
+/// current V/R, so (V/R·K_t − motor drag)·gear ratio. The drag K_t·I_0 of the motor is taken off because it is booked
+/// in the motor; where it is larger the result is 0.
+double friction_torque_of_voltage_Nm(const MotorValues& motor, double gear_ratio, double voltage_V);
+
+/// Damping that a team states as voltage per wheel speed contains the back-EMF: (d/n − K_t)·K_t/R·n² is left for
+/// the mechanics, n the gear ratio; where the back-EMF is larger, 0.
+double damping_of_voltage_Nm_s_per_rad(const MotorValues& motor, double gear_ratio, double damping_V_s_per_rad);
+
+}  // namespace heatsoak

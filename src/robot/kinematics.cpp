@@ -1,0 +1,150 @@
+#include "robot/kinematics.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace heatsoak {
+namespace {
+
+struct Rotated {
+  double x;
+  double y;
+};
+
+Rotated rotated(double x, double y, double angle_rad) {
+  const double cosine = std::cos(angle_rad);
+  const double sine = std::sin(angle_rad);
+  return {cosine * x - sine * y, sine * x + cosine * y};
+}
+
+}  // namespace
+
+BodyVelocity to_global(const BodyVelocity& local, double yaw_rad) {
+  const Rotated turned = rotated(local.x_m_per_s, local.y_m_per_s, yaw_rad);
+  return {turned.x, turned.y, local.yaw_rad_per_s};
+}
+
+BodyVelocity to_local(const BodyVelocity& global, double yaw_rad) { return to_global(global, -yaw_rad); }
+
+BodyAcceleration to_global(const BodyAcceleration& local, double yaw_rad) {
+  const Rotated turned = rotated(local.x_m_per_s2, local.y_m_per_s2, yaw_rad);
+  return {turned.x, turned.y, local.yaw_rad_per_s2};
+}
+
+BodyAcceleration to_local(const BodyAcceleration& global, double yaw_rad) { return to_global(global, -yaw_rad); }
+
+Wrench to_global(const Wrench& local, double yaw_rad) {
+  const Rotated turned = rotated(local.x_N, local.y_N, yaw_rad);
+  return {turned.x, turned.y, local.yaw_Nm};
+}
+
+Wrench to_local(const Wrench& global, double yaw_rad) { return to_global(global, -yaw_rad); }
+
+BodyAcceleration acceleration_from_rates(const BodyVelocity& local, const BodyAcceleration& rates) {
+  return {rates.x_m_per_s2 - local.yaw_rad_per_s * local.y_m_per_s, rates.y_m_per_s2 + local.yaw_rad_per_s * local.x_m_per_s,
+          rates.yaw_rad_per_s2};
+}
+
+BodyAcceleration rates_from_acceleration(const BodyVelocity& local, const BodyAcceleration& acceleration) {
+  return {acceleration.x_m_per_s2 + local.yaw_rad_per_s * local.y_m_per_s, acceleration.y_m_per_s2 - local.yaw_rad_per_s * local.x_m_per_s,
+          acceleration.yaw_rad_per_s2};
+}
+
+Kinematics make_kinematics(const Robot& robot) {
+  const std::size_t count = robot.wheel_axis_rad.size();
+  if (count < 3 || count > kMostWheels) {
+    throw bad_input({robot.file.string()}, "wheels.axis_angles", fmt::format("names {} wheels; a motion can be calculated for three or four", count));
+  }
+  Kinematics made;
+  made.wheel_count = static_cast<int>(count);
+  made.wheel_radius_m = robot.wheel_radius_m;
+  made.contact_radius_m = robot.wheel_contact_radius_m;
+  // The yaw column in units of the contact radius keeps the matrix well scaled.
+  Eigen::MatrixX3d jacobian(count, 3);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double cosine = std::cos(robot.wheel_axis_rad[i]);
+    const double sine = std::sin(robot.wheel_axis_rad[i]);
+    made.wheels[i] = {cosine, sine, -sine, cosine};
+    jacobian.row(static_cast<Eigen::Index>(i)) << -sine, cosine, 1.0;
+  }
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> decomposition(jacobian);
+  if (decomposition.rank() < 3) {
+    throw bad_input({robot.file.string()}, "wheels.axis_angles", "leave a direction in which no wheel can drive");
+  }
+  const Eigen::Matrix3Xd inverse = decomposition.pseudoInverse();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    made.inverse_x_factor[i] = inverse(0, column);
+    made.inverse_y_factor[i] = inverse(1, column);
+    made.inverse_yaw_per_m[i] = inverse(2, column) / made.contact_radius_m;
+  }
+  return made;
+}
+
+PerWheel rolling_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
+  PerWheel speed_m_per_s{};
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    const WheelDirections& wheel = kinematics.wheels[i];
+    speed_m_per_s[i] = wheel.rolling_x_share * local.x_m_per_s + wheel.rolling_y_share * local.y_m_per_s + kinematics.contact_radius_m * local.yaw_rad_per_s;
+  }
+  return speed_m_per_s;
+}
+
+PerWheel lateral_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
+  PerWheel speed_m_per_s{};
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    const WheelDirections& wheel = kinematics.wheels[i];
+    speed_m_per_s[i] = wheel.axle_x_share * local.x_m_per_s + wheel.axle_y_share * local.y_m_per_s;
+  }
+  return speed_m_per_s;
+}
+
+PerWheel wheel_speeds_rad_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
+  PerWheel speed = rolling_speeds_m_per_s(kinematics, local);
+  for (double& each : speed) {
+    each /= kinematics.wheel_radius_m;
+  }
+  return speed;
+}
+
+BodyVelocity body_velocity(const Kinematics& kinematics, const PerWheel& wheel_speed_rad_per_s) {
+  BodyVelocity velocity;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    const double rim_m_per_s = kinematics.wheel_radius_m * wheel_speed_rad_per_s[i];
+    velocity.x_m_per_s += kinematics.inverse_x_factor[i] * rim_m_per_s;
+    velocity.y_m_per_s += kinematics.inverse_y_factor[i] * rim_m_per_s;
+    velocity.yaw_rad_per_s += kinematics.inverse_yaw_per_m[i] * rim_m_per_s;
+  }
+  return velocity;
+}
+
+PerWheel rolling_forces_N(const Kinematics& kinematics, const Wrench& local) {
+  PerWheel force_N{};
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    force_N[i] = kinematics.inverse_x_factor[i] * local.x_N + kinematics.inverse_y_factor[i] * local.y_N + kinematics.inverse_yaw_per_m[i] * local.yaw_Nm;
+  }
+  return force_N;
+}
+
+Wrench wrench_of_rolling_forces(const Kinematics& kinematics, const PerWheel& force_N) {
+  Wrench wrench;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    wrench.x_N += kinematics.wheels[i].rolling_x_share * force_N[i];
+    wrench.y_N += kinematics.wheels[i].rolling_y_share * force_N[i];
+    wrench.yaw_Nm += kinematics.contact_radius_m * force_N[i];
+  }
+  return wrench;
+}
+
+Wrench wrench_of_lateral_forces(const Kinematics& kinematics, const PerWheel& force_N) {
+  Wrench wrench;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    wrench.x_N += kinematics.wheels[i].axle_x_share * force_N[i];
+    wrench.y_N += kinematics.wheels[i].axle_y_share * force_N[i];
+  }
+  return wrench;
+}
+
+}  // namespace heatsoak

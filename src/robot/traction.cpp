@@ -1,0 +1,110 @@
+#include "robot/traction.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace heatsoak {
+namespace {
+
+/// Loads of the wheels in `standing` as a plane over their contact points; three wheels leave no choice.
+bool plane_loads(const WeightConfig& weight, const LoadMoment& moment, const std::array<bool, kMostWheels>& standing, PerWheel& force_N) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < weight.wheel_count; ++i) {
+    if (standing[i]) {
+      const Eigen::Vector3d row(1.0, weight.contact_x_m[i], weight.contact_y_m[i]);
+      normal += row * row.transpose();
+    }
+  }
+  const Eigen::Vector3d plane = normal.ldlt().solve(Eigen::Vector3d(weight.mass_kg * kGravity_m_per_s2, moment.x_Nm, moment.y_Nm));
+  bool all_press = true;
+  for (int i = 0; i < weight.wheel_count; ++i) {
+    force_N[i] = standing[i] ? plane(0) + plane(1) * weight.contact_x_m[i] + plane(2) * weight.contact_y_m[i] : 0.0;
+    all_press = all_press && force_N[i] >= 0.0;
+  }
+  return all_press;
+}
+
+void scale_to_weight(const WeightConfig& weight, PerWheel& force_N) {
+  double sum_N = 0.0;
+  for (double& each : force_N) {
+    each = std::max(each, 0.0);
+    sum_N += each;
+  }
+  for (double& each : force_N) {
+    each *= sum_N > 0.0 ? weight.mass_kg * kGravity_m_per_s2 / sum_N : 0.0;
+  }
+}
+
+/// Off the ground: the wheel with the least load of a plane under all.
+NormalLoads loads_with_a_wheel_lifted(const WeightConfig& weight, const LoadMoment& moment, const PerWheel& all_N) {
+  NormalLoads loads{all_N, true};
+  if (weight.wheel_count == kMostWheels) {
+    std::array<bool, kMostWheels> standing{true, true, true, true};
+    standing[static_cast<std::size_t>(std::min_element(all_N.begin(), all_N.end()) - all_N.begin())] = false;
+    if (plane_loads(weight, moment, standing, loads.force_N)) {
+      return loads;
+    }
+  }
+  scale_to_weight(weight, loads.force_N);
+  return loads;
+}
+
+}  // namespace
+
+WeightConfig make_weight(const Kinematics& kinematics, double mass_kg, double height_m, double x_m, double y_m) {
+  WeightConfig made;
+  made.mass_kg = mass_kg;
+  made.center_of_gravity_height_m = height_m;
+  made.center_of_gravity_x_m = x_m;
+  made.center_of_gravity_y_m = y_m;
+  made.wheel_count = kinematics.wheel_count;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < made.wheel_count; ++i) {
+    made.contact_x_m[i] = kinematics.contact_radius_m * kinematics.wheels[i].axle_x_share;
+    made.contact_y_m[i] = kinematics.contact_radius_m * kinematics.wheels[i].axle_y_share;
+    const Eigen::Vector3d row(1.0, made.contact_x_m[i], made.contact_y_m[i]);
+    normal += row * row.transpose();
+  }
+  const Eigen::Matrix3d inverse = normal.inverse();
+  for (int i = 0; i < made.wheel_count; ++i) {
+    const Eigen::Vector3d loads = inverse * Eigen::Vector3d(1.0, made.contact_x_m[i], made.contact_y_m[i]);
+    made.level_share[i] = loads(0);
+    made.along_x_per_m[i] = loads(1);
+    made.along_y_per_m[i] = loads(2);
+  }
+  return made;
+}
+
+LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, const Wrench& external, double external_height_m) {
+  const double weight_N = weight.mass_kg * kGravity_m_per_s2;
+  const double height_m = weight.center_of_gravity_height_m;
+  const double above_m = external_height_m - height_m;
+  return {weight_N * weight.center_of_gravity_x_m - height_m * ground.x_N + above_m * external.x_N,
+          weight_N * weight.center_of_gravity_y_m - height_m * ground.y_N + above_m * external.y_N};
+}
+
+NormalLoads normal_loads(const WeightConfig& weight, const LoadMoment& moment) {
+  NormalLoads loads;
+  const double weight_N = weight.mass_kg * kGravity_m_per_s2;
+  for (int i = 0; i < weight.wheel_count; ++i) {
+    loads.force_N[i] = weight.level_share[i] * weight_N + weight.along_x_per_m[i] * moment.x_Nm + weight.along_y_per_m[i] * moment.y_Nm;
+    loads.lifted = loads.lifted || loads.force_N[i] < 0.0;
+  }
+  return loads.lifted ? loads_with_a_wheel_lifted(weight, moment, loads.force_N) : loads;
+}
+
+ContactRatios contact_ratios(const TractionConfig& traction, double slip_m_per_s, double lateral_m_per_s) {
+  const double s_0 = traction.slip_speed_m_per_s;
+  const double root_m_per_s = std::sqrt(slip_m_per_s * slip_m_per_s + s_0 * s_0);
+  ContactRatios ratios;
+  ratios.rolling_ratio = traction.traction_ratio * slip_m_per_s / root_m_per_s;
+  ratios.rolling_slope_s_per_m = traction.traction_ratio * s_0 * s_0 / (root_m_per_s * root_m_per_s * root_m_per_s);
+  const double sliding_m_per_s = traction.roller_drag_ratio / traction.traction_ratio * slip_m_per_s;
+  const double u_0 = traction.roller_speed_m_per_s;
+  ratios.lateral_ratio =
+      -traction.roller_drag_ratio * lateral_m_per_s / std::sqrt(lateral_m_per_s * lateral_m_per_s + sliding_m_per_s * sliding_m_per_s + u_0 * u_0);
+  return ratios;
+}
+
+}  // namespace heatsoak

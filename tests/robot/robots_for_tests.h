@@ -1,0 +1,78 @@
+// Robots and a motor that the tests of this folder share.
+#pragma once
+
+#include <filesystem>
+#include <numbers>
+#include <random>
+
+#include "motor/motor.h"
+#include "robot/plant.h"
+#include "robot/robot.h"
+
+namespace heatsoak {
+
+inline const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+inline Robot shipped_robot(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
+inline Motor shipped_motor(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
+
+/// Four wheels at right angles to each other, no friction anywhere: every loss that a test is about is put in by it.
+inline Robot bare_robot() {
+  Robot robot;
+  robot.mass_kg = 2.5;
+  robot.wheel_radius_m = 0.03;
+  robot.wheel_contact_radius_m = 0.08;
+  for (const double axis_deg : {-45.0, 45.0, 135.0, -135.0}) {
+    robot.wheel_axis_rad.push_back(axis_deg * std::numbers::pi / 180.0);
+  }
+  robot.battery_V = 22.0;
+  robot.yaw_inertia_kg_m2 = 0.01;
+  robot.center_of_gravity_height_m = 0.05;
+  robot.wheel_inertia_kg_m2 = 3e-5;
+  robot.wheel_friction_torque_Nm = 0.0;
+  robot.wheel_damping_Nm_s_per_rad = 0.0;
+  robot.roller_drag_ratio = 0.0;
+  robot.traction_ratio = 0.7;
+  robot.slip_speed_m_per_s = 0.05;
+  robot.driver_resistance_ohm = 0.01;
+  robot.driver_standby_W = 0.5;
+  robot.battery_full_V = 25.0;
+  robot.battery_empty_V = 20.0;
+  robot.battery_resistance_ohm = 0.05;
+  robot.battery_capacity_A_s = 4680.0;
+  return robot;
+}
+
+/// The same with everything that costs power.
+inline Robot lossy_robot() {
+  Robot robot = bare_robot();
+  robot.center_of_gravity_x_m = 0.004;
+  robot.center_of_gravity_y_m = -0.003;
+  robot.wheel_friction_torque_Nm = 0.003;
+  robot.wheel_damping_Nm_s_per_rad = 1e-4;
+  robot.roller_drag_ratio = 0.12;
+  robot.rolling_efficiency = 0.85;
+  robot.gear_ratio = 1.5;
+  robot.gear_efficiency = 0.9;
+  return robot;
+}
+
+inline MotorValues bare_motor() {
+  MotorValues motor;
+  motor.terminal_resistance_ohm = 0.6;
+  motor.torque_constant_Nm_per_A = 0.035;
+  motor.no_load_current_A = 0.0;
+  motor.temperature_coefficient_per_K = 0.0039;
+  motor.rotor_inertia_kg_m2 = 1e-5;
+  return motor;
+}
+
+inline MotorValues lossy_motor() {
+  MotorValues motor = bare_motor();
+  motor.no_load_current_A = 0.2;
+  return motor;
+}
+
+inline double magnitude(const Wrench& wrench) { return std::abs(wrench.x_N) + std::abs(wrench.y_N) + std::abs(wrench.yaw_Nm) / 0.08; }
+
+}  // namespace heatsoak
