@@ -38,6 +38,16 @@ function(add_layer name)
   set_property(GLOBAL PROPERTY heatsoak_layer_${name}_uses "${below}")
 endfunction()
 
+# A library of the embedded core: freestanding, no exceptions, no run-time types, the same arithmetic everywhere.
+function(add_core name)
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${name}/*.cpp" "${PROJECT_SOURCE_DIR}/${name}/*.h")
+  add_library(heatsoak_${name} STATIC ${sources})
+  target_include_directories(heatsoak_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+  target_compile_options(heatsoak_${name} PRIVATE -ffreestanding -fno-exceptions -fno-rtti -Wdouble-promotion)
+  target_link_libraries(heatsoak_${name} PRIVATE heatsoak_settings)
+  set_property(GLOBAL APPEND PROPERTY heatsoak_layers ${name})
+endfunction()
+
 function(generate_registry layer folder type)
   set(functions "")
   set(rows "")

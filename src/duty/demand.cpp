@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace heatsoak {
 
@@ -36,9 +37,19 @@ void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_p
   // Away from zero, so that a cell asks at least as much as anything in it.
   const int torque_cell = static_cast<int>(std::copysign(std::ceil(std::abs(torque_with_motion_Nm) / grid_.torque_step_Nm), torque_with_motion_Nm));
   const int speed_cell = static_cast<int>(std::ceil(magnitude_rad_per_s / grid_.speed_step_rad_per_s));
-  time_at_s_[{torque_cell, speed_cell}] += duration_s;
+  if (const std::pair cell{torque_cell, speed_cell}; cell != cell_) {
+    close_stay();
+    cell_ = cell;
+  }
+  stay_s_ += duration_s;
   if (integrals_[time] >= bin_s_ * (1.0 - 1e-9)) {
     close_bin();
+  }
+}
+
+void DemandGatherer::close_stay() {
+  if (stay_s_ > 0.0) {
+    time_at_s_[cell_] += std::exchange(stay_s_, 0.0);
   }
 }
 
@@ -60,6 +71,7 @@ WheelDemand DemandGatherer::finish() {
   if (integrals_[time] > 0.0) {
     close_bin();
   }
+  close_stay();
   for (const auto& [cell, time_s] : time_at_s_) {
     demand_.points.push_back({cell.first * grid_.torque_step_Nm, cell.second * grid_.speed_step_rad_per_s, 0.0, time_s});
   }

@@ -62,12 +62,15 @@ class DemandGatherer {
   /// Time integrals over the open bin.
   enum Integral { time, torque, torque_squared, torque_along_motion, moving, velocity, speed, speed_squared, integral_count };
   void close_bin();
+  void close_stay();
 
   WheelDemand demand_;
   double bin_s_;
   Grid grid_;
   std::array<double, integral_count> integrals_{};
   std::map<std::pair<int, int>, double> time_at_s_;
+  std::pair<int, int> cell_{0, 0};  ///< where the load is now; it seldom leaves a cell within milliseconds
+  double stay_s_ = 0.0;
 };
 
 }  // namespace heatsoak

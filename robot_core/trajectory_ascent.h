@@ -1,0 +1,578 @@
+// The widest motion of a given duration, and the durations at which it covers a given distance. Part of the trajectory
+// planner; unit of jerk here is the axis' jerk_max, so that accelerations are in s, velocities in s2, distances in s3.
+//
+// Among all motions of duration T from (v0, a0) to (v1, a1) that keep the limits there is one that is fastest at every
+// single moment, hence widest: raise, hold, fall, [cruise,] fall, hold, raise. (Two parabolas of jerk +1 bound the
+// velocity from both ends; a parabola of jerk -1 that touches both cannot be exceeded: the difference of a faster
+// motion would be convex and not above zero at its ends.) The lowest one is the same with all signs turned. Motions of
+// equal T may be blended, since all limits are convex. So a target is reachable in T exactly if its distance lies between the
+// lowest and the widest one, and the earliest arrival is the first T at which one of the two meets the distance.
+//
+// A widest motion has two legs that are alike when one is read backwards: a leg begins with the slope `entry` of the
+// velocity, raises it to `slope`, holds it there if that is the `bound`, and falls to the top. Extended backwards, its
+// parabola has a vertex of velocity `vertex`. Counting distance from vertex to vertex makes entries vanish from all formulas.
+//   free (nothing held):  x^2 - y^2 = K,  s = x + y,  T = 2 s,  distance = s^3/4 + W s - K^2/(4 s)
+// with slopes x, y of the legs with the lower and higher vertex, K and W the difference and sum of the vertices.
+// y < 0 is a saddle: the acceleration never changes sign between the legs. Otherwise there is a top of velocity u:
+//   a leg of height z = u - vertex lasts 2 sqrt(z), or B + z/B beyond z = B^2, at a mean velocity of (u + vertex)/2.
+// In both cases d(distance)/dT = u + x y/2 with u = (higher vertex) + y^2; along growing T it first falls, then rises.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "robot_core/math.h"
+
+namespace robot_core::detail {
+
+/// Rounding errors of a few operations, relative.
+template <typename Real>
+inline constexpr Real kRounding = Real(128) * std::numeric_limits<Real>::epsilon();
+
+/// What a start that was computed, not chosen, may be off, relative. More than kRounding: behind a gap that opens at a small
+/// slope y, an error of the velocities counts 1/y times.
+template <typename Real>
+inline constexpr Real kTouch = std::numeric_limits<Real>::digits > 32 ? Real(1e-12) : Real(1e-5);
+
+template <typename Real>
+struct Leg {
+  Real vertex;
+  Real entry;
+  Real bound;
+};
+
+/// What the two ends and the limits say about upward motions.
+template <typename Real>
+struct Ascent {
+  Leg<Real> low;
+  Leg<Real> high;
+  bool low_is_start;
+  Real rise;     ///< K, >= 0
+  Real sum;      ///< W
+  Real ceiling;  ///< the highest top
+  Real goal;     ///< distance from vertex to vertex that is asked for
+  Real goal_scale;
+  bool starts_in_saddle;
+  /// The shortest saddles are possible up to y = gap; then no motion is, until the low leg starts at its entry.
+  bool has_gap;
+  Real gap;
+  Real entries;  ///< duration from vertex to vertex less duration of the motion
+};
+
+/// One widest motion.
+template <typename Real>
+struct Shape {
+  Real slope_low;
+  Real hold_low;
+  Real slope_high;
+  Real hold_high;
+  Real fall;    ///< both falls together
+  Real cruise;  ///< between them
+  Real distance;
+};
+
+/// A place in the family of widest motions: the top u, or the saddle's y < 0.
+template <typename Real>
+struct Place {
+  bool is_saddle;
+  Real at;
+  Real distance;
+};
+
+template <typename Real>
+inline Real leg_duration(Real height, Real bound) {
+  return height < bound * bound ? Real(2) * square_root(height) : bound + height / bound;
+}
+
+template <typename Real>
+inline Real top_duration(const Ascent<Real>& a, Real top) {
+  return leg_duration(top - a.low.vertex, a.low.bound) + leg_duration(top - a.high.vertex, a.high.bound);
+}
+
+template <typename Real>
+inline Real top_distance(const Ascent<Real>& a, Real top) {
+  return (top + a.low.vertex) / Real(2) * leg_duration(top - a.low.vertex, a.low.bound) +
+         (top + a.high.vertex) / Real(2) * leg_duration(top - a.high.vertex, a.high.bound);
+}
+
+template <typename Real>
+inline bool saddle_is_held(const Ascent<Real>& a, Real y) {
+  return a.rise + y * y > a.low.bound * a.low.bound;
+}
+
+template <typename Real>
+inline Real saddle_duration(const Ascent<Real>& a, Real y) {
+  if (saddle_is_held(a, y)) {
+    return Real(2) * y + (y * y + a.rise) / a.low.bound + a.low.bound;
+  }
+  return a.rise > Real(0) ? Real(2) * a.rise / (square_root(a.rise + y * y) - y) : Real(0);
+}
+
+template <typename Real>
+inline Real held_distance(Real held_bound, Real other_vertex, Real sum, Real rise, Real y) {
+  return y * (Real(2) * other_vertex + y * ((other_vertex + y * y / Real(2)) / held_bound + held_bound / Real(2) + y)) +
+         sum / Real(2) * (held_bound + rise / held_bound);
+}
+
+template <typename Real>
+inline Real saddle_distance(const Ascent<Real>& a, Real y) {
+  if (saddle_is_held(a, y)) {
+    return held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, y);
+  }
+  if (!(a.rise > Real(0))) {
+    return Real(0);
+  }
+  const Real difference = square_root(a.rise + y * y) - y;
+  const Real s = a.rise / difference;
+  return s * (s * s / Real(4) + a.sum) - a.rise * difference / Real(4);
+}
+
+/// `up_difference` is vertex of the end less vertex of the start; `down_difference` the same for the mirrored motion.
+template <typename Real>
+inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Real up_difference, Real down_difference, Real velocity_max,
+                                Real distance, Real distance_scale) {
+  Ascent<Real> a;
+  a.low_is_start = up_difference > Real(0) || (up_difference == Real(0) && !(start.entry < Real(0)));
+  a.low = a.low_is_start ? start : end;
+  a.high = a.low_is_start ? end : start;
+  a.rise = absolute(up_difference);
+  a.sum = start.vertex + end.vertex;
+  a.entries = start.entry + end.entry;
+  const Real start_part = start.entry * (start.vertex + start.entry * start.entry / Real(6));
+  const Real end_part = end.entry * (end.vertex + end.entry * end.entry / Real(6));
+  a.goal = distance + start_part + end_part;
+  a.goal_scale = distance_scale + absolute(start.entry) * (absolute(start.vertex) + start.entry * start.entry) +
+                 absolute(end.entry) * (absolute(end.vertex) + end.entry * end.entry);
+  const bool entry_fits = !(a.low.entry > Real(0)) || (a.low_is_start ? down_difference <= Real(0) : down_difference >= Real(0));
+  a.starts_in_saddle = a.high.entry < Real(0) && entry_fits;
+  const Real missing = a.low.entry * a.low.entry - a.rise;
+  a.has_gap = a.starts_in_saddle && a.low.entry > Real(0) && missing > Real(0);
+  a.gap = a.has_gap ? larger(-square_root(missing), a.high.entry) : Real(0);
+  const Real low_top = a.low.entry > Real(0) ? a.low.vertex + a.low.entry * a.low.entry : a.low.vertex;
+  const Real high_top = a.high.entry > Real(0) ? a.high.vertex + a.high.entry * a.high.entry : a.high.vertex;
+  a.ceiling = larger(velocity_max, larger(low_top, high_top));
+  return a;
+}
+
+template <typename Real>
+inline Place<Real> top_place(const Ascent<Real>& a, Real top) {
+  return {false, top, top_distance(a, top)};
+}
+
+/// The lowest top at which both legs are whole.
+template <typename Real>
+inline Real lowest_top(const Ascent<Real>& a) {
+  const Real low = a.low.entry > Real(0) ? a.low.vertex + a.low.entry * a.low.entry : a.low.vertex;
+  const Real high = a.high.entry > Real(0) ? a.high.vertex + a.high.entry * a.high.entry : a.high.vertex;
+  return larger(low, high);
+}
+
+/// The motion of the shortest duration of all.
+template <typename Real>
+inline Place<Real> shortest(const Ascent<Real>& a) {
+  if (a.starts_in_saddle) {
+    return {true, a.high.entry, saddle_distance(a, a.high.entry)};
+  }
+  return top_place(a, lowest_top(a));
+}
+
+template <typename Real>
+inline void set_leg(Real height, Real bound, Real& slope, Real& hold) {
+  if (height < bound * bound) {
+    slope = square_root(height);
+    hold = Real(0);
+  } else {
+    slope = bound;
+    hold = height / bound - bound;
+  }
+}
+
+template <typename Real>
+inline Shape<Real> top_shape(const Ascent<Real>& a, Real top, Real cruise, Real distance) {
+  Shape<Real> shape;
+  set_leg(top - a.low.vertex, a.low.bound, shape.slope_low, shape.hold_low);
+  set_leg(top - a.high.vertex, a.high.bound, shape.slope_high, shape.hold_high);
+  shape.fall = shape.slope_low + shape.slope_high;
+  shape.cruise = cruise;
+  shape.distance = distance;
+  return shape;
+}
+
+template <typename Real>
+inline Shape<Real> free_shape(const Ascent<Real>& a, Real s, Real distance) {
+  const Real difference = s > Real(0) ? a.rise / s : -Real(2) * a.high.entry;
+  const Real x = (s + difference) / Real(2);
+  const Real y = (s - difference) / Real(2);
+  return {x, Real(0), y, Real(0), s, Real(0), distance};
+}
+
+/// The low leg held, the high one with slope y.
+template <typename Real>
+inline Shape<Real> low_held_shape(const Ascent<Real>& a, Real y, Real distance) {
+  const Real bound = a.low.bound;
+  return {bound, larger((a.rise + y * y) / bound - bound, Real(0)), y, Real(0), bound + y, Real(0), distance};
+}
+
+/// The high leg held, the low one with slope x.
+template <typename Real>
+inline Shape<Real> high_held_shape(const Ascent<Real>& a, Real x, Real distance) {
+  const Real bound = a.high.bound;
+  return {x, Real(0), bound, larger((x * x - a.rise) / bound - bound, Real(0)), x + bound, Real(0), distance};
+}
+
+template <typename Real>
+inline Shape<Real> shape_at(const Ascent<Real>& a, const Place<Real>& place) {
+  if (!place.is_saddle) {
+    return top_shape(a, place.at, Real(0), place.distance);
+  }
+  if (saddle_is_held(a, place.at)) {
+    return low_held_shape(a, place.at, place.distance);
+  }
+  const Real x = square_root(a.rise + place.at * place.at);
+  const Real s = a.rise > Real(0) ? a.rise / (x - place.at) : Real(0);
+  return {x, Real(0), place.at, Real(0), s, Real(0), place.distance};
+}
+
+/// Value and first two derivatives.
+template <typename Real>
+struct Jet {
+  Real value;
+  Real first;
+  Real second;
+};
+
+/// The root of a function that is not above zero at `low` and not below at `high`: Halley's steps, kept inside of the
+/// bracket. `resolution` is the smallest step worth taking at zero.
+template <typename Real, typename Function>
+inline Real root_between(const Function& function, Real low, Real high, Real guess, Real resolution) {
+  constexpr int kMostSteps = 64;
+  Real x = clamped(guess, low, high);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Jet<Real> f = function(x);
+    if (f.value < Real(0)) {
+      low = x;
+    } else if (f.value > Real(0)) {
+      high = x;
+    } else {
+      return x;
+    }
+    Real next = x - Real(2) * f.value * f.first / (Real(2) * f.first * f.first - f.value * f.second);
+    if (!(next > low && next < high)) {
+      next = x - f.value / f.first;
+      if (!(next > low && next < high)) {
+        next = low + (high - low) / Real(2);
+      }
+    }
+    if (absolute(next - x) <= Real(2) * std::numeric_limits<Real>::epsilon() * (absolute(x) + resolution)) {
+      return next;
+    }
+    x = next;
+  }
+  return x;
+}
+
+/// Within 6 % of the cube root, for a guess: a third of the exponent's bits (and of the others, which come close).
+inline double rough_cube_root(double x) {
+  return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, x) / 3 + 0x2a9f789300000000U);
+}
+inline float rough_cube_root(float x) {
+  return __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, x) / 3 + 0x2a508c00U);
+}
+
+/// Neither leg held: the duration s of the fall.
+template <typename Real>
+inline Shape<Real> solve_free(const Ascent<Real>& a, Real low_s, Real high_s, Real guess) {
+  const Real quarter_rise_2 = a.rise * a.rise / Real(4);
+  const auto function = [&](Real s) {
+    const Real inverse = Real(1) / s;
+    const Real pull = quarter_rise_2 * inverse;
+    const Real s_2 = s * s;
+    return Jet<Real>{s * (s_2 / Real(4) + a.sum) - pull - a.goal, Real(3) / Real(4) * s_2 + a.sum + pull * inverse,
+                     Real(3) / Real(2) * s - Real(2) * pull * inverse * inverse};
+  };
+  return free_shape(a, root_between(function, low_s, high_s, guess, Real(0)), a.goal);
+}
+
+/// One leg held at `bound`: the slope of the other leg. `rise` is the other vertex less the held leg's.
+template <typename Real>
+inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, Real low, Real high, Real guess) {
+  const Real inverse = Real(1) / bound;
+  const Real offset = sum / Real(2) * (bound + rise * inverse) - goal;
+  const auto function = [&](Real y) {
+    const Real y_2 = y * y;
+    const Real speed = vertex + y_2 + bound * y / Real(2);
+    const Real stretch = Real(1) + y * inverse;
+    return Jet<Real>{y * (Real(2) * vertex + y * ((vertex + y_2 / Real(2)) * inverse + bound / Real(2) + y)) + offset,
+                     Real(2) * speed * stretch, Real(2) * ((Real(2) * y + bound / Real(2)) * stretch + speed * inverse)};
+  };
+  return root_between(function, low, high, guess, bound);
+}
+
+/// Some u with distance(u) <= goal < distance(ceiling): the motion with a top above `from` that meets the goal.
+template <typename Real>
+inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, const Place<Real>& ceiling) {
+  Real low = from.at;
+  Real low_distance = from.distance;
+  Real high = ceiling.at;
+  Real high_distance = ceiling.distance;
+  const Real low_threshold = a.low.vertex + a.low.bound * a.low.bound;
+  const Real high_threshold = a.high.vertex + a.high.bound * a.high.bound;
+  bool low_is_held = low_threshold <= low;
+  bool high_is_held = high_threshold <= low;
+  if (!low_is_held && low_threshold < high) {
+    const Real distance = top_distance(a, low_threshold);
+    low_is_held = distance <= a.goal;
+    (low_is_held ? low : high) = low_threshold;
+    (low_is_held ? low_distance : high_distance) = distance;
+  }
+  if (!high_is_held && high_threshold < high) {
+    if (high_threshold <= low) {
+      high_is_held = true;
+    } else {
+      const Real distance = top_distance(a, high_threshold);
+      high_is_held = distance <= a.goal;
+      (high_is_held ? low : high) = high_threshold;
+      (high_is_held ? low_distance : high_distance) = distance;
+    }
+  }
+  if (low_is_held && high_is_held) {
+    const Real square = Real(1) / a.low.bound + Real(1) / a.high.bound;
+    const Real half = (a.low.bound + a.high.bound) / Real(2);
+    const Real rest = a.low.vertex * (a.low.bound - a.low.vertex / a.low.bound) +
+                      a.high.vertex * (a.high.bound - a.high.vertex / a.high.bound) - Real(2) * a.goal;
+    const Real root = square_root(half * half - square * rest);
+    const Real top = half > Real(0) ? -rest / (half + root) : (root - half) / square;
+    return top_shape(a, clamped(top, low, high), Real(0), a.goal);
+  }
+  const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
+  if (low_is_held) {
+    const Real y_low = square_root(low - a.high.vertex);
+    const Real y_high = square_root(high - a.high.vertex);
+    const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, y_low, y_high, y_low + share * (y_high - y_low));
+    return low_held_shape(a, y, a.goal);
+  }
+  if (high_is_held) {
+    const Real x_low = square_root(low - a.low.vertex);
+    const Real x_high = square_root(high - a.low.vertex);
+    const Real x = solve_held(a.high.bound, a.low.vertex, a.sum, -a.rise, a.goal, x_low, x_high, x_low + share * (x_high - x_low));
+    return high_held_shape(a, x, a.goal);
+  }
+  const Real s_low = square_root(low - a.low.vertex) + square_root(low - a.high.vertex);
+  const Real s_high = square_root(high - a.low.vertex) + square_root(high - a.high.vertex);
+  // The legs' own velocities pull the root of the pure cubic up or down.
+  Real guess = s_low + share * (s_high - s_low);
+  const Real linear = a.sum - a.rise / Real(4);
+  const Real cubic = rough_cube_root(Real(4) * larger(a.goal, Real(0)));
+  const Real bound = linear > Real(0) ? cubic : cubic + Real(2) * square_root(-linear);
+  guess = larger(smaller(guess, bound), larger(s_low, s_high * std::numeric_limits<Real>::epsilon()));
+  return solve_free(a, s_low, s_high, guess);
+}
+
+/// The saddle between y = low and y = high (same way of being held) that meets the goal.
+template <typename Real>
+inline Shape<Real> solve_saddle(const Ascent<Real>& a, Real low, Real high, Real low_distance, Real high_distance) {
+  const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
+  if (saddle_is_held(a, (low + high) / Real(2))) {
+    const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, low, high, low + share * (high - low));
+    return low_held_shape(a, y, a.goal);
+  }
+  const Real s_low = a.rise / (square_root(a.rise + low * low) - low);
+  const Real s_high = a.rise / (square_root(a.rise + high * high) - high);
+  return solve_free(a, s_low, s_high, s_low + share * (s_high - s_low));
+}
+
+/// The y of the saddle where the distance stops to grow with T, or `otherwise` if it grows on.
+template <typename Real>
+inline Real saddle_crest(const Ascent<Real>& a, Real from, Real otherwise) {
+  const Real bound = a.low.bound;
+  if (saddle_is_held(a, from)) {
+    const Real square = bound * bound / Real(16) - a.high.vertex;
+    if (square > Real(0)) {
+      const Real y = -bound / Real(4) - square_root(square);
+      if (y > from && saddle_is_held(a, y)) {
+        return smaller(y, otherwise);
+      }
+    }
+  }
+  const Real square = a.sum * a.sum - Real(3) / Real(4) * a.rise * a.rise;
+  if (a.sum < Real(0) && square > Real(0) && a.rise > Real(0)) {
+    // The smaller root of 3 s^4 + 4 W s^2 + K^2, in the form without cancellation.
+    const Real s = a.rise / square_root(Real(2) * (square_root(square) - a.sum));
+    const Real y = (s - a.rise / s) / Real(2);
+    if (y > from && y < otherwise && !saddle_is_held(a, y)) {
+      return y;
+    }
+  }
+  return otherwise;
+}
+
+/// d(distance)/dT.
+template <typename Real>
+inline Real saddle_speed(const Ascent<Real>& a, Real y) {
+  const Real x = smaller(a.low.bound, square_root(a.rise + y * y));
+  return a.high.vertex + y * (y + x / Real(2));
+}
+
+/// One piece of a saddle's range, at whose start the distance is not above the goal: true if it is met in it.
+template <typename Real>
+inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until, Shape<Real>& shape) {
+  if (!(until > from.at)) {
+    return false;
+  }
+  const Real reach = a.low.bound * a.low.bound - a.rise;
+  if (saddle_is_held(a, from.at) && !saddle_is_held(a, until)) {
+    const Real release = clamped(-square_root(reach), from.at, until);
+    const Real distance = held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, release);
+    if (distance >= a.goal) {
+      const Real share = clamped((a.goal - from.distance) / (distance - from.distance), Real(0), Real(1));
+      const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, from.at, release, from.at + share * (release - from.at));
+      shape = low_held_shape(a, y, a.goal);
+      return true;
+    }
+    from = {true, release, distance};
+    const Real end = saddle_distance(a, until);
+    if (end >= a.goal && until > release && a.rise > Real(0)) {
+      const Real s_low = a.rise / (a.low.bound - release);
+      const Real s_high = a.rise / (square_root(a.rise + until * until) - until);
+      shape = solve_free(a, s_low, s_high, s_low + clamped((a.goal - distance) / (end - distance), Real(0), Real(1)) * (s_high - s_low));
+      return true;
+    }
+    from = {true, until, end};
+    return false;
+  }
+  const Real end = saddle_distance(a, until);
+  if (end >= a.goal && a.rise > Real(0)) {
+    shape = solve_saddle(a, from.at, until, from.distance, end);
+    return true;
+  }
+  from = {true, until, end};
+  return false;
+}
+
+/// Where the motion is that lasts just until a gap is over.
+template <typename Real>
+inline Place<Real> after_gap(const Ascent<Real>& a) {
+  return top_place(a, lowest_top(a));
+}
+
+/// Whether the motion at a place meets the goal, but for rounding errors.
+template <typename Real>
+inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
+  return absolute(a.goal - place.distance) <= kTouch<Real> * (a.goal_scale + absolute(place.distance));
+}
+
+/// A motion that meets the goal but for a rounding error. Where the next one is far off, that makes all the difference:
+/// whoever plans again on the way would be sent around.
+template <typename Real>
+inline bool touch(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& shape) {
+  if (!is_met(a, place)) {
+    return false;
+  }
+  shape = shape_at(a, place);
+  return true;
+}
+
+/// The first motion from `from` on (whose distance is not above the goal) that meets the goal. False if a gap comes first.
+template <typename Real>
+inline bool meet(const Ascent<Real>& a, Place<Real> from, Shape<Real>& shape) {
+  if (from.is_saddle) {
+    const Real until = a.gap;
+    if (saddle_speed(a, from.at) > Real(0)) {
+      const Real crest = saddle_crest(a, from.at, until);
+      if (crest < until && (meet_in_saddle(a, from, crest, shape) || touch(a, from, shape))) {
+        return true;
+      }
+    }
+    if (meet_in_saddle(a, from, until, shape)) {
+      return true;
+    }
+    if (a.has_gap) {
+      if (touch(a, from, shape)) {
+        return true;
+      }
+      return false;
+    }
+    from = top_place(a, a.high.vertex);
+  }
+  const Place<Real> ceiling = top_place(a, a.ceiling);
+  if (a.goal >= ceiling.distance) {
+    shape = top_shape(a, a.ceiling, (a.goal - ceiling.distance) / a.ceiling, a.goal);
+    return true;
+  }
+  if (a.goal <= from.distance) {
+    shape = shape_at(a, from);
+    return true;
+  }
+  shape = solve_top(a, from, ceiling);
+  return true;
+}
+
+/// The widest motion of duration T from vertex to vertex, and its place.
+template <typename Real>
+inline Shape<Real> at_duration(const Ascent<Real>& a, Real duration, Place<Real>& place) {
+  if (duration < leg_duration(a.rise, a.low.bound)) {
+    const Real s = duration / Real(2);
+    const Real difference = s > Real(0) ? a.rise / s : Real(0);
+    const Real x = (s + difference) / Real(2);
+    Shape<Real> shape;
+    if (x <= a.low.bound) {
+      const Real y = (s - difference) / Real(2);
+      place = {true, y, s * (s * s / Real(4) + a.sum) - a.rise * difference / Real(4)};
+      shape = {x, Real(0), y, Real(0), s, Real(0), place.distance};
+    } else {
+      const Real y = square_root(a.low.bound * duration - a.rise) - a.low.bound;
+      place = {true, y, held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, y)};
+      shape = low_held_shape(a, y, place.distance);
+    }
+    return shape;
+  }
+  const Real ceiling_duration = top_duration(a, a.ceiling);
+  if (duration >= ceiling_duration) {
+    const Real cruise = duration - ceiling_duration;
+    place = {false, a.ceiling, top_distance(a, a.ceiling) + cruise * a.ceiling};
+    return top_shape(a, a.ceiling, cruise, place.distance);
+  }
+  const Real s = duration / Real(2);
+  const Real difference = s > Real(0) ? a.rise / s : Real(0);
+  Real x = (s + difference) / Real(2);
+  Real y = (s - difference) / Real(2);
+  bool low_is_held = false;
+  bool high_is_held = false;
+  if (x > a.low.bound || y > a.high.bound) {
+    const Real held_y = square_root(a.low.bound * duration - a.rise) - a.low.bound;
+    const Real held_x = square_root(a.high.bound * duration + a.rise) - a.high.bound;
+    low_is_held = x > a.low.bound ? held_y <= a.high.bound || held_x > a.low.bound : held_x > a.low.bound;
+    high_is_held = low_is_held ? held_y > a.high.bound : true;
+    x = held_x;
+    y = held_y;
+  }
+  if (low_is_held && high_is_held) {
+    const Real over_low = Real(1) / a.low.bound;
+    const Real over_high = Real(1) / a.high.bound;
+    const Real top = (duration - a.low.bound - a.high.bound + a.low.vertex * over_low + a.high.vertex * over_high) / (over_low + over_high);
+    place = top_place(a, smaller(larger(top, a.high.vertex), a.ceiling));
+    return top_shape(a, place.at, Real(0), place.distance);
+  }
+  // Not by the top: a short motion at a high velocity hardly raises it.
+  place.is_saddle = false;
+  if (low_is_held) {
+    place.at = a.high.vertex + y * y;
+    place.distance = held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, y);
+  } else if (high_is_held) {
+    place.at = a.low.vertex + x * x;
+    place.distance = held_distance(a.high.bound, a.low.vertex, a.sum, -a.rise, x);
+  } else {
+    place.at = a.high.vertex + y * y;
+    place.distance = s * (s * s / Real(4) + a.sum) - a.rise * difference / Real(4);
+  }
+  place.at = smaller(larger(place.at, a.high.vertex), a.ceiling);
+  if (low_is_held) {
+    return low_held_shape(a, y, place.distance);
+  }
+  if (high_is_held) {
+    return high_held_shape(a, x, place.distance);
+  }
+  return {x, Real(0), y, Real(0), s, Real(0), place.distance};
+}
+
+}  // namespace robot_core::detail

@@ -1,0 +1,193 @@
+#include "duty/match/generator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "robot_core/trajectory.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kStep_s = 1e-3;
+constexpr double kBin_s = 0.25;
+/// 2 % of the nominal torque of a 50 W motor, 0.1 m/s at the rim: finer than any verdict.
+constexpr DemandGatherer::Grid kGrid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0};
+
+using robot_core::AxisLimits;
+using robot_core::AxisState;
+using robot_core::PlaneLimits;
+using robot_core::PlanResult;
+using robot_core::Trajectory;
+
+double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a; }
+
+/// The planner's trajectory, followed exactly.
+class IdealTracking final : public MotionSource {
+ public:
+  IdealTracking(const Robot& robot, double aggressiveness, Planner planner) : planner_(planner) {
+    plane_ = {robot.speed_limit_m_per_s * aggressiveness, std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2) * aggressiveness,
+              robot.jerk_limit_m_per_s3 * aggressiveness};
+    // No team publishes a jerk of yaw: a tenth of a second to full angular acceleration.
+    yaw_ = AxisLimits<double>::symmetric(robot.yaw_rate_limit_rad_per_s * aggressiveness, robot.yaw_acceleration_limit_rad_per_s2 * aggressiveness,
+                                         10.0 * robot.yaw_acceleration_limit_rad_per_s2 * aggressiveness);
+    for (const double limit : {plane_.speed_max, plane_.acceleration_max, plane_.jerk_max, yaw_.velocity_max, yaw_.jerk_max}) {
+      if (!(limit > 0.0)) {
+        throw bad_input({robot.file.string()}, "limits", "a match needs speed, acceleration, braking, jerk, yaw_rate and yaw_acceleration");
+      }
+    }
+  }
+
+  void take(const MotionCommand& command) override {
+    const AxisState<double> target[3] = {{command.x_m, 0.0, 0.0}, {command.y_m, 0.0, 0.0}, {command.yaw_rad, 0.0, 0.0}};
+    PlaneLimits<double> plane = plane_;
+    plane.speed_max = least(plane.speed_max, std::max(0.05, command.speed_limit_m_per_s));
+    const PlanResult result = planner_ == Planner::jerk_limited ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_) : bang_bang(target, plane);
+    if (result != PlanResult::ok) {
+      throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: planner code {}", command.x_m, command.y_m, static_cast<int>(result)));
+    }
+    time_s_ = 0.0;
+  }
+
+  void advance(double step_s) override {
+    time_s_ += step_s;
+    for (int axis = 0; axis < 3; ++axis) {
+      state_[axis] = trajectories_[axis].at(time_s_);
+    }
+  }
+
+  [[nodiscard]] Pose pose() const override { return {state_[0].position, state_[1].position, state_[2].position}; }
+  [[nodiscard]] BodyVelocity velocity_global() const override { return {state_[0].velocity, state_[1].velocity, state_[2].velocity}; }
+  [[nodiscard]] BodyAcceleration acceleration_global() const override { return {state_[0].acceleration, state_[1].acceleration, state_[2].acceleration}; }
+  [[nodiscard]] bool at_rest() const override {
+    return std::ranges::all_of(trajectories_, [&](const Trajectory<double>& each) { return time_s_ >= each.duration_s; });
+  }
+
+ private:
+  /// For comparison: each axis on its own, with the share of the limits that its part of the way has.
+  PlanResult bang_bang(const AxisState<double> (&target)[3], const PlaneLimits<double>& plane) {
+    const double dx = target[0].position - state_[0].position;
+    const double dy = target[1].position - state_[1].position;
+    const double length = std::hypot(dx, dy);
+    PlanResult result = PlanResult::ok;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double share = length > 0.0 ? std::max(0.1, std::abs(axis == 0 ? dx : dy) / length) : 1.0;
+      const auto limits = AxisLimits<double>::symmetric(plane.speed_max * share, plane.acceleration_max * share, plane.jerk_max * share);
+      result = std::max(result, robot_core::plan_bang_bang(state_[axis], target[axis], limits, trajectories_[axis]));
+    }
+    return std::max(result, robot_core::plan_bang_bang(state_[2], target[2], yaw_, trajectories_[2]));
+  }
+
+  Planner planner_;
+  PlaneLimits<double> plane_;
+  AxisLimits<double> yaw_;
+  AxisState<double> state_[3]{};
+  Trajectory<double> trajectories_[3];
+  double time_s_ = 0.0;
+};
+
+class Match {
+ public:
+  Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, const MatchObserver& observer)
+      : random_(seed, 0),
+        game_(generate_game(inputs.division, inputs.overtime, values, random_)),
+        behaviour_(inputs, values, random_),
+        body_(make_body(robot, without_rotor())),
+        motion_(ideal_tracking(robot, values.aggressiveness, planner)),
+        observer_(observer),
+        push_N_(body_.traction.traction_ratio * robot.mass_kg * 9.81) {
+    for (int wheel = 0; wheel < body_.kinematics.wheel_count; ++wheel) {
+      gatherers_.emplace_back(fmt::format("wheel {}", wheel + 1), kBin_s, kGrid);
+    }
+  }
+
+  MatchLoad play() {
+    for (const PhaseSpan& span : game_) {
+      load_.play_s += rule_of(span.phase).clock_runs ? span.duration_s : 0.0;
+      double into_s = 0.0;
+      while (span.duration_s - into_s > 0.5 * kStep_s) {
+        const Pose now = motion_->pose();
+        const MotionCommand command = behaviour_.next(span.phase, into_s, span.duration_s - into_s, {now.x_m, now.y_m, now.yaw_rad});
+        into_s += follow(span.phase, command);
+      }
+    }
+    for (DemandGatherer& each : gatherers_) {
+      load_.wheels.push_back(each.finish());
+    }
+    return std::move(load_);
+  }
+
+ private:
+  static MotorValues without_rotor() {
+    MotorValues motor;
+    motor.rotor_inertia_kg_m2 = 0.0;
+    return motor;
+  }
+
+  /// In steps, or at one go where nothing moves any more. Returns how long it took.
+  double follow(Phase phase, const MotionCommand& command) {
+    motion_->take(command);
+    double done_s = 0.0;
+    const double length_s = std::max(command.duration_s, kStep_s);
+    while (length_s - done_s > 0.5 * kStep_s) {
+      const bool still = motion_->at_rest();
+      const double step_s = still ? length_s - done_s : kStep_s;
+      motion_->advance(step_s);
+      moment(phase, command, step_s, command.duel && still);
+      done_s += step_s;
+    }
+    return done_s;
+  }
+
+  void moment(Phase phase, const MotionCommand& command, double step_s, bool pushes) {
+    const Pose pose = motion_->pose();
+    const BodyVelocity velocity = motion_->velocity_global();
+    BodyMotion motion = local_motion(body_, pose, velocity, motion_->acceleration_global());
+    if (pushes) {
+      const double force_N = command.push_share * push_N_;
+      const double direction_rad = command.push_direction_rad - pose.yaw_rad;
+      motion.external = {-force_N * std::cos(direction_rad), -force_N * std::sin(direction_rad), 0.0};
+    }
+    const WheelDemands wheels = inverse_dynamics(body_, motion);
+    PhaseLoad& phase_load = load_.phases.at(static_cast<std::size_t>(phase));
+    phase_load.time_s += step_s;
+    phase_load.duel_s += pushes ? step_s : 0.0;
+    phase_load.slip_s += wheels.transmitted_share < 1.0 ? step_s : 0.0;
+    for (std::size_t i = 0; i < gatherers_.size(); ++i) {
+      gatherers_[i].add(step_s, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
+      const double squared_Nm2_s = wheels.torque_Nm[i] * wheels.torque_Nm[i] * step_s;
+      phase_load.torque_squared_Nm2_s[i] += squared_Nm2_s;
+      phase_load.duel_torque_squared_Nm2_s += pushes ? squared_Nm2_s : 0.0;
+    }
+    load_.duration_s += step_s;
+    load_.distance_m += std::hypot(velocity.x_m_per_s, velocity.y_m_per_s) * step_s;
+    if (observer_) {
+      observer_({load_.duration_s, step_s, phase, pushes, pose, velocity, &wheels});
+    }
+  }
+
+  Random random_;
+  std::vector<PhaseSpan> game_;
+  Behaviour behaviour_;
+  BodyConfig body_;
+  std::unique_ptr<MotionSource> motion_;
+  const MatchObserver& observer_;
+  double push_N_;
+  std::vector<DemandGatherer> gatherers_;
+  MatchLoad load_;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionSource> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner) {
+  return std::make_unique<IdealTracking>(robot, aggressiveness, planner);
+}
+
+MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
+                     const MatchObserver& observer) {
+  return Match(inputs, values, robot, seed, planner, observer).play();
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,72 @@
+// A game, played: phases and roles through the planner and the robot's dynamics to what each wheel has to do.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "duty/demand.h"
+#include "duty/match/behaviour.h"
+#include "robot/inverse_dynamics.h"
+
+namespace heatsoak {
+
+/// How the robot gets from target to target. The seam where the drive core takes its place: anything that turns a
+/// motion command into body motion over time fits here.
+class MotionSource {
+ public:
+  virtual ~MotionSource() = default;
+  /// From now on go for the command's target (or stand and push).
+  virtual void take(const MotionCommand& command) = 0;
+  /// Advance by `step_s`.
+  virtual void advance(double step_s) = 0;
+  [[nodiscard]] virtual Pose pose() const = 0;
+  [[nodiscard]] virtual BodyVelocity velocity_global() const = 0;
+  [[nodiscard]] virtual BodyAcceleration acceleration_global() const = 0;
+  /// Nothing moves and nothing will until the next command.
+  [[nodiscard]] virtual bool at_rest() const = 0;
+};
+
+enum class Planner { jerk_limited, bang_bang };
+
+/// Follows the planner exactly: re-planned at every command from the state of the moment.
+std::unique_ptr<MotionSource> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner);
+
+/// One step of the game at one robot. Torques and speeds as in WheelDemands.
+struct MatchMoment {
+  double time_s = 0.0;
+  double step_s = 0.0;
+  Phase phase = Phase::halt;
+  bool duel = false;
+  Pose pose;
+  BodyVelocity velocity_global;
+  const WheelDemands* wheels = nullptr;
+};
+
+/// What the phases ask, for the table of where heat comes from.
+struct PhaseLoad {
+  double time_s = 0.0;
+  double duel_s = 0.0;
+  PerWheel torque_squared_Nm2_s{};       ///< ∫M²dt per wheel: copper heat is this times R/K_t²
+  double duel_torque_squared_Nm2_s = 0.0;  ///< part of it, all wheels, that comes from duels
+  double slip_s = 0.0;                   ///< time in which the ground cannot pass on what is demanded
+};
+
+struct MatchLoad {
+  std::vector<WheelDemand> wheels;
+  std::array<PhaseLoad, kPhaseNames.size()> phases{};
+  double duration_s = 0.0;
+  double play_s = 0.0;
+  double distance_m = 0.0;
+};
+
+using MatchObserver = std::function<void(const MatchMoment&)>;
+
+/// Runs one game at 1 kHz. The rotor's inertia is left out, so that the demand is the same for every motor.
+/// Throws Failure (bad_input) where the robot's file lacks what motion needs.
+MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
+                     const MatchObserver& observer = {});
+
+}  // namespace heatsoak
