@@ -15,11 +15,19 @@ struct CsvRow {
   std::span<const double> values;
 };
 
+/// A column whose cells are words: the value of a row is the word's place in the list.
+struct CsvWords {
+  std::string column;
+  std::vector<std::string> words;
+};
+
 /// Reads a file with one header row and gives every row to `row`. `required` names must be in the header;
 /// `optional` ones give NaN where the header has none. Memory does not grow with the file. A UTF-8 byte order mark and CR LF are fine.
 /// Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
 /// another number of cells, no rows. At most 20 problems are listed, then how many more there are.
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               const std::function<void(const CsvRow&)>& row);
+void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
+              std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row);
 
 }  // namespace heatsoak
