@@ -36,7 +36,7 @@ class CaptureClock {
   std::map<int, Camera> cameras_;
   std::optional<double> start_s_;
   double first_ahead_s_ = 0.0;
-  double reception_s_ = 0.0;     // without a time of reception: capture, less its jumps
+  double reception_s_ = 0.0;  // without a time of reception: capture, less its jumps
   double last_capture_s_ = 0.0;
 };
 

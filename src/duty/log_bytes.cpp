@@ -31,7 +31,7 @@ struct LogBytes::State {
   z_stream zip{};
   bool zip_open = false;
   bool between_members = false;
-  std::vector<char> window = std::vector<char>(kWindow);
+  std::unique_ptr<char[]> window = std::make_unique_for_overwrite<char[]>(kWindow);
   std::size_t begin = 0;
   std::size_t end = 0;
   std::uint64_t offset = 0;
@@ -66,8 +66,8 @@ struct LogBytes::State {
 
   /// Unpacks into the window; false at the end.
   bool unpack() {
-    zip.next_out = reinterpret_cast<Bytef*>(window.data() + end);
-    zip.avail_out = static_cast<uInt>(window.size() - end);
+    zip.next_out = reinterpret_cast<Bytef*>(window.get() + end);
+    zip.avail_out = static_cast<uInt>(kWindow - end);
     const uInt room = zip.avail_out;
     while (zip.avail_out == room) {
       if (zip.avail_in == 0) {
@@ -102,14 +102,14 @@ struct LogBytes::State {
 
   void fill() {
     if (begin > 0) {
-      std::memmove(window.data(), window.data() + begin, end - begin);
+      std::memmove(window.get(), window.get() + begin, end - begin);
       end -= begin;
       begin = 0;
     }
     if (zip_open) {
       at_end = !unpack();
     } else {
-      const std::size_t got = read(window.data() + end, window.size() - end);
+      const std::size_t got = read(window.get() + end, kWindow - end);
       end += got;
       at_end = got == 0;
     }
@@ -131,10 +131,10 @@ LogBytes::LogBytes(const std::filesystem::path& file) : state_(std::make_unique<
     s.file_size = 0;
   }
   (void)std::setvbuf(s.file.get(), nullptr, _IONBF, 0);
-  s.end = s.read(s.window.data(), 2);
-  if (s.end == 2 && std::memcmp(s.window.data(), "\x1f\x8b", 2) == 0) {
+  s.end = s.read(s.window.get(), 2);
+  if (s.end == 2 && std::memcmp(s.window.get(), "\x1f\x8b", 2) == 0) {
     s.open_zip();
-    std::memcpy(s.packed.data(), s.window.data(), 2);
+    std::memcpy(s.packed.data(), s.window.get(), 2);
     s.zip.next_in = s.packed.data();
     s.zip.avail_in = 2;
     s.end = 0;
@@ -149,7 +149,7 @@ std::string_view LogBytes::peek(std::size_t wanted) {
   while (s.end - s.begin < wanted && !s.at_end) {
     s.fill();
   }
-  return {s.window.data() + s.begin, s.end - s.begin};
+  return {s.window.get() + s.begin, s.end - s.begin};
 }
 
 void LogBytes::skip(std::uint64_t count) {

@@ -19,7 +19,7 @@ struct Detection {
   double y_m = 0.0;
   double yaw_rad = 0.0;
   int camera = 0;
-  double confidence = 1.0;        ///< 0 … 1
+  double confidence = 1.0;         ///< 0 … 1
   double camera_distance_m = 0.0;  ///< along the floor; 0 where unknown
 };
 

@@ -15,7 +15,7 @@ constexpr double kFramesPerPeriod = 6.0;  // less than six sights of one period 
 constexpr double kHuber = 2.5;            // in robust standard deviations: beyond, a point pulls no harder
 constexpr double kOutlier = 6.0;          // beyond, it has no say
 constexpr int kReweightings = 3;
-constexpr double kNormal = 1.4826;        // standard deviation of a normal distribution in median absolute deviations
+constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution in median absolute deviations
 // Below this a point is never suspect: without noise, the smoother's own error at a hard start would be.
 constexpr double kNoSuspicion_m = 2e-3;
 constexpr double kNoSuspicion_rad = 1e-2;
@@ -24,11 +24,11 @@ constexpr double kLeastBandwidth_Hz = 2.0;
 constexpr double kMostBandwidth_Hz = 8.0;
 constexpr int kBandwidthSearch = 3;
 constexpr double kQuietBandwidth_Hz = 1.5;
-constexpr double kWindow_s = 0.25;        // to each side: where the robot is quiet is decided over half a second
+constexpr double kWindow_s = 0.25;  // to each side: where the robot is quiet is decided over half a second
 // The mean square over such a window has about ten degrees of freedom; noise alone exceeds three times its mean in one of a thousand.
 constexpr double kMoreThanNoise = 3.0;
 constexpr std::size_t kBlock = 4096;
-constexpr double kMemoryPeriods = 5.0;    // of the quiet bandwidth: what lies further away has no influence (e^-18)
+constexpr double kMemoryPeriods = 5.0;  // of the quiet bandwidth: what lies further away has no influence (e^-18)
 
 double median(std::vector<double>& values) {
   if (values.empty()) {
@@ -121,7 +121,7 @@ class Smoother {
       set_bandwidths(channel);
     }
     report_.quiet_share = total_s_ > 0.0 ? quiet_s_ / total_s_ : 0.0;
-    report_.noise_share = energy_ > 0.0 ? std::min(1.0, noise_energy_ / energy_) : 1.0;
+    report_.noise_share = energy_ > 0.0 ? std::min(1.0, noise_energy_ / energy_) : noise_energy_ > 0.0 ? 1.0 : 0.0;
     report_.acceleration_noise_m_or_rad_per_s2 = acceleration_noise(report_.noise_m_or_rad, step_s_, bandwidth_Hz);
     run_all();
   }
@@ -246,7 +246,11 @@ struct Quintic {
     const double v = (to.rate - from.rate - t * from.acceleration) * t;
     const double a = (to.acceleration - from.acceleration) * t * t;
     const double t3 = t * t * t;
-    c = {from.value, from.rate, 0.5 * from.acceleration, (10.0 * p - 4.0 * v + 0.5 * a) / t3, (-15.0 * p + 7.0 * v - a) / (t3 * t),
+    c = {from.value,
+         from.rate,
+         0.5 * from.acceleration,
+         (10.0 * p - 4.0 * v + 0.5 * a) / t3,
+         (-15.0 * p + 7.0 * v - a) / (t3 * t),
          (6.0 * p - 3.0 * v + 0.5 * a) / (t3 * t * t)};
   }
   [[nodiscard]] Smoothed at(double u) const {
@@ -291,8 +295,8 @@ std::vector<MotionTrack::Segment> together(const std::vector<Channel>& places, c
       const Smoothed& x = places[s].smoothed[0][i];
       const Smoothed& y = places[s].smoothed[1][i];
       const Smoothed& yaw = turns[s].smoothed[0][i];
-      segment.push_back({places[s].samples[0][i].time_s, x.value, y.value, yaw.value, x.rate, y.rate, yaw.rate, x.acceleration, y.acceleration,
-                         yaw.acceleration});
+      segment.push_back({places[s].samples[0][i].time_s, x.value, y.value, yaw.value, x.rate, y.rate, yaw.rate, x.acceleration,
+                         y.acceleration, yaw.acceleration});
     }
   }
   return segments;
@@ -347,11 +351,13 @@ void MotionTrack::for_each(double rate_Hz, const std::function<void(const Motion
 
 std::string to_string(const SmoothingReport& r) {
   const auto channel = [](const ChannelReport& c, std::string_view name, std::string_view unit) {
-    return fmt::format("{}: bandwidth {:.1f} Hz (-3 dB; {:.1f} Hz during the {:.0f} % of the time in which nothing but noise is seen), noise {:.1f} m{}, "
-                       "about {:.1f} % of the squared acceleration is noise, {} outliers had no say",
-                       name, c.bandwidth_Hz, c.quiet_bandwidth_Hz, 100.0 * c.quiet_share, 1e3 * c.noise_m_or_rad, unit, 100.0 * c.noise_share, c.outliers);
+    return fmt::format(
+        "{}: bandwidth {:.1f} Hz (-3 dB; {:.1f} Hz during the {:.0f} % of the time in which nothing but noise is seen), noise {:.1f} m{}, "
+        "about {:.1f} % of the squared acceleration is noise, {} outliers had no say",
+        name, c.bandwidth_Hz, c.quiet_bandwidth_Hz, 100.0 * c.quiet_share, 1e3 * c.noise_m_or_rad, unit, 100.0 * c.noise_share, c.outliers);
   };
-  return fmt::format("{} points at {:.1f} Hz; {}; {}", r.points, r.frame_rate_Hz, channel(r.place, "place", "m"), channel(r.turn, "turn", "rad"));
+  return fmt::format("{} points at {:.1f} Hz; {}; {}", r.points, r.frame_rate_Hz, channel(r.place, "place", "m"),
+                     channel(r.turn, "turn", "rad"));
 }
 
 }  // namespace heatsoak

@@ -33,7 +33,7 @@ struct SmoothingOptions {
 /// A wider band would invent more heat by noise, a narrower one would lose more at the edges of the acceleration. Turns
 /// are shorter than runs and lose more.
 inline constexpr double kNoiseShareOfPlace = 0.02;
-inline constexpr double kNoiseShareOfTurn = 0.06;
+inline constexpr double kNoiseShareOfTurn = 0.045;
 
 /// How the place or the turn of a track was smoothed. Its unit is m, or rad.
 struct ChannelReport {
@@ -43,7 +43,7 @@ struct ChannelReport {
   double noise_m_or_rad = 0.0;      ///< rms of one coordinate around the smooth track
   /// rms that this noise leaves in the acceleration of one coordinate at bandwidth_Hz.
   double acceleration_noise_m_or_rad_per_s2 = 0.0;
-  double noise_share = 0.0;  ///< of ∫a², as far as it can be foreseen
+  double noise_share = 0.0;    ///< of ∫a², as far as it can be foreseen
   std::uint64_t outliers = 0;  ///< points that had no say
 };
 

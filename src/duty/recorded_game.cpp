@@ -24,11 +24,12 @@ struct Signature {
 using namespace std::string_view_literals;
 constexpr std::array kForeign{
     Signature{"PK\x03\x04"sv, "is a zip archive; unpack it first"},
-    Signature{"\xfd" "7zXZ"sv, "is packed by xz; unpack it first"},
+    Signature{"\xfd\x37zXZ"sv, "is packed by xz; unpack it first"},
     Signature{"\x28\xb5\x2f\xfd"sv, "is packed by zstd; unpack it first"},
     Signature{"BZh"sv, "is packed by bzip2; unpack it first"},
     Signature{"7z\xbc\xaf"sv, "is a 7z archive; unpack it first"},
-    Signature{"\0\0\0\x18\0S\0S\0L"sv, "is an SSL log of version 0 (before 2013); logconvert of RoboCup-SSL/ssl-logtools makes version 1 of it"},
+    Signature{"\0\0\0\x18\0S\0S\0L"sv,
+              "is an SSL log of version 0 (before 2013); logconvert of RoboCup-SSL/ssl-logtools makes version 1 of it"},
 };
 
 std::string printable(std::string_view bytes) {
@@ -54,10 +55,9 @@ Failure not_a_game(const std::filesystem::path& file, std::string_view head) {
   }
   const std::array<std::string, 2> known{"SSL_LOG_FILE", "t_s,team,robo"};
   const std::string begin = printable(head.substr(0, 12));
-  return bad_input({file.string()}, "", fmt::format("is no recorded game: it begins with \"{}\"{} Expected {}", begin, [&] {
-                     const std::string meant = did_you_mean(begin, known);
-                     return meant.empty() ? std::string(".") : meant;
-                   }(), expected));
+  const std::string meant = did_you_mean(begin, known);
+  return bad_input({file.string()}, "",
+                   fmt::format("is no recorded game: it begins with \"{}\"{} Expected {}", begin, meant.empty() ? "." : meant, expected));
 }
 
 const LogType& log_type(const std::filesystem::path& file, const std::string& format) {
@@ -92,17 +92,9 @@ std::string_view to_string(Team team) { return team == Team::yellow ? "yellow" :
 std::string to_string(const RobotName& name) { return fmt::format("{} {}", to_string(name.team), name.id); }
 
 std::string_view to_string(GamePhase phase) {
-  switch (phase) {
-    case GamePhase::off_play: return "off play";
-    case GamePhase::halt: return "halt";
-    case GamePhase::stop: return "stop";
-    case GamePhase::preparation: return "preparation";
-    case GamePhase::ball_placement: return "ball placement";
-    case GamePhase::timeout: return "timeout";
-    case GamePhase::running: return "running";
-    case GamePhase::unknown: break;
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 8> kNames{"unknown",     "off play",       "halt",    "stop",
+                                                   "preparation", "ball placement", "timeout", "running"};
+  return kNames.at(static_cast<std::size_t>(phase));
 }
 
 const std::vector<LogType>& all_logs() {
@@ -132,8 +124,8 @@ std::vector<std::string> sentences(const ImportReport& r) {
       lines.push_back(line);
     }
   };
-  add(fmt::format("{}: {} messages in {} bytes, {} frames of {} over {:.1f} s, {} detections of {} robots", r.format, r.messages, r.bytes, r.frames,
-                  r.source.empty() ? "no source" : r.source, r.span_s, r.detections, r.robots.size()));
+  add(fmt::format("{}: {} messages in {} bytes, {} frames of {} over {:.1f} s, {} detections of {} robots", r.format, r.messages, r.bytes,
+                  r.frames, r.source.empty() ? "no source" : r.source, r.span_s, r.detections, r.robots.size()));
   add(counted(r.frames_of_other_sources, "frames of other sources not used"));
   add(counted(r.merged, "detections joined with those of another camera"));
   add(counted(r.doubled, "detections of a robot that one frame holds twice left out"));
@@ -175,7 +167,8 @@ RobotTrack only_in(const RobotTrack& track, std::span<const PhaseSpan> phases, s
         continue;
       }
       // Wanted phases that follow each other stay one piece.
-      const bool goes_on = !cut.segments.empty() && begin != segment.begin() && cut.segments.back().back().time_s == std::prev(begin)->time_s;
+      const bool goes_on =
+          !cut.segments.empty() && begin != segment.begin() && cut.segments.back().back().time_s == std::prev(begin)->time_s;
       if (goes_on) {
         cut.segments.back().insert(cut.segments.back().end(), begin, end);
       } else {

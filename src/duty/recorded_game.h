@@ -72,12 +72,12 @@ struct LogProblem {
 
 /// How good a recording is: what was found, joined, left out. Counts are of detections unless said otherwise.
 struct ImportReport {
-  std::string format;  ///< name of the log type
-  std::string source;  ///< "vision, 4 cameras", "tracker 'TIGERs'"
+  std::string format;         ///< name of the log type
+  std::string source;         ///< "vision, 4 cameras", "tracker 'TIGERs'"
   double start_unix_s = 0.0;  ///< 0 where the recording does not say
   double span_s = 0.0;
   std::uint64_t bytes = 0;     ///< of the unpacked log
-  std::uint64_t messages = 0;  ///< or rows
+  std::uint64_t messages = 0;  ///< that were found, or rows
   std::uint64_t frames = 0;    ///< of the source that is used
   std::uint64_t frames_of_other_sources = 0;
   std::uint64_t detections = 0;
@@ -93,7 +93,7 @@ struct ImportReport {
   std::uint64_t clock_jumps = 0;         ///< every track is cut there
   std::uint64_t frames_out_of_time = 0;  ///< frames with a time of capture that nothing else confirms
   std::uint64_t problems_in_all = 0;
-  std::vector<LogProblem> problems;      ///< the first of them
+  std::vector<LogProblem> problems;           ///< the first of them
   std::optional<std::uint64_t> truncated_at;  ///< the file ends inside a message; what came before is used
   std::optional<double> full_at_s;            ///< from here on points were no longer kept: see ImportOptions::most_points
   std::vector<std::string> notes;
@@ -112,14 +112,14 @@ struct RecordedGame {
 enum class MotionSource { automatic, vision, tracked };
 
 struct ImportOptions {
-  std::string format;              ///< name of a log type; empty: found from the content
-  std::optional<RobotName> robot;  ///< keep this track only
+  std::string format{};              ///< name of a log type; empty: found from the content
+  std::optional<RobotName> robot{};  ///< keep this track only
   double from_s = -std::numeric_limits<double>::infinity();
   double until_s = std::numeric_limits<double>::infinity();
   MotionSource source = MotionSource::automatic;  ///< vision where the log has it
   /// Bounds memory (32 bytes each): one robot for more than three hours. 0 keeps none and only fills the report.
   std::size_t most_points = 1'000'000;
-  std::function<void(double)> progress;  ///< called now and then with the share of the file that is read
+  std::function<void(double)> progress{};  ///< called now and then with the share of the file that is read
 };
 
 /// Memory is bounded by `most_points`, not by the file. Damage is passed over and reported.

@@ -70,8 +70,9 @@ Candidate candidate_at(std::string_view bytes, std::size_t at, bool is_all) {
 SslLogStream::SslLogStream(LogBytes& bytes, const std::filesystem::path& file, LogEvents& events) : bytes_(bytes), events_(events) {
   const std::string_view head = bytes_.peek(kHeader);
   if (head.size() < kHeader || !head.starts_with(kSslMagic)) {
-    throw bad_input({file.string()}, "", fmt::format("is no SSL log: its first {} bytes are not \"{}\" and a version{}", kHeader, kSslMagic,
-                                                     bytes_.broken().empty() ? "" : "; " + bytes_.broken()));
+    throw bad_input({file.string()}, "",
+                    fmt::format("is no SSL log: its first {} bytes are not \"{}\" and a version{}", kHeader, kSslMagic,
+                                bytes_.broken().empty() ? "" : "; " + bytes_.broken()));
   }
   const auto version = static_cast<std::int32_t>(big_endian(head, kSslMagic.size(), 4));
   if (version != 1) {
@@ -79,11 +80,6 @@ SslLogStream::SslLogStream(LogBytes& bytes, const std::filesystem::path& file, L
   }
   bytes_.skip(kHeader);
   last_given_ = kHeader;
-}
-
-void SslLogStream::report_truncation() {
-  events_.report().truncated_at = bytes_.offset();
-  bytes_.skip(bytes_.peek(LogBytes::kWindow).size());
 }
 
 /// Goes to the next record after damage; false where there is none.
@@ -114,10 +110,32 @@ bool SslLogStream::find_header() {
     bytes_.skip(at);
     at = 0;
     if (bytes_.offset() - begin > kLongestDamage) {
-      events_.problem(begin, fmt::format("no message in the {} bytes from here on; the rest of the log is not read", bytes_.offset() - begin));
+      events_.problem(begin,
+                      fmt::format("no message in the {} bytes from here on; the rest of the log is not read", bytes_.offset() - begin));
       return false;
     }
   }
+}
+
+/// One number for each message of the log: may be larger than the window, and is of no use here.
+void SslLogStream::pass_over_index(std::uint64_t whole) {
+  const std::uint64_t begin = bytes_.offset();
+  bytes_.skip(whole);
+  ++events_.report().messages;
+  if (bytes_.offset() < begin + whole) {
+    events_.report().truncated_at = begin;
+  }
+}
+
+bool SslLogStream::pass_over_damage() {
+  if (find_header()) {
+    return true;
+  }
+  const std::size_t rest = bytes_.peek(LogBytes::kWindow).size();
+  if (rest < LogBytes::kWindow) {
+    events_.problem(bytes_.offset(), fmt::format("no message begins here, nor in the {} bytes that follow", rest));
+  }
+  return false;
 }
 
 std::optional<SslRecord> SslLogStream::next() {
@@ -125,53 +143,44 @@ std::optional<SslRecord> SslLogStream::next() {
   to_skip_ = 0;
   while (true) {
     const std::string_view head = bytes_.peek(kHeader);
+    const std::uint64_t idle = bytes_.offset() - last_given_;
     if (head.empty()) {
       return std::nullopt;
     }
-    if (bytes_.offset() - last_given_ > kLongestDamage) {
-      events_.problem(last_given_, fmt::format("nothing of use in the {} bytes from here on; the rest of the log is not read", bytes_.offset() - last_given_));
+    if (idle > kLongestDamage) {
+      events_.problem(last_given_, fmt::format("nothing of use in the {} bytes from here on; the rest of the log is not read", idle));
       return std::nullopt;
     }
     if (head.size() < kHeader) {
-      report_truncation();
+      events_.report().truncated_at = bytes_.offset();
       return std::nullopt;
     }
     const Header h = header_at(head, 0);
-    const std::uint64_t whole = kHeader + static_cast<std::uint64_t>(h.size);
     if (!is_plausible(h)) {
-      if (!find_header()) {
-        if (bytes_.peek(LogBytes::kWindow).size() < LogBytes::kWindow) {
-          events_.problem(bytes_.offset(), fmt::format("no message begins here, nor in the {} bytes that follow", bytes_.peek(LogBytes::kWindow).size()));
-        }
+      if (!pass_over_damage()) {
         return std::nullopt;
       }
       continue;
     }
+    const std::uint64_t whole = kHeader + static_cast<std::uint64_t>(h.size);
     if (h.type == static_cast<std::int32_t>(SslMessageType::index_2021)) {
-      const std::uint64_t begin = bytes_.offset();
-      bytes_.skip(whole);
-      if (bytes_.offset() < begin + whole) {
-        events_.report().truncated_at = begin;
-      }
-      ++events_.report().messages;
+      pass_over_index(whole);
       continue;
     }
+    const std::uint64_t here = bytes_.offset();
     const std::string_view view = bytes_.peek(static_cast<std::size_t>(whole) + kHeader);
     if (view.size() < whole) {
       // Either the log ends here, or the size is wrong and more records follow.
-      const std::uint64_t here = bytes_.offset();
-      if (find_header()) {
-        continue;
+      if (!find_header()) {
+        events_.report().truncated_at = here;
+        return std::nullopt;
       }
-      events_.report().truncated_at = here;
-      return std::nullopt;
+      continue;
     }
     next_is_header_ = view.size() < whole + kHeader || is_plausible(header_at(view, static_cast<std::size_t>(whole)));
     to_skip_ = whole;
-    if (h.size > 0) {
-      last_given_ = bytes_.offset();
-    }
-    return SslRecord{bytes_.offset(), h.received_ns, static_cast<SslMessageType>(h.type), view.substr(kHeader, static_cast<std::size_t>(h.size))};
+    last_given_ = h.size > 0 ? here : last_given_;
+    return SslRecord{here, h.received_ns, static_cast<SslMessageType>(h.type), view.substr(kHeader, static_cast<std::size_t>(h.size))};
   }
 }
 

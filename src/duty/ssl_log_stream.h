@@ -41,7 +41,8 @@ class SslLogStream {
 
  private:
   bool find_header();
-  void report_truncation();
+  bool pass_over_damage();
+  void pass_over_index(std::uint64_t whole);
 
   LogBytes& bytes_;
   LogEvents& events_;

@@ -12,8 +12,8 @@ constexpr int kLargestRobotId = 255;
 constexpr double kFarthest_m = 20.0;      // the largest field is 13.4 m with its border
 constexpr double kMergeWindow_s = 0.012;  // cameras take their pictures at different moments; frames come every 10 … 17 ms
 constexpr double kShortestStep_s = 0.001;
-constexpr double kSameRobot_m = 0.15;     // less than a robot's width: two of one number this near are one
-constexpr double kCameraHeight_m = 3.0;   // beyond this distance a camera looks flat at the field and is worth less
+constexpr double kSameRobot_m = 0.15;    // less than a robot's width: two of one number this near are one
+constexpr double kCameraHeight_m = 3.0;  // beyond this distance a camera looks flat at the field and is worth less
 constexpr double kLeastConfidence = 1e-3;
 constexpr double kNoise_m = 0.05;         // of a camera at its worst
 constexpr double kFastest_m_per_s = 8.0;  // the fastest robots of the league run 4 to 5 m/s
@@ -49,9 +49,9 @@ double weight(const Detection& sight) {
 }  // namespace
 
 bool TrackBuilder::is_plausible(const Detection& d) const {
-  return std::isfinite(d.time_s) && std::isfinite(d.x_m) && std::isfinite(d.y_m) && std::isfinite(d.yaw_rad) && std::isfinite(d.confidence) &&
-         std::isfinite(d.camera_distance_m) && std::abs(d.x_m) <= kFarthest_m && std::abs(d.y_m) <= kFarthest_m &&
-         std::abs(d.yaw_rad) < 1e4 && d.robot.id >= 0 && d.robot.id <= kLargestRobotId;
+  return std::isfinite(d.time_s) && std::isfinite(d.x_m) && std::isfinite(d.y_m) && std::isfinite(d.yaw_rad) &&
+         std::isfinite(d.confidence) && std::isfinite(d.camera_distance_m) && std::abs(d.x_m) <= kFarthest_m &&
+         std::abs(d.y_m) <= kFarthest_m && std::abs(d.yaw_rad) < 1e4 && d.robot.id >= 0 && d.robot.id <= kLargestRobotId;
 }
 
 void TrackBuilder::see(const Detection& detection) {

@@ -66,7 +66,7 @@ class Table {
       } else {
         ++rows_;
         if (problems_.empty()) {
-          row_({line_, values_});
+          row_({line_, values_, columns_});
         }
       }
     }
@@ -126,6 +126,7 @@ class Table {
     }
     place_of_.assign(header_.size(), -1);
     words_of_.assign(header_.size(), nullptr);
+    columns_.assign(values_.size(), 0);
     for (std::size_t i = 0; i < header_.size(); ++i) {
       const auto found = std::ranges::find(words_, header_[i], &CsvWords::column);
       words_of_[i] = found != words_.end() ? &*found : nullptr;
@@ -144,6 +145,7 @@ class Table {
         problem(1, name, "stands twice in the header");
       }
       place_of_[static_cast<std::size_t>(found - header_.begin())] = static_cast<int>(i);
+      columns_[i] = static_cast<int>(found - header_.begin()) + 1;
     }
   }
 
@@ -155,6 +157,7 @@ class Table {
   std::vector<std::string> header_;
   std::vector<int> place_of_;
   std::vector<const CsvWords*> words_of_;
+  std::vector<int> columns_;
   std::vector<double> values_;
   std::vector<Diagnostic> problems_;
   std::size_t left_out_ = 0;

@@ -13,6 +13,7 @@ namespace heatsoak {
 struct CsvRow {
   int line = 0;
   std::span<const double> values;
+  std::span<const int> columns;  ///< of the values in the file, from 1; 0 where the file has none
 };
 
 /// A column whose cells are words: the value of a row is the word's place in the list.

@@ -1,3 +1,5 @@
+#include "input/csv.h"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -6,7 +8,6 @@
 
 #include "base/diagnostic.h"
 #include "duty/log_type.h"
-#include "input/csv.h"
 
 namespace heatsoak::logs {
 namespace {
@@ -36,14 +37,16 @@ void read(const std::filesystem::path& file, const ImportOptions& /*options*/, L
     ++report.frames;
     const double id = row.values[robot_id];
     if (!(id >= 0.0 && id <= kLargestRobotId) || id != static_cast<double>(static_cast<int>(id))) {
-      problems.add({file.string(), row.line, 1}, "robot_id", fmt::format("{} is no robot; expected a whole number from 0 to {}", id, kLargestRobotId));
+      problems.add({file.string(), row.line, row.columns[robot_id]}, "robot_id",
+                   fmt::format("{} is no robot; expected a whole number from 0 to {}", id, kLargestRobotId));
       problems.throw_if_any();
     }
     const RobotName name{row.values[team] == 0.0 ? Team::yellow : Team::blue, static_cast<int>(id)};
     const auto [before, is_new] = latest_s.try_emplace(name, -std::numeric_limits<double>::infinity());
     if (row.values[time] <= before->second) {
       events.problem(static_cast<std::uint64_t>(row.line),
-                     fmt::format("{} at {} s, after {} s; time must increase for each robot; left out", to_string(name), row.values[time], before->second));
+                     fmt::format("{} at {} s, after {} s; time must increase for each robot; left out", to_string(name), row.values[time],
+                                 before->second));
       ++report.out_of_order;
       return;
     }

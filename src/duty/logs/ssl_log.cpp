@@ -31,9 +31,10 @@ GamePhase phase_of_stage(std::uint32_t stage) {
 /// By number, as published: HALT, STOP, NORMAL_START, FORCE_START, PREPARE_KICKOFF and _PENALTY (each yellow, blue),
 /// DIRECT_FREE, INDIRECT_FREE, TIMEOUT, GOAL (to be treated as STOP), BALL_PLACEMENT.
 constexpr std::array<GamePhase, 18> kPhaseOfCommand{
-    GamePhase::halt,        GamePhase::stop,        GamePhase::running,     GamePhase::running,        GamePhase::preparation,   GamePhase::preparation,
-    GamePhase::preparation, GamePhase::preparation, GamePhase::running,     GamePhase::running,        GamePhase::running,       GamePhase::running,
-    GamePhase::timeout,     GamePhase::timeout,     GamePhase::stop,        GamePhase::stop,           GamePhase::ball_placement, GamePhase::ball_placement};
+    GamePhase::halt,        GamePhase::stop,           GamePhase::running,       GamePhase::running, GamePhase::preparation,
+    GamePhase::preparation, GamePhase::preparation,    GamePhase::preparation,   GamePhase::running, GamePhase::running,
+    GamePhase::running,     GamePhase::running,        GamePhase::timeout,       GamePhase::timeout, GamePhase::stop,
+    GamePhase::stop,        GamePhase::ball_placement, GamePhase::ball_placement};
 constexpr std::uint32_t kLastStage = 13;
 
 /// Which source of positions is used.
@@ -108,7 +109,8 @@ Sources probe(const std::filesystem::path& file) {
 }
 
 Source choose(const Sources& sources, MotionSource wanted) {
-  const bool tracked = wanted == MotionSource::tracked || (wanted == MotionSource::automatic && sources.vision_frames == 0 && !sources.trackers.empty());
+  const bool tracked =
+      wanted == MotionSource::tracked || (wanted == MotionSource::automatic && sources.vision_frames == 0 && !sources.trackers.empty());
   Source best{.tracked = tracked, .uuid = {}, .name = {}};
   std::uint64_t most = 0;
   for (const auto& [uuid, tracker] : sources.trackers) {
@@ -255,7 +257,8 @@ class Import {
       return;
     }
     if (!referee_.has_command() || !referee_.has_stage() || referee_.command() >= kPhaseOfCommand.size() || referee_.stage() > kLastStage) {
-      events_.problem(record.offset, fmt::format("referee's message with stage {} and command {}; left out", referee_.stage(), referee_.command()));
+      events_.problem(record.offset,
+                      fmt::format("referee's message with stage {} and command {}; left out", referee_.stage(), referee_.command()));
       return;
     }
     const GamePhase of_stage = phase_of_stage(referee_.stage());
@@ -291,7 +294,8 @@ LogType ssl_log() {
   return {.name = {},
           .summary = "SSL_LOG_FILE of the Small Size League, .log or .log.gz, with vision or tracker",
           .recognises = [](std::string_view head) { return head.starts_with(kSslMagic); },
-          .read = [](const std::filesystem::path& file, const ImportOptions& options, LogEvents& events) { Import(file, options, events).run(); }};
+          .read = [](const std::filesystem::path& file, const ImportOptions& options,
+                     LogEvents& events) { Import(file, options, events).run(); }};
 }
 
 }  // namespace heatsoak::logs
