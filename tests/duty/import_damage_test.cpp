@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/diagnostic.h"
@@ -64,20 +65,18 @@ void expect_sane(const RecordedGame& game) {
 }
 
 TEST(ImportDamage, KeepsWhatCameBeforeTheEndOfATruncatedLog) {
-  const LogWriter log = small_log(30);
-  const TemporaryFile file("cut.log");
-  std::size_t record = 0;
-  for (std::size_t size = 0; size < log.bytes().size(); ++size) {
-    file.write(log.bytes().substr(0, size));
+  const LogWriter log = small_log();
+  const TemporaryFile file("cut.log", log.bytes());
+  for (std::size_t size = log.bytes().size(); size-- > 0;) {
+    std::filesystem::resize_file(file.path(), size);
     if (size < 16) {
       EXPECT_THROW((void)import_game(file.path()), Failure) << size;
       continue;
     }
     const RecordedGame game = import_game(file.path());
     expect_sane(game);
-    while (record + 1 < log.starts().size() && log.starts()[record + 1] <= size) {
-      ++record;
-    }
+    const auto after = std::ranges::upper_bound(log.starts(), size);
+    const auto record = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - log.starts().begin() - 1));
     const bool is_whole = size == 16 || size == log.starts()[record];
     ASSERT_EQ(game.report.truncated_at.has_value(), !is_whole) << size;
     if (!is_whole) {

@@ -158,7 +158,15 @@ class TemporaryFile {
     std::filesystem::remove(path_, error);
     std::filesystem::remove(folder_, error);
   }
-  void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
+  /// In place: file systems take a file that is truncated to nothing and written again for one to be made safe on disk at once.
+  void write(const std::string& bytes) const {
+    if (!std::filesystem::exists(path_)) {
+      std::ofstream(path_, std::ios::binary) << bytes;
+    } else {
+      std::fstream(path_, std::ios::binary | std::ios::in | std::ios::out) << bytes;
+      std::filesystem::resize_file(path_, bytes.size());
+    }
+  }
   void append(const std::string& bytes) const { std::ofstream(path_, std::ios::binary | std::ios::app) << bytes; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
