@@ -84,9 +84,9 @@ std::vector<Smoothed> smooth_samples(std::span<const Sample> samples, double ste
   return smoothed;
 }
 
-double acceleration_noise(double noise, double step_s, double bandwidth_Hz) {
+double acceleration_noise(double value, double step_s, double bandwidth_Hz) {
   // ∫ω⁴/(1+(ω/ω0)⁶)² dω/2π over all ω is ω0⁵/18.
-  return noise * std::sqrt(step_s * std::pow(corner_rad_per_s(bandwidth_Hz), 5.0) / 18.0);
+  return value * std::sqrt(step_s * std::pow(corner_rad_per_s(bandwidth_Hz), 5.0) / 18.0);
 }
 
 }  // namespace heatsoak

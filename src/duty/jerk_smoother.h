@@ -24,7 +24,7 @@ struct Sample {
 /// bandwidth. Only the ratio of jerk to noise counts, so the answer does not depend on how large the noise is.
 std::vector<Smoothed> smooth_samples(std::span<const Sample> samples, double step_s);
 
-/// rms of the acceleration that white noise of `noise` (rms of one sample) leaves behind.
-double acceleration_noise(double noise, double step_s, double bandwidth_Hz);
+/// rms of the acceleration that white noise of the rms `value` in each sample leaves behind.
+double acceleration_noise(double value, double step_s, double bandwidth_Hz);
 
 }  // namespace heatsoak

@@ -19,6 +19,10 @@ constexpr double kNormal = 1.4826;  // standard deviation of a normal distributi
 // Below this a point is never suspect: without noise, the smoother's own error at a hard start would be.
 constexpr double kNoSuspicion_m = 2e-3;
 constexpr double kNoSuspicion_rad = 1e-2;
+// A wider band would invent more heat by noise, a narrower one would lose more at the edges of the acceleration. Turns are
+// shorter than runs and lose more.
+constexpr double kNoiseShareOfPlace = 0.02;
+constexpr double kNoiseShareOfTurn = 0.045;
 constexpr double kFirstBandwidth_Hz = 4.0;
 constexpr double kLeastBandwidth_Hz = 2.0;
 constexpr double kMostBandwidth_Hz = 8.0;

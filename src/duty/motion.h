@@ -30,11 +30,6 @@ struct SmoothingOptions {
   /// noise allows, so that it makes up a set share of the squared acceleration.
   std::optional<double> bandwidth_Hz;
 };
-/// A wider band would invent more heat by noise, a narrower one would lose more at the edges of the acceleration. Turns
-/// are shorter than runs and lose more.
-inline constexpr double kNoiseShareOfPlace = 0.02;
-inline constexpr double kNoiseShareOfTurn = 0.045;
-
 /// How the place or the turn of a track was smoothed. Its unit is m, or rad.
 struct ChannelReport {
   double bandwidth_Hz = 0.0;        ///< as used: never more than a sixth of the frame rate

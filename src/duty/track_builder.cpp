@@ -157,7 +157,7 @@ TrackPoint TrackBuilder::merge(Robot& robot) {
   double weights = 0.0;
   for (const Detection& sight : robot.frame) {
     const CameraOffset& known = offset_of(robot, sight, reference);
-    const double w = weight(sight) * (kLeastTrust + known.trust);
+    const double w = weight(sight) * (kLeastTrust + known.trust_share);
     weights += w;
     sum.time_s += w * (sight.time_s - first.time_s);
     sum.x_m += w * (sight.x_m - known.offset.x_m - first.x_m);
@@ -173,7 +173,7 @@ TrackPoint TrackBuilder::merge(Robot& robot) {
       known.offset.x_m += kOffsetMemory * (sight.x_m + robot.rate.x_m * later_s - known.offset.x_m - point.x_m);
       known.offset.y_m += kOffsetMemory * (sight.y_m + robot.rate.y_m * later_s - known.offset.y_m - point.y_m);
       known.offset.yaw_rad += kOffsetMemory * wrapped(sight.yaw_rad + robot.rate.yaw_rad * later_s - known.offset.yaw_rad - point.yaw_rad);
-      known.trust += kOffsetMemory * (1.0 - known.trust);
+      known.trust_share += kOffsetMemory * (1.0 - known.trust_share);
     }
   }
   return point;

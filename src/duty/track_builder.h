@@ -37,7 +37,7 @@ class TrackBuilder final : public LogEvents {
   struct CameraOffset {
     int camera = 0;
     Pose offset;
-    double trust = 0.0;  ///< 0 … 1, grows with the frames shared with another camera
+    double trust_share = 0.0;  ///< 0 … 1, grows with the frames shared with another camera
     double seen_s = 0.0;
   };
   /// Averages over 0.1 s; the last three give an acceleration.

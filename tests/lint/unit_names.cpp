@@ -16,7 +16,7 @@ const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "real
 /// A pure number; the last word of the name says which.
 const std::set<std::string, std::less<>> kPureNumbers{
     "count",   "efficiency",           "factor",     "headroom", "load", "probability", "probability_over_limit", "ratio", "share",
-    "uniform", "kMarginalProbability", "pole_pairs", "relative"};
+    "uniform", "kMarginalProbability", "pole_pairs", "relative", "confidence", "weight"};
 
 /// The unit is not known where the name is written, but stands beside it.
 const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit
@@ -29,6 +29,8 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      "parameters", "effect_parameters",
                                                      // stages of a method, in the state's unit
                                                      "rate", "sum",
+                                                     // of a smoothed coordinate: its samples have the unit
+                                                     "acceleration",
                                                      // of a square: in the root of its argument's unit
                                                      "root",
                                                      // VTK's own signature
@@ -115,7 +117,7 @@ std::vector<NamedNumber> floating_point_names(std::string_view header) {
 }
 
 bool ends_in_unit(std::string_view name) {
-  static const std::string kUnit = "(A|V|W|Nm|N|ohm|H|F|Wb|s2|s|ms|us|min|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px)";
+  static const std::string kUnit = "(A|V|W|Nm|N|ohm|H|F|Wb|s2|s3|s|ms|us|min|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px)";
   static const std::regex kEnd("[A-Za-z0-9]_(" + kUnit + "|per_" + kUnit + ")(_per_" + kUnit + ")*_?$");
   return std::regex_search(name.begin(), name.end(), kEnd);
 }

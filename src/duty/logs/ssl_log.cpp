@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <ssl_messages.pb.h>
 
 #include <array>
 #include <cmath>
@@ -9,7 +10,6 @@
 #include "duty/capture_clock.h"
 #include "duty/log_type.h"
 #include "duty/ssl_log_stream.h"
-#include "ssl_messages.pb.h"
 
 namespace heatsoak::logs {
 namespace {
