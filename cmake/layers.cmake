@@ -74,6 +74,22 @@ inline constexpr std::array<Entry, @count@> registry{{
 ")
 endfunction()
 
+# add_messages(name file.proto): protobuf messages as a library of their own, free of the warnings of hand-written code.
+# A layer that HIDES it includes "<file>.pb.h".
+function(add_messages name file)
+  get_filename_component(folder "${PROJECT_SOURCE_DIR}/${file}" DIRECTORY)
+  get_filename_component(stem "${file}" NAME_WE)
+  set(out "${PROJECT_BINARY_DIR}/generated/messages")
+  file(MAKE_DIRECTORY "${out}")
+  add_custom_command(
+    OUTPUT "${out}/${stem}.pb.cc" "${out}/${stem}.pb.h"
+    COMMAND protobuf::protoc "--cpp_out=${out}" "--proto_path=${folder}" "${folder}/${stem}.proto"
+    DEPENDS "${PROJECT_SOURCE_DIR}/${file}" protobuf::protoc VERBATIM)
+  add_library(${name} STATIC "${out}/${stem}.pb.cc" "${out}/${stem}.pb.h")
+  target_include_directories(${name} SYSTEM PUBLIC "${out}")
+  target_link_libraries(${name} PUBLIC protobuf::libprotobuf-lite)
+endfunction()
+
 function(add_program name)
   add_executable(${name} "${PROJECT_SOURCE_DIR}/src/${ARGV1}/main.cpp")
   target_link_libraries(${name} PRIVATE heatsoak_settings heatsoak_${ARGV1})

@@ -32,8 +32,9 @@ std::string_view first_line(std::string_view cell) { return cell.substr(0, std::
 
 class Table {
  public:
-  Table(std::string file, std::span<const std::string> required, std::span<const std::string> optional, const std::function<void(const CsvRow&)>& row)
-      : file_(std::move(file)), required_(required), optional_(optional), row_(row), values_(required.size() + optional.size(), kNothing) {}
+  Table(std::string file, std::span<const std::string> required, std::span<const std::string> optional, std::span<const CsvWords> words,
+        const std::function<void(const CsvRow&)>& row)
+      : file_(std::move(file)), required_(required), optional_(optional), words_(words), row_(row), values_(required.size() + optional.size(), kNothing) {}
 
   void cell(std::string_view text) {
     line_breaks_in_row_ += static_cast<int>(std::ranges::count(text, '\n'));
@@ -42,6 +43,8 @@ class Table {
         stop(fmt::format("has more than {} columns, which no log has", kMostColumns));
       }
       header_.emplace_back(text);
+    } else if (column_ < place_of_.size() && place_of_[column_] >= 0 && words_of_[column_] != nullptr) {
+      word(text, words_of_[column_]->words);
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0) {
       const std::optional<double> value = parse_number(text);
       if (!value || !std::isfinite(*value)) {
@@ -63,7 +66,7 @@ class Table {
       } else {
         ++rows_;
         if (problems_.empty()) {
-          row_({line_, values_});
+          row_({line_, values_, columns_});
         }
       }
     }
@@ -105,12 +108,29 @@ class Table {
  private:
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
+  void word(std::string_view text, const std::vector<std::string>& words) {
+    const auto found = std::ranges::find(words, text);
+    if (found == words.end()) {
+      const std::string_view shown = first_line(text);
+      problem(static_cast<int>(column_) + 1, header_[column_],
+              fmt::format("\"{}\" is not {}{}", shown, fmt::join(words, " or "), did_you_mean(shown, words)));
+    } else {
+      values_[static_cast<std::size_t>(place_of_[column_])] = static_cast<double>(found - words.begin());
+    }
+  }
+
   void read_header() {
     has_header_ = true;
     if (header_.size() == 1 && header_[0].find_first_of(";\t") != std::string::npos) {
       stop("the header has no comma; expected columns separated by commas, and points in numbers");
     }
     place_of_.assign(header_.size(), -1);
+    words_of_.assign(header_.size(), nullptr);
+    columns_.assign(values_.size(), 0);
+    for (std::size_t i = 0; i < header_.size(); ++i) {
+      const auto found = std::ranges::find(words_, header_[i], &CsvWords::column);
+      words_of_[i] = found != words_.end() ? &*found : nullptr;
+    }
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const bool is_required = i < required_.size();
       const std::string& name = is_required ? required_[i] : optional_[i - required_.size()];
@@ -125,15 +145,19 @@ class Table {
         problem(1, name, "stands twice in the header");
       }
       place_of_[static_cast<std::size_t>(found - header_.begin())] = static_cast<int>(i);
+      columns_[i] = static_cast<int>(found - header_.begin()) + 1;
     }
   }
 
   std::string file_;
   std::span<const std::string> required_;
   std::span<const std::string> optional_;
+  std::span<const CsvWords> words_;
   const std::function<void(const CsvRow&)>& row_;
   std::vector<std::string> header_;
   std::vector<int> place_of_;
+  std::vector<const CsvWords*> words_of_;
+  std::vector<int> columns_;
   std::vector<double> values_;
   std::vector<Diagnostic> problems_;
   std::size_t left_out_ = 0;
@@ -182,8 +206,13 @@ void guarded(void* data, Work work) {
 
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               const std::function<void(const CsvRow&)>& row) {
+  read_csv(path, required, optional, {}, row);
+}
+
+void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
+              std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file = opened(path);
-  Table table(path.string(), required, optional, row);
+  Table table(path.string(), required, optional, words, row);
   csv_parser parser;
   csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT | CSV_STRICT_FINI);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);

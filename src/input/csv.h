@@ -13,6 +13,13 @@ namespace heatsoak {
 struct CsvRow {
   int line = 0;
   std::span<const double> values;
+  std::span<const int> columns;  ///< of the values in the file, from 1; 0 where the file has none
+};
+
+/// A column whose cells are words: the value of a row is the word's place in the list.
+struct CsvWords {
+  std::string column;
+  std::vector<std::string> words;
 };
 
 /// Reads a file with one header row and gives every row to `row`. `required` names must be in the header;
@@ -21,5 +28,7 @@ struct CsvRow {
 /// another number of cells, no rows. At most 20 problems are listed, then how many more there are.
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               const std::function<void(const CsvRow&)>& row);
+void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
+              std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row);
 
 }  // namespace heatsoak

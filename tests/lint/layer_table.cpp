@@ -20,6 +20,8 @@ const HiddenLibrary kHidden[] = {
     {"csv\\.h", "src/input/"},
     {"udunits", "src/base/"},
     {"CLI/", "src/cli/"},
+    {"zlib\\.h", "src/duty/"},
+    {"(google/protobuf/|[a-z_]+\\.pb\\.h)", "src/duty/logs/"},
 };
 
 std::vector<std::string> words(const std::string& text) {

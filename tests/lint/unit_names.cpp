@@ -16,7 +16,7 @@ const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "real
 /// A pure number; the last word of the name says which.
 const std::set<std::string, std::less<>> kPureNumbers{
     "count",   "efficiency",           "factor",     "headroom", "load", "probability", "probability_over_limit", "ratio", "share",
-    "uniform", "kMarginalProbability", "kTolerableShortage", "kTolerableShortTime", "pole_pairs", "relative"};
+    "uniform", "kMarginalProbability", "kTolerableShortage", "kTolerableShortTime", "pole_pairs", "relative", "confidence", "weight"};
 
 /// The unit is not known where the name is written, but stands beside it.
 const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit
@@ -29,6 +29,8 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      "parameters", "effect_parameters", "integrals",
                                                      // stages of a method, in the state's unit
                                                      "rate", "sum",
+                                                     // of a smoothed coordinate: its samples have the unit
+                                                     "acceleration",
                                                      // of a square: in the root of its argument's unit
                                                      "root",
                                                      // VTK's own signature

@@ -1,0 +1,86 @@
+// From single sights of robots to tracks: joins cameras, leaves out what cannot be, bridges or cuts gaps.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "duty/log_type.h"
+
+namespace heatsoak {
+
+class TrackBuilder final : public LogEvents {
+ public:
+  explicit TrackBuilder(const ImportOptions& options) : options_(options) {}
+
+  void see(const Detection& detection) override;
+  void phase(GamePhase phase) override;
+  void cut() override;
+  void problem(std::uint64_t at, std::string what) override;
+  [[nodiscard]] bool done() const override { return latest_s_ > options_.until_s; }
+  ImportReport& report() override { return game_.report; }
+
+  /// Ends all tracks and gives them away.
+  RecordedGame finish();
+
+ private:
+  /// A vector in the plane and a turn, side by side.
+  struct Pose {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double yaw_rad = 0.0;
+  };
+  /// Cameras disagree by centimetres; each robot learns by how much where it stands.
+  struct CameraOffset {
+    int camera = 0;
+    Pose offset;
+    double trust_share = 0.0;  ///< 0 … 1, grows with the frames shared with another camera
+    double seen_s = 0.0;
+  };
+  /// Averages over 0.1 s; the last three give an acceleration.
+  struct Bin {
+    std::int64_t index = -1;
+    double count = 0.0;
+    TrackPoint sum;
+  };
+  struct Robot {
+    RobotTrack track;
+    RobotSummary summary;
+    std::vector<Detection> frame;  ///< sights that may become one point
+    std::vector<CameraOffset> offsets;
+    TrackSegment segment;
+    std::optional<TrackPoint> last;
+    Pose rate;                ///< per second, smoothed: where the next point is expected
+    double usual_step_s = 0;  ///< 0 until known
+    TrackSegment elsewhere;   ///< out of reach, but perhaps the robot was moved there
+    std::array<Bin, 3> bins;
+    std::uint64_t segment_points = 0;
+    double segment_begin_s = 0.0;
+  };
+
+  [[nodiscard]] bool is_plausible(const Detection& detection) const;
+  [[nodiscard]] bool keeps(const Robot& robot) const;
+  [[nodiscard]] static Pose expected(const Robot& robot, double time_s);
+  void close_frame(Robot& robot);
+  void choose_sights(Robot& robot);
+  static void forget_offsets(Robot& robot, double now_s);
+  static TrackPoint merge(Robot& robot);
+  static CameraOffset& offset_of(Robot& robot, const Detection& sight, const TrackPoint& reference);
+  void place(Robot& robot, TrackPoint point);
+  void go_on_elsewhere(Robot& robot, const TrackPoint& point);
+  void append(Robot& robot, const TrackPoint& point);
+  static void summarise(Robot& robot, const TrackPoint& point);
+  void end_segment(Robot& robot);
+
+  const ImportOptions& options_;
+  std::map<RobotName, Robot> robots_;
+  RecordedGame game_;
+  double first_s_ = std::numeric_limits<double>::quiet_NaN();
+  double latest_s_ = -std::numeric_limits<double>::infinity();
+  std::size_t stored_ = 0;
+};
+
+}  // namespace heatsoak
