@@ -28,6 +28,13 @@ RoleShape shape_of(Role role) {
   return {};
 }
 
+MotionCommand stand(double duration_s) {
+  MotionCommand command;
+  command.duration_s = duration_s;
+  command.stand = true;
+  return command;
+}
+
 /// Spread of the distances to a new target: a factor of two either way for two thirds of them.
 constexpr double kLogSpread = 0.7;
 
@@ -53,13 +60,10 @@ FieldPose Behaviour::near(const FieldPose& now, double distance_m) {
           now.yaw_rad + std::numbers::pi * (random_.uniform() - 0.5)};
 }
 
-MotionCommand Behaviour::stand(double left_s, const FieldPose& now) const {
-  return {.duration_s = left_s, .x_m = now.x_m, .y_m = now.y_m, .yaw_rad = now.yaw_rad};
-}
-
 MotionCommand Behaviour::walk(double left_s, const FieldPose& now, double distance_m, double speed_limit_m_per_s) {
   const FieldPose target = near(now, distance_m);
   return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s) + distance_m),
+          .stand = false,
           .x_m = target.x_m,
           .y_m = target.y_m,
           .yaw_rad = target.yaw_rad,
@@ -70,7 +74,7 @@ MotionCommand Behaviour::play(double left_s, const FieldPose& now) {
   const RoleShape shape = shape_of(role_);
   const double duels_per_command = values_.duels_per_min / 60.0 * shape.duel_factor * values_.retarget_mean_s;
   if (random_.uniform() < duels_per_command) {
-    MotionCommand duel = stand(std::min(left_s, exponential(values_.duel_mean_s)), now);
+    MotionCommand duel = stand(std::min(left_s, exponential(values_.duel_mean_s)));
     duel.duel = true;
     duel.push_direction_rad = now.yaw_rad + 0.5 * std::numbers::pi * (random_.uniform() - 0.5);
     duel.push_share = values_.duel_push_share;
@@ -82,7 +86,7 @@ MotionCommand Behaviour::play(double left_s, const FieldPose& now) {
     normal += random_.uniform();
   }
   const FieldPose target = near(now, values_.distance_median_m * shape.distance_factor * std::exp(kLogSpread * normal));
-  return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s)), .x_m = target.x_m, .y_m = target.y_m, .yaw_rad = target.yaw_rad};
+  return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s)), .stand = false, .x_m = target.x_m, .y_m = target.y_m, .yaw_rad = target.yaw_rad};
 }
 
 MotionCommand Behaviour::next(Phase phase, double into_phase_s, double left_s, const FieldPose& now) {
@@ -100,12 +104,12 @@ MotionCommand Behaviour::next(Phase phase, double into_phase_s, double left_s, c
       // The attacker carries the ball, slowly; the others keep half a metre off its way.
       return role_ == Role::attacker ? walk(left_s, now, 2.0, 1.0) : walk(left_s, now, 0.5, 1.5);
     case Phase::half_time:
-      return into_phase_s == 0.0 ? walk(left_s, now, 0.5 * field_.length_m, 1.0) : stand(left_s, now);
+      return into_phase_s == 0.0 ? walk(left_s, now, 0.5 * field_.length_m, 1.0) : stand(left_s);
     case Phase::halt:
     case Phase::timeout:
-      return stand(left_s, now);
+      return stand(left_s);
   }
-  return stand(left_s, now);
+  return stand(left_s);
 }
 
 }  // namespace heatsoak

@@ -5,9 +5,10 @@
 
 namespace heatsoak {
 
-/// Hold for `duration_s`: go to the target, or push against another robot without moving.
+/// Hold for `duration_s`: go to the target, come to a stand where braking ends, or push against another robot there.
 struct MotionCommand {
   double duration_s = 0.0;
+  bool stand = false;     ///< brake and stay: the target plays no part
   double x_m = 0.0;  ///< field frame: centre of the field, x towards the opponents' goal
   double y_m = 0.0;
   double yaw_rad = 0.0;
@@ -33,7 +34,6 @@ class Behaviour {
  private:
   MotionCommand play(double left_s, const FieldPose& now);
   MotionCommand walk(double left_s, const FieldPose& now, double distance_m, double speed_limit_m_per_s);
-  MotionCommand stand(double left_s, const FieldPose& now) const;
   FieldPose near(const FieldPose& now, double distance_m);
   double exponential(double mean);
 

@@ -36,7 +36,7 @@ class Game {
     }
   }
   void rest(double length_s) { add(Phase::half_time, length_s); }
-  std::vector<PhaseSpan> spans() { return std::move(spans_); }
+  std::vector<MatchPhase> spans() { return std::move(spans_); }
 
  private:
   void add(Phase phase, double duration_s) { spans_.push_back({phase, duration_s}); }
@@ -65,7 +65,7 @@ class Game {
   const MatchValues& values_;
   Random& random_;
   double timeout_left_s_ = 2.0 * kTimeoutBudget_s;
-  std::vector<PhaseSpan> spans_;
+  std::vector<MatchPhase> spans_;
 };
 
 }  // namespace
@@ -91,7 +91,7 @@ PhaseRule rule_of(Phase phase) {
 
 FieldSize field_of(Division division) { return division == Division::a ? FieldSize{12.0, 9.0} : FieldSize{9.0, 6.0}; }
 
-std::vector<PhaseSpan> generate_game(Division division, bool overtime, const MatchValues& values, Random& random) {
+std::vector<MatchPhase> generate_game(Division division, bool overtime, const MatchValues& values, Random& random) {
   Game game(division, values, random);
   game.half(kHalf_s);
   game.rest(kHalfTime_s);

@@ -12,7 +12,6 @@ namespace heatsoak {
 namespace {
 
 constexpr double kStep_s = 1e-3;
-constexpr double kBin_s = 0.25;
 /// 2 % of the nominal torque of a 50 W motor, 0.1 m/s at the rim: finer than any verdict.
 constexpr DemandGatherer::Grid kGrid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0};
 
@@ -25,7 +24,7 @@ using robot_core::Trajectory;
 double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a; }
 
 /// The planner's trajectory, followed exactly.
-class IdealTracking final : public MotionSource {
+class IdealTracking final : public Follower {
  public:
   IdealTracking(const Robot& robot, double aggressiveness, Planner planner) : planner_(planner) {
     plane_ = {robot.speed_limit_m_per_s * aggressiveness, std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2) * aggressiveness,
@@ -44,7 +43,7 @@ class IdealTracking final : public MotionSource {
     const AxisState<double> target[3] = {{command.x_m, 0.0, 0.0}, {command.y_m, 0.0, 0.0}, {command.yaw_rad, 0.0, 0.0}};
     PlaneLimits<double> plane = plane_;
     plane.speed_max = least(plane.speed_max, std::max(0.05, command.speed_limit_m_per_s));
-    const PlanResult result = planner_ == Planner::jerk_limited ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_) : bang_bang(target, plane);
+    const PlanResult result = command.stand ? brake() : planner_ == Planner::jerk_limited ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_) : bang_bang(target, plane);
     if (result != PlanResult::ok) {
       throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: planner code {}", command.x_m, command.y_m, static_cast<int>(result)));
     }
@@ -66,6 +65,17 @@ class IdealTracking final : public MotionSource {
   }
 
  private:
+  /// The shortest way to a stand. Each axis gets what both could use at once.
+  PlanResult brake() {
+    constexpr double kShare = 0.70710678;  // 1/√2
+    const auto plane = AxisLimits<double>::symmetric(plane_.speed_max, plane_.acceleration_max * kShare, plane_.jerk_max * kShare);
+    PlanResult result = PlanResult::ok;
+    for (int axis = 0; axis < 3; ++axis) {
+      result = std::max(result, robot_core::plan_velocity(state_[axis], {}, axis < 2 ? plane : yaw_, trajectories_[axis]));
+    }
+    return result;
+  }
+
   /// For comparison: each axis on its own, with the share of the limits that its part of the way has.
   PlanResult bang_bang(const AxisState<double> (&target)[3], const PlaneLimits<double>& plane) {
     const double dx = target[0].position - state_[0].position;
@@ -90,7 +100,7 @@ class IdealTracking final : public MotionSource {
 
 class Match {
  public:
-  Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, const MatchObserver& observer)
+  Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, double bin_s, const MatchObserver& observer)
       : random_(seed, 0),
         game_(generate_game(inputs.division, inputs.overtime, values, random_)),
         behaviour_(inputs, values, random_),
@@ -99,18 +109,18 @@ class Match {
         observer_(observer),
         push_N_(body_.traction.traction_ratio * robot.mass_kg * 9.81) {
     for (int wheel = 0; wheel < body_.kinematics.wheel_count; ++wheel) {
-      gatherers_.emplace_back(fmt::format("wheel {}", wheel + 1), kBin_s, kGrid);
+      gatherers_.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s, kGrid);
     }
   }
 
   MatchLoad play() {
-    for (const PhaseSpan& span : game_) {
+    for (const MatchPhase& span : game_) {
       load_.play_s += rule_of(span.phase).clock_runs ? span.duration_s : 0.0;
       double into_s = 0.0;
       while (span.duration_s - into_s > 0.5 * kStep_s) {
         const Pose now = motion_->pose();
         const MotionCommand command = behaviour_.next(span.phase, into_s, span.duration_s - into_s, {now.x_m, now.y_m, now.yaw_rad});
-        into_s += follow(span.phase, command);
+        into_s += follow(span.phase, command, span.duration_s - into_s);
       }
     }
     for (DemandGatherer& each : gatherers_) {
@@ -126,11 +136,19 @@ class Match {
     return motor;
   }
 
-  /// In steps, or at one go where nothing moves any more. Returns how long it took.
-  double follow(Phase phase, const MotionCommand& command) {
+  /// In steps, or at one go where nothing moves any more. A duel lasts from when the robot has come to a stand, but
+  /// no longer than the `left_s` of the phase. Returns how long it took.
+  double follow(Phase phase, const MotionCommand& command, double left_s) {
     motion_->take(command);
     double done_s = 0.0;
-    const double length_s = std::max(command.duration_s, kStep_s);
+    double length_s = std::max(command.duration_s, kStep_s);
+    if (command.duel) {
+      for (length_s = std::max(left_s, kStep_s); !motion_->at_rest() && length_s - done_s > 0.5 * kStep_s; done_s += kStep_s) {
+        motion_->advance(kStep_s);
+        moment(phase, command, kStep_s, false);
+      }
+      length_s = std::min(length_s, done_s + command.duration_s);
+    }
     while (length_s - done_s > 0.5 * kStep_s) {
       const bool still = motion_->at_rest();
       const double step_s = still ? length_s - done_s : kStep_s;
@@ -169,10 +187,10 @@ class Match {
   }
 
   Random random_;
-  std::vector<PhaseSpan> game_;
+  std::vector<MatchPhase> game_;
   Behaviour behaviour_;
   BodyConfig body_;
-  std::unique_ptr<MotionSource> motion_;
+  std::unique_ptr<Follower> motion_;
   const MatchObserver& observer_;
   double push_N_;
   std::vector<DemandGatherer> gatherers_;
@@ -181,13 +199,13 @@ class Match {
 
 }  // namespace
 
-std::unique_ptr<MotionSource> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner) {
+std::unique_ptr<Follower> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner) {
   return std::make_unique<IdealTracking>(robot, aggressiveness, planner);
 }
 
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
-                     const MatchObserver& observer) {
-  return Match(inputs, values, robot, seed, planner, observer).play();
+                     double bin_s, const MatchObserver& observer) {
+  return Match(inputs, values, robot, seed, planner, bin_s, observer).play();
 }
 
 }  // namespace heatsoak

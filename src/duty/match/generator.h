@@ -15,9 +15,9 @@ namespace heatsoak {
 
 /// How the robot gets from target to target. The seam where the drive core takes its place: anything that turns a
 /// motion command into body motion over time fits here.
-class MotionSource {
+class Follower {
  public:
-  virtual ~MotionSource() = default;
+  virtual ~Follower() = default;
   /// From now on go for the command's target (or stand and push).
   virtual void take(const MotionCommand& command) = 0;
   /// Advance by `step_s`.
@@ -32,7 +32,7 @@ class MotionSource {
 enum class Planner { jerk_limited, bang_bang };
 
 /// Follows the planner exactly: re-planned at every command from the state of the moment.
-std::unique_ptr<MotionSource> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner);
+std::unique_ptr<Follower> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner);
 
 /// One step of the game at one robot. Torques and speeds as in WheelDemands.
 struct MatchMoment {
@@ -64,9 +64,9 @@ struct MatchLoad {
 
 using MatchObserver = std::function<void(const MatchMoment&)>;
 
-/// Runs one game at 1 kHz. The rotor's inertia is left out, so that the demand is the same for every motor.
+/// Runs one game at 1 kHz into bins of `bin_s`, short against a winding's time constant. The rotor's inertia is left out, so that the demand is the same for every motor.
 /// Throws Failure (bad_input) where the robot's file lacks what motion needs.
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
-                     const MatchObserver& observer = {});
+                     double bin_s = 0.25, const MatchObserver& observer = {});
 
 }  // namespace heatsoak

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 
 #include "duty/duty.h"
 #include "input/csv.h"
@@ -11,64 +12,114 @@ namespace {
 
 constexpr std::size_t kMostRows = 2'000'000;  ///< a day at 20 rows a second; more would fill the memory
 
-struct Row {
-  double duration_s = 0.0;
-  double demand = 0.0;  ///< N m or A
-  double speed_rad_per_s = 0.0;
-};
+constexpr int kMostWheels = 4;
 
-/// A row holds until the next one; the last row only ends the duty.
-std::vector<Row> read_rows(const std::filesystem::path& file, DutyKind kind) {
-  const std::array<std::string, 3> torque_columns{"time_s", "torque_Nm", "speed_rad_per_s"};
-  const std::array<std::string, 3> current_columns{"time_s", "current_A", "speed_rad_per_s"};
-  double before_s = std::nan("");
-  std::vector<Row> rows;
-  Diagnostics diagnostics;
-  read_csv(file, kind == DutyKind::torque ? torque_columns : current_columns, {}, [&](const CsvRow& row) {
-    const double now_s = row.values[0];
-    if (rows.size() > kMostRows) {
-      throw bad_input({file.string(), row.line, 1}, "", fmt::format("has more than {} rows; expected something like a match", kMostRows));
-    }
-    if (now_s <= before_s && diagnostics.list().size() < 20) {
-      diagnostics.add({file.string(), row.line, 1}, "time_s", fmt::format("{} s does not come after {} s; time must increase", now_s, before_s));
-    }
-    if (!rows.empty()) {
-      rows.back().duration_s = now_s - before_s;
-    }
-    before_s = now_s;
-    rows.push_back({0.0, row.values[1], row.values[2]});
-  });
-  diagnostics.throw_if_any();
-  rows.pop_back();
-  if (rows.empty()) {
-    throw bad_input({file.string()}, "", "has one row; expected at least two, the last one ends the duty");
-  }
-  return rows;
+/// "torque_Nm, speed_rad_per_s" of one wheel, or "torque_1_Nm, speed_1_rad_per_s, torque_2_Nm, …" of several.
+std::string column(DutyKind kind, int wheel, bool demand) {
+  const std::string number = wheel > 0 ? fmt::format("_{}", wheel) : "";
+  return demand ? fmt::format("{}{}_{}", kind == DutyKind::torque ? "torque" : "current", number, kind == DutyKind::torque ? "Nm" : "A")
+                : fmt::format("speed{}_rad_per_s", number);
 }
+
+/// The duty of one wheel or several, as rows come in. A row holds until the next one; the last row only ends the duty.
+class Recording {
+ public:
+  Recording(std::filesystem::path file, DutyKind kind) : file_(std::move(file)), kind_(kind) {}
+
+  std::vector<WheelDemand> read() {
+    std::vector<std::string> required{"time_s"};
+    std::vector<std::string> numbered;
+    for (int wheel = 1; wheel <= kMostWheels; ++wheel) {
+      numbered.push_back(column(kind_, wheel, true));
+      numbered.push_back(column(kind_, wheel, false));
+    }
+    const bool has_numbers = names(numbered.front());
+    if (!has_numbers) {
+      required.push_back(column(kind_, 0, true));
+      required.push_back(column(kind_, 0, false));
+      numbered.clear();
+    }
+    read_csv(file_, required, numbered, [&](const CsvRow& row) { take(row); });
+    diagnostics_.throw_if_any();
+    if (rows_ < 2) {
+      throw bad_input({file_.string()}, "", "has one row; expected at least two, the last one ends the duty");
+    }
+    for (WheelDemand& wheel : wheels_) {
+      wheel.bins.pop_back();
+    }
+    return std::move(wheels_);
+  }
+
+ private:
+  /// Whether the header names a column.
+  [[nodiscard]] bool names(const std::string& wanted) const {
+    std::ifstream in(file_);
+    std::string header;
+    header.resize(1 << 12);
+    in.read(header.data(), static_cast<std::streamsize>(header.size()));
+    header.resize(static_cast<std::size_t>(in.gcount()));
+    header = header.substr(0, header.find_first_of("\r\n"));
+    return fmt::format(",{},", header).find(fmt::format(",{},", wanted)) != std::string::npos;
+  }
+
+  void take(const CsvRow& row) {
+    const double now_s = row.values[0];
+    if (++rows_ > kMostRows) {
+      throw bad_input({file_.string(), row.line, 1}, "", fmt::format("has more than {} rows; expected something like a match", kMostRows));
+    }
+    if (now_s <= before_s_ && diagnostics_.list().size() < 20) {
+      diagnostics_.add({file_.string(), row.line, 1}, "time_s", fmt::format("{} s does not come after {} s; time must increase", now_s, before_s_));
+    }
+    for (std::size_t i = 1; i + 1 < row.values.size(); i += 2) {
+      if (!std::isfinite(row.values[i])) {
+        break;  // a column that the header does not have
+      }
+      const std::size_t wheel = (i - 1) / 2;
+      if (wheel == wheels_.size()) {
+        wheels_.push_back({row.values.size() > 3 ? fmt::format("wheel {}", wheel + 1) : "recorded wheel", {}, {}});
+      }
+      if (!wheels_[wheel].bins.empty()) {
+        wheels_[wheel].bins.back().duration_s = now_s - before_s_;
+      }
+      const double torque_Nm = kind_ == DutyKind::torque ? row.values[i] : 0.0;
+      const double current_A = kind_ == DutyKind::current ? row.values[i] : 0.0;
+      wheels_[wheel].bins.push_back(constant_bin(0.0, torque_Nm, row.values[i + 1], current_A));
+    }
+    before_s_ = now_s;
+  }
+
+  std::filesystem::path file_;
+  DutyKind kind_;
+  std::vector<WheelDemand> wheels_;
+  Diagnostics diagnostics_;
+  std::size_t rows_ = 0;
+  double before_s_ = std::nan("");
+};
 
 class Recorded final : public DutyShape {
  public:
-  Recorded(const std::vector<Row>& rows, DutyKind kind, int repeats) : repeats_(repeats) {
-    once_.wheel = "recorded wheel";
-    for (const Row& row : rows) {
-      const double torque_Nm = kind == DutyKind::torque ? row.demand : 0.0;
-      const double current_A = kind == DutyKind::current ? row.demand : 0.0;
-      once_.bins.push_back(constant_bin(row.duration_s, torque_Nm, row.speed_rad_per_s, current_A));
-      const double sign = row.speed_rad_per_s < 0.0 ? -1.0 : 1.0;
-      once_.points.push_back({sign * torque_Nm, std::abs(row.speed_rad_per_s), sign * current_A, row.duration_s * repeats});
+  Recorded(std::vector<WheelDemand> once, int repeats) : once_(std::move(once)), repeats_(repeats) {
+    for (WheelDemand& wheel : once_) {
+      for (const LoadBin& bin : wheel.bins) {
+        const double sign = bin.velocity_mean_rad_per_s < 0.0 ? -1.0 : 1.0;
+        wheel.points.push_back({sign * bin.torque_mean_Nm, bin.speed_mean_rad_per_s, bin.current_rms_A, bin.duration_s * repeats});
+      }
     }
   }
 
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& /*robot*/, std::uint64_t /*seed*/) const override {
-    WheelDemand wheel = once_;
-    for (int i = 1; i < repeats_; ++i) {
-      wheel.bins.insert(wheel.bins.end(), once_.bins.begin(), once_.bins.end());
+    std::vector<WheelDemand> wheels = once_;
+    for (WheelDemand& wheel : wheels) {
+      const std::vector<LoadBin> once = wheel.bins;
+      for (int i = 1; i < repeats_; ++i) {
+        wheel.bins.insert(wheel.bins.end(), once.begin(), once.end());
+      }
     }
-    return {wheel};
+    return wheels;
   }
 
  private:
-  WheelDemand once_;
+  std::vector<WheelDemand> once_;
   int repeats_;
 };
 
@@ -84,9 +135,9 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
     return;
   }
   duty.kind = *quantity == "torque" ? DutyKind::torque : DutyKind::current;
-  std::vector<Row> rows;
+  std::vector<WheelDemand> wheels;
   try {
-    rows = read_rows(folder / *file, duty.kind);
+    wheels = Recording(folder / *file, duty.kind).read();
   } catch (const Failure& failure) {
     for (const Diagnostic& each : failure.diagnostics()) {
       if (each.at.line > 0) {
@@ -97,18 +148,18 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
     }
     return;
   }
-  if (static_cast<double>(rows.size()) * repeats > static_cast<double>(kMostRows)) {
+  if (static_cast<double>(wheels.front().bins.size()) * repeats > static_cast<double>(kMostRows)) {
     table.problem("repeats", fmt::format("makes more than {} rows; expected something like a match", kMostRows));
     return;
   }
-  duty.shape_data = std::make_shared<Recorded>(rows, duty.kind, static_cast<int>(repeats));
+  duty.shape_data = std::make_shared<Recorded>(std::move(wheels), static_cast<int>(repeats));
 }
 
 }  // namespace
 
 ShapeType recorded() {
   return {.name = {},
-          .summary = "a CSV file with time_s, speed_rad_per_s and torque_Nm or current_A of one wheel; a row holds until the next",
+          .summary = "a CSV file with time_s, speed_rad_per_s and torque_Nm or current_A (or torque_1_Nm, speed_1_rad_per_s, … of several wheels); a row holds until the next",
           .example = R"(shape = "recorded"
 [recorded]
 file = "my_game.csv"

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "cli/command.h"
+#include "cli/quantity_option.h"
+#include "duty/duty.h"
+#include "duty/game_to_demand.h"
+#include "duty/match/match_duty.h"
+#include "motor/motor.h"
+
+namespace heatsoak::commands {
+namespace {
+
+struct Options {
+  std::string duty;
+  std::string log;
+  std::string player;
+  std::string robot;
+  std::string out;
+  double every_s = 0.01;
+  std::uint64_t seed = 1;
+  bool bang_bang = false;
+};
+
+/// Rows of all wheels: a row holds until the next, its torque is the rms with the sign of the mean, so that the heat stays.
+std::string to_csv(const std::vector<WheelDemand>& wheels) {
+  std::string text = "time_s";
+  for (std::size_t i = 1; i <= wheels.size(); ++i) {
+    text += fmt::format(",torque_{}_Nm,speed_{}_rad_per_s", i, i);
+  }
+  text += "\n";
+  double time_s = 0.0;
+  for (std::size_t row = 0; row < wheels.front().bins.size(); ++row) {
+    fmt::format_to(std::back_inserter(text), "{:.10g}", time_s);
+    for (const WheelDemand& wheel : wheels) {
+      const LoadBin& bin = wheel.bins[row];
+      fmt::format_to(std::back_inserter(text), ",{:.5g},{:.5g}", std::copysign(bin.torque_rms_Nm, bin.torque_mean_Nm),
+                     std::copysign(bin.speed_mean_rad_per_s, bin.velocity_mean_rad_per_s));
+    }
+    text += "\n";
+    time_s += wheels.front().bins[row].duration_s;
+  }
+  fmt::format_to(std::back_inserter(text), "{:.10g}", time_s);
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    text += ",0,0";
+  }
+  return text + "\n";
+}
+
+/// The duty file beside the CSV, so that the next command is `evaluate --duty FILE.toml`.
+std::string duty_file(const std::filesystem::path& csv, const std::string& summary, const std::string& origin) {
+  return fmt::format(
+      "summary = {}\norigin = {}\nshape = \"recorded\"\n"
+      "ambient = {{ value = \"25 degC\", origin = \"estimated\", derivation = \"not recorded\", range = [\"20 degC\", \"32 degC\"] }}\n\n"
+      "[recorded]\nfile = {}\nquantity = \"torque\"\n",
+      nlohmann::json(summary).dump(), nlohmann::json(origin).dump(), nlohmann::json(csv.filename().string()).dump());
+}
+
+void write_duty(const Options& options, const std::vector<WheelDemand>& wheels, const std::string& summary, const std::string& origin, const Session& session) {
+  if (options.out.empty()) {
+    return;
+  }
+  std::filesystem::path description = options.out;
+  description.replace_extension(".toml");
+  write_file(options.out, to_csv(wheels));
+  write_file(description, duty_file(options.out, summary, origin));
+  session.say(fmt::format("written: {} and {} (heatsoak evaluate --duty {})\n", options.out, description.string(), description.string()));
+}
+
+/// Copper heat of one wheel's motor follows ∫M²dt; its parts by phase say where it comes from, whatever the motor.
+std::string phase_table(const MatchLoad& load) {
+  double all_Nm2_s = 0.0;
+  for (const PhaseLoad& phase : load.phases) {
+    for (const double wheel_Nm2_s : phase.torque_squared_Nm2_s) {
+      all_Nm2_s += wheel_Nm2_s;
+    }
+  }
+  std::string text = fmt::format("{:22} {:>8} {:>8} {:>10} {:>12} {:>14}\n", "phase", "time / s", "duels / s", "rms / mN m", "of all heat", "of it in duels");
+  for (std::size_t i = 0; i < load.phases.size(); ++i) {
+    const PhaseLoad& phase = load.phases[i];
+    double sum_Nm2_s = 0.0;
+    for (const double wheel_Nm2_s : phase.torque_squared_Nm2_s) {
+      sum_Nm2_s += wheel_Nm2_s;
+    }
+    if (phase.time_s > 0.0) {
+      text += fmt::format("{:22} {:8.0f} {:8.0f} {:10.0f} {:10.0f} % {:12.0f} %\n", kPhaseNames[i], phase.time_s, phase.duel_s,
+                          1e3 * std::sqrt(sum_Nm2_s / phase.time_s / static_cast<double>(load.wheels.size())), 100.0 * sum_Nm2_s / all_Nm2_s,
+                          sum_Nm2_s > 0.0 ? 100.0 * phase.duel_torque_squared_Nm2_s / sum_Nm2_s : 0.0);
+    }
+  }
+  return text;
+}
+
+nlohmann::ordered_json phase_json(const MatchLoad& load) {
+  nlohmann::ordered_json phases = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < load.phases.size(); ++i) {
+    const PhaseLoad& phase = load.phases[i];
+    phases.push_back({{"phase", kPhaseNames[i]}, {"time_s", rounded(phase.time_s, 3)}, {"duel_s", rounded(phase.duel_s, 3)}, {"slip_s", rounded(phase.slip_s, 3)},
+                      {"torque_squared_Nm2_s", phase.torque_squared_Nm2_s}, {"duel_torque_squared_Nm2_s", phase.duel_torque_squared_Nm2_s}});
+  }
+  return phases;
+}
+
+ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, const Session& session) {
+  const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
+  if (!match) {
+    const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
+    session.say(fmt::format("{}: {}\n{}, {:.0f} s\n", duty.id, duty.summary, duty.origin, wheels.front().duration_s()));
+    write_duty(options, wheels, duty.summary, duty.origin, session);
+    session.answer({{"schema", "heatsoak.duty/1"}, {"duty", duty.id}, {"origin", duty.origin}, {"duration_s", wheels.front().duration_s()}});
+    return ExitCode::done;
+  }
+  const Planner planner = options.bang_bang ? Planner::bang_bang : Planner::jerk_limited;
+  const MatchLoad load = play_match(match->inputs(), match->inputs().nominal(), robot, options.seed, planner, options.out.empty() ? 0.25 : options.every_s);
+  session.say(fmt::format("{} of {} as {}, seed {}: {:.0f} min, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
+                          kRoleNames[static_cast<std::size_t>(match->inputs().role)], options.seed, load.duration_s / 60.0, load.play_s, load.distance_m / 1e3,
+                          duty.origin, phase_table(load)));
+  write_duty(options, load.wheels, duty.summary, duty.origin, session);
+  session.answer({{"schema", "heatsoak.duty/1"},
+                  {"duty", duty.id},
+                  {"robot", robot.id},
+                  {"origin", duty.origin},
+                  {"seed", options.seed},
+                  {"duration_s", rounded(load.duration_s, 3)},
+                  {"play_s", rounded(load.play_s, 3)},
+                  {"distance_m", rounded(load.distance_m, 1)},
+                  {"phases", phase_json(load)}});
+  return ExitCode::done;
+}
+
+ExitCode import(const Options& options, const Robot& robot, const Session& session) {
+  const GameDemand game = demand_of_game(options.log, options.player, robot, options.every_s);
+  std::string text;
+  for (const std::string& line : game.sentences) {
+    text += line + "\n";
+  }
+  session.say(text);
+  if (game.wheels.empty()) {
+    throw Failure(ExitCode::cannot_answer, fmt::format("{}: no robot is seen long enough to follow its motion", options.log));
+  }
+  const std::string summary = fmt::format("{} of {}, driven by {}", game.player, std::filesystem::path(options.log).filename().string(), robot.name);
+  write_duty(options, game.wheels, summary, "measured motion of a recorded game, wheel torques computed from the robot's file", session);
+  session.answer({{"schema", "heatsoak.duty/1"}, {"log", options.log}, {"player", game.player}, {"robot", robot.id},
+                  {"duration_s", rounded(game.wheels.front().duration_s(), 3)}, {"report", game.sentences}});
+  return ExitCode::done;
+}
+
+ExitCode run(const Options& options, const Session& session) {
+  const DataFolders folders = session.folders();
+  if (options.duty.empty() == options.log.empty()) {
+    throw Failure(ExitCode::bad_input, "expected one of --duty and --import (`heatsoak duty --help` shows examples)");
+  }
+  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
+  return options.log.empty() ? generate(options, robot, read_duty(file_of(folders.duties, "duty", options.duty)), session) : import(options, robot, session);
+}
+
+}  // namespace
+
+Command duty_command() {
+  return {.name = {},
+          .summary = "Generates a duty (a match with its phases and where heat comes from), or turns a recorded game into one",
+          .example = "heatsoak duty --duty division_a_match --robot roboteam_twente_v2024 --seed 1 --out match.csv",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->type_name("D");
+            app.add_option("--import", options->log, "recorded game: CSV (t_s, team, robot_id, x_m, y_m, yaw_rad) or SSL_LOG_FILE (.log, .log.gz)")->type_name("LOG");
+            app.add_option("--player", options->player, "of the recorded game, \"yellow 3\"; the busiest one unless given")->type_name("P");
+            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+            app.add_option("--out", options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate")->type_name("FILE.csv");
+            add_quantity(app, "--every", options->every_s, {"every", "s", Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
+            app.add_option("--seed", options->seed, "same seed, same game")->capture_default_str();
+            app.add_flag("--bang-bang", options->bang_bang, "plan with jumping acceleration, for comparison");
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

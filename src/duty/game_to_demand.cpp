@@ -1,0 +1,89 @@
+#include "duty/game_to_demand.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "duty/motion.h"
+#include "duty/recorded_game.h"
+#include "robot/inverse_dynamics.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kRate_Hz = 1000.0;
+
+/// The robot that was asked for, or the one that worked most.
+std::optional<RobotName> choose(const ImportReport& survey, const std::string& player, const std::filesystem::path& log) {
+  std::vector<std::string> known;
+  for (const RobotSummary& each : survey.robots) {
+    known.push_back(to_string(each.robot));
+    if (known.back() == player) {
+      return each.robot;
+    }
+  }
+  if (!player.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("{}: there is no robot '{}'{}", log.string(), player, did_you_mean(player, known)));
+  }
+  const auto busiest = std::ranges::max_element(survey.robots, {}, &RobotSummary::effort_m2_per_s3);
+  return busiest == survey.robots.end() ? std::nullopt : std::optional(busiest->robot);
+}
+
+}  // namespace
+
+GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const Robot& robot, double bin_s) {
+  ImportOptions survey;
+  survey.most_points = 0;
+  const RecordedGame first = import_game(log, survey);
+  GameDemand result;
+  result.sentences = sentences(first.report);
+  const std::optional<RobotName> name = choose(first.report, player, log);
+  if (!name) {
+    return result;
+  }
+  result.player = to_string(*name);
+  ImportOptions one;
+  one.robot = name;
+  const RecordedGame game = import_game(log, one);
+  if (game.tracks.empty() || game.tracks.front().segments.empty()) {
+    return result;
+  }
+  const MotionTrack motion = smooth(game.tracks.front());
+  result.sentences.push_back(fmt::format("{}: {}", result.player, to_string(motion.report())));
+  MotorValues no_rotor;
+  no_rotor.rotor_inertia_kg_m2 = 0.0;
+  const BodyConfig body = make_body(robot, no_rotor);
+  std::vector<DemandGatherer> gatherers;
+  for (int wheel = 0; wheel < body.kinematics.wheel_count; ++wheel) {
+    gatherers.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s, DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});
+  }
+  double time_s = motion.segments().front().front().time_s;
+  double slip_s = 0.0;
+  double unseen_s = 0.0;
+  motion.for_each(kRate_Hz, [&](const Motion& at, std::size_t /*segment*/) {
+    if (const double gap_s = at.time_s - time_s; gap_s > 2.0 / kRate_Hz) {
+      unseen_s += gap_s;
+      for (DemandGatherer& each : gatherers) {
+        each.add(gap_s, 0.0, 0.0);
+      }
+    }
+    time_s = at.time_s;
+    const BodyMotion local = local_motion(body, {at.x_m, at.y_m, at.yaw_rad}, {at.velocity_x_m_per_s, at.velocity_y_m_per_s, at.yaw_rate_rad_per_s},
+                                          {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
+    const WheelDemands wheels = inverse_dynamics(body, local);
+    slip_s += wheels.transmitted_share < 1.0 ? 1.0 / kRate_Hz : 0.0;
+    for (std::size_t i = 0; i < gatherers.size(); ++i) {
+      gatherers[i].add(1.0 / kRate_Hz, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
+    }
+  });
+  for (DemandGatherer& each : gatherers) {
+    result.wheels.push_back(each.finish());
+  }
+  const double all_s = result.wheels.front().duration_s();
+  result.sentences.push_back(fmt::format("{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the ground could not pass on the motion in {:.1f} % of the time",
+                                         result.player, all_s, unseen_s, 100.0 * slip_s / all_s));
+  return result;
+}
+
+}  // namespace heatsoak
