@@ -93,7 +93,8 @@ void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& dem
 
 }  // namespace
 
-BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global, const BodyAcceleration& acceleration_global) {
+BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global,
+                        const BodyAcceleration& acceleration_global) {
   return {to_local(velocity_global, pose.yaw_rad), to_local(acceleration_global, pose.yaw_rad), {}, body.weight.center_of_gravity_height_m};
 }
 
@@ -108,7 +109,8 @@ WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) 
   const double radius_m = body.kinematics.wheel_radius_m;
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
     const double ground_Nm = out.rolling_force_N[i] * radius_m;
-    out.torque_Nm[i] = ground_Nm + transmission_loss_Nm(body.rolling_efficiency, ground_Nm, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) +
+    out.torque_Nm[i] = ground_Nm +
+                       transmission_loss_Nm(body.rolling_efficiency, ground_Nm, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) +
                        friction_Nm[i] + body.wheel_inertia_kg_m2 * rim_m_per_s2[i] / radius_m;
   }
   return out;

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -47,7 +46,8 @@ TEST(InverseDynamics, the_global_trajectory_is_the_local_one_turned) {
   const BodyVelocity velocity{1.0, -0.5, 2.0};
   const BodyAcceleration acceleration{0.7, 1.1, -3.0};
   const WheelDemands local = inverse_dynamics(body, {velocity, acceleration, {}, 0.0});
-  const WheelDemands global = inverse_dynamics(body, local_motion(body, {3.0, -1.0, 2.1}, to_global(velocity, 2.1), to_global(acceleration, 2.1)));
+  const WheelDemands global =
+      inverse_dynamics(body, local_motion(body, {3.0, -1.0, 2.1}, to_global(velocity, 2.1), to_global(acceleration, 2.1)));
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(global.torque_Nm[i], local.torque_Nm[i], 1e-14);
   }
@@ -71,12 +71,14 @@ TEST(InverseDynamics, power_of_the_wheels_is_accounted_for) {
       wheels_W += out.torque_Nm[i] * out.speed_rad_per_s[i];
       losses_W += friction_Nm[i] * out.speed_rad_per_s[i] -
                   contact_ratios(body.traction, 0.0, lateral_m_per_s[i]).lateral_ratio * out.normal_force_N[i] * lateral_m_per_s[i] +
-                  transmission_loss_Nm(body.rolling_efficiency, out.rolling_force_N[i] * 0.03, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) *
+                  transmission_loss_Nm(body.rolling_efficiency, out.rolling_force_N[i] * 0.03, out.speed_rad_per_s[i],
+                                       body.friction.smoothing_rad_per_s) *
                       out.speed_rad_per_s[i];
     }
     const double h_s = 1e-5;
     const auto energy_J = [&](double t_s) {
-      const BodyVelocity at{v.x_m_per_s + t_s * rates.x_m_per_s2, v.y_m_per_s + t_s * rates.y_m_per_s2, v.yaw_rad_per_s + t_s * rates.yaw_rad_per_s2};
+      const BodyVelocity at{v.x_m_per_s + t_s * rates.x_m_per_s2, v.y_m_per_s + t_s * rates.y_m_per_s2,
+                            v.yaw_rad_per_s + t_s * rates.yaw_rad_per_s2};
       return kinetic_energy_J(body, at, wheel_speeds_rad_per_s(body.kinematics, at));
     };
     EXPECT_NEAR(wheels_W, losses_W + (energy_J(h_s) - energy_J(-h_s)) / (2.0 * h_s), 1e-7);
@@ -296,23 +298,6 @@ TEST(InverseDynamics, names_every_figure_that_is_missing) {
     EXPECT_EQ(failure.diagnostics().size(), 2U);
     EXPECT_EQ(failure.code(), ExitCode::bad_input);
   }
-}
-
-/// Printed, not asserted: 2.4 million steps are a match at 1 kHz.
-TEST(InverseDynamics, time_per_step) {
-  const BodyConfig body = make_body(shipped_robot("tigers_v2020"), shipped_motor("nanotec_df45l024048_a2").nominal);
-  const auto begin = std::chrono::steady_clock::now();
-  constexpr int kSteps = 1'000'000;
-  double sum_Nm = 0.0;
-  for (int i = 0; i < kSteps; ++i) {
-    const double t_s = 0.001 * i;
-    const double wave = t_s - std::floor(t_s);
-    sum_Nm += inverse_dynamics(body, {{1.0 + wave, 0.3 - wave, 2.0 * wave}, {wave, 1.0, -wave}, {}, 0.0}).torque_Nm[1];
-  }
-  const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  EXPECT_TRUE(std::isfinite(sum_Nm));
-  RecordProperty("nanoseconds_per_step", std::to_string(spent_s / kSteps * 1e9));
-  std::cout << "inverse dynamics: " << spent_s / kSteps * 1e9 << " ns per step of four wheels\n";
 }
 
 }  // namespace
