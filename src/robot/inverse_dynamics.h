@@ -31,10 +31,11 @@ struct WheelDemands {
 
 /// Wheel torque T_i = loss(η, f_i·r) + f_i·r + friction_i(θ, ω) + J·dω_i/dt with the least Σf² that gives
 ///   Jᵀ·f = wrench(a) − external − roller drag.
-/// Loads N_i follow from the acceleration demanded. A contact passes on √(μ² − c²)·N_i. Where that is too little, the
-/// acceleration is scaled down, direction kept, until all contacts suffice; where no share of it does that, because
-/// drag and push alone are too much, each contact gives what it can and the body accelerates as the sum decides. A push
-/// at standstill is a stall: torque without speed.
+/// Loads N_i follow from the acceleration demanded. A contact passes on √(μ² − c²)·N_i. Where that is too little for one
+/// of four wheels, the others take over as far as they can: as much of the pattern that moves nothing (inner_share) as
+/// needed. Where that is not enough, the acceleration is scaled down, direction kept; where no share of it helps,
+/// because drag and push alone are too much, each contact gives what it can and the body accelerates as the sum
+/// decides. A push at standstill is a stall: torque without speed.
 WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion);
 
 }  // namespace heatsoak

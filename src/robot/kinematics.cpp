@@ -81,6 +81,12 @@ Kinematics make_kinematics(const Robot& robot) {
     made.inverse_y_factor[i] = inverse(1, column);
     made.inverse_yaw_per_m[i] = inverse(2, column) / made.contact_radius_m;
   }
+  if (count == kMostWheels) {
+    const Eigen::Matrix4d inner = Eigen::Matrix4d::Identity() - jacobian * inverse;
+    Eigen::Index longest = 0;
+    inner.colwise().squaredNorm().maxCoeff(&longest);
+    Eigen::Vector4d::Map(made.inner_share.data()) = inner.col(longest).normalized();
+  }
   return made;
 }
 

@@ -46,6 +46,7 @@ NormalLoads loads_with_a_wheel_lifted(const WeightConfig& weight, const LoadMome
       return loads;
     }
   }
+  loads.force_N = all_N;
   scale_to_weight(weight, loads.force_N);
   return loads;
 }

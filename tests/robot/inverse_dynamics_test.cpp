@@ -147,19 +147,38 @@ TEST(NormalLoads, add_up_to_the_weight_and_hold_the_moment) {
   EXPECT_LT(lifted, 1500);
 }
 
-// μ·m·g = 17.16 N would be 6.865 m/s² if the wheels pushed along x; at 45° they push √2 times as much as they advance,
-// and the front wheels lose load: 4·a... 2.5·a/(4·0.7071) = 0.7·(6.1292 − 2.5·0.05·a/(4·0.05657)).
+// At 45° each newton along a wheel advances by 0.7071 N. With all load used μ·m·g·0.7071 = 12.135 N are to be had
+// however the load has moved, 4.8540 m/s² of 2.5 kg, if the rear wheels take over what the front ones cannot. The loads
+// are those of the demand: at 6 m/s² front 6.1292 − 3.3146 N, rear 6.1292 + 3.3146 N.
 TEST(InverseDynamics, traction_limits_the_acceleration) {
-  const WheelDemands out = inverse_dynamics(bare_body(), {{}, {12.0, 0.0, 0.0}, {}, 0.0});
-  // Loads of 12 m/s²: front 6.1292 − 6.6291 < 0: lifted, nothing more to be had from the front.
-  EXPECT_TRUE(out.lifted);
-  const WheelDemands eight = inverse_dynamics(bare_body(), {{}, {8.0, 0.0, 0.0}, {}, 0.0});
-  const double front_N = 0.7 * (6.12916 - 2.5 * 0.05 * 8.0 / (4.0 * 0.0565685));
-  EXPECT_NEAR(eight.transmitted_share, front_N / (2.5 * 8.0 / (4.0 * std::numbers::sqrt2 / 2.0)), 1e-5);
-  EXPECT_NEAR(eight.achievable.x_m_per_s2, 8.0 * eight.transmitted_share, 1e-12);
-  EXPECT_NEAR(eight.untransmitted.x_N, 20.0 * (1.0 - eight.transmitted_share), 1e-12);
-  EXPECT_GT(eight.traction_use_ratio[0], 1.0);
-  EXPECT_LE(std::abs(eight.rolling_force_N[0]), 0.7 * eight.normal_force_N[0] * (1.0 + 1e-12));
+  const BodyConfig body = bare_body();
+  const WheelDemands four = inverse_dynamics(body, {{}, {4.0, 0.0, 0.0}, {}, 0.0});
+  EXPECT_EQ(four.transmitted_share, 1.0);
+  // Of least squares each wheel would give 10/(4·0.7071) = 3.536 N; the front ones have 0.7·(6.1292 − 2.2097) = 2.7436 N.
+  EXPECT_NEAR(four.rolling_force_N[0], 2.74362, 1e-4);
+  EXPECT_NEAR(four.rolling_force_N[3], 2.0 * 3.53553 - 2.74362, 1e-4);
+  EXPECT_NEAR(four.traction_use_ratio[0], 1.0, 1e-12);
+  EXPECT_NEAR(wrench_of_rolling_forces(body.kinematics, four.rolling_force_N).x_N, 10.0, 1e-12);
+
+  const WheelDemands six = inverse_dynamics(body, {{}, {6.0, 0.0, 0.0}, {}, 0.0});
+  EXPECT_NEAR(six.achievable.x_m_per_s2, 0.7 * kGravity_m_per_s2 * std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(six.transmitted_share, six.achievable.x_m_per_s2 / 6.0, 1e-12);
+  EXPECT_NEAR(six.untransmitted.x_N, 2.5 * (6.0 - six.achievable.x_m_per_s2), 1e-9);
+  EXPECT_GT(six.traction_use_ratio[0], 1.0);
+
+  const WheelDemands twelve = inverse_dynamics(body, {{}, {12.0, 0.0, 0.0}, {}, 0.0});
+  EXPECT_TRUE(twelve.lifted);
+  EXPECT_NEAR(twelve.achievable.x_m_per_s2, 0.7 * kGravity_m_per_s2 * std::sqrt(0.5), 1e-6);
+}
+
+// Three wheels leave no choice: the wheel that has the least decides.
+TEST(InverseDynamics, three_wheels_cannot_take_over) {
+  Robot robot = bare_robot();
+  robot.wheel_axis_rad = {std::numbers::pi / 3.0, std::numbers::pi, -std::numbers::pi / 3.0};
+  robot.center_of_gravity_height_m = 0.0;
+  const WheelDemands out = inverse_dynamics(make_body(robot, bare_motor()), {{}, {12.0, 0.0, 0.0}, {}, 0.0});
+  // Wheels 1 and 3 share 30 N, each along 30° off: 30/(2·0.8660) of 0.7·24.517/3.
+  EXPECT_NEAR(out.transmitted_share, 0.7 * kWeight_N / 3.0 / (30.0 / std::sqrt(3.0)), 1e-9);
 }
 
 TEST(InverseDynamics, delivered_forces_never_exceed_the_grip) {
@@ -174,7 +193,7 @@ TEST(InverseDynamics, delivered_forces_never_exceed_the_grip) {
     const WheelDemands out = inverse_dynamics(body, motion);
     const double grip_ratio = std::sqrt(0.7 * 0.7 - 0.12 * 0.12);
     for (int i = 0; i < 4; ++i) {
-      EXPECT_LE(std::abs(out.rolling_force_N[i]), grip_ratio * out.normal_force_N[i] + 1e-9);
+      EXPECT_LE(std::abs(out.rolling_force_N[i]), grip_ratio * out.normal_force_N[i] + 1e-8);
     }
     EXPECT_GE(out.transmitted_share, 0.0);
     EXPECT_LE(out.transmitted_share, 1.0);
