@@ -61,8 +61,8 @@ BodyAcceleration acceleration_of_wrench(const BodyConfig& body, double yaw_rad_p
   const double c_y = body.weight.center_of_gravity_y_m;
   const double square = yaw_rad_per_s * yaw_rad_per_s;
   const double yaw_rad_per_s2 = (wrench.yaw_Nm - c_x * wrench.y_N + c_y * wrench.x_N) / body.yaw_inertia_kg_m2;
-  return {wrench.x_N / body.weight.mass_kg + yaw_rad_per_s2 * c_y + square * c_x, wrench.y_N / body.weight.mass_kg - yaw_rad_per_s2 * c_x + square * c_y,
-          yaw_rad_per_s2};
+  return {wrench.x_N / body.weight.mass_kg + yaw_rad_per_s2 * c_y + square * c_x,
+          wrench.y_N / body.weight.mass_kg - yaw_rad_per_s2 * c_x + square * c_y, yaw_rad_per_s2};
 }
 
 double kinetic_energy_J(const BodyConfig& body, const BodyVelocity& local, const PerWheel& wheel_speed_rad_per_s) {

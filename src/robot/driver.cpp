@@ -24,8 +24,8 @@ MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor) {
   return made;
 }
 
-MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s, double winding_C,
-                       double magnet_C, double bus_V) {
+MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s,
+                       double winding_C, double magnet_C, double bus_V) {
   MotorPoint point;
   point.torque_constant_Nm_per_A = motor.torque_constant_25C_Nm_per_A * (1.0 - motor.torque_constant_fall_per_K * (magnet_C - 25.0));
   const double winding_ohm = motor.heating_factor * motor.resistance_25C_ohm * (1.0 + motor.resistance_rise_per_K * (winding_C - 25.0));

@@ -49,7 +49,7 @@ struct MotorPoint {
 /// The current has settled (its time constant L/R is below a millisecond): I = (U − K_t·ω)/(R(T)·k + R_driver), k the
 /// heating factor, so that U·I = copper + driver conduction + K_t·ω·I holds to rounding.
 /// |U| ≤ min(bus, voltage limit), |I| ≤ current limit.
-MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s, double winding_C,
-                       double magnet_C, double bus_V);
+MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s,
+                       double winding_C, double magnet_C, double bus_V);
 
 }  // namespace heatsoak

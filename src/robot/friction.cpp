@@ -61,7 +61,8 @@ double friction_torque_of_voltage_Nm(const MotorValues& motor, double gear_ratio
 
 double damping_of_voltage_Nm_s_per_rad(const MotorValues& motor, double gear_ratio, double damping_V_s_per_rad) {
   const double beyond_back_emf_V_s_per_rad = damping_V_s_per_rad / gear_ratio - motor.torque_constant_Nm_per_A;
-  return std::max(0.0, beyond_back_emf_V_s_per_rad) * motor.torque_constant_Nm_per_A / motor.terminal_resistance_ohm * gear_ratio * gear_ratio;
+  return std::max(0.0, beyond_back_emf_V_s_per_rad) * motor.torque_constant_Nm_per_A / motor.terminal_resistance_ohm * gear_ratio *
+         gear_ratio;
 }
 
 }  // namespace heatsoak

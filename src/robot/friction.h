@@ -21,11 +21,11 @@ namespace heatsoak {
 /// In rotation it goes over to a constant c: (1 − γ)·f + γ·sign(ω)·c, γ = ½·(1 − cos(π·min(1, R·|yaw rate|/|v|))).
 /// The firmware counts θ from the left to straight ahead: its phase is −φ here.
 struct HeadingFriction {
-  double constant_Nm = 0.0;  ///< b
-  double sine_Nm = 0.0;      ///< a
-  double double_angle_Nm = 0.0;  ///< A, at most b
+  double constant_Nm = 0.0;           ///< b
+  double sine_Nm = 0.0;               ///< a
+  double double_angle_Nm = 0.0;       ///< A, at most b
   PerWheel double_angle_phase_rad{};  ///< φ, wheel by wheel
-  double rotation_Nm = 0.0;  ///< c
+  double rotation_Nm = 0.0;           ///< c
 };
 
 struct FrictionConfig {

@@ -17,22 +17,6 @@ PerWheel roller_drags_N(const BodyConfig& body, const PerWheel& lateral_m_per_s,
   return drag_N;
 }
 
-/// Shares κ of the acceleration in 0 … 1 that a contact can pass on; low > high where there are none.
-struct Shares {
-  double low = 0.0;
-  double high = 1.0;
-};
-
-/// |rest + κ·part| ≤ limit.
-Shares possible_shares(double rest_N, double part_N, double limit_N) {
-  if (part_N == 0.0) {
-    return std::abs(rest_N) <= limit_N ? Shares{} : Shares{1.0, 0.0};
-  }
-  const double one = (limit_N - rest_N) / part_N;
-  const double other = (-limit_N - rest_N) / part_N;
-  return {std::max(std::min(one, other), 0.0), std::min(std::max(one, other), 1.0)};
-}
-
 /// What is asked of the contacts: for drag and push alone, and for the acceleration on top.
 struct Demand {
   Wrench acceleration;
@@ -60,32 +44,98 @@ Demand demand_on_contacts(const BodyConfig& body, const BodyMotion& motion, Whee
   const double grip_ratio = std::sqrt(std::max(mu * mu - c * c, 0.0));
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
     demand.limit_N[i] = grip_ratio * loads.force_N[i];
-    const double demanded_N = std::abs(demand.rest_N[i] + demand.part_N[i]);
-    out.traction_use_ratio[i] = demanded_N == 0.0 ? 0.0 : demanded_N / demand.limit_N[i];
   }
   return demand;
 }
 
-/// Scales the acceleration to what the contacts pass on, or lets them slide.
-void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
-  Shares shares;
-  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    const Shares of_wheel = possible_shares(demand.rest_N[i], demand.part_N[i], demand.limit_N[i]);
-    shares = {std::max(shares.low, of_wheel.low), std::min(shares.high, of_wheel.high)};
+/// low > high: empty.
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+
+  /// Keeps what satisfies slope·x ≤ bound. A hair more is allowed, for wheels without load bound each other tightly.
+  void keep(double slope, double exact_bound) {
+    const double bound = exact_bound + 1e-9;
+    if (slope > 0.0) {
+      high = std::min(high, bound / slope);
+    } else if (slope < 0.0) {
+      low = std::max(low, bound / slope);
+    } else if (bound < 0.0) {
+      low = high + 1.0;
+    }
   }
+};
+
+/// Below this the wheel has no part in the inner forces.
+constexpr double kNoPart = 1e-9;
+
+/// Shares κ in 0 … 1 of the acceleration for which some inner force λ keeps every contact within its grip,
+///   |rest_i + κ·part_i + λ·n_i| ≤ limit_i.
+/// Each wheel bounds λ from both sides; λ exists where every lower bound is below every upper one, which are conditions
+/// linear in κ.
+Interval possible_shares(const Kinematics& kinematics, const Demand& demand) {
+  Interval shares{0.0, 1.0};
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    const double n_i = kinematics.inner_share[i];
+    if (std::abs(n_i) < kNoPart) {
+      shares.keep(demand.part_N[i], demand.limit_N[i] - demand.rest_N[i]);
+      shares.keep(-demand.part_N[i], demand.limit_N[i] + demand.rest_N[i]);
+      continue;
+    }
+    for (int j = 0; j < kinematics.wheel_count; ++j) {
+      const double n_j = kinematics.inner_share[j];
+      if (std::abs(n_j) >= kNoPart) {
+        shares.keep(demand.part_N[j] / n_j - demand.part_N[i] / n_i, demand.limit_N[j] / std::abs(n_j) + demand.limit_N[i] / std::abs(n_i) +
+                                                                         demand.rest_N[i] / n_i - demand.rest_N[j] / n_j);
+      }
+    }
+  }
+  return shares;
+}
+
+/// The demand as it stands is within every grip: the ordinary case, told apart for speed.
+bool grips(const Kinematics& kinematics, const Demand& demand) {
+  bool all = true;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    all = all && std::abs(demand.rest_N[i] + demand.part_N[i]) <= demand.limit_N[i];
+  }
+  return all;
+}
+
+/// The smallest inner force that keeps the contacts within their grip at the share.
+double inner_force_N(const Kinematics& kinematics, const Demand& demand, double share) {
+  double low_N = -1e300;
+  double high_N = 1e300;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    const double n = kinematics.inner_share[i];
+    if (std::abs(n) >= kNoPart) {
+      const double middle_N = -(demand.rest_N[i] + share * demand.part_N[i]) / n;
+      low_N = std::max(low_N, middle_N - demand.limit_N[i] / std::abs(n));
+      high_N = std::min(high_N, middle_N + demand.limit_N[i] / std::abs(n));
+    }
+  }
+  return low_N <= high_N ? std::clamp(0.0, low_N, high_N) : 0.5 * (low_N + high_N);
+}
+
+/// Shifts force to the wheels that stand firmer, scales the acceleration to what the contacts pass on, or lets them slide.
+void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
+  const int count = body.kinematics.wheel_count;
+  const Interval shares = grips(body.kinematics, demand) ? Interval{0.0, 1.0} : possible_shares(body.kinematics, demand);
   const bool slides = shares.low > shares.high;
   const double share = slides ? 0.0 : shares.high;
-  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    out.rolling_force_N[i] = slides ? std::clamp(demand.rest_N[i] + demand.part_N[i], -demand.limit_N[i], demand.limit_N[i])
-                                    : demand.rest_N[i] + share * demand.part_N[i];
+  const double inner_N = inner_force_N(body.kinematics, demand, slides ? 1.0 : share);
+  PerWheel missing_N{};
+  for (int i = 0; i < count; ++i) {
+    const double shifted_N = inner_N * body.kinematics.inner_share[i];
+    const double wanted_N = demand.rest_N[i] + demand.part_N[i] + shifted_N;
+    out.rolling_force_N[i] =
+        slides ? std::clamp(wanted_N, -demand.limit_N[i], demand.limit_N[i]) : demand.rest_N[i] + share * demand.part_N[i] + shifted_N;
+    out.traction_use_ratio[i] = wanted_N == 0.0 ? 0.0 : std::abs(wanted_N) / demand.limit_N[i];
+    missing_N[i] = wanted_N - out.rolling_force_N[i];
   }
   out.achievable = motion.acceleration;
   out.transmitted_share = share;
   if (share < 1.0) {
-    PerWheel missing_N{};
-    for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-      missing_N[i] = demand.rest_N[i] + demand.part_N[i] - out.rolling_force_N[i];
-    }
     out.untransmitted = wrench_of_rolling_forces(body.kinematics, missing_N);
     out.achievable = acceleration_of_wrench(body, motion.velocity.yaw_rad_per_s, demand.acceleration - out.untransmitted);
   }
@@ -93,7 +143,8 @@ void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& dem
 
 }  // namespace
 
-BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global, const BodyAcceleration& acceleration_global) {
+BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global,
+                        const BodyAcceleration& acceleration_global) {
   return {to_local(velocity_global, pose.yaw_rad), to_local(acceleration_global, pose.yaw_rad), {}, body.weight.center_of_gravity_height_m};
 }
 
@@ -108,7 +159,8 @@ WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) 
   const double radius_m = body.kinematics.wheel_radius_m;
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
     const double ground_Nm = out.rolling_force_N[i] * radius_m;
-    out.torque_Nm[i] = ground_Nm + transmission_loss_Nm(body.rolling_efficiency, ground_Nm, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) +
+    out.torque_Nm[i] = ground_Nm +
+                       transmission_loss_Nm(body.rolling_efficiency, ground_Nm, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) +
                        friction_Nm[i] + body.wheel_inertia_kg_m2 * rim_m_per_s2[i] / radius_m;
   }
   return out;

@@ -8,17 +8,18 @@ namespace heatsoak {
 /// All in the local frame.
 struct BodyMotion {
   BodyVelocity velocity;
-  BodyAcceleration acceleration;  ///< as seen from the field
-  Wrench external;                ///< on the body from outside: another robot, a wall, the ball; a push by the robot is minus this
+  BodyAcceleration acceleration;   ///< as seen from the field
+  Wrench external;                 ///< on the body from outside: another robot, a wall, the ball; a push by the robot is minus this
   double external_height_m = 0.0;  ///< above the ground, where it acts
 };
 
 /// A point of a trajectory in the global frame, turned to the robot's.
-BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global, const BodyAcceleration& acceleration_global);
+BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global,
+                        const BodyAcceleration& acceleration_global);
 
 struct WheelDemands {
-  PerWheel torque_Nm{};            ///< at the axle, after the gear, without the motor's own drag; > 0 drives forward along t
-  PerWheel speed_rad_per_s{};      ///< of a wheel that does not slip
+  PerWheel torque_Nm{};        ///< at the axle, after the gear, without the motor's own drag; > 0 drives forward along t
+  PerWheel speed_rad_per_s{};  ///< of a wheel that does not slip
   PerWheel normal_force_N{};
   PerWheel rolling_force_N{};      ///< on the ground contact, as delivered
   PerWheel traction_use_ratio{};   ///< demanded rolling force per force that the contact can pass on; > 1 slips, infinite on a lifted wheel
@@ -30,10 +31,11 @@ struct WheelDemands {
 
 /// Wheel torque T_i = loss(η, f_i·r) + f_i·r + friction_i(θ, ω) + J·dω_i/dt with the least Σf² that gives
 ///   Jᵀ·f = wrench(a) − external − roller drag.
-/// Loads N_i follow from the acceleration demanded. A contact passes on √(μ² − c²)·N_i. Where that is too little, the
-/// acceleration is scaled down, direction kept, until all contacts suffice; where no share of it does that, because
-/// drag and push alone are too much, each contact gives what it can and the body accelerates as the sum decides. A push
-/// at standstill is a stall: torque without speed.
+/// Loads N_i follow from the acceleration demanded. A contact passes on √(μ² − c²)·N_i. Where that is too little for one
+/// of four wheels, the others take over as far as they can: as much of the pattern that moves nothing (inner_share) as
+/// needed. Where that is not enough, the acceleration is scaled down, direction kept; where no share of it helps,
+/// because drag and push alone are too much, each contact gives what it can and the body accelerates as the sum
+/// decides. A push at standstill is a stall: torque without speed.
 WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion);
 
 }  // namespace heatsoak

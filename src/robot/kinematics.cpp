@@ -55,7 +55,8 @@ BodyAcceleration rates_from_acceleration(const BodyVelocity& local, const BodyAc
 Kinematics make_kinematics(const Robot& robot) {
   const std::size_t count = robot.wheel_axis_rad.size();
   if (count < 3 || count > kMostWheels) {
-    throw bad_input({robot.file.string()}, "wheels.axis_angles", fmt::format("names {} wheels; a motion can be calculated for three or four", count));
+    throw bad_input({robot.file.string()}, "wheels.axis_angles",
+                    fmt::format("names {} wheels; a motion can be calculated for three or four", count));
   }
   Kinematics made;
   made.wheel_count = static_cast<int>(count);
@@ -80,6 +81,12 @@ Kinematics make_kinematics(const Robot& robot) {
     made.inverse_y_factor[i] = inverse(1, column);
     made.inverse_yaw_per_m[i] = inverse(2, column) / made.contact_radius_m;
   }
+  if (count == kMostWheels) {
+    const Eigen::Matrix4d inner = Eigen::Matrix4d::Identity() - jacobian * inverse;
+    Eigen::Index longest = 0;
+    inner.colwise().squaredNorm().maxCoeff(&longest);
+    Eigen::Vector4d::Map(made.inner_share.data()) = inner.col(longest).normalized();
+  }
   return made;
 }
 
@@ -87,7 +94,8 @@ PerWheel rolling_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity
   PerWheel speed_m_per_s{};
   for (int i = 0; i < kinematics.wheel_count; ++i) {
     const WheelDirections& wheel = kinematics.wheels[i];
-    speed_m_per_s[i] = wheel.rolling_x_share * local.x_m_per_s + wheel.rolling_y_share * local.y_m_per_s + kinematics.contact_radius_m * local.yaw_rad_per_s;
+    speed_m_per_s[i] = wheel.rolling_x_share * local.x_m_per_s + wheel.rolling_y_share * local.y_m_per_s +
+                       kinematics.contact_radius_m * local.yaw_rad_per_s;
   }
   return speed_m_per_s;
 }
@@ -123,7 +131,8 @@ BodyVelocity body_velocity(const Kinematics& kinematics, const PerWheel& wheel_s
 PerWheel rolling_forces_N(const Kinematics& kinematics, const Wrench& local) {
   PerWheel force_N{};
   for (int i = 0; i < kinematics.wheel_count; ++i) {
-    force_N[i] = kinematics.inverse_x_factor[i] * local.x_N + kinematics.inverse_y_factor[i] * local.y_N + kinematics.inverse_yaw_per_m[i] * local.yaw_Nm;
+    force_N[i] = kinematics.inverse_x_factor[i] * local.x_N + kinematics.inverse_y_factor[i] * local.y_N +
+                 kinematics.inverse_yaw_per_m[i] * local.yaw_Nm;
   }
   return force_N;
 }

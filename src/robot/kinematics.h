@@ -81,6 +81,8 @@ struct Kinematics {
   PerWheel inverse_x_factor{};
   PerWheel inverse_y_factor{};
   PerWheel inverse_yaw_per_m{};
+  /// Forces of four wheels that work against each other and move nothing, Jᵀ·n = 0, Σn² = 1; 0 for three wheels.
+  PerWheel inner_share{};
 };
 
 /// Throws Failure (bad_input) for more than four wheels, or where all axles are alike so that the robot cannot be

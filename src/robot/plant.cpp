@@ -31,7 +31,7 @@ PlantState unpacked(const Vector& y) {
 struct Stage {
   PlantOutput output;
   Vector rate{};
-  PerWheel contact_N_s_per_m{};      ///< rolling force over slip
+  PerWheel contact_N_s_per_m{};        ///< rolling force over slip
   PerWheel resistance_Nm_s_per_rad{};  ///< of motor and friction against a wheel's turning
 };
 
@@ -41,8 +41,8 @@ struct Electrics {
   bool at_bus = false;  ///< the bus limits a motor
 };
 
-Electrics motors_at(const PlantConfig& plant, const PlantState& state, const PlantInput& input, const std::array<MotorCommand, kMostWheels>& command,
-                    double bus_V) {
+Electrics motors_at(const PlantConfig& plant, const PlantState& state, const PlantInput& input,
+                    const std::array<MotorCommand, kMostWheels>& command, double bus_V) {
   Electrics made;
   for (int i = 0; i < plant.body.kinematics.wheel_count; ++i) {
     const double motor_rad_per_s = state.wheel_speed_rad_per_s[i] * plant.gear_ratio;
@@ -56,20 +56,27 @@ Electrics motors_at(const PlantConfig& plant, const PlantState& state, const Pla
 /// The bus voltage that the motors it limits bring about: V + R·P(V)/V = E, by the Illinois rule.
 Electrics sagging_bus(const PlantConfig& plant, const PlantState& state, const PlantInput& input) {
   const double source_V = open_circuit_V(plant.battery, state.battery_charge_A_s);
-  const auto excess_V = [&](const Electrics& at, double bus_V) { return bus_V - source_V + plant.battery.internal_resistance_ohm * at.power_W / bus_V; };
-  double low_V = 0.01 * source_V;
+  const auto excess_V = [&](const Electrics& at, double bus_V) {
+    return bus_V - source_V + plant.battery.internal_resistance_ohm * at.power_W / bus_V;
+  };
   double high_V = source_V;
   Electrics at = motors_at(plant, state, input, input.command, high_V);
   double high_excess_V = excess_V(at, high_V);
+  // The current that the full voltage draws sags too far, unless motors short of their limit draw more at less.
+  double low_V = std::max(high_V - high_excess_V, 0.01 * source_V);
   double low_excess_V = excess_V(motors_at(plant, state, input, input.command, low_V), low_V);
+  if (low_excess_V > 0.0) {
+    low_V = 0.01 * source_V;
+    low_excess_V = excess_V(motors_at(plant, state, input, input.command, low_V), low_V);
+  }
   if (high_excess_V <= 0.0 || low_excess_V >= 0.0) {
     return at;  // braking lifts the bus: it limits nobody in the end
   }
-  for (int round = 0; round < 60 && high_V - low_V > 1e-13 * source_V; ++round) {
+  for (int round = 0; round < 60 && high_V - low_V > 1e-12 * source_V; ++round) {
     const double bus_V = high_V - high_excess_V * (high_V - low_V) / (high_excess_V - low_excess_V);
     at = motors_at(plant, state, input, input.command, bus_V);
     const double now_V = excess_V(at, bus_V);
-    if (std::abs(now_V) < 1e-12 * source_V) {
+    if (std::abs(now_V) < 1e-10 * source_V) {
       break;
     }
     if (now_V > 0.0) {
@@ -86,7 +93,8 @@ Electrics sagging_bus(const PlantConfig& plant, const PlantState& state, const P
 }
 
 /// Motors and battery at the voltage that they bring about together.
-std::array<MotorPoint, kMostWheels> settle_electrics(const PlantConfig& plant, const PlantState& state, const PlantInput& input, PlantOutput& out) {
+std::array<MotorPoint, kMostWheels> settle_electrics(const PlantConfig& plant, const PlantState& state, const PlantInput& input,
+                                                     PlantOutput& out) {
   const double source_V = open_circuit_V(plant.battery, state.battery_charge_A_s);
   Electrics made = motors_at(plant, state, input, input.command, source_V);
   BatteryLoad load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
@@ -108,7 +116,8 @@ std::array<MotorPoint, kMostWheels> settle_electrics(const PlantConfig& plant, c
 }
 
 /// Contacts: their forces per normal force are known, the loads follow from the forces: F = Σ N_i(F)·g_i, a 2×2 system.
-void settle_contacts(const BodyConfig& body, const PlantInput& input, const std::array<ContactRatios, kMostWheels>& ratios, PlantOutput& out) {
+void settle_contacts(const BodyConfig& body, const PlantInput& input, const std::array<ContactRatios, kMostWheels>& ratios,
+                     PlantOutput& out) {
   const WeightConfig& weight = body.weight;
   const double h_m = weight.center_of_gravity_height_m;
   const LoadMoment without = load_moment(weight, {}, input.external, input.external_height_m);
@@ -118,7 +127,8 @@ void settle_contacts(const BodyConfig& body, const PlantInput& input, const std:
     const WheelDirections& wheel = body.kinematics.wheels[i];
     const double g_x = ratios[i].rolling_ratio * wheel.rolling_x_share + ratios[i].lateral_ratio * wheel.axle_x_share;
     const double g_y = ratios[i].rolling_ratio * wheel.rolling_y_share + ratios[i].lateral_ratio * wheel.axle_y_share;
-    const double standing_N = weight.level_share[i] * weight.mass_kg * kGravity_m_per_s2 + weight.along_x_per_m[i] * without.x_Nm + weight.along_y_per_m[i] * without.y_Nm;
+    const double standing_N = weight.level_share[i] * weight.mass_kg * kGravity_m_per_s2 + weight.along_x_per_m[i] * without.x_Nm +
+                              weight.along_y_per_m[i] * without.y_Nm;
     right_N[0] += standing_N * g_x;
     right_N[1] += standing_N * g_y;
     matrix[0][0] += h_m * g_x * weight.along_x_per_m[i];
@@ -148,14 +158,16 @@ BodyAcceleration accelerate_body(const BodyConfig& body, const PlantState& state
   const Wrench rolling = wrench_of_rolling_forces(body.kinematics, stage.output.rolling_force_N);
   const Wrench lateral = wrench_of_lateral_forces(body.kinematics, lateral_N);
   const Wrench& push = input.external;
-  stage.output.external_W = push.x_N * state.velocity.x_m_per_s + push.y_N * state.velocity.y_m_per_s + push.yaw_Nm * state.velocity.yaw_rad_per_s;
-  return acceleration_of_wrench(body, state.velocity.yaw_rad_per_s,
-                                {rolling.x_N + lateral.x_N + push.x_N, rolling.y_N + lateral.y_N + push.y_N, rolling.yaw_Nm + lateral.yaw_Nm + push.yaw_Nm});
+  stage.output.external_W =
+      push.x_N * state.velocity.x_m_per_s + push.y_N * state.velocity.y_m_per_s + push.yaw_Nm * state.velocity.yaw_rad_per_s;
+  return acceleration_of_wrench(
+      body, state.velocity.yaw_rad_per_s,
+      {rolling.x_N + lateral.x_N + push.x_N, rolling.y_N + lateral.y_N + push.y_N, rolling.yaw_Nm + lateral.yaw_Nm + push.yaw_Nm});
 }
 
 /// Wheel i: motor through gear against friction, rolling loss and ground.
-void accelerate_wheel(const PlantConfig& plant, int i, const PlantState& state, const MotorPoint& point, double friction_Nm, const ContactRatios& ratios,
-                      Stage& stage) {
+void accelerate_wheel(const PlantConfig& plant, int i, const PlantState& state, const MotorPoint& point, double friction_Nm,
+                      const ContactRatios& ratios, Stage& stage) {
   PlantOutput& out = stage.output;
   const double speed_rad_per_s = state.wheel_speed_rad_per_s[i];
   const double radius_m = plant.body.kinematics.wheel_radius_m;
@@ -182,10 +194,12 @@ void accelerate_wheel(const PlantConfig& plant, int i, const PlantState& state, 
   out.rolling_W[i] = rolling_loss_Nm * speed_rad_per_s;
   out.friction_W[i] = friction_Nm * speed_rad_per_s;
   const double geared_constant_Nm_per_A = point.torque_constant_Nm_per_A * plant.gear_ratio;
-  const double dry_Nm = plant.body.friction.wheel_torque_Nm + plant.body.friction.heading.constant_Nm + plant.motor.drag_torque_Nm * plant.gear_ratio;
+  const double dry_Nm =
+      plant.body.friction.wheel_torque_Nm + plant.body.friction.heading.constant_Nm + plant.motor.drag_torque_Nm * plant.gear_ratio;
   stage.contact_N_s_per_m[i] = ratios.rolling_slope_s_per_m * out.normal_force_N[i];
   stage.resistance_Nm_s_per_rad[i] = dry_Nm * smoothing * smoothing / (root_rad_per_s * root_rad_per_s * root_rad_per_s) +
-                                     plant.body.friction.wheel_damping_Nm_s_per_rad + geared_constant_Nm_per_A * geared_constant_Nm_per_A / point.resistance_ohm;
+                                     plant.body.friction.wheel_damping_Nm_s_per_rad +
+                                     geared_constant_Nm_per_A * geared_constant_Nm_per_A / point.resistance_ohm;
 }
 
 Stage evaluate(const PlantConfig& plant, const PlantState& state, const PlantInput& input) {
@@ -266,17 +280,18 @@ void average(PerWheel& a, const PerWheel& b) {
 
 PlantOutput mean(const PlantOutput& first, const PlantOutput& second) {
   PlantOutput out = first;
-  for (PerWheel PlantOutput::* const each :
-       {&PlantOutput::current_A, &PlantOutput::terminal_V, &PlantOutput::motor_torque_Nm, &PlantOutput::motor_speed_rad_per_s, &PlantOutput::wheel_torque_Nm,
-        &PlantOutput::rolling_force_N, &PlantOutput::normal_force_N, &PlantOutput::slip_m_per_s, &PlantOutput::copper_W, &PlantOutput::driver_W,
-        &PlantOutput::motor_drag_W, &PlantOutput::gear_W, &PlantOutput::rolling_W, &PlantOutput::friction_W, &PlantOutput::slip_W, &PlantOutput::roller_W}) {
+  for (PerWheel PlantOutput::*const each :
+       {&PlantOutput::current_A, &PlantOutput::terminal_V, &PlantOutput::motor_torque_Nm, &PlantOutput::motor_speed_rad_per_s,
+        &PlantOutput::wheel_torque_Nm, &PlantOutput::rolling_force_N, &PlantOutput::normal_force_N, &PlantOutput::slip_m_per_s,
+        &PlantOutput::copper_W, &PlantOutput::driver_W, &PlantOutput::motor_drag_W, &PlantOutput::gear_W, &PlantOutput::rolling_W,
+        &PlantOutput::friction_W, &PlantOutput::slip_W, &PlantOutput::roller_W}) {
     average(out.*each, second.*each);
   }
-  for (double PlantOutput::* const each : {&PlantOutput::battery_V, &PlantOutput::battery_current_A, &PlantOutput::battery_source_W,
-                                           &PlantOutput::battery_loss_W, &PlantOutput::external_W}) {
+  for (double PlantOutput::*const each : {&PlantOutput::battery_V, &PlantOutput::battery_current_A, &PlantOutput::battery_source_W,
+                                          &PlantOutput::battery_loss_W, &PlantOutput::external_W}) {
     out.*each = 0.5 * (first.*each + second.*each);
   }
-  for (bool PlantOutput::* const each : {&PlantOutput::limited, &PlantOutput::lifted, &PlantOutput::undervoltage}) {
+  for (bool PlantOutput::*const each : {&PlantOutput::limited, &PlantOutput::lifted, &PlantOutput::undervoltage}) {
     out.*each = first.*each || second.*each;
   }
   return out;
@@ -305,8 +320,8 @@ PlantState plant_at_rest(const PlantConfig& plant) {
 
 double heat_W(const PlantOutput& output) {
   double sum_W = 0.0;
-  for (const PerWheel* const each : {&output.copper_W, &output.driver_W, &output.motor_drag_W, &output.gear_W, &output.rolling_W, &output.friction_W,
-                                     &output.slip_W, &output.roller_W}) {
+  for (const PerWheel* const each : {&output.copper_W, &output.driver_W, &output.motor_drag_W, &output.gear_W, &output.rolling_W,
+                                     &output.friction_W, &output.slip_W, &output.roller_W}) {
     for (const double power_W : *each) {
       sum_W += power_W;
     }

@@ -24,7 +24,7 @@ PlantConfig make_plant(const Robot& robot, const MotorValues& motor, double peri
 
 struct PlantState {
   Pose pose;
-  BodyVelocity velocity;        ///< of the origin, local axes
+  BodyVelocity velocity;  ///< of the origin, local axes
   PerWheel wheel_speed_rad_per_s{};
   double battery_charge_A_s = 0.0;
 };
@@ -35,7 +35,7 @@ PlantState plant_at_rest(const PlantConfig& plant);
 /// Held over the step.
 struct PlantInput {
   std::array<MotorCommand, kMostWheels> command{};
-  Wrench external;  ///< on the body from outside, local axes
+  Wrench external;                 ///< on the body from outside, local axes
   double external_height_m = 0.0;  ///< above the ground, where it acts
   PerWheel winding_C{25.0, 25.0, 25.0, 25.0};
   PerWheel magnet_C{25.0, 25.0, 25.0, 25.0};
@@ -47,28 +47,28 @@ struct PlantInput {
 struct PlantOutput {
   PerWheel current_A{};
   PerWheel terminal_V{};
-  PerWheel motor_torque_Nm{};   ///< K_t·I − drag, at the motor's shaft
+  PerWheel motor_torque_Nm{};  ///< K_t·I − drag, at the motor's shaft
   PerWheel motor_speed_rad_per_s{};
-  PerWheel wheel_torque_Nm{};   ///< that the gear hands to the wheel
-  PerWheel rolling_force_N{};   ///< on the contact, along the rolling direction
+  PerWheel wheel_torque_Nm{};  ///< that the gear hands to the wheel
+  PerWheel rolling_force_N{};  ///< on the contact, along the rolling direction
   PerWheel normal_force_N{};
-  PerWheel slip_m_per_s{};      ///< rim minus ground, > 0 drives
+  PerWheel slip_m_per_s{};  ///< rim minus ground, > 0 drives
   PerWheel copper_W{};
   PerWheel driver_W{};
-  PerWheel motor_drag_W{};      ///< iron and bearings
+  PerWheel motor_drag_W{};  ///< iron and bearings
   PerWheel gear_W{};
-  PerWheel rolling_W{};         ///< by the rolling efficiency
-  PerWheel friction_W{};        ///< wheel torque and damping
-  PerWheel slip_W{};            ///< contact sliding along the rolling direction
-  PerWheel roller_W{};          ///< drag along the axles
+  PerWheel rolling_W{};   ///< by the rolling efficiency
+  PerWheel friction_W{};  ///< wheel torque and damping
+  PerWheel slip_W{};      ///< contact sliding along the rolling direction
+  PerWheel roller_W{};    ///< drag along the axles
   double battery_V = 0.0;
   double battery_current_A = 0.0;  ///< > 0 discharges
   double battery_source_W = 0.0;   ///< what the cells give before their own loss
   double battery_loss_W = 0.0;
-  double external_W = 0.0;         ///< done on the robot
-  bool limited = false;            ///< a motor got less than its command
-  bool lifted = false;             ///< a wheel has left the ground
-  bool undervoltage = false;       ///< the battery broke down; the drivers have switched the motors off
+  double external_W = 0.0;    ///< done on the robot
+  bool limited = false;       ///< a motor got less than its command
+  bool lifted = false;        ///< a wheel has left the ground
+  bool undervoltage = false;  ///< the battery broke down; the drivers have switched the motors off
 };
 
 /// The heat of all losses but the battery's own.

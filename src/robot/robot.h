@@ -29,28 +29,28 @@ struct Robot {
   std::string drive_motor;  ///< id of the motor it is built with
   std::string source;
   double wheel_radius_m = 0.0;
-  double gear_ratio = 1.0;      ///< motor turns per wheel turn
+  double gear_ratio = 1.0;  ///< motor turns per wheel turn
   double gear_efficiency = 1.0;
-  double battery_V = 0.0;  ///< nominal
+  double battery_V = 0.0;                                            ///< nominal
   double voltage_limit_V = std::numeric_limits<double>::infinity();  ///< of the driver's command, one motor
   double current_limit_A = std::numeric_limits<double>::infinity();  ///< equivalent DC current, one motor
   Commutation commutation = Commutation::block;
   double mass_kg = 0.0;
   double wheel_contact_radius_m = 0.0;  ///< from the robot's axis to the wheels' contact points
-  std::vector<double> wheel_axis_rad;  ///< direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first
+  std::vector<double> wheel_axis_rad;   ///< direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first
 
   // Figures with origin, kAbsent where the file has none: what moving the robot needs, but a prescribed duty does not.
   double yaw_inertia_kg_m2 = kAbsent;  ///< about the vertical through the centre of gravity, wheels included
   double center_of_gravity_height_m = kAbsent;
-  double center_of_gravity_x_m = kAbsent;  ///< ahead of the axis; 0 where absent
-  double center_of_gravity_y_m = kAbsent;  ///< left of it; 0 where absent
-  double wheel_inertia_kg_m2 = kAbsent;    ///< one wheel about its axle, without the motor's rotor
+  double center_of_gravity_x_m = kAbsent;     ///< ahead of the axis; 0 where absent
+  double center_of_gravity_y_m = kAbsent;     ///< left of it; 0 where absent
+  double wheel_inertia_kg_m2 = kAbsent;       ///< one wheel about its axle, without the motor's rotor
   double wheel_friction_torque_Nm = kAbsent;  ///< at the wheel, without the motor's own drag
   double wheel_damping_Nm_s_per_rad = kAbsent;
-  double roller_drag_ratio = kAbsent;   ///< drag along the axle per normal force
-  double rolling_efficiency = kAbsent;  ///< of the wheel's torque that reaches the ground; 1 where absent
-  double traction_ratio = kAbsent;      ///< largest rolling force per normal force
-  double slip_speed_m_per_s = kAbsent;  ///< slip at which 0.71 of it is used
+  double roller_drag_ratio = kAbsent;      ///< drag along the axle per normal force
+  double rolling_efficiency = kAbsent;     ///< of the wheel's torque that reaches the ground; 1 where absent
+  double traction_ratio = kAbsent;         ///< largest rolling force per normal force
+  double slip_speed_m_per_s = kAbsent;     ///< slip at which 0.71 of it is used
   double driver_resistance_ohm = kAbsent;  ///< switches and traces of one motor, in series with the winding
   double driver_standby_W = kAbsent;       ///< per motor: gate drive, logic, switching
   double battery_full_V = kAbsent;
@@ -68,7 +68,7 @@ struct Robot {
   double heading_sine_Nm = kAbsent;
   double heading_double_angle_Nm = kAbsent;
   double heading_rotation_Nm = kAbsent;
-  std::vector<double> heading_phase_rad;  ///< per wheel
+  std::vector<double> heading_phase_rad;               ///< per wheel
   std::map<std::string, Figure, std::less<>> figures;  ///< by "table.key"
 
   [[nodiscard]] double available_V() const;
@@ -78,7 +78,7 @@ struct Robot {
 struct RobotFigureSpec {
   std::string_view table;
   ParameterSpec spec;
-  double Robot::* value;
+  double Robot::*value;
 };
 std::span<const RobotFigureSpec> robot_figure_specs();
 

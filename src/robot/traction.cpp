@@ -46,6 +46,7 @@ NormalLoads loads_with_a_wheel_lifted(const WeightConfig& weight, const LoadMome
       return loads;
     }
   }
+  loads.force_N = all_N;
   scale_to_weight(weight, loads.force_N);
   return loads;
 }
@@ -102,8 +103,8 @@ ContactRatios contact_ratios(const TractionConfig& traction, double slip_m_per_s
   ratios.rolling_slope_s_per_m = traction.traction_ratio * s_0 * s_0 / (root_m_per_s * root_m_per_s * root_m_per_s);
   const double sliding_m_per_s = traction.roller_drag_ratio / traction.traction_ratio * slip_m_per_s;
   const double u_0 = traction.roller_speed_m_per_s;
-  ratios.lateral_ratio =
-      -traction.roller_drag_ratio * lateral_m_per_s / std::sqrt(lateral_m_per_s * lateral_m_per_s + sliding_m_per_s * sliding_m_per_s + u_0 * u_0);
+  ratios.lateral_ratio = -traction.roller_drag_ratio * lateral_m_per_s /
+                         std::sqrt(lateral_m_per_s * lateral_m_per_s + sliding_m_per_s * sliding_m_per_s + u_0 * u_0);
   return ratios;
 }
 

@@ -35,7 +35,7 @@ struct LoadMoment {
 LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, const Wrench& external, double external_height_m);
 
 struct NormalLoads {
-  PerWheel force_N{};  ///< at least 0; the sum is the weight
+  PerWheel force_N{};   ///< at least 0; the sum is the weight
   bool lifted = false;  ///< a wheel has left the ground, or the robot would tip over
 };
 /// A wheel that would have to pull on the ground has 0, and the others carry the moment; where three or fewer

@@ -85,7 +85,8 @@ TEST(Kinematics, power_at_the_rims_is_power_at_the_body) {
       for (int i = 0; i < 4; ++i) {
         rims_W += force_N[i] * (along[i] + across[i]);
       }
-      const double body_W = (rolling.x_N + lateral.x_N) * v.x_m_per_s + (rolling.y_N + lateral.y_N) * v.y_m_per_s + (rolling.yaw_Nm + lateral.yaw_Nm) * v.yaw_rad_per_s;
+      const double body_W = (rolling.x_N + lateral.x_N) * v.x_m_per_s + (rolling.y_N + lateral.y_N) * v.y_m_per_s +
+                            (rolling.yaw_Nm + lateral.yaw_Nm) * v.yaw_rad_per_s;
       EXPECT_NEAR(rims_W, body_W, 1e-12);
     }
   }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -77,9 +76,9 @@ TEST(Plant, energy_is_conserved_to_second_order) {
   const Balance coarse = balance_of_a_second(robot, lossy_motor(), 4);
   const Balance fine = balance_of_a_second(robot, lossy_motor(), 8);
   const Balance finer = balance_of_a_second(robot, lossy_motor(), 16);
-  std::cout << "out of the battery " << finer.battery_J << " J, heat " << finer.heat_J << " J, motion " << finer.kinetic_J << " J; left over "
-            << balance_of_a_second(robot, lossy_motor(), 2).residual_J() << " J at 1 kHz, " << coarse.residual_J() << " J at 2 kHz, " << fine.residual_J()
-            << " J at 4 kHz, " << finer.residual_J() << " J at 8 kHz\n";
+  std::cout << "out of the battery " << finer.battery_J << " J, heat " << finer.heat_J << " J, motion " << finer.kinetic_J
+            << " J; left over " << balance_of_a_second(robot, lossy_motor(), 2).residual_J() << " J at 1 kHz, " << coarse.residual_J()
+            << " J at 2 kHz, " << fine.residual_J() << " J at 4 kHz, " << finer.residual_J() << " J at 8 kHz\n";
   EXPECT_GT(finer.heat_J, 5.0);
   EXPECT_LT(std::abs(finer.residual_J()), 1e-4 * finer.heat_J);
   EXPECT_GT(std::log2(std::abs(coarse.residual_J() / fine.residual_J())), 1.8);
@@ -94,7 +93,8 @@ TEST(Plant, every_loss_is_a_loss) {
     input.command[1].kind = i % 700 < 350 ? MotorCommand::Kind::voltage : MotorCommand::Kind::open;
     input.command[2] = {MotorCommand::Kind::current, 6.0 * std::sin(0.004 * i)};
     const PlantOutput out = step(plant, state, input);
-    for (const PerWheel* const each : {&out.copper_W, &out.driver_W, &out.motor_drag_W, &out.gear_W, &out.rolling_W, &out.friction_W, &out.slip_W, &out.roller_W}) {
+    for (const PerWheel* const each :
+         {&out.copper_W, &out.driver_W, &out.motor_drag_W, &out.gear_W, &out.rolling_W, &out.friction_W, &out.slip_W, &out.roller_W}) {
       for (const double power_W : *each) {
         ASSERT_GE(power_W, 0.0);
       }
@@ -250,7 +250,8 @@ TEST(Plant, contacts_sum_up_to_the_weight_in_motion) {
   PlantState state = plant_at_rest(plant);
   for (int i = 0; i < 1000; ++i) {
     const PlantOutput out = step(plant, state, lively(0.001 * i));
-    EXPECT_NEAR(out.normal_force_N[0] + out.normal_force_N[1] + out.normal_force_N[2] + out.normal_force_N[3], 2.5 * kGravity_m_per_s2, 1e-9);
+    EXPECT_NEAR(out.normal_force_N[0] + out.normal_force_N[1] + out.normal_force_N[2] + out.normal_force_N[3], 2.5 * kGravity_m_per_s2,
+                1e-9);
   }
 }
 
@@ -261,7 +262,8 @@ TEST(Plant, limits_of_current_voltage_and_battery_hold) {
   const PlantConfig plant = make_plant(robot, lossy_motor(), 0.001);
   PlantState state = plant_at_rest(plant);
   for (int i = 0; i < 1000; ++i) {
-    const PlantOutput out = step(plant, state, all(i < 500 ? MotorCommand::Kind::current : MotorCommand::Kind::voltage, i < 500 ? 50.0 : -50.0));
+    const PlantOutput out =
+        step(plant, state, all(i < 500 ? MotorCommand::Kind::current : MotorCommand::Kind::voltage, i < 500 ? 50.0 : -50.0));
     EXPECT_TRUE(out.limited);
     EXPECT_LT(out.battery_V, 25.0 + 0.05 * 20.0);
     for (int w = 0; w < kMostWheels; ++w) {
@@ -336,7 +338,8 @@ TEST(Battery, gives_what_its_stored_energy_loses) {
   EXPECT_NEAR(stored_energy_J(battery, 4680.0), 22.5 * 4680.0, 1e-9);
   EXPECT_NEAR(open_circuit_V(battery, 2340.0), 22.5, 1e-12);
   const double charge_A_s = 3000.0;
-  EXPECT_NEAR((stored_energy_J(battery, charge_A_s + 0.01) - stored_energy_J(battery, charge_A_s - 0.01)) / 0.02, open_circuit_V(battery, charge_A_s), 1e-7);
+  EXPECT_NEAR((stored_energy_J(battery, charge_A_s + 0.01) - stored_energy_J(battery, charge_A_s - 0.01)) / 0.02,
+              open_circuit_V(battery, charge_A_s), 1e-7);
   const BatteryLoad load = battery_load(battery, 4680.0, 500.0);
   EXPECT_NEAR(load.terminal_V * load.current_A, 500.0, 1e-9);
   EXPECT_NEAR(load.terminal_V, 25.2 - 0.05 * load.current_A, 1e-12);
@@ -345,9 +348,11 @@ TEST(Battery, gives_what_its_stored_energy_loses) {
 
 TEST(Driver, sinusoidal_current_heats_less_for_the_same_torque) {
   Robot robot = bare_robot();
-  const MotorPoint block = motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);
+  const MotorPoint block =
+      motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);
   robot.commutation = Commutation::sinusoidal;
-  const MotorPoint sinusoidal = motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);
+  const MotorPoint sinusoidal =
+      motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);
   EXPECT_NEAR(block.copper_W, 9.6, 1e-12);
   EXPECT_NEAR(sinusoidal.copper_W / block.copper_W, 0.912, 5e-4);
   EXPECT_NEAR(sinusoidal.input_W, sinusoidal.copper_W + sinusoidal.driver_W, 1e-12);
@@ -361,7 +366,8 @@ TEST(Robots, that_are_shipped_can_be_simulated_and_drawn) {
     const Robot robot = read_robot(entry.path());
     EXPECT_GT(robot.speed_limit_m_per_s, 1.0);
     EXPECT_GT(robot.yaw_acceleration_limit_rad_per_s2, 1.0);
-    const MotorValues motor = shipped_motor(robot.drive_motor).nominal.rotor_inertia_kg_m2 > 0.0 ? shipped_motor(robot.drive_motor).nominal : lossy_motor();
+    const MotorValues motor =
+        shipped_motor(robot.drive_motor).nominal.rotor_inertia_kg_m2 > 0.0 ? shipped_motor(robot.drive_motor).nominal : lossy_motor();
     Random random(1, 2);
     const Robot drawn = draw_sample(robot, random);
     EXPECT_NE(drawn.yaw_inertia_kg_m2, robot.yaw_inertia_kg_m2);
@@ -377,21 +383,6 @@ TEST(Robots, that_are_shipped_can_be_simulated_and_drawn) {
     EXPECT_GT(state.velocity.x_m_per_s, 0.3) << robot.id;
     EXPECT_LT(state.velocity.x_m_per_s, 8.0) << robot.id;
   }
-}
-
-/// Printed, not asserted.
-TEST(Plant, time_per_step) {
-  const PlantConfig plant = make_plant(lossy_robot(), lossy_motor(), 0.001);
-  PlantState state = plant_at_rest(plant);
-  const PlantInput input = lively(0.2);
-  const auto begin = std::chrono::steady_clock::now();
-  constexpr int kSteps = 300'000;
-  for (int i = 0; i < kSteps; ++i) {
-    step(plant, state, input);
-  }
-  const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  EXPECT_TRUE(std::isfinite(state.pose.x_m));
-  std::cout << "plant: " << spent_s / kSteps * 1e9 << " ns per step\n";
 }
 
 }  // namespace

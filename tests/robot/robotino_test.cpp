@@ -104,8 +104,8 @@ double kinematics_error(const BodyConfig& body, const std::vector<SteadyRun>& ru
 
 void print(const std::string& name, const Mounting& mounting, double error) {
   std::cout << name << ": camera to wheels " << std::hypot(mounting.along, mounting.across) << ", marker turned by "
-            << std::atan2(mounting.across, mounting.along) * 180.0 / std::numbers::pi << " degrees, error of the wheel speeds on other headings "
-            << 100.0 * error << " %\n";
+            << std::atan2(mounting.across, mounting.along) * 180.0 / std::numbers::pi
+            << " degrees, error of the wheel speeds on other headings " << 100.0 * error << " %\n";
 }
 
 TEST_F(Robotino, motion_gives_the_wheel_speeds_within_3_percent) {
@@ -175,7 +175,8 @@ Model physical_model(const BodyConfig& body) {
       one.weight = make_weight(one.kinematics, body.weight.mass_kg, body.weight.center_of_gravity_height_m, x_m, 0.0);
       return inverse_dynamics(one, motion).torque_Nm;
     };
-    Columns columns{torque_Nm(1.0, 0.0, 0.0, 0.0), torque_Nm(0.0, 1.0, 0.0, 0.0), torque_Nm(0.0, 0.0, 1.0, 0.0), torque_Nm(0.0, 0.0, 1.0, 0.01)};
+    Columns columns{torque_Nm(1.0, 0.0, 0.0, 0.0), torque_Nm(0.0, 1.0, 0.0, 0.0), torque_Nm(0.0, 0.0, 1.0, 0.0),
+                    torque_Nm(0.0, 0.0, 1.0, 0.01)};
     for (int i = 0; i < 3; ++i) {
       columns[3][i] = (columns[3][i] - columns[2][i]) / 0.01;
     }
@@ -239,8 +240,8 @@ Eigen::VectorXd fitted(const std::vector<SteadyRun>& runs, const Model& model, c
 }
 
 struct Fit {
-  double error_of_mean = 0.0;  ///< rms error of Σi² over its mean
-  double explained = 0.0;      ///< share of the variance over the headings, 1 − error²/variance
+  double error_of_mean = 0.0;   ///< rms error of Σi² over its mean
+  double explained = 0.0;       ///< share of the variance over the headings, 1 − error²/variance
   double measured_range = 0.0;  ///< largest over smallest Σi²
   double range = 0.0;
 };
@@ -268,12 +269,14 @@ Fit judged(const std::vector<SteadyRun>& runs, const Model& model, const Eigen::
   const Eigen::Map<const Eigen::ArrayXd> m(measured.data(), static_cast<Eigen::Index>(measured.size()));
   const Eigen::Map<const Eigen::ArrayXd> p(predicted.data(), static_cast<Eigen::Index>(predicted.size()));
   const double error = (m - p).square().mean();
-  return {std::sqrt(error) / m.mean(), 1.0 - error / (m - m.mean()).square().mean(), m.maxCoeff() / m.minCoeff(), p.maxCoeff() / p.minCoeff()};
+  return {std::sqrt(error) / m.mean(), 1.0 - error / (m - m.mean()).square().mean(), m.maxCoeff() / m.minCoeff(),
+          p.maxCoeff() / p.minCoeff()};
 }
 
 void print(const std::string& name, const Fit& train, const Fit& other) {
-  std::cout << std::fixed << std::setprecision(3) << "  " << std::left << std::setw(28) << name << " fitted " << train.error_of_mean << "  other headings "
-            << other.error_of_mean << " (explains " << other.explained << ", range " << other.range << " of " << other.measured_range << ")\n"
+  std::cout << std::fixed << std::setprecision(3) << "  " << std::left << std::setw(28) << name << " fitted " << train.error_of_mean
+            << "  other headings " << other.error_of_mean << " (explains " << other.explained << ", range " << other.range << " of "
+            << other.measured_range << ")\n"
             << std::defaultfloat;
 }
 
@@ -299,8 +302,8 @@ TEST_F(Robotino, friction_depends_on_the_heading_as_the_roller_drag_says) {
     std::cout << surface << ", rms error of the sum of squared currents over its mean\n";
     const Fit paper = fit(runs, "paper, 6 parameters", paper_model(body_)).other;
     const auto [parameters, physical] = fit(runs, "roller drag, 4 parameters", physical_model(body_));
-    std::cout << "  wheel torque " << 1000.0 * parameters(0) << " mN m, damping " << 1000.0 * parameters(1) << " mN m s/rad, roller drag " << parameters(2)
-              << " of 11 kg's weight, centre of gravity " << 1000.0 * parameters(3) / parameters(2) << " mm ahead\n";
+    std::cout << "  wheel torque " << 1000.0 * parameters(0) << " mN m, damping " << 1000.0 * parameters(1) << " mN m s/rad, roller drag "
+              << parameters(2) << " of 11 kg's weight, centre of gravity " << 1000.0 * parameters(3) / parameters(2) << " mm ahead\n";
     EXPECT_LT(physical.error_of_mean, 0.07);
     EXPECT_LT(physical.error_of_mean, 0.9 * paper.error_of_mean);
     EXPECT_GT(physical.explained, 0.5);
@@ -344,7 +347,9 @@ TEST_F(Robotino, opposite_headings_tell_the_spread) {
     const std::vector<SteadyRun> runs = steady_runs(folder_ / surface, 0);
     double difference = 0.0;
     double mean = 0.0;
-    const auto heat = [&](int n) { return Eigen::Map<const Eigen::Array3d>(runs[static_cast<std::size_t>(n)].current_A.data()).square().sum(); };
+    const auto heat = [&](int n) {
+      return Eigen::Map<const Eigen::Array3d>(runs[static_cast<std::size_t>(n)].current_A.data()).square().sum();
+    };
     for (int n = 0; n < 36; ++n) {
       difference += 0.25 * (heat(n) - heat(n + 36)) * (heat(n) - heat(n + 36)) * 2.0 / 36.0;
       mean += (heat(n) + heat(n + 36)) / 72.0;

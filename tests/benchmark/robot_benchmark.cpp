@@ -1,0 +1,52 @@
+// A match at 1 kHz is 2.4 million steps: what one costs backwards (wheel demands of a motion) and forwards (plant).
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "motor/motor.h"
+#include "robot/inverse_dynamics.h"
+#include "robot/plant.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+Robot robot(const char* id) { return read_robot(kSource / "robot_core/robots" / (std::string(id) + ".toml")); }
+MotorValues motor() { return read_motor(kSource / "motor_db/nanotec_df45l024048_a2.toml").nominal; }
+
+/// Another motion at every step, within what the ground passes on.
+BodyMotion motion_at(double time_s) {
+  const double wave = time_s - std::floor(time_s);
+  return {{1.0 + wave, 0.3 - wave, 2.0 * wave}, {wave, 1.0, -wave}, {}, 0.05};
+}
+
+void wheel_demands(benchmark::State& state, const char* id) {
+  const BodyConfig body = make_body(robot(id), motor());
+  double time_s = 0.0;
+  for (auto each : state) {
+    (void)each;
+    benchmark::DoNotOptimize(inverse_dynamics(body, motion_at(time_s += 0.001)));
+  }
+}
+BENCHMARK_CAPTURE(wheel_demands, roller_drag, "tigers_v2020");
+BENCHMARK_CAPTURE(wheel_demands, measured_heading, "roboteam_twente_v2024");
+
+void plant_step(benchmark::State& state, double command_V) {
+  const PlantConfig plant = make_plant(robot("tigers_v2020"), motor(), 0.001);
+  PlantState at = plant_at_rest(plant);
+  PlantInput input;
+  for (int i = 0; i < kMostWheels; ++i) {
+    input.command[i] = {MotorCommand::Kind::voltage, i == 0 || i == 3 ? command_V : -command_V};
+  }
+  for (auto each : state) {
+    (void)each;
+    benchmark::DoNotOptimize(step(plant, at, input));
+  }
+}
+BENCHMARK_CAPTURE(plant_step, ordinary, 3.0);
+BENCHMARK_CAPTURE(plant_step, bus_is_the_limit, 100.0);
+
+}  // namespace
+}  // namespace heatsoak
