@@ -39,17 +39,17 @@ inline double sqrt_instruction(double x) {
 #if defined(__NO_MATH_ERRNO__)
   return __builtin_sqrt(x);
 #elif defined(__x86_64__)
-  double root;
-  __asm__("sqrtsd %1, %0" : "=x"(root) : "x"(x));
-  return root;
+  double y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
+  __asm__("sqrtsd %1, %0" : "=x"(y) : "x"(x));
+  return y;
 #elif defined(__aarch64__)
-  double root;
-  __asm__("fsqrt %d0, %d1" : "=w"(root) : "w"(x));
-  return root;
+  double y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
+  __asm__("fsqrt %d0, %d1" : "=w"(y) : "w"(x));
+  return y;
 #elif defined(__ARM_FP) && (__ARM_FP & 8)
-  double root;
-  __asm__("vsqrt.f64 %P0, %P1" : "=w"(root) : "w"(x));
-  return root;
+  double y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
+  __asm__("vsqrt.f64 %P0, %P1" : "=w"(y) : "w"(x));
+  return y;
 #else
   return __builtin_sqrt(x);
 #endif
@@ -59,17 +59,17 @@ inline float sqrt_instruction(float x) {
 #if defined(__NO_MATH_ERRNO__)
   return __builtin_sqrtf(x);
 #elif defined(__x86_64__)
-  float root;
-  __asm__("sqrtss %1, %0" : "=x"(root) : "x"(x));
-  return root;
+  float y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
+  __asm__("sqrtss %1, %0" : "=x"(y) : "x"(x));
+  return y;
 #elif defined(__aarch64__)
-  float root;
-  __asm__("fsqrt %s0, %s1" : "=w"(root) : "w"(x));
-  return root;
+  float y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
+  __asm__("fsqrt %s0, %s1" : "=w"(y) : "w"(x));
+  return y;
 #elif defined(__ARM_FP) && (__ARM_FP & 4)
-  float root;
-  __asm__("vsqrt.f32 %0, %1" : "=t"(root) : "t"(x));
-  return root;
+  float y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
+  __asm__("vsqrt.f32 %0, %1" : "=t"(y) : "t"(x));
+  return y;
 #else
   return __builtin_sqrtf(x);
 #endif

@@ -8,7 +8,7 @@ namespace {
 
 /// Durations and the jerk of each, in units of jerk_max.
 template <typename Real, int most>
-struct Path {
+struct Path {  // NOLINT(cppcoreguidelines-pro-type-member-init): only `count` of the places hold values
   int count = 0;
   Real duration_s[most];
   Real jerk[most];
@@ -34,7 +34,7 @@ using Extreme = Path<Real, 7>;
 
 /// One axis in units of its jerk_max, after its brake.
 template <typename Real>
-struct Problem {
+struct Problem {  // NOLINT(cppcoreguidelines-pro-type-member-init): pose() fills it
   Real v0, a0, v1, a1;
   Real velocity_max, velocity_min, acceleration_max, acceleration_min;  ///< magnitudes of the minima
   Real distance;
@@ -54,7 +54,7 @@ template <typename Real>
 Families<Real> families_of(const Problem<Real>& p) {
   const Real half0 = p.a0 * p.a0 / Real(2);
   const Real half1 = p.a1 * p.a1 / Real(2);
-  const Real tolerance = kTouch<Real> * (absolute(p.v0) + absolute(p.v1) + half0 + half1);
+  const Real tolerance = smaller(kTouch<Real>, Real(8) * kRounding<Real>) * (absolute(p.v0) + absolute(p.v1) + half0 + half1);
   // Ends that lie on one parabola but for rounding: without this the motion along it would be missed.
   const auto or_zero = [tolerance](Real difference) { return absolute(difference) <= tolerance ? Real(0) : difference; };
   const Real up = or_zero((p.v1 - p.v0) + (half0 - half1));
@@ -63,7 +63,8 @@ Families<Real> families_of(const Problem<Real>& p) {
   const Leg<Real> up1{p.v1 - half1, -p.a1, larger(p.acceleration_min, -p.a1)};
   const Leg<Real> down0{-p.v0 - half0, -p.a0, larger(p.acceleration_min, -p.a0)};
   const Leg<Real> down1{-p.v1 - half1, p.a1, larger(p.acceleration_max, p.a1)};
-  return {make_ascent(up0, up1, up, down, p.velocity_max, p.distance, p.distance_scale), make_ascent(down0, down1, down, up, p.velocity_min, -p.distance, p.distance_scale)};
+  return {make_ascent(up0, up1, up, down, p.velocity_max, p.distance, p.distance_scale),
+          make_ascent(down0, down1, down, up, p.velocity_min, -p.distance, p.distance_scale)};
 }
 
 template <typename Real>
@@ -119,18 +120,19 @@ Arrival<Real> arrival_after_gap(const Families<Real>& f, bool one_is_up) {
   const Ascent<Real>& one = one_is_up ? f.up : f.down;
   const Ascent<Real>& other = one_is_up ? f.down : f.up;
   Shape<Real> shape{};
-  const Place<Real> place = after_gap(one);
+  const Place<Real> place = lowest_top(one);
   if (one.goal >= place.distance || is_met(one, place)) {
     if (!touch(one, place, shape)) {
       meet(one, place, shape);
     }
     return arrival(f, one_is_up, shape);
   }
-  Place<Real> other_place = after_gap(other);
+  Place<Real> other_place = lowest_top(other);
   if (!other.has_gap) {
     // The gap is so short that rounding hides it here.
-    at_duration(other, top_duration(one, place.at) - one.entries + other.entries, other_place);
-    other_place = top_place(other, larger(other_place.is_saddle ? other.high.vertex : other_place.at, lowest_top(other)));
+    Place<Real> later{};
+    at_duration(other, top_duration(one, place) - one.entries + other.entries, later);
+    other_place = !later.is_saddle && later.at > other_place.at ? later : other_place;
   }
   if (!touch(other, other_place, shape)) {
     meet(other, other_place, shape);
@@ -186,8 +188,8 @@ bool arrive_before_gap_from(const Families<Real>& f, Real duration_s, bool& is_u
   if (f.up.has_gap && up_duration_s > saddle_duration(f.up, f.up.gap) && up_duration_s < top_duration(f.up, lowest_top(f.up))) {
     return false;
   }
-  Place<Real> up_place;
-  Place<Real> down_place;
+  Place<Real> up_place{};
+  Place<Real> down_place{};
   timed.up = at_duration(f.up, up_duration_s, up_place);
   timed.down = at_duration(f.down, duration_s + f.down.entries, down_place);
   const Real tolerance = kRounding<Real> * (f.up.goal_scale + absolute(up_place.distance) + absolute(down_place.distance));
@@ -288,7 +290,7 @@ void append_timed(const Families<Real>& f, const Timed<Real>& timed, Way<Real>& 
 /// `value`, or the one of `low`, 0 and `high` that it differs from by a rounding error of `scale`.
 template <typename Real>
 Real snapped(Real value, Real low, Real high, Real scale) {
-  const Real tolerance = kRounding<Real> * scale;
+  const Real tolerance = kTouch<Real> * scale;
   if (absolute(value) <= tolerance) {
     return Real(0);
   }
@@ -363,8 +365,8 @@ void brake_acceleration(Real& v, Real& a, Real velocity_max, Real velocity_min, 
   a = acceleration_max;
   v = reached;
   if (reached < -velocity_min) {
-    const Real hold_s = smaller((-velocity_min - reached) / acceleration_max,
-                                (velocity_max - reached) / acceleration_max - acceleration_max / Real(2));
+    const Real hold_s =
+        smaller((-velocity_min - reached) / acceleration_max, (velocity_max - reached) / acceleration_max - acceleration_max / Real(2));
     brake.add(hold_s, Real(0));
     v += larger(hold_s, Real(0)) * a;
   }
@@ -412,8 +414,8 @@ bool violates_later(const Problem<Real>& p) {
   const Real velocity_tolerance = tolerance * (absolute(p.v0) + square);
   const bool is_inside = p.v0 <= p.velocity_max + velocity_tolerance && p.v0 >= -p.velocity_min - velocity_tolerance &&
                          p.a0 <= p.acceleration_max * (Real(1) + tolerance) && p.a0 >= -p.acceleration_min * (Real(1) + tolerance);
-  return is_inside && (p.a0 > Real(0) ? p.v0 + square > p.velocity_max + velocity_tolerance
-                                      : p.v0 - square < -p.velocity_min - velocity_tolerance);
+  return is_inside &&
+         (p.a0 > Real(0) ? p.v0 + square > p.velocity_max + velocity_tolerance : p.v0 - square < -p.velocity_min - velocity_tolerance);
 }
 
 template <typename Real>
@@ -479,7 +481,7 @@ PlanResult pose(const AxisState<Real>& start, const AxisState<Real>& target, con
 
 /// One axis, ready to be asked for arrivals.
 template <typename Real>
-struct Axis {
+struct Axis {  // NOLINT(cppcoreguidelines-pro-type-member-init): pose_axis() fills it
   Problem<Real> problem;
   Families<Real> families;
   /// A start that will inevitably break a velocity limit may still arrive before. Then these are the motions without a
@@ -489,7 +491,8 @@ struct Axis {
 };
 
 template <typename Real>
-PlanResult pose_axis(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits, Target how, Axis<Real>& axis) {
+PlanResult pose_axis(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits, Target how,
+                     Axis<Real>& axis) {
   if (const PlanResult result = pose(start, target, limits, how, axis.problem); result != PlanResult::ok) {
     return result;
   }
@@ -539,7 +542,7 @@ void arrive_from(const Axis<Real>& axis, Real duration_s, AxisArrival<Real>& arr
     return;
   }
   const Real brake_s = axis.problem.brake_s;
-  Arrival<Real> first;
+  Arrival<Real> first{};
   if (axis.may_be_early) {
     // The braked motions start later than the others end.
     const bool arrives = arrive_before_gap(axis.families, is_up, first);
@@ -571,8 +574,8 @@ void append_arrival(const Axis<Real>& axis, const AxisArrival<Real>& arrival, Wa
 }
 
 template <typename Real>
-PlanResult finish(const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits, Target how,
-                  Trajectory<Real>& trajectory) {
+PlanResult finish(const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
+                  Target how, Trajectory<Real>& trajectory) {
   if (!lay_out(way, start, limits, trajectory)) {
     trajectory.segment_count = 0;
     return PlanResult::out_of_range;
@@ -597,7 +600,7 @@ PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& ta
   if (const PlanResult result = pose_axis(start, target, limits, how, axis); result != PlanResult::ok) {
     return result;
   }
-  AxisArrival<Real> arrival;
+  AxisArrival<Real> arrival;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled in next
   arrive_first(axis, arrival);
   Way<Real> way;
   append_arrival(axis, arrival, way);
@@ -801,7 +804,7 @@ PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (
     if (pose_axis(start[axis], target[axis], limits_of(t, axis), how, posed) != PlanResult::ok) {
       return std::numeric_limits<Real>::max();
     }
-    AxisArrival<Real> arrival;
+    AxisArrival<Real> arrival;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled in next
     arrive_first(posed, arrival);
     return arrival.duration_s;
   };

@@ -140,10 +140,11 @@ struct PlaneLimits {
 };
 
 /// x, y and yaw of a robot, arriving together. A circle bounds speed, acceleration and jerk in the plane: x gets the
-/// share cos(split) of each, y the share sin(split), and the split is chosen so that both are equally slow. A start or
-/// target that has more of a quantity than one split leaves it bounds the choice of splits; where no split is left (a
-/// turn at full speed), the axes that have too much brake first, and meanwhile the length may exceed its limit, by less
-/// than a factor of sqrt(2). axes: 0 x, 1 y, 2 yaw.
+/// share cos(split) of each, y the share sin(split), and the split is chosen so that both are equally slow, within what
+/// the target needs. A target may have all but 1e-6 of a limit; if no split leaves room for its velocity (or, with that,
+/// its acceleration), the result says so. The lengths keep their limits if the start fits the chosen split, as one from
+/// rest or from the last plan to the same target does. A start that does not (a turn at full speed) is braked first,
+/// and meanwhile the lengths may exceed their limits, by less than a factor of sqrt(2). axes: 0 x, 1 y, 2 yaw.
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);

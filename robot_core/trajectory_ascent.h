@@ -32,7 +32,7 @@ inline constexpr Real kRounding = Real(128) * std::numeric_limits<Real>::epsilon
 /// What a start that was computed, not chosen, may be off, relative. More than kRounding: behind a gap that opens at a small
 /// slope y, an error of the velocities counts 1/y times.
 template <typename Real>
-inline constexpr Real kTouch = std::numeric_limits<Real>::digits > 32 ? Real(1e-12) : Real(1e-5);
+inline constexpr Real kTouch = std::numeric_limits<Real>::digits > 32 ? Real(1e-11) : Real(1e-5);
 
 template <typename Real>
 struct Leg {
@@ -52,6 +52,8 @@ struct Ascent {
   Real ceiling;  ///< the highest top
   Real goal;     ///< distance from vertex to vertex that is asked for
   Real goal_scale;
+  Real distance;        ///< the same from end to end
+  Real position_scale;  ///< of the positions whose difference that is
   bool starts_in_saddle;
   /// The shortest saddles are possible up to y = gap; then no motion is, until the low leg starts at its entry.
   bool has_gap;
@@ -77,6 +79,8 @@ struct Place {
   bool is_saddle;
   Real at;
   Real distance;
+  Real low_height;  ///< of the legs of a top
+  Real high_height;
 };
 
 template <typename Real>
@@ -85,14 +89,25 @@ inline Real leg_duration(Real height, Real bound) {
 }
 
 template <typename Real>
-inline Real top_duration(const Ascent<Real>& a, Real top) {
-  return leg_duration(top - a.low.vertex, a.low.bound) + leg_duration(top - a.high.vertex, a.high.bound);
+inline Place<Real> top_place(const Ascent<Real>& a, Real top, Real low_height, Real high_height) {
+  const Real distance = (top + a.low.vertex) / Real(2) * leg_duration(low_height, a.low.bound) +
+                        (top + a.high.vertex) / Real(2) * leg_duration(high_height, a.high.bound);
+  return {false, top, distance, low_height, high_height};
 }
 
 template <typename Real>
-inline Real top_distance(const Ascent<Real>& a, Real top) {
-  return (top + a.low.vertex) / Real(2) * leg_duration(top - a.low.vertex, a.low.bound) +
-         (top + a.high.vertex) / Real(2) * leg_duration(top - a.high.vertex, a.high.bound);
+inline Place<Real> top_place(const Ascent<Real>& a, Real top) {
+  return top_place(a, top, top - a.low.vertex, top - a.high.vertex);
+}
+
+template <typename Real>
+inline Real top_duration(const Ascent<Real>& a, const Place<Real>& place) {
+  return leg_duration(place.low_height, a.low.bound) + leg_duration(place.high_height, a.high.bound);
+}
+
+template <typename Real>
+inline Place<Real> saddle_place(Real y, Real distance) {
+  return {true, y, distance, Real(0), Real(0)};
 }
 
 template <typename Real>
@@ -130,8 +145,8 @@ inline Real saddle_distance(const Ascent<Real>& a, Real y) {
 /// `up_difference` is vertex of the end less vertex of the start; `down_difference` the same for the mirrored motion.
 template <typename Real>
 inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Real up_difference, Real down_difference, Real velocity_max,
-                                Real distance, Real distance_scale) {
-  Ascent<Real> a;
+                                Real distance, Real position_scale) {
+  Ascent<Real> a{};
   a.low_is_start = up_difference > Real(0) || (up_difference == Real(0) && !(start.entry < Real(0)));
   a.low = a.low_is_start ? start : end;
   a.high = a.low_is_start ? end : start;
@@ -141,7 +156,9 @@ inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Re
   const Real start_part = start.entry * (start.vertex + start.entry * start.entry / Real(6));
   const Real end_part = end.entry * (end.vertex + end.entry * end.entry / Real(6));
   a.goal = distance + start_part + end_part;
-  a.goal_scale = distance_scale + absolute(start.entry) * (absolute(start.vertex) + start.entry * start.entry) +
+  a.distance = distance;
+  a.position_scale = position_scale;
+  a.goal_scale = position_scale + absolute(start.entry) * (absolute(start.vertex) + start.entry * start.entry) +
                  absolute(end.entry) * (absolute(end.vertex) + end.entry * end.entry);
   const bool entry_fits = !(a.low.entry > Real(0)) || (a.low_is_start ? down_difference <= Real(0) : down_difference >= Real(0));
   a.starts_in_saddle = a.high.entry < Real(0) && entry_fits;
@@ -154,26 +171,21 @@ inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Re
   return a;
 }
 
+/// The lowest top at which both legs are whole: one of them begins with a fall, or, if none can, with its vertex.
 template <typename Real>
-inline Place<Real> top_place(const Ascent<Real>& a, Real top) {
-  return {false, top, top_distance(a, top)};
-}
-
-/// The lowest top at which both legs are whole.
-template <typename Real>
-inline Real lowest_top(const Ascent<Real>& a) {
-  const Real low = a.low.entry > Real(0) ? a.low.vertex + a.low.entry * a.low.entry : a.low.vertex;
-  const Real high = a.high.entry > Real(0) ? a.high.vertex + a.high.entry * a.high.entry : a.high.vertex;
-  return larger(low, high);
+inline Place<Real> lowest_top(const Ascent<Real>& a) {
+  const Real low = a.low.entry > Real(0) ? a.low.entry * a.low.entry : Real(0);
+  const Real high = a.high.entry > Real(0) ? a.high.entry * a.high.entry : Real(0);
+  if (low - a.rise > high) {
+    return top_place(a, a.low.vertex + low, low, low - a.rise);
+  }
+  return top_place(a, a.high.vertex + high, a.rise + high, high);
 }
 
 /// The motion of the shortest duration of all.
 template <typename Real>
 inline Place<Real> shortest(const Ascent<Real>& a) {
-  if (a.starts_in_saddle) {
-    return {true, a.high.entry, saddle_distance(a, a.high.entry)};
-  }
-  return top_place(a, lowest_top(a));
+  return a.starts_in_saddle ? saddle_place(a.high.entry, saddle_distance(a, a.high.entry)) : lowest_top(a);
 }
 
 template <typename Real>
@@ -188,10 +200,10 @@ inline void set_leg(Real height, Real bound, Real& slope, Real& hold) {
 }
 
 template <typename Real>
-inline Shape<Real> top_shape(const Ascent<Real>& a, Real top, Real cruise, Real distance) {
-  Shape<Real> shape;
-  set_leg(top - a.low.vertex, a.low.bound, shape.slope_low, shape.hold_low);
-  set_leg(top - a.high.vertex, a.high.bound, shape.slope_high, shape.hold_high);
+inline Shape<Real> top_shape(const Ascent<Real>& a, const Place<Real>& place, Real cruise, Real distance) {
+  Shape<Real> shape{};
+  set_leg(place.low_height, a.low.bound, shape.slope_low, shape.hold_low);
+  set_leg(place.high_height, a.high.bound, shape.slope_high, shape.hold_high);
   shape.fall = shape.slope_low + shape.slope_high;
   shape.cruise = cruise;
   shape.distance = distance;
@@ -223,7 +235,7 @@ inline Shape<Real> high_held_shape(const Ascent<Real>& a, Real x, Real distance)
 template <typename Real>
 inline Shape<Real> shape_at(const Ascent<Real>& a, const Place<Real>& place) {
   if (!place.is_saddle) {
-    return top_shape(a, place.at, Real(0), place.distance);
+    return top_shape(a, place, Real(0), place.distance);
   }
   if (saddle_is_held(a, place.at)) {
     return low_held_shape(a, place.at, place.distance);
@@ -233,10 +245,11 @@ inline Shape<Real> shape_at(const Ascent<Real>& a, const Place<Real>& place) {
   return {x, Real(0), place.at, Real(0), s, Real(0), place.distance};
 }
 
-/// Value and first two derivatives.
+/// Value and first two derivatives; the magnitude of the terms that make up the value.
 template <typename Real>
 struct Jet {
   Real value;
+  Real magnitude;
   Real first;
   Real second;
 };
@@ -246,16 +259,15 @@ struct Jet {
 template <typename Real, typename Function>
 inline Real root_between(const Function& function, Real low, Real high, Real guess, Real resolution) {
   constexpr int kMostSteps = 64;
+  constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
   Real x = clamped(guess, low, high);
   for (int step = 0; step < kMostSteps; ++step) {
     const Jet<Real> f = function(x);
-    if (f.value < Real(0)) {
-      low = x;
-    } else if (f.value > Real(0)) {
-      high = x;
-    } else {
+    // Below its own rounding errors a value tells no direction any more.
+    if (!(absolute(f.value) > kEpsilon * f.magnitude)) {
       return x;
     }
+    (f.value < Real(0) ? low : high) = x;
     Real next = x - Real(2) * f.value * f.first / (Real(2) * f.first * f.first - f.value * f.second);
     if (!(next > low && next < high)) {
       next = x - f.value / f.first;
@@ -263,7 +275,7 @@ inline Real root_between(const Function& function, Real low, Real high, Real gue
         next = low + (high - low) / Real(2);
       }
     }
-    if (absolute(next - x) <= Real(2) * std::numeric_limits<Real>::epsilon() * (absolute(x) + resolution)) {
+    if (absolute(next - x) <= Real(2) * kEpsilon * (absolute(x) + resolution)) {
       return next;
     }
     x = next;
@@ -275,9 +287,7 @@ inline Real root_between(const Function& function, Real low, Real high, Real gue
 inline double rough_cube_root(double x) {
   return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, x) / 3 + 0x2a9f789300000000U);
 }
-inline float rough_cube_root(float x) {
-  return __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, x) / 3 + 0x2a508c00U);
-}
+inline float rough_cube_root(float x) { return __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, x) / 3 + 0x2a508c00U); }
 
 /// Neither leg held: the duration s of the fall.
 template <typename Real>
@@ -287,8 +297,8 @@ inline Shape<Real> solve_free(const Ascent<Real>& a, Real low_s, Real high_s, Re
     const Real inverse = Real(1) / s;
     const Real pull = quarter_rise_2 * inverse;
     const Real s_2 = s * s;
-    return Jet<Real>{s * (s_2 / Real(4) + a.sum) - pull - a.goal, Real(3) / Real(4) * s_2 + a.sum + pull * inverse,
-                     Real(3) / Real(2) * s - Real(2) * pull * inverse * inverse};
+    return Jet<Real>{s * (s_2 / Real(4) + a.sum) - pull - a.goal, s * (s_2 / Real(4) + absolute(a.sum)) + pull + absolute(a.goal),
+                     Real(3) / Real(4) * s_2 + a.sum + pull * inverse, Real(3) / Real(2) * s - Real(2) * pull * inverse * inverse};
   };
   return free_shape(a, root_between(function, low_s, high_s, guess, Real(0)), a.goal);
 }
@@ -297,13 +307,17 @@ inline Shape<Real> solve_free(const Ascent<Real>& a, Real low_s, Real high_s, Re
 template <typename Real>
 inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, Real low, Real high, Real guess) {
   const Real inverse = Real(1) / bound;
-  const Real offset = sum / Real(2) * (bound + rise * inverse) - goal;
+  const Real rest = sum / Real(2) * (bound + rise * inverse);
+  const Real offset = rest - goal;
+  const Real offset_magnitude = absolute(rest) + absolute(goal);
   const auto function = [&](Real y) {
     const Real y_2 = y * y;
     const Real speed = vertex + y_2 + bound * y / Real(2);
     const Real stretch = Real(1) + y * inverse;
-    return Jet<Real>{y * (Real(2) * vertex + y * ((vertex + y_2 / Real(2)) * inverse + bound / Real(2) + y)) + offset,
-                     Real(2) * speed * stretch, Real(2) * ((Real(2) * y + bound / Real(2)) * stretch + speed * inverse)};
+    const Real curve = y * ((vertex + y_2 / Real(2)) * inverse + bound / Real(2) + y);
+    return Jet<Real>{y * (Real(2) * vertex + curve) + offset,
+                     absolute(y) * (Real(2) * absolute(vertex) + absolute(curve)) + offset_magnitude, Real(2) * speed * stretch,
+                     Real(2) * ((Real(2) * y + bound / Real(2)) * stretch + speed * inverse)};
   };
   return root_between(function, low, high, guess, bound);
 }
@@ -320,7 +334,7 @@ inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, con
   bool low_is_held = low_threshold <= low;
   bool high_is_held = high_threshold <= low;
   if (!low_is_held && low_threshold < high) {
-    const Real distance = top_distance(a, low_threshold);
+    const Real distance = top_place(a, low_threshold).distance;
     low_is_held = distance <= a.goal;
     (low_is_held ? low : high) = low_threshold;
     (low_is_held ? low_distance : high_distance) = distance;
@@ -329,7 +343,7 @@ inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, con
     if (high_threshold <= low) {
       high_is_held = true;
     } else {
-      const Real distance = top_distance(a, high_threshold);
+      const Real distance = top_place(a, high_threshold).distance;
       high_is_held = distance <= a.goal;
       (high_is_held ? low : high) = high_threshold;
       (high_is_held ? low_distance : high_distance) = distance;
@@ -342,7 +356,7 @@ inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, con
                       a.high.vertex * (a.high.bound - a.high.vertex / a.high.bound) - Real(2) * a.goal;
     const Real root = square_root(half * half - square * rest);
     const Real top = half > Real(0) ? -rest / (half + root) : (root - half) / square;
-    return top_shape(a, clamped(top, low, high), Real(0), a.goal);
+    return top_shape(a, top_place(a, clamped(top, low, high)), Real(0), a.goal);
   }
   const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
   if (low_is_held) {
@@ -429,7 +443,7 @@ inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until,
       shape = low_held_shape(a, y, a.goal);
       return true;
     }
-    from = {true, release, distance};
+    from = saddle_place(release, distance);
     const Real end = saddle_distance(a, until);
     if (end >= a.goal && until > release && a.rise > Real(0)) {
       const Real s_low = a.rise / (a.low.bound - release);
@@ -437,7 +451,7 @@ inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until,
       shape = solve_free(a, s_low, s_high, s_low + clamped((a.goal - distance) / (end - distance), Real(0), Real(1)) * (s_high - s_low));
       return true;
     }
-    from = {true, until, end};
+    from = saddle_place(until, end);
     return false;
   }
   const Real end = saddle_distance(a, until);
@@ -445,31 +459,46 @@ inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until,
     shape = solve_saddle(a, from.at, until, from.distance, end);
     return true;
   }
-  from = {true, until, end};
+  from = saddle_place(until, end);
   return false;
 }
 
-/// Where the motion is that lasts just until a gap is over.
-template <typename Real>
-inline Place<Real> after_gap(const Ascent<Real>& a) {
-  return top_place(a, lowest_top(a));
-}
-
-/// Whether the motion at a place meets the goal, but for rounding errors.
+/// Whether the motion at a place meets the goal, but for rounding errors. What looks so from vertex to vertex is measured
+/// once more from end to end: short motions between large accelerations are far shorter than that.
 template <typename Real>
 inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
-  return absolute(a.goal - place.distance) <= kTouch<Real> * (a.goal_scale + absolute(place.distance));
+  if (absolute(a.goal - place.distance) > kTouch<Real> * (a.goal_scale + absolute(place.distance))) {
+    return false;
+  }
+  const Shape<Real> shape = shape_at(a, place);
+  Real distance = 0;
+  Real duration = 0;
+  Real velocity = 0;
+  const auto go = [&](Real from, Real slope, Real jerk, Real time) {
+    distance += time * (from + time * (slope / Real(2) + time * jerk / Real(6)));
+    duration += time;
+    velocity = larger(velocity, absolute(from));
+    return from + time * (slope + time * jerk / Real(2));
+  };
+  const auto raise = [&](const Leg<Real>& leg, Real slope, Real hold) {
+    const Real reached = go(leg.vertex + leg.entry * leg.entry / Real(2), leg.entry, Real(1), larger(slope - leg.entry, Real(0)));
+    return go(reached, slope, Real(0), hold);
+  };
+  raise(a.high, shape.slope_high, shape.hold_high);
+  go(raise(a.low, shape.slope_low, shape.hold_low), shape.slope_low, Real(-1), shape.fall);
+  const Real slope = absolute(shape.slope_low) + absolute(shape.slope_high);
+  return absolute(a.distance - distance) <= kTouch<Real> * (a.position_scale + duration * (velocity + duration * slope));
 }
 
 /// A motion that meets the goal but for a rounding error. Where the next one is far off, that makes all the difference:
 /// whoever plans again on the way would be sent around.
 template <typename Real>
 inline bool touch(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& shape) {
-  if (!is_met(a, place)) {
-    return false;
+  const bool meets = is_met(a, place);
+  if (meets) {
+    shape = shape_at(a, place);
   }
-  shape = shape_at(a, place);
-  return true;
+  return meets;
 }
 
 /// The first motion from `from` on (whose distance is not above the goal) that meets the goal. False if a gap comes first.
@@ -487,16 +516,13 @@ inline bool meet(const Ascent<Real>& a, Place<Real> from, Shape<Real>& shape) {
       return true;
     }
     if (a.has_gap) {
-      if (touch(a, from, shape)) {
-        return true;
-      }
-      return false;
+      return touch(a, from, shape);
     }
-    from = top_place(a, a.high.vertex);
+    from = top_place(a, a.high.vertex, a.rise, Real(0));
   }
   const Place<Real> ceiling = top_place(a, a.ceiling);
   if (a.goal >= ceiling.distance) {
-    shape = top_shape(a, a.ceiling, (a.goal - ceiling.distance) / a.ceiling, a.goal);
+    shape = top_shape(a, ceiling, (a.goal - ceiling.distance) / a.ceiling, a.goal);
     return true;
   }
   if (a.goal <= from.distance) {
@@ -510,69 +536,56 @@ inline bool meet(const Ascent<Real>& a, Place<Real> from, Shape<Real>& shape) {
 /// The widest motion of duration T from vertex to vertex, and its place.
 template <typename Real>
 inline Shape<Real> at_duration(const Ascent<Real>& a, Real duration, Place<Real>& place) {
-  if (duration < leg_duration(a.rise, a.low.bound)) {
-    const Real s = duration / Real(2);
-    const Real difference = s > Real(0) ? a.rise / s : Real(0);
-    const Real x = (s + difference) / Real(2);
-    Shape<Real> shape;
-    if (x <= a.low.bound) {
-      const Real y = (s - difference) / Real(2);
-      place = {true, y, s * (s * s / Real(4) + a.sum) - a.rise * difference / Real(4)};
-      shape = {x, Real(0), y, Real(0), s, Real(0), place.distance};
-    } else {
-      const Real y = square_root(a.low.bound * duration - a.rise) - a.low.bound;
-      place = {true, y, held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, y)};
-      shape = low_held_shape(a, y, place.distance);
-    }
-    return shape;
-  }
-  const Real ceiling_duration = top_duration(a, a.ceiling);
-  if (duration >= ceiling_duration) {
-    const Real cruise = duration - ceiling_duration;
-    place = {false, a.ceiling, top_distance(a, a.ceiling) + cruise * a.ceiling};
-    return top_shape(a, a.ceiling, cruise, place.distance);
-  }
   const Real s = duration / Real(2);
   const Real difference = s > Real(0) ? a.rise / s : Real(0);
   Real x = (s + difference) / Real(2);
   Real y = (s - difference) / Real(2);
   bool low_is_held = false;
   bool high_is_held = false;
-  if (x > a.low.bound || y > a.high.bound) {
-    const Real held_y = square_root(a.low.bound * duration - a.rise) - a.low.bound;
-    const Real held_x = square_root(a.high.bound * duration + a.rise) - a.high.bound;
-    low_is_held = x > a.low.bound ? held_y <= a.high.bound || held_x > a.low.bound : held_x > a.low.bound;
-    high_is_held = low_is_held ? held_y > a.high.bound : true;
-    x = held_x;
-    y = held_y;
-  }
-  if (low_is_held && high_is_held) {
-    const Real over_low = Real(1) / a.low.bound;
-    const Real over_high = Real(1) / a.high.bound;
-    const Real top = (duration - a.low.bound - a.high.bound + a.low.vertex * over_low + a.high.vertex * over_high) / (over_low + over_high);
-    place = top_place(a, smaller(larger(top, a.high.vertex), a.ceiling));
-    return top_shape(a, place.at, Real(0), place.distance);
+  const bool is_saddle = duration < leg_duration(a.rise, a.low.bound);
+  if (is_saddle) {
+    low_is_held = x > a.low.bound;
+    y = low_is_held ? square_root(a.low.bound * duration - a.rise) - a.low.bound : y;
+  } else {
+    const Place<Real> ceiling = top_place(a, a.ceiling);
+    if (const Real cruise = duration - top_duration(a, ceiling); cruise >= Real(0)) {
+      place = ceiling;
+      place.distance += cruise * a.ceiling;
+      return top_shape(a, ceiling, cruise, place.distance);
+    }
+    if (x > a.low.bound || y > a.high.bound) {
+      const Real held_y = square_root(a.low.bound * duration - a.rise) - a.low.bound;
+      const Real held_x = square_root(a.high.bound * duration + a.rise) - a.high.bound;
+      low_is_held = held_x > a.low.bound || (x > a.low.bound && held_y <= a.high.bound);
+      high_is_held = !low_is_held || held_y > a.high.bound;
+      x = held_x;
+      y = held_y;
+    }
+    if (low_is_held && high_is_held) {
+      const Real over_low = Real(1) / a.low.bound;
+      const Real over_high = Real(1) / a.high.bound;
+      const Real top =
+          (duration - a.low.bound - a.high.bound + a.low.vertex * over_low + a.high.vertex * over_high) / (over_low + over_high);
+      place = top_place(a, smaller(larger(top, a.high.vertex), a.ceiling));
+      return top_shape(a, place, Real(0), place.distance);
+    }
   }
   // Not by the top: a short motion at a high velocity hardly raises it.
-  place.is_saddle = false;
+  Shape<Real> shape{};
   if (low_is_held) {
-    place.at = a.high.vertex + y * y;
-    place.distance = held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, y);
+    shape = low_held_shape(a, y, held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, y));
   } else if (high_is_held) {
-    place.at = a.low.vertex + x * x;
-    place.distance = held_distance(a.high.bound, a.low.vertex, a.sum, -a.rise, x);
+    shape = high_held_shape(a, x, held_distance(a.high.bound, a.low.vertex, a.sum, -a.rise, x));
   } else {
-    place.at = a.high.vertex + y * y;
-    place.distance = s * (s * s / Real(4) + a.sum) - a.rise * difference / Real(4);
+    shape = {x, Real(0), y, Real(0), s, Real(0), s * (s * s / Real(4) + a.sum) - a.rise * difference / Real(4)};
   }
-  place.at = smaller(larger(place.at, a.high.vertex), a.ceiling);
-  if (low_is_held) {
-    return low_held_shape(a, y, place.distance);
+  if (is_saddle) {
+    place = saddle_place(y, shape.distance);
+  } else {
+    const Real high_height = high_is_held ? larger(x * x - a.rise, Real(0)) : y * y;
+    place = {false, smaller(a.high.vertex + high_height, a.ceiling), shape.distance, a.rise + high_height, high_height};
   }
-  if (high_is_held) {
-    return high_held_shape(a, x, place.distance);
-  }
-  return {x, Real(0), y, Real(0), s, Real(0), place.distance};
+  return shape;
 }
 
 }  // namespace robot_core::detail

@@ -39,8 +39,8 @@ std::string to_string(const Diagnostic& diagnostic) {
   if (diagnostic.at.line > 0) {
     place += fmt::format(":{}:{}", diagnostic.at.line, diagnostic.at.column);
   }
-  return fmt::format("{}{}error: {}{}{}", place, place.empty() ? "" : ": ", diagnostic.key,
-                     diagnostic.key.empty() ? "" : ": ", diagnostic.message);
+  return fmt::format("{}{}error: {}{}{}", place, place.empty() ? "" : ": ", diagnostic.key, diagnostic.key.empty() ? "" : ": ",
+                     diagnostic.message);
 }
 
 Failure::Failure(ExitCode code, std::string message, std::vector<Diagnostic> diagnostics)
@@ -77,6 +77,10 @@ std::string did_you_mean(std::string_view given, std::span<const std::string> ca
       best_distance = distance;
       best = &candidate;
     }
+  }
+  for (std::size_t i = 0; !best && given.size() >= 3 && i < candidates.size(); ++i) {
+    // What somebody leaves out: "tigers" for "tigers_v2020".
+    best = candidates[i].find(given) != std::string::npos ? &candidates[i] : nullptr;
   }
   return best ? fmt::format("; did you mean '{}'?", *best) : std::string();
 }

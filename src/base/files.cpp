@@ -5,9 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -33,7 +35,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest_byt
     int file;
     ~Closer() { ::close(file); }
   } closer{file};
-  struct stat about{};
+  struct stat about {};
   if (::fstat(file, &about) != 0) {
     cannot_read(path, std::strerror(errno));
   }
@@ -68,7 +70,9 @@ class UnfinishedFile {
  public:
   /// `in_place` for what must not be replaced by a renamed file: devices and pipes.
   UnfinishedFile(std::filesystem::path target, bool in_place)
-      : target_(std::move(target)), temporary_(in_place ? target_.string() : fmt::format("{}.{}.partial", target_.string(), ::getpid())), published_(in_place) {
+      : target_(std::move(target)),
+        temporary_(in_place ? target_.string() : fmt::format("{}.{}.partial", target_.string(), ::getpid())),
+        published_(in_place) {
     descriptor_ = ::open(temporary_.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor_ < 0) {
       published_ = true;
@@ -111,10 +115,13 @@ class UnfinishedFile {
   bool published_ = false;
 };
 
-}  // namespace
+struct Target {
+  std::filesystem::path path;
+  bool in_place = false;
+};
 
-void write_file(const std::filesystem::path& path, std::string_view content) {
-  struct stat about{};
+Target target_of(const std::filesystem::path& path) {
+  struct stat about {};
   const bool exists = ::stat(path.c_str(), &about) == 0;
   if (exists && S_ISDIR(about.st_mode)) {
     cannot_write(path, EISDIR);
@@ -124,10 +131,33 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
   }
   const bool in_place = exists && !S_ISREG(about.st_mode);
   std::error_code no_link;
-  const std::filesystem::path target = exists && !in_place ? std::filesystem::canonical(path, no_link) : path;
-  UnfinishedFile file(no_link ? path : target, in_place);
-  file.write(content);
-  file.publish();
+  const std::filesystem::path target =
+      exists && !in_place ? std::filesystem::canonical(path, no_link) : std::filesystem::weakly_canonical(path, no_link);
+  return {no_link ? path : target, in_place};
+}
+
+}  // namespace
+
+void write_files(std::span<const OutputFile> files) {
+  std::vector<std::unique_ptr<UnfinishedFile>> unfinished;
+  std::vector<std::filesystem::path> taken;
+  for (const OutputFile& file : files) {
+    const Target target = target_of(file.path);
+    if (!target.in_place && std::ranges::find(taken, target.path) != taken.end()) {
+      throw bad_input({file.path.string()}, "", "is the target of two outputs");
+    }
+    taken.push_back(target.path);
+    unfinished.push_back(std::make_unique<UnfinishedFile>(target.path, target.in_place));
+    unfinished.back()->write(file.content);
+  }
+  for (const auto& each : unfinished) {
+    each->publish();
+  }
+}
+
+void write_file(const std::filesystem::path& path, std::string_view content) {
+  const OutputFile file{path, std::string(content)};
+  write_files({&file, 1});
 }
 
 }  // namespace heatsoak

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -10,8 +11,17 @@ namespace heatsoak {
 /// All bytes of a regular file of at most `largest_bytes`; else Failure (bad_input).
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes);
 
-/// Writes `content` under a temporary name beside `path` and renames it, so that no half file is left; a link is
-/// followed, and a device or pipe takes the bytes as they come. Throws Failure (bad_input).
+struct OutputFile {
+  std::filesystem::path path;
+  std::string content;
+};
+
+/// Writes all of the files or none: each under a temporary name beside its path, and only when all are complete they
+/// are renamed. A link is followed, and a device or pipe takes the bytes as they come. Throws Failure (bad_input), also
+/// where two of them are the same file.
+void write_files(std::span<const OutputFile> files);
+
+/// One file in the same way.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace heatsoak

@@ -42,9 +42,18 @@ ut_system* unit_system() {
 std::string as_udunits(std::string_view unit) {
   std::string text(unit);
   // Longer ones first: none may appear in what replaced another. µ is U+00B5 or the Greek letter U+03BC.
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSpellings{
-      {{"mNm", "(mN m)"}, {"µNm", "(µN m)"}, {"μNm", "(µN m)"}, {"uNm", "(µN m)"}, {"kNm", "(kN m)"}, {"Nm", "(N m)"}, {"gcm2", "(g cm2)"},
-       {"gcm²", "(g cm2)"}, {"kWh", "(kW h)"}, {"Wh", "(W h)"}, {"mAh", "(mA h)"}, {"Ah", "(A h)"}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSpellings{{{"mNm", "(mN m)"},
+                                                                                      {"µNm", "(µN m)"},
+                                                                                      {"μNm", "(µN m)"},
+                                                                                      {"uNm", "(µN m)"},
+                                                                                      {"kNm", "(kN m)"},
+                                                                                      {"Nm", "(N m)"},
+                                                                                      {"gcm2", "(g cm2)"},
+                                                                                      {"gcm²", "(g cm2)"},
+                                                                                      {"kWh", "(kW h)"},
+                                                                                      {"Wh", "(W h)"},
+                                                                                      {"mAh", "(mA h)"},
+                                                                                      {"Ah", "(A h)"}}};
   for (const auto& [sheet, udunits] : kSpellings) {
     for (std::size_t at = text.find(sheet); at != std::string::npos; at = text.find(sheet, at + udunits.size())) {
       text.replace(at, sheet.size(), udunits);
@@ -76,9 +85,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// "+5" as "5", which std::from_chars does not know; "+-5" stays what it is, no number.
-std::string_view without_plus(std::string_view text) {
-  return text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text;
-}
+std::string_view without_plus(std::string_view text) { return text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text; }
 
 /// UDUNITS takes "000 ohm" for zero ohm and "ohm @ 3" for a shifted scale, so "1 000 ohm" would silently be 0.
 /// A unit has digits in its exponents only ("cm2", "s-1") and as the leading "1/". What is wrong, or nothing.
@@ -112,12 +119,14 @@ std::string shown(std::string_view text) {
   while (line.size() < text.size() && !line.empty() && (static_cast<unsigned char>(text[line.size()]) & 0xC0U) == 0x80U) {
     line.pop_back();  // not inside a UTF-8 character
   }
-  std::ranges::replace_if(line, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  std::ranges::replace_if(
+      line, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
   return line.size() < text.size() ? line + "…" : line;
 }
 
 std::string example_for(std::string_view wanted_unit) {
-  return wanted_unit.empty() ? "expected a number such as \"8\"" : fmt::format("expected a number with a unit such as \"1.5 {}\"", wanted_unit);
+  return wanted_unit.empty() ? "expected a number such as \"8\""
+                             : fmt::format("expected a number with a unit such as \"1.5 {}\"", wanted_unit);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/files.h"
 #include "input/data_folders.h"
 #include "select/evaluate.h"
 
@@ -23,16 +24,25 @@ class Session {
   void add_json_option(CLI::App& app);  ///< --json
 
   [[nodiscard]] DataFolders folders() const;
+  // What a verb has to tell is kept until it is done: finish() puts out all of it or, where a file cannot be written, none.
+
   /// Text for people: stdout, or stderr where the JSON takes stdout.
-  void say(std::string_view text) const;
-  /// Writes the answer where --json asks for it; nothing without --json.
-  void answer(const nlohmann::ordered_json& json) const;
-  void answer_failure(const Failure& failure) const;
+  void say(std::string_view text) { text_ += text; }
+  /// A file that the user asked for.
+  void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
+  /// The answer, for where --json asks for it; nothing without --json.
+  void answer(const nlohmann::ordered_json& json);
+  void finish();
+  /// Instead of everything else.
+  void answer_failure(const Failure& failure);
   void set_json_target(std::string target) { json_target_ = std::move(target); }
 
  private:
   std::string database_;
   std::string json_target_;
+  std::string text_;
+  std::string json_text_;  ///< for stdout
+  std::vector<OutputFile> files_;
 };
 
 struct Command {

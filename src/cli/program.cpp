@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
-#include "base/files.h"
 
 namespace heatsoak {
 namespace {
@@ -50,7 +50,8 @@ void check_words(const CLI::App& app, int argc, const char* const* argv) {
     verb = argc > 1 && each->get_name() == argv[1] ? each : verb;
   }
   if (!verb && argc > 1 && argv[1][0] != '-') {
-    throw Failure(ExitCode::bad_input, fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", argv[1], did_you_mean(argv[1], verbs)));
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", argv[1], did_you_mean(argv[1], verbs)));
   }
   std::vector<std::string> known;
   for (const CLI::Option* option : (verb ? *verb : app).get_options()) {
@@ -65,8 +66,8 @@ void check_words(const CLI::App& app, int argc, const char* const* argv) {
       break;
     }
     if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) {
-      throw Failure(ExitCode::bad_input, fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known), app.get_name(),
-                                                     verb ? " " + verb->get_name() : ""));
+      throw Failure(ExitCode::bad_input, fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known),
+                                                     app.get_name(), verb ? " " + verb->get_name() : ""));
     }
   }
 }
@@ -74,7 +75,7 @@ void check_words(const CLI::App& app, int argc, const char* const* argv) {
 /// Unlike fmt::print this does not throw: a full disk is found at the end (see written_out), a full stderr is borne.
 void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
 
-int fail(const Session& session, const Failure& failure) {
+int fail(Session& session, const Failure& failure) {
   put(stderr, std::string(failure.what()) + "\n");
   session.answer_failure(failure);
   return static_cast<int>(failure.code());
@@ -102,6 +103,7 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
     }
     throw Failure(ExitCode::bad_input, fmt::format("{}\n`{} --help` shows the options and an example", error.what(), verb_of(app)));
   }
+  session.finish();
   return static_cast<int>(code);
 }
 
@@ -117,28 +119,37 @@ void Session::add_json_option(CLI::App& app) {
 
 DataFolders Session::folders() const { return DataFolders::find(database_); }
 
-void Session::say(std::string_view text) const { put(json_target_ == "-" ? stderr : stdout, text); }
-
-void Session::answer(const nlohmann::ordered_json& json) const {
+void Session::answer(const nlohmann::ordered_json& json) {
   if (json_target_.empty()) {
     return;
   }
-  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (json_target_ == "-") {
-    put(stdout, text);
+    json_text_ = std::move(text);
   } else {
-    write_file(json_target_, text);
+    files_.push_back({json_target_, std::move(text)});
   }
 }
 
-void Session::answer_failure(const Failure& failure) const {
+void Session::finish() {
+  write_files(files_);
+  put(json_target_ == "-" ? stderr : stdout, text_);
+  put(stdout, json_text_);
+}
+
+void Session::answer_failure(const Failure& failure) {
+  text_.clear();
+  json_text_.clear();
+  files_.clear();
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
   for (const Diagnostic& each : failure.diagnostics()) {
-    diagnostics.push_back({{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
+    diagnostics.push_back(
+        {{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
   }
   const std::string message = failure.message().empty() ? "the input is wrong" : failure.message();
+  answer({{"error", {{"code", static_cast<int>(failure.code())}, {"message", message}, {"diagnostics", diagnostics}}}});
   try {
-    answer({{"error", {{"code", static_cast<int>(failure.code())}, {"message", message}, {"diagnostics", diagnostics}}}});
+    finish();
   } catch (const Failure& unwritable) {
     if (std::string_view(unwritable.what()) != failure.what()) {
       put(stderr, std::string(unwritable.what()) + "\n");
@@ -169,7 +180,8 @@ Progress progress_bar(std::string what) {
       shown = now;
       const double elapsed_s = std::chrono::duration<double>(now - start).count();
       const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done);
-      fmt::print(stderr, "\r{}: {:3.0f} %, {:.0f} s left  ", what, 100.0 * static_cast<double>(done) / static_cast<double>(total), std::ceil(left_s));
+      fmt::print(stderr, "\r{}: {:3.0f} %, {:.0f} s left  ", what, 100.0 * static_cast<double>(done) / static_cast<double>(total),
+                 std::ceil(left_s));
     }
   };
 }

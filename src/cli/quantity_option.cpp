@@ -24,4 +24,13 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value,
   return app.add_option_function<std::string>(flag, parse, std::string(spec.meaning))->type_name(std::string(spec.unit));
 }
 
+CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning) {
+  const auto is_svg = [](const std::string& name) {
+    return name.ends_with(".svg") || name.ends_with(".svg/") || name.starts_with("/dev/")
+               ? std::string()
+               : fmt::format("{} does not end in .svg; pictures are drawn as SVG", name);
+  };
+  return app.add_option("--plot", file, meaning)->check(is_svg)->type_name("FILE.svg");
+}
+
 }  // namespace heatsoak

@@ -32,7 +32,8 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
   std::map<double, std::vector<std::string>> limits_C;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const TemperatureCurves& curves = shown[i]->curves;
-    const std::string name = of_winding ? fmt::format("{}, {:.0f} °C", shown[i]->motor_id, shown[i]->winding_peak_C.nominal) : std::string();
+    const std::string name =
+        of_winding ? fmt::format("{}, {:.0f} °C", shown[i]->motor_id, shown[i]->winding_peak_C.nominal) : std::string();
     const int color = static_cast<int>(i);
     result.curves.push_back({name, in_minutes(curves.time_s), of_winding ? curves.winding_C : curves.stator_C, color, false});
     if (!curves.band_time_s.empty()) {
@@ -46,7 +47,9 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
     }
   }
   for (const auto& [limit_C, motors] : limits_C) {
-    const std::string whose = limits_C.size() == 1 ? "" : motors.size() == 1 ? " of " + motors.front() : fmt::format(" of {} motors", motors.size());
+    const std::string whose = limits_C.size() == 1 ? ""
+                              : motors.size() == 1 ? " of " + motors.front()
+                                                   : fmt::format(" of {} motors", motors.size());
     result.levels.push_back({fmt::format("limit {:.0f} °C{}", limit_C, whose), limit_C});
   }
   return result;
@@ -59,8 +62,8 @@ Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& ro
   const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
   return {.title = fmt::format("{} on {}", robot.name, duty.id),
           .subtitle = fmt::format("{}{}; lines: nominal, areas: 5 % to 95 % of samples{}",
-                                  shown.size() < results.size() ? fmt::format("{} of {} motors, ", shown.size(), results.size()) : "", duty.summary,
-                                  estimated ? "; thermal data partly estimated" : ""),
+                                  shown.size() < results.size() ? fmt::format("{} of {} motors, ", shown.size(), results.size()) : "",
+                                  duty.summary, estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
           .panels = {panel(shown, false), panel(shown, true)}};
 }

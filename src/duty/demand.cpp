@@ -23,19 +23,28 @@ LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s
           .current_rms_A = std::abs(current_A)};
 }
 
-DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid) : bin_s_(bin_s), grid_(grid) { demand_.wheel = std::move(wheel); }
+DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid) : bin_s_(bin_s), grid_(grid) {
+  demand_.wheel = std::move(wheel);
+}
 
 void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_per_s) {
   const double sign = speed_rad_per_s > 0.0 ? 1.0 : speed_rad_per_s < 0.0 ? -1.0 : 0.0;
   const double magnitude_rad_per_s = std::abs(speed_rad_per_s);
-  const std::array<double, integral_count> now{1.0,           torque_Nm,      torque_Nm * torque_Nm, torque_Nm * sign,
-                                               std::abs(sign), speed_rad_per_s, magnitude_rad_per_s,   speed_rad_per_s * speed_rad_per_s};
+  const std::array<double, integral_count> now{1.0,
+                                               torque_Nm,
+                                               torque_Nm * torque_Nm,
+                                               torque_Nm * sign,
+                                               std::abs(sign),
+                                               speed_rad_per_s,
+                                               magnitude_rad_per_s,
+                                               speed_rad_per_s * speed_rad_per_s};
   for (std::size_t i = 0; i < now.size(); ++i) {
     integrals_[i] += duration_s * now[i];
   }
   const double torque_with_motion_Nm = sign < 0.0 ? -torque_Nm : sign > 0.0 ? torque_Nm : std::abs(torque_Nm);
   // Away from zero, so that a cell asks at least as much as anything in it.
-  const int torque_cell = static_cast<int>(std::copysign(std::ceil(std::abs(torque_with_motion_Nm) / grid_.torque_step_Nm), torque_with_motion_Nm));
+  const int torque_cell =
+      static_cast<int>(std::copysign(std::ceil(std::abs(torque_with_motion_Nm) / grid_.torque_step_Nm), torque_with_motion_Nm));
   const int speed_cell = static_cast<int>(std::ceil(magnitude_rad_per_s / grid_.speed_step_rad_per_s));
   if (const std::pair cell{torque_cell, speed_cell}; cell != cell_) {
     close_stay();

@@ -56,7 +56,8 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   const BodyConfig body = make_body(robot, no_rotor);
   std::vector<DemandGatherer> gatherers;
   for (int wheel = 0; wheel < body.kinematics.wheel_count; ++wheel) {
-    gatherers.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s, DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});
+    gatherers.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s,
+                           DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});
   }
   double time_s = motion.segments().front().front().time_s;
   double slip_s = 0.0;
@@ -69,8 +70,9 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
       }
     }
     time_s = at.time_s;
-    const BodyMotion local = local_motion(body, {at.x_m, at.y_m, at.yaw_rad}, {at.velocity_x_m_per_s, at.velocity_y_m_per_s, at.yaw_rate_rad_per_s},
-                                          {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
+    const BodyMotion local =
+        local_motion(body, {at.x_m, at.y_m, at.yaw_rad}, {at.velocity_x_m_per_s, at.velocity_y_m_per_s, at.yaw_rate_rad_per_s},
+                     {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
     const WheelDemands wheels = inverse_dynamics(body, local);
     slip_s += wheels.transmitted_share < 1.0 ? 1.0 / kRate_Hz : 0.0;
     for (std::size_t i = 0; i < gatherers.size(); ++i) {
@@ -81,8 +83,9 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
     result.wheels.push_back(each.finish());
   }
   const double all_s = result.wheels.front().duration_s();
-  result.sentences.push_back(fmt::format("{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the ground could not pass on the motion in {:.1f} % of the time",
-                                         result.player, all_s, unseen_s, 100.0 * slip_s / all_s));
+  result.sentences.push_back(fmt::format(
+      "{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the ground could not pass on the motion in {:.1f} % of the time",
+      result.player, all_s, unseen_s, 100.0 * slip_s / all_s));
   return result;
 }
 

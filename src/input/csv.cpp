@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -34,7 +34,12 @@ class Table {
  public:
   Table(std::string file, std::span<const std::string> required, std::span<const std::string> optional, std::span<const CsvWords> words,
         const std::function<void(const CsvRow&)>& row)
-      : file_(std::move(file)), required_(required), optional_(optional), words_(words), row_(row), values_(required.size() + optional.size(), kNothing) {}
+      : file_(std::move(file)),
+        required_(required),
+        optional_(optional),
+        words_(words),
+        row_(row),
+        values_(required.size() + optional.size(), kNothing) {}
 
   void cell(std::string_view text) {
     line_breaks_in_row_ += static_cast<int>(std::ranges::count(text, '\n'));
@@ -175,7 +180,7 @@ std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::pa
   // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(descriptor < 0 ? nullptr : ::fdopen(descriptor, "rb"), &std::fclose);
-  struct stat about{};
+  struct stat about {};
   if (!file || ::fstat(descriptor, &about) != 0) {
     throw cannot_read(std::strerror(errno));
   }

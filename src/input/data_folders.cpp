@@ -57,7 +57,9 @@ DataFolders DataFolders::find(const fs::path& database) {
     }
   }
   if (!complete(folders)) {
-    throw Failure(ExitCode::bad_input, "the folders motor_db, duty_profiles and robots are found neither beside the program nor in share/heatsoak; name them with --db DIR");
+    throw Failure(ExitCode::bad_input,
+                  "the folders motor_db, duty_profiles and robots are found neither beside the program nor in share/heatsoak; name them "
+                  "with --db DIR");
   }
   return folders;
 }
@@ -80,7 +82,8 @@ fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view
   }
   const std::vector<std::string> ids = ids_in(folder);
   if (std::ranges::find(ids, name) == ids.end()) {
-    throw Failure(ExitCode::bad_input, fmt::format("there is no {} '{}' in {}{} (`heatsoak list {}s` shows them)", kind, name, folder.string(), did_you_mean(name, ids), kind == "duty" ? "dutie" : kind));
+    throw Failure(ExitCode::bad_input, fmt::format("there is no {} '{}' in {}{} (`heatsoak list {}s` shows them)", kind, name,
+                                                   folder.string(), did_you_mean(name, ids), kind == "duty" ? "dutie" : kind));
   }
   return folder / fmt::format("{}.toml", name);
 }

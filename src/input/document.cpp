@@ -1,9 +1,9 @@
 #include "input/document.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
-#include <toml++/toml.h>
 
 #include "base/files.h"
 
@@ -62,7 +62,8 @@ Value convert(const toml::node& node, const std::string& file) {
     for (const auto& [key, member] : *table) {
       value.members.push_back({std::string(key.str()), convert(member, file)});
     }
-    std::ranges::stable_sort(value.members, {}, [](const Member& member) { return std::pair(member.value.at.line, member.value.at.column); });
+    std::ranges::stable_sort(value.members, {},
+                             [](const Member& member) { return std::pair(member.value.at.line, member.value.at.column); });
   } else if (const auto* array = node.as_array()) {
     value.kind = Value::Kind::array;
     for (const toml::node& item : *array) {
@@ -125,7 +126,8 @@ Value read_toml(const std::filesystem::path& path) {
     return root;
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    throw bad_input({file, static_cast<int>(at.line), static_cast<int>(at.column)}, "", fmt::format("not valid TOML: {}", error.description()));
+    throw bad_input({file, static_cast<int>(at.line), static_cast<int>(at.column)}, "",
+                    fmt::format("not valid TOML: {}", error.description()));
   }
 }
 

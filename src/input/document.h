@@ -17,7 +17,7 @@ struct Value {
   Location at;
   std::string text;  ///< of a text; of a number as it was written
   bool boolean = false;
-  std::vector<Value> items;                             ///< of an array
+  std::vector<Value> items;     ///< of an array
   std::vector<Member> members;  ///< of a table, in the order of the file
 
   [[nodiscard]] const Value* find(std::string_view key) const;
@@ -31,8 +31,8 @@ struct Member {
 /// "a text", "a number", …: for messages.
 std::string_view to_string(Value::Kind kind);
 
-/// Reads a TOML file of at most 1 MB, 1000 keys per table and 16 dots per key. Throws Failure (bad_input) that says the place of the first error
-/// of syntax, or why the file cannot be read.
+/// Reads a TOML file of at most 1 MB, 1000 keys per table and 16 dots per key. Throws Failure (bad_input) that says the place of the first
+/// error of syntax, or why the file cannot be read.
 Value read_toml(const std::filesystem::path& path);
 
 }  // namespace heatsoak

@@ -31,9 +31,7 @@ std::vector<std::string> Reader::keys() const {
   return names;
 }
 
-void Reader::problem(std::string_view key, std::string message) {
-  diagnostics_->add(at(key), full(key), std::move(message));
-}
+void Reader::problem(std::string_view key, std::string message) { diagnostics_->add(at(key), full(key), std::move(message)); }
 
 const Value* Reader::get(std::string_view key, Value::Kind kind, Need need) {
   asked_.insert(std::string(key));
@@ -46,8 +44,9 @@ const Value* Reader::get(std::string_view key, Value::Kind kind, Need need) {
   }
   if (value->kind != kind) {
     const bool bare_number = kind == Value::Kind::text && value->kind == Value::Kind::number;
-    problem(key, bare_number ? fmt::format("{} is a bare number; write it as text with its unit, such as \"{} …\"", value->text, value->text)
-                             : fmt::format("is {}, expected {}", to_string(value->kind), to_string(kind)));
+    problem(key, bare_number
+                     ? fmt::format("{} is a bare number; write it as text with its unit, such as \"{} …\"", value->text, value->text)
+                     : fmt::format("is {}, expected {}", to_string(value->kind), to_string(kind)));
     return nullptr;
   }
   return value;
@@ -89,10 +88,9 @@ std::optional<std::string> Reader::choice(std::string_view key, std::span<const 
 std::optional<double> Reader::parse(const Value& value, std::string_view key, std::string_view unit) {
   if (value.kind != Value::Kind::text) {
     diagnostics_->add(value.at, full(key),
-                      value.kind == Value::Kind::number
-                          ? fmt::format("{} is a bare number; write it as text with its unit, \"{}{}{}\"", value.text, value.text,
-                                        unit.empty() ? "" : " ", unit)
-                          : fmt::format("is {}, expected a quantity as text", to_string(value.kind)));
+                      value.kind == Value::Kind::number ? fmt::format("{} is a bare number; write it as text with its unit, \"{}{}{}\"",
+                                                                      value.text, value.text, unit.empty() ? "" : " ", unit)
+                                                        : fmt::format("is {}, expected a quantity as text", to_string(value.kind)));
     return std::nullopt;
   }
   const ParsedQuantity parsed = parse_quantity(value.text, unit);
@@ -160,7 +158,8 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
     return std::nullopt;
   }
   if (value->kind != Value::Kind::table) {
-    problem(spec.key, fmt::format("is {}; expected {{ value = \"… {}\", origin = \"…\", source = \"…\" }}", to_string(value->kind), spec.unit));
+    problem(spec.key,
+            fmt::format("is {}; expected {{ value = \"… {}\", origin = \"…\", source = \"…\" }}", to_string(value->kind), spec.unit));
     return std::nullopt;
   }
   Reader inner(*value, full(spec.key), *diagnostics_);
@@ -209,7 +208,9 @@ void Reader::read_spread(const ParameterSpec& spec, Figure& figure) {
     if (range) {
       problem("range", "stands beside a tolerance; expected one of them");
     }
-    const std::optional<double> share = quantity({"tolerance", is_temperature ? "K" : "", Range::between(0.0, is_temperature ? 100.0 : 0.9), "± part of the value that 95 % of parts keep"}, Need::required);
+    const std::optional<double> share = quantity({"tolerance", is_temperature ? "K" : "", Range::between(0.0, is_temperature ? 100.0 : 0.9),
+                                                  "± part of the value that 95 % of parts keep"},
+                                                 Need::required);
     if (share) {
       const double half = is_temperature ? *share : *share * std::abs(figure.value);
       figure.spread = {Spread::Kind::tolerance, figure.value - half, figure.value + half, !is_temperature};

@@ -17,6 +17,7 @@ Network datasheet_network(const Motor& motor, const MotorSample& sample) {
   add(no_load, "no_load_loss", {"stator"}, {drag_torque_Nm(values)});
   add(winding_stator, "conduction", {"winding", "stator"}, {values.thermal_resistance_winding_stator_K_per_W});
   add(stator_ambient, "conduction", {"stator", "ambient"}, {values.thermal_resistance_stator_ambient_K_per_W});
+  network.limit_current_by(copper);
   for (std::size_t i = 0; i < motor.effects.size(); ++i) {
     const MotorEffect& effect = motor.effects[i];
     network.add_effect(effect.name, *effect.type, effect.nodes, sample.effect_parameters[i]);

@@ -47,11 +47,14 @@ constexpr std::array kConventions = {
     Convention{kPhaseEmf * kSqrt3 / kSqrt2, "the RMS EMF between terminals; multiply it by 1.35"},
     Convention{kPhaseEmf * kSqrt3, "the peak EMF between terminals; multiply it by 3/pi = 0.955"},
     Convention{kPeakPhase, "a torque constant per ampere of phase peak; set conventions.torque_constant = \"per_peak_phase_ampere\""},
-    Convention{kPeakPhase * kSqrt2, "a torque constant per ampere of phase RMS; set conventions.torque_constant = \"per_rms_phase_ampere\""},
+    Convention{kPeakPhase * kSqrt2,
+               "a torque constant per ampere of phase RMS; set conventions.torque_constant = \"per_rms_phase_ampere\""},
     Convention{1.0 / kPeakPhase,
-               "a torque constant per DC ampere where the file declares per_peak_phase_ampere; set conventions.torque_constant = \"per_dc_ampere\""},
+               "a torque constant per DC ampere where the file declares per_peak_phase_ampere; set conventions.torque_constant = "
+               "\"per_dc_ampere\""},
     Convention{1.0 / (kPeakPhase * kSqrt2),
-               "a torque constant per DC ampere where the file declares per_rms_phase_ampere; set conventions.torque_constant = \"per_dc_ampere\""},
+               "a torque constant per DC ampere where the file declares per_rms_phase_ampere; set conventions.torque_constant = "
+               "\"per_dc_ampere\""},
     Convention{kSqrt3, "sqrt(3) between phase and terminals; divide it by 1.732"},
     Convention{1.0 / kSqrt3, "sqrt(3) between terminals and phase; multiply it by 1.732"},
     Convention{2.0 / kSqrt3, "2/sqrt(3) between two conventions of sinusoidal current; divide it by 1.155"},
@@ -82,8 +85,9 @@ std::string verdict_on_constants(const MotorValues& v) {
     return torque_verdict;
   }
   if (torque_fits) {
-    return fmt::format("the no-load speed of {} agrees with the torque constant, so the speed constant should be {}; take it from the sheet",
-                       shown_speed(no_load_rad_per_s), shown_speed_constant(1.0 / v.torque_constant_Nm_per_A));
+    return fmt::format(
+        "the no-load speed of {} agrees with the torque constant, so the speed constant should be {}; take it from the sheet",
+        shown_speed(no_load_rad_per_s), shown_speed_constant(1.0 / v.torque_constant_Nm_per_A));
   }
   return fmt::format("the no-load speed of {} agrees with the speed constant; {}", shown_speed(no_load_rad_per_s), torque_verdict);
 }
@@ -94,7 +98,8 @@ std::string resistance_hint(double found_over_listed) {
     return "; the factor 2 means that the resistance is of one phase: set conventions.terminal_resistance = \"phase_to_star\"";
   }
   if (std::abs(found_over_listed / 2.0 - 1.0) < kConventionTolerance) {
-    return "; the factor 2 means that the resistance was between terminals already: set conventions.terminal_resistance = \"between_terminals\"";
+    return "; the factor 2 means that the resistance was between terminals already: set conventions.terminal_resistance = "
+           "\"between_terminals\"";
   }
   return "; check resistance, torque constant and their conventions";
 }
@@ -114,8 +119,9 @@ void constants(const Motor& motor, Findings& findings) {
   const double product = v.torque_constant_Nm_per_A * v.speed_constant_rad_per_s_per_V;
   if (around_one(kConstantsTolerance).excludes(product)) {
     findings.error("torque_constant",
-                   fmt::format("torque constant {} times speed constant {} is {}, expected 1 within 1.5 %; {}", shown_torque_constant(v.torque_constant_Nm_per_A),
-                               shown_speed_constant(v.speed_constant_rad_per_s_per_V), significant(product, 3), verdict_on_constants(v)));
+                   fmt::format("torque constant {} times speed constant {} is {}, expected 1 within 1.5 %; {}",
+                               shown_torque_constant(v.torque_constant_Nm_per_A), shown_speed_constant(v.speed_constant_rad_per_s_per_V),
+                               significant(product, 3), verdict_on_constants(v)));
   }
 }
 
@@ -125,9 +131,9 @@ void mechanical_time_constant(const Motor& motor, Findings& findings) {
   const double ratio = expected_s / v.mechanical_time_constant_s;
   if (around_one(kProductTolerance).excludes(ratio)) {
     findings.error("mechanical_time_constant",
-                   fmt::format("{} is listed, but R·J/K_t² is {} with {} and {}; expected within 2 %{}", shown(v.mechanical_time_constant_s * 1e3, "ms"),
-                               shown(expected_s * 1e3, "ms"), shown(v.terminal_resistance_ohm, "ohm"), shown_inertia(v.rotor_inertia_kg_m2),
-                               resistance_hint(ratio)));
+                   fmt::format("{} is listed, but R·J/K_t² is {} with {} and {}; expected within 2 %{}",
+                               shown(v.mechanical_time_constant_s * 1e3, "ms"), shown(expected_s * 1e3, "ms"),
+                               shown(v.terminal_resistance_ohm, "ohm"), shown_inertia(v.rotor_inertia_kg_m2), resistance_hint(ratio)));
   }
 }
 
@@ -135,10 +141,11 @@ void speed_torque_gradient(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double ratio = gradient_rad_per_s_per_Nm(v) / v.speed_torque_gradient_rad_per_s_per_Nm;
   if (around_one(kProductTolerance).excludes(ratio)) {
-    findings.error("speed_torque_gradient",
-                   fmt::format("{} is listed, but R/K_t² is {} with {} and {}; expected within 2 %{}", shown_gradient(v.speed_torque_gradient_rad_per_s_per_Nm),
-                               shown_gradient(gradient_rad_per_s_per_Nm(v)), shown(v.terminal_resistance_ohm, "ohm"),
-                               shown_torque_constant(v.torque_constant_Nm_per_A), resistance_hint(ratio)));
+    findings.error(
+        "speed_torque_gradient",
+        fmt::format("{} is listed, but R/K_t² is {} with {} and {}; expected within 2 %{}",
+                    shown_gradient(v.speed_torque_gradient_rad_per_s_per_Nm), shown_gradient(gradient_rad_per_s_per_Nm(v)),
+                    shown(v.terminal_resistance_ohm, "ohm"), shown_torque_constant(v.torque_constant_Nm_per_A), resistance_hint(ratio)));
   }
 }
 
@@ -148,9 +155,10 @@ void stall_current(const Motor& motor, Findings& findings) {
   const double rounding_A = is_whole(v.stall_current_A) ? kWholeAmperes_A : 0.0;
   const double allowed_A = std::max(rounding_A, kStallTolerance * expected_A);
   if (std::abs(v.stall_current_A - expected_A) > allowed_A) {
-    findings.error("stall_current", fmt::format("{} is listed, but {} through {} is {}; expected within {}{}", shown(v.stall_current_A, "A"),
-                                                shown(v.nominal_voltage_V, "V"), shown(v.terminal_resistance_ohm, "ohm"), shown(expected_A, "A"),
-                                                shown(allowed_A, "A"), resistance_hint(v.stall_current_A / expected_A)));
+    findings.error("stall_current",
+                   fmt::format("{} is listed, but {} through {} is {}; expected within {}{}", shown(v.stall_current_A, "A"),
+                               shown(v.nominal_voltage_V, "V"), shown(v.terminal_resistance_ohm, "ohm"), shown(expected_A, "A"),
+                               shown(allowed_A, "A"), resistance_hint(v.stall_current_A / expected_A)));
   }
 }
 
@@ -161,12 +169,14 @@ void stall_torque(const Motor& motor, Findings& findings) {
   const std::string found = fmt::format("{} is listed, K_t·U/R is {}", shown_torque(v.stall_torque_Nm), shown_torque(linear_Nm));
   if (motor.stall_includes_saturation) {
     if (ratio >= 1.0 - kStallTolerance) {
-      findings.error("stall_torque", found + "; with saturation, which conventions.stall_includes_saturation declares, expected less; "
-                                             "set it to false if the sheet's line is straight");
+      findings.error("stall_torque", found +
+                                         "; with saturation, which conventions.stall_includes_saturation declares, expected less; "
+                                         "set it to false if the sheet's line is straight");
     }
   } else if (ratio < kLooksSaturated) {
-    findings.error("stall_torque", found + ", expected the same within 1.5 %; this looks like a torque with saturation: "
-                                           "set conventions.stall_includes_saturation = true, or check torque constant and resistance");
+    findings.error("stall_torque", found +
+                                       ", expected the same within 1.5 %; this looks like a torque with saturation: "
+                                       "set conventions.stall_includes_saturation = true, or check torque constant and resistance");
   } else if (around_one(kStallTolerance).excludes(ratio)) {
     findings.error("stall_torque", found + ", expected the same within 1.5 %; check torque constant, resistance and their conventions");
   }
@@ -181,8 +191,8 @@ void no_load_speed(const Motor& motor, Findings& findings) {
     findings.error("no_load_speed",
                    fmt::format("{} is listed, but {} and {} less I_0·R give {}; expected 0.99 to 1.03 times the listed speed; "
                                "check the {} constant and the voltage that the speed holds for",
-                               shown_speed(v.no_load_speed_rad_per_s), shown_speed_constant(constant_rad_per_s_per_V), shown(v.nominal_voltage_V, "V"),
-                               shown_speed(expected_rad_per_s), has_speed_constant ? "speed" : "torque"));
+                               shown_speed(v.no_load_speed_rad_per_s), shown_speed_constant(constant_rad_per_s_per_V),
+                               shown(v.nominal_voltage_V, "V"), shown_speed(expected_rad_per_s), has_speed_constant ? "speed" : "torque"));
   }
 }
 

@@ -31,7 +31,8 @@ constexpr double kFlat = 0.7;
 double body_area_m2(const MotorValues& v) { return std::numbers::pi / 4.0 * v.diameter_m * v.diameter_m; }
 
 std::string shown_heat(double heat_J_per_K, double mass_kg) {
-  return fmt::format("{} ({} at a mass of {})", shown(heat_J_per_K, "J/K"), shown(heat_J_per_K / mass_kg, "J/(kg K)"), shown(1e3 * mass_kg, "g"));
+  return fmt::format("{} ({} at a mass of {})", shown(heat_J_per_K, "J/K"), shown(heat_J_per_K / mass_kg, "J/(kg K)"),
+                     shown(1e3 * mass_kg, "g"));
 }
 
 }  // namespace
@@ -41,16 +42,18 @@ void heat_capacities(const Motor& motor, Findings& findings) {
   const double winding_J_per_K = v.thermal_time_constant_winding_s / v.thermal_resistance_winding_stator_K_per_W;
   const double stator_J_per_K = v.thermal_time_constant_stator_s / v.thermal_resistance_stator_ambient_K_per_W;
   if (kWindingHeat_J_per_kg_K.excludes(winding_J_per_K / v.mass_kg)) {
-    findings.error("thermal_time_constant_winding",
-                   fmt::format("time constant over thermal resistance gives the winding {}, expected 10 to 150 J/(kg K) for copper and resin; "
-                               "check time constant, R_th1 and mass",
-                               shown_heat(winding_J_per_K, v.mass_kg)));
+    findings.error(
+        "thermal_time_constant_winding",
+        fmt::format("time constant over thermal resistance gives the winding {}, expected 10 to 150 J/(kg K) for copper and resin; "
+                    "check time constant, R_th1 and mass",
+                    shown_heat(winding_J_per_K, v.mass_kg)));
   }
   if (kStatorHeat_J_per_kg_K.excludes(stator_J_per_K / v.mass_kg)) {
-    findings.error("thermal_time_constant_stator",
-                   fmt::format("time constant over thermal resistance gives the stator {}, expected 100 to 900 J/(kg K) for steel and aluminium; "
-                               "check time constant, R_th2 and mass",
-                               shown_heat(stator_J_per_K, v.mass_kg)));
+    findings.error(
+        "thermal_time_constant_stator",
+        fmt::format("time constant over thermal resistance gives the stator {}, expected 100 to 900 J/(kg K) for steel and aluminium; "
+                    "check time constant, R_th2 and mass",
+                    shown_heat(stator_J_per_K, v.mass_kg)));
   }
   if (winding_J_per_K >= stator_J_per_K) {
     findings.error("thermal_time_constant_winding",
@@ -64,9 +67,9 @@ void electrical_time_constant(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double time_constant_s = v.terminal_inductance_H / v.terminal_resistance_ohm;
   if (kElectrical_s.excludes(time_constant_s)) {
-    findings.error("terminal_inductance",
-                   fmt::format("{} over {} is {}, expected 0.02 to 5 ms; check the units of both", shown(1e3 * v.terminal_inductance_H, "mH"),
-                               shown(v.terminal_resistance_ohm, "ohm"), shown(1e3 * time_constant_s, "ms")));
+    findings.error("terminal_inductance", fmt::format("{} over {} is {}, expected 0.02 to 5 ms; check the units of both",
+                                                      shown(1e3 * v.terminal_inductance_H, "mH"), shown(v.terminal_resistance_ohm, "ohm"),
+                                                      shown(1e3 * time_constant_s, "ms")));
   }
 }
 
@@ -74,10 +77,11 @@ void density(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double density_kg_per_m3 = v.mass_kg / (body_area_m2(v) * v.length_m);
   if (kDensity_kg_per_m3.excludes(density_kg_per_m3)) {
-    findings.error("mass", fmt::format("{} in a body of {} diameter and {} length are {} kg/m3, expected 1500 to 7500 kg/m3 (solid steel has 7850); "
-                                       "check mass and dimensions of the body without shaft",
-                                       shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"), shown(1e3 * v.length_m, "mm"),
-                                       significant(density_kg_per_m3, 3)));
+    findings.error(
+        "mass", fmt::format("{} in a body of {} diameter and {} length are {} kg/m3, expected 1500 to 7500 kg/m3 (solid steel has 7850); "
+                            "check mass and dimensions of the body without shaft",
+                            shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"), shown(1e3 * v.length_m, "mm"),
+                            significant(density_kg_per_m3, 3)));
   }
 }
 
@@ -86,38 +90,43 @@ void rotor_inertia(const Motor& motor, Findings& findings) {
   const double ring_kg_m2 = v.mass_kg * 0.25 * v.diameter_m * v.diameter_m;
   const double ratio = v.rotor_inertia_kg_m2 / ring_kg_m2;
   if (ratio > kMostInertia) {
-    findings.error("rotor_inertia", fmt::format("{} is more than half of {}, which the whole mass of {} would have at the radius of {}; check unit and mass",
-                                                shown_inertia(v.rotor_inertia_kg_m2), shown_inertia(ring_kg_m2), shown(1e3 * v.mass_kg, "g"),
-                                                shown(500.0 * v.diameter_m, "mm")));
+    findings.error("rotor_inertia",
+                   fmt::format("{} is more than half of {}, which the whole mass of {} would have at the radius of {}; check unit and mass",
+                               shown_inertia(v.rotor_inertia_kg_m2), shown_inertia(ring_kg_m2), shown(1e3 * v.mass_kg, "g"),
+                               shown(500.0 * v.diameter_m, "mm")));
   }
   if (v.length_m < kFlat * v.diameter_m && ratio < kLeastFlatInertia) {
-    findings.note("rotor_inertia", fmt::format("{} is very little for a flat motor of {} and {} diameter, expected at least {} with the magnets outside; "
-                                               "check it unless the rotor is inside",
-                                               shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
-                                               shown_inertia(kLeastFlatInertia * ring_kg_m2)));
+    findings.note("rotor_inertia",
+                  fmt::format("{} is very little for a flat motor of {} and {} diameter, expected at least {} with the magnets outside; "
+                              "check it unless the rotor is inside",
+                              shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
+                              shown_inertia(kLeastFlatInertia * ring_kg_m2)));
   }
 }
 
 void limits(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const auto compare_temperature = [&](std::string_view key, double lower_C, std::string_view lower, double upper_C, std::string_view upper) {
+  const auto compare_temperature = [&](std::string_view key, double lower_C, std::string_view lower, double upper_C,
+                                       std::string_view upper) {
     if (lower_C >= upper_C) {
-      findings.error(key, fmt::format("{} {} is not below the {} {}; check both", lower, shown(lower_C, "degC"), upper, shown(upper_C, "degC")));
+      findings.error(key,
+                     fmt::format("{} {} is not below the {} {}; check both", lower, shown(lower_C, "degC"), upper, shown(upper_C, "degC")));
     }
   };
   compare_temperature("winding_limit", kSheetAmbient_C, "the ambient temperature of nominal figures", v.winding_limit_C, "winding limit");
   compare_temperature("ambient_max", v.ambient_max_C, "highest ambient temperature", v.winding_limit_C, "winding limit");
   compare_temperature("ambient_min", v.ambient_min_C, "lowest ambient temperature", v.ambient_max_C, "highest");
   if (v.stator_limit_C > v.winding_limit_C) {
-    findings.error("stator_limit", fmt::format("the stator limit {} is above the winding limit {}; are they swapped?", shown(v.stator_limit_C, "degC"),
-                                               shown(v.winding_limit_C, "degC")));
+    findings.error("stator_limit", fmt::format("the stator limit {} is above the winding limit {}; are they swapped?",
+                                               shown(v.stator_limit_C, "degC"), shown(v.winding_limit_C, "degC")));
   }
   if (v.nominal_speed_rad_per_s > v.max_speed_rad_per_s) {
-    findings.error("max_speed", fmt::format("nominal speed {} is above the highest permissible speed {}; check both", shown_speed(v.nominal_speed_rad_per_s),
-                                            shown_speed(v.max_speed_rad_per_s)));
+    findings.error("max_speed", fmt::format("nominal speed {} is above the highest permissible speed {}; check both",
+                                            shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.max_speed_rad_per_s)));
   } else if (v.no_load_speed_rad_per_s > v.max_speed_rad_per_s) {
-    findings.note("max_speed", fmt::format("no-load speed {} at nominal voltage is above the highest permissible speed {}: limit the voltage",
-                                           shown_speed(v.no_load_speed_rad_per_s), shown_speed(v.max_speed_rad_per_s)));
+    findings.note("max_speed",
+                  fmt::format("no-load speed {} at nominal voltage is above the highest permissible speed {}: limit the voltage",
+                              shown_speed(v.no_load_speed_rad_per_s), shown_speed(v.max_speed_rad_per_s)));
   }
 }
 
@@ -129,7 +138,8 @@ void estimates(const Motor& motor, Findings& findings) {
     }
     const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(figure->second.value, each.spec.unit));
     if (each.is_thermal) {
-      findings.note(each.spec.key, found + ": the temperature rests on it, expected a figure of the sheet; measure it or calibrate before you rely on it");
+      findings.note(each.spec.key,
+                    found + ": the temperature rests on it, expected a figure of the sheet; measure it or calibrate before you rely on it");
     } else if (each.spec.key.starts_with("nominal_")) {
       findings.note(each.spec.key, found + ": the nominal point rests on it, expected a figure of the sheet; take it from there");
     }
@@ -142,9 +152,11 @@ void spreads(const Motor& motor, Findings& findings) {
     // A limit is what the manufacturer permits; no part has another one.
     const bool is_limit = each.spec.unit == "degC";
     if (each.is_thermal && !is_limit && figure != motor.figures.end() && !figure->second.spread) {
-      findings.note(each.spec.key, fmt::format("{} of {} has neither tolerance nor range, so the spread of the temperature leaves it out; expected one of both, "
-                                               "add it to the figure",
-                                               each.spec.key, shown(figure->second.value, each.spec.unit)));
+      findings.note(
+          each.spec.key,
+          fmt::format("{} of {} has neither tolerance nor range, so the spread of the temperature leaves it out; expected one of both, "
+                      "add it to the figure",
+                      each.spec.key, shown(figure->second.value, each.spec.unit)));
     }
   }
 }

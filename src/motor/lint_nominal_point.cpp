@@ -53,8 +53,9 @@ double limit_current_A(const Motor& motor, double speed_rad_per_s) {
 
 /// Does the temperature of the nominal point rest on somebody's estimate?
 bool rests_on_estimate(const Motor& motor) {
-  for (const std::string_view key : {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_limit", "terminal_resistance",
-                                     "torque_constant", "no_load_current", "nominal_torque", "nominal_speed", "nominal_current"}) {
+  for (const std::string_view key :
+       {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_limit", "terminal_resistance", "torque_constant",
+        "no_load_current", "nominal_torque", "nominal_speed", "nominal_current"}) {
     if (is_estimate(motor, key)) {
       return true;
     }
@@ -62,7 +63,9 @@ bool rests_on_estimate(const Motor& motor) {
   return false;
 }
 
-LintFinding::Level level_of_heat(const Motor& motor) { return rests_on_estimate(motor) ? LintFinding::Level::note : LintFinding::Level::error; }
+LintFinding::Level level_of_heat(const Motor& motor) {
+  return rests_on_estimate(motor) ? LintFinding::Level::note : LintFinding::Level::error;
+}
 
 /// Volts per ampere that commutation costs beyond the copper at most: the overlap of a six-pulse bridge,
 /// (3/π)·ω_electric·L of one phase. 0 where the file gives no inductance or pole pairs.
@@ -76,8 +79,8 @@ double commutation_ohm(const MotorValues& v) {
 void nominal_current(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   if (v.no_load_current_A >= v.nominal_current_A) {
-    findings.error("no_load_current", fmt::format("no-load current {} is not below the nominal current {}; check both", shown(v.no_load_current_A, "A"),
-                                                  shown(v.nominal_current_A, "A")));
+    findings.error("no_load_current", fmt::format("no-load current {} is not below the nominal current {}; check both",
+                                                  shown(v.no_load_current_A, "A"), shown(v.nominal_current_A, "A")));
   }
   const double linear_Nm = v.torque_constant_Nm_per_A * v.nominal_current_A;
   if (kNominalTorque.excludes(v.nominal_torque_Nm / linear_Nm)) {
@@ -92,18 +95,19 @@ void nominal_current(const Motor& motor, Findings& findings) {
 void peak_point(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   if (v.peak_torque_Nm < v.nominal_torque_Nm) {
-    findings.error("peak_torque", fmt::format("peak torque {} is less than the nominal torque {}; check both", shown_torque(v.peak_torque_Nm),
-                                              shown_torque(v.nominal_torque_Nm)));
+    findings.error("peak_torque", fmt::format("peak torque {} is less than the nominal torque {}; check both",
+                                              shown_torque(v.peak_torque_Nm), shown_torque(v.nominal_torque_Nm)));
   }
   if (v.peak_current_A < v.nominal_current_A) {
-    findings.error("peak_current", fmt::format("peak current {} is less than the nominal current {}; check both", shown(v.peak_current_A, "A"),
-                                               shown(v.nominal_current_A, "A")));
+    findings.error("peak_current", fmt::format("peak current {} is less than the nominal current {}; check both",
+                                               shown(v.peak_current_A, "A"), shown(v.nominal_current_A, "A")));
   }
   const double linear_Nm = v.torque_constant_Nm_per_A * v.peak_current_A;
   if (kPeakTorque.excludes(v.peak_torque_Nm / linear_Nm)) {
-    findings.error("peak_torque", fmt::format("peak torque {} is {} times K_t·I_peak = {}, expected 0.2 (saturated) to 1.2 times; "
-                                              "check the peak current and the convention of the torque constant",
-                                              shown_torque(v.peak_torque_Nm), significant(v.peak_torque_Nm / linear_Nm, 3), shown_torque(linear_Nm)));
+    findings.error("peak_torque",
+                   fmt::format("peak torque {} is {} times K_t·I_peak = {}, expected 0.2 (saturated) to 1.2 times; "
+                               "check the peak current and the convention of the torque constant",
+                               shown_torque(v.peak_torque_Nm), significant(v.peak_torque_Nm / linear_Nm, 3), shown_torque(linear_Nm)));
   }
 }
 
@@ -113,17 +117,20 @@ void power_balance(const Motor& motor, Findings& findings) {
   const double shaft_W = v.nominal_torque_Nm * v.nominal_speed_rad_per_s;
   const double current_squared_A2 = v.nominal_current_A * v.nominal_current_A;
   const double copper_W = current_squared_A2 * v.terminal_resistance_ohm;
-  const std::string found = fmt::format("at the nominal point {} go in (U·I_n) and {} come out at the shaft (T_n·ω_n)", shown(input_W, "W"), shown(shaft_W, "W"));
+  const std::string found =
+      fmt::format("at the nominal point {} go in (U·I_n) and {} come out at the shaft (T_n·ω_n)", shown(input_W, "W"), shown(shaft_W, "W"));
   if (shaft_W + copper_W > (1.0 + kPowerTolerance) * input_W) {
-    findings.error("nominal_torque", fmt::format("{}, but with {} of copper loss at 25 °C it takes {}, expected at most the input within 3 %; "
-                                                 "check nominal current, speed, torque and resistance",
-                                                 found, shown(copper_W, "W"), shown(shaft_W + copper_W, "W")));
+    findings.error("nominal_torque",
+                   fmt::format("{}, but with {} of copper loss at 25 °C it takes {}, expected at most the input within 3 %; "
+                               "check nominal current, speed, torque and resistance",
+                               found, shown(copper_W, "W"), shown(shaft_W + copper_W, "W")));
   }
   const double most_loss_W = current_squared_A2 * resistance_ohm(v, v.winding_limit_C) + drag_torque_Nm(v) * v.nominal_speed_rad_per_s;
   if (shaft_W + most_loss_W < kPowerExplained * input_W) {
-    findings.error("nominal_current", fmt::format("{}; hot copper and drag lose {}, which leaves {} unexplained, expected at most 15 % of the input; "
-                                                  "check nominal current, speed and torque",
-                                                  found, shown(most_loss_W, "W"), shown(input_W - shaft_W - most_loss_W, "W")));
+    findings.error("nominal_current",
+                   fmt::format("{}; hot copper and drag lose {}, which leaves {} unexplained, expected at most 15 % of the input; "
+                               "check nominal current, speed and torque",
+                               found, shown(most_loss_W, "W"), shown(input_W - shaft_W - most_loss_W, "W")));
   }
 }
 
@@ -134,19 +141,21 @@ void assigned_power(const Motor& motor, Findings& findings) {
   const double torque_Nm = std::isnan(v.nominal_torque_Nm) ? v.torque_constant_Nm_per_A * v.nominal_current_A : v.nominal_torque_Nm;
   const double speed_rad_per_s = std::isnan(v.max_speed_rad_per_s) ? v.no_load_speed_rad_per_s : v.max_speed_rad_per_s;
   if (v.assigned_power_W > (1.0 + kPowerTolerance) * torque_Nm * speed_rad_per_s) {
-    findings.error("assigned_power", fmt::format("{} are assigned, but the nominal torque {} up to the highest speed {} makes {}, expected at least the "
-                                                 "assigned power; this may be the electrical input, check it",
-                                                 shown(v.assigned_power_W, "W"), shown_torque(torque_Nm), shown_speed(speed_rad_per_s),
-                                                 shown(torque_Nm * speed_rad_per_s, "W")));
+    findings.error("assigned_power",
+                   fmt::format("{} are assigned, but the nominal torque {} up to the highest speed {} makes {}, expected at least the "
+                               "assigned power; this may be the electrical input, check it",
+                               shown(v.assigned_power_W, "W"), shown_torque(torque_Nm), shown_speed(speed_rad_per_s),
+                               shown(torque_Nm * speed_rad_per_s, "W")));
     return;
   }
   const double input_W = v.nominal_voltage_V * v.nominal_current_A;
   const double copper_W = v.nominal_current_A * v.nominal_current_A * v.terminal_resistance_ohm;
   if (v.assigned_power_W + copper_W > (1.0 + kPowerTolerance) * input_W) {
-    findings.note("assigned_power", fmt::format("{} are assigned to the type, but at {} and {} this winding takes {} and loses {} of it in the copper: "
-                                                "it cannot give that power at its nominal voltage; use torque and speed instead",
-                                                shown(v.assigned_power_W, "W"), shown(v.nominal_voltage_V, "V"), shown(v.nominal_current_A, "A"),
-                                                shown(input_W, "W"), shown(copper_W, "W")));
+    findings.note("assigned_power",
+                  fmt::format("{} are assigned to the type, but at {} and {} this winding takes {} and loses {} of it in the copper: "
+                              "it cannot give that power at its nominal voltage; use torque and speed instead",
+                              shown(v.assigned_power_W, "W"), shown(v.nominal_voltage_V, "V"), shown(v.nominal_current_A, "A"),
+                              shown(input_W, "W"), shown(copper_W, "W")));
   }
 }
 
@@ -154,30 +163,36 @@ void assigned_power(const Motor& motor, Findings& findings) {
 /// overlap. By the speed constant, which the no-load speed confirms, so that a wrong torque constant does not spoil it.
 void nominal_speed(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double constant_rad_per_s_per_V = std::isnan(v.speed_constant_rad_per_s_per_V) ? 1.0 / v.torque_constant_Nm_per_A : v.speed_constant_rad_per_s_per_V;
+  const double constant_rad_per_s_per_V =
+      std::isnan(v.speed_constant_rad_per_s_per_V) ? 1.0 / v.torque_constant_Nm_per_A : v.speed_constant_rad_per_s_per_V;
   const double loss_rad_per_s_per_ohm = constant_rad_per_s_per_V * constant_rad_per_s_per_V * v.nominal_torque_Nm;
   const double fastest_rad_per_s = v.no_load_speed_rad_per_s - loss_rad_per_s_per_ohm * v.terminal_resistance_ohm;
   const double overlap_ohm = commutation_ohm(v);
-  const double slowest_rad_per_s = v.no_load_speed_rad_per_s - loss_rad_per_s_per_ohm * (resistance_ohm(v, v.winding_limit_C) + overlap_ohm);
+  const double slowest_rad_per_s =
+      v.no_load_speed_rad_per_s - loss_rad_per_s_per_ohm * (resistance_ohm(v, v.winding_limit_C) + overlap_ohm);
   if (v.nominal_speed_rad_per_s > (1.0 + kSpeedTolerance) * fastest_rad_per_s) {
-    findings.error("nominal_speed", fmt::format("{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected "
-                                                "at most 3 % more; check resistance (between terminals?), nominal torque and speed",
-                                                shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s), shown_torque(v.nominal_torque_Nm),
-                                                shown(v.terminal_resistance_ohm, "ohm"), shown_speed(fastest_rad_per_s)));
+    findings.error("nominal_speed",
+                   fmt::format("{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected "
+                               "at most 3 % more; check resistance (between terminals?), nominal torque and speed",
+                               shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s),
+                               shown_torque(v.nominal_torque_Nm), shown(v.terminal_resistance_ohm, "ohm"), shown_speed(fastest_rad_per_s)));
   }
   if (overlap_ohm > 0.0 && v.nominal_speed_rad_per_s < (1.0 - kSpeedTolerance) * slowest_rad_per_s) {
     const double hot_over_cold = resistance_ohm(v, v.winding_limit_C) / v.terminal_resistance_ohm;
-    const double needed_ohm = ((v.no_load_speed_rad_per_s - v.nominal_speed_rad_per_s) / loss_rad_per_s_per_ohm - overlap_ohm) / hot_over_cold;
-    findings.error("nominal_speed",
-                   fmt::format("{} is listed, but from {} without load {} through {} leave at least {} with hot copper and commutation of {}, expected "
-                               "at most 3 % less; {}",
-                               shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s), shown_torque(v.nominal_torque_Nm),
-                               shown(v.terminal_resistance_ohm, "ohm"), shown_speed(slowest_rad_per_s), shown(v.terminal_inductance_H * 1e3, "mH"),
-                               kAboutTwo.excludes(needed_ohm / v.terminal_resistance_ohm)
-                                   ? fmt::format("it would take {}: check resistance, nominal torque and speed", shown(needed_ohm, "ohm"))
-                                   : fmt::format("it would take {}, about twice as much: if the resistance is that of one phase, set "
-                                                 "conventions.terminal_resistance = \"phase_to_star\"",
-                                                 shown(needed_ohm, "ohm"))));
+    const double needed_ohm =
+        ((v.no_load_speed_rad_per_s - v.nominal_speed_rad_per_s) / loss_rad_per_s_per_ohm - overlap_ohm) / hot_over_cold;
+    findings.error(
+        "nominal_speed",
+        fmt::format(
+            "{} is listed, but from {} without load {} through {} leave at least {} with hot copper and commutation of {}, expected "
+            "at most 3 % less; {}",
+            shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s), shown_torque(v.nominal_torque_Nm),
+            shown(v.terminal_resistance_ohm, "ohm"), shown_speed(slowest_rad_per_s), shown(v.terminal_inductance_H * 1e3, "mH"),
+            kAboutTwo.excludes(needed_ohm / v.terminal_resistance_ohm)
+                ? fmt::format("it would take {}: check resistance, nominal torque and speed", shown(needed_ohm, "ohm"))
+                : fmt::format("it would take {}, about twice as much: if the resistance is that of one phase, set "
+                              "conventions.terminal_resistance = \"phase_to_star\"",
+                              shown(needed_ohm, "ohm"))));
   }
 }
 
@@ -187,20 +202,24 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
     return;
   }
   if (heat->limit_current_A == 0.0) {
-    findings.add(level_of_heat(motor), "thermal_resistance_stator_ambient",
-                 fmt::format("iron and friction loss at {} bring the winding to its limit of {} without any current, expected a nominal point of {} at "
-                             "{} to be possible; check no-load current and thermal resistances",
-                             shown_speed(motor.nominal.nominal_speed_rad_per_s), shown(motor.nominal.winding_limit_C, "degC"),
-                             shown_torque(motor.nominal.nominal_torque_Nm), shown(kSheetAmbient_C, "degC")));
+    findings.add(
+        level_of_heat(motor), "thermal_resistance_stator_ambient",
+        fmt::format(
+            "iron and friction loss at {} bring the winding to its limit of {} without any current, expected a nominal point of {} at "
+            "{} to be possible; check no-load current and thermal resistances",
+            shown_speed(motor.nominal.nominal_speed_rad_per_s), shown(motor.nominal.winding_limit_C, "degC"),
+            shown_torque(motor.nominal.nominal_torque_Nm), shown(kSheetAmbient_C, "degC")));
     return;
   }
   const double ratio = heat->equivalent_current_A / heat->limit_current_A;
   if (kHeat.excludes(ratio)) {
-    findings.add(level_of_heat(motor), "nominal_torque",
-                 fmt::format("the nominal torque {} and the drag take {}, {} times the {} that bring the winding to {} at 25 °C ambient, expected 0.85 to "
-                             "1.1 times; check thermal resistances, winding limit, resistance and nominal point",
-                             shown_torque(motor.nominal.nominal_torque_Nm), shown(heat->equivalent_current_A, "A"), significant(ratio, 3),
-                             shown(heat->limit_current_A, "A"), shown(motor.nominal.winding_limit_C, "degC")));
+    findings.add(
+        level_of_heat(motor), "nominal_torque",
+        fmt::format(
+            "the nominal torque {} and the drag take {}, {} times the {} that bring the winding to {} at 25 °C ambient, expected 0.85 to "
+            "1.1 times; check thermal resistances, winding limit, resistance and nominal point",
+            shown_torque(motor.nominal.nominal_torque_Nm), shown(heat->equivalent_current_A, "A"), significant(ratio, 3),
+            shown(heat->limit_current_A, "A"), shown(motor.nominal.winding_limit_C, "degC")));
   }
 }
 
@@ -213,10 +232,12 @@ void copper_limit(const Motor& motor, Findings& findings) {
   const double limit_A = limit_current_A(motor, 0.0);
   const double ratio = v.nominal_current_A / limit_A;
   if (kCopperLimit.excludes(ratio)) {
-    findings.add(level_of_heat(motor), "nominal_current",
-                 fmt::format("nominal current {} is {} times the {} that bring the winding to {} by copper loss alone at 25 °C ambient, expected 0.65 to "
-                             "1.05 times; check thermal resistances, winding limit and resistance",
-                             shown(v.nominal_current_A, "A"), significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
+    findings.add(
+        level_of_heat(motor), "nominal_current",
+        fmt::format(
+            "nominal current {} is {} times the {} that bring the winding to {} by copper loss alone at 25 °C ambient, expected 0.65 to "
+            "1.05 times; check thermal resistances, winding limit and resistance",
+            shown(v.nominal_current_A, "A"), significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
   }
 }
 
@@ -229,7 +250,8 @@ std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor) {
   if (std::isnan(v.nominal_torque_Nm) || std::isnan(v.nominal_speed_rad_per_s) || v.winding_limit_C <= lint_checks::kSheetAmbient_C) {
     return std::nullopt;
   }
-  return NominalPointHeat{(v.nominal_torque_Nm + drag_torque_Nm(v)) / v.torque_constant_Nm_per_A, lint_checks::limit_current_A(motor, v.nominal_speed_rad_per_s)};
+  return NominalPointHeat{(v.nominal_torque_Nm + drag_torque_Nm(v)) / v.torque_constant_Nm_per_A,
+                          lint_checks::limit_current_A(motor, v.nominal_speed_rad_per_s)};
 }
 
 }  // namespace heatsoak

@@ -19,6 +19,7 @@ constexpr Range kThermalResistance = Range::between(1e-3, 1e3);
 constexpr Range kThermalTime = Range::between(0.1, 1e6);
 constexpr Range kTemperature = Range::between(-60.0, 400.0);
 
+// clang-format off
 constexpr std::array kSpecs = {
     MotorFigureSpec{{"nominal_voltage", "V", kPositive, "supply voltage the nominal figures hold for"}, &MotorValues::nominal_voltage_V, Need::required},
     MotorFigureSpec{{"terminal_resistance", "ohm", kPositive, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
@@ -54,6 +55,7 @@ constexpr std::array kSpecs = {
     MotorFigureSpec{{"ambient_max", "degC", kTemperature, "highest permissible ambient temperature"}, &MotorValues::ambient_max_C},
     MotorFigureSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; copper's 0.0039 1/K where absent"}, &MotorValues::temperature_coefficient_per_K},
 };
+// clang-format on
 
 constexpr double kCopper_per_K = 0.0039;
 
@@ -150,7 +152,8 @@ void read_effects(Reader& top, Motor& motor) {
     const std::string type_name = reader.text("type", Need::optional).value_or(name);
     const EffectType* type = find_effect(type_name);
     if (!type) {
-      table->problem(name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
+      table->problem(
+          name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
       continue;
     }
     MotorEffect effect{name, type, {}, {}};
@@ -240,6 +243,14 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
 
 std::string_view data_quality(const Motor& motor) {
   bool all_of_sheet = true;
+  for (const MotorEffect& effect : motor.effects) {
+    for (const Figure& figure : effect.parameters) {
+      if (figure.origin == Origin::estimated) {
+        return "estimated";
+      }
+      all_of_sheet = all_of_sheet && (figure.origin == Origin::datasheet || figure.origin == Origin::measured);
+    }
+  }
   for (const MotorFigureSpec& each : kSpecs) {
     const auto found = motor.figures.find(each.spec.key);
     if (!each.is_thermal || found == motor.figures.end()) {

@@ -59,7 +59,7 @@ struct MotorValues {
 /// The one declaration of a motor figure: what the file calls it, and where its number goes.
 struct MotorFigureSpec {
   ParameterSpec spec;
-  double MotorValues::* value = nullptr;
+  double MotorValues::*value = nullptr;
   Need need = Need::optional;
   bool is_thermal = false;  ///< the temperature calculation rests on it
 };
@@ -100,7 +100,7 @@ MotorSample draw_sample(const Motor& motor, Random& random);
 
 /// What a verdict on this motor's temperature rests on: `datasheet` where every thermal figure is measured or
 /// from the manufacturer's sheet, `estimated` where one of the four thermal resistances and time
-/// constants or the winding limit is an estimate, `mixed` otherwise.
+/// constants, the winding limit or a figure of an added effect is an estimate, `mixed` otherwise.
 std::string_view data_quality(const Motor& motor);
 
 }  // namespace heatsoak

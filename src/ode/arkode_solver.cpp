@@ -9,8 +9,7 @@ namespace {
 class ArkodeSolver final : public OdeSolver {
  public:
   ArkodeSolver(OdeSystem& system, OdeTolerances tolerances)
-      : OdeSolver(system),
-        memory_(ERKStepCreate(derivative, 0.0, y(), context()), [](void* each) { ERKStepFree(&each); }) {
+      : OdeSolver(system), memory_(ERKStepCreate(derivative, 0.0, y(), context()), [](void* each) { ERKStepFree(&each); }) {
     check(ERKStepSetErrHandlerFn(memory_.get(), keep_reason, self()));
     check(ERKStepSetUserData(memory_.get(), self()));
     check(ERKStepSetTableNum(memory_.get(), ARKODE_DORMAND_PRINCE_7_4_5));

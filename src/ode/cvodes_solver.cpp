@@ -18,8 +18,7 @@ class CvodesSolver final : public OdeSolver {
         jacobian_(nullptr, SUNMatDestroy),
         linear_(nullptr, [](SUNLinearSolver each) { SUNLinSolFree(each); }),
         fixed_point_(nullptr, [](SUNNonlinearSolver each) { SUNNonlinSolFree(each); }),
-        memory_(CVodeCreate(method == OdeMethod::cvodes_bdf ? CV_BDF : CV_ADAMS, context()),
-                [](void* each) { CVodeFree(&each); }) {
+        memory_(CVodeCreate(method == OdeMethod::cvodes_bdf ? CV_BDF : CV_ADAMS, context()), [](void* each) { CVodeFree(&each); }) {
     check(CVodeSetErrHandlerFn(memory_.get(), keep_reason, self()));
     check(CVodeInit(memory_.get(), derivative, 0.0, y()));
     check(CVodeSetUserData(memory_.get(), self()));

@@ -5,8 +5,7 @@
 namespace heatsoak {
 
 Integrator::Integrator(OdeSystem& system, OdeMethod method, OdeTolerances tolerances)
-    : solver_(method == OdeMethod::arkode_erk ? make_arkode_solver(system, tolerances)
-                                              : make_cvodes_solver(system, method, tolerances)) {}
+    : solver_(method == OdeMethod::arkode_erk ? make_arkode_solver(system, tolerances) : make_cvodes_solver(system, method, tolerances)) {}
 
 Integrator::~Integrator() = default;
 

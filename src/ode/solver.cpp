@@ -12,9 +12,7 @@
 namespace heatsoak {
 
 OdeSolver::OdeSolver(OdeSystem& system)
-    : system_(system),
-      y_(N_VNew_Serial(system.size(), context_), N_VDestroy),
-      crossed_(static_cast<std::size_t>(system.event_count())) {
+    : system_(system), y_(N_VNew_Serial(system.size(), context_), N_VDestroy), crossed_(static_cast<std::size_t>(system.event_count())) {
   N_VConst(0.0, y_.get());
   // The packages clone this vector: a stage is then summed in one pass rather than one per term.
   N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
@@ -37,8 +35,7 @@ OdeStep OdeSolver::integrate(double stop_s, Stride stride) {
   }
   // Times that were summed in different orders meet only to rounding; no package accepts such a step.
   constexpr double kShortest_s = 1e-15;
-  const double rounding_s = 100.0 * std::numeric_limits<double>::epsilon() *
-                            std::max({std::abs(time_s_), std::abs(stop_s), kShortest_s});
+  const double rounding_s = 100.0 * std::numeric_limits<double>::epsilon() * std::max({std::abs(time_s_), std::abs(stop_s), kShortest_s});
   if (!(stop_s > time_s_ + rounding_s)) {
     if (!(stop_s >= time_s_ - rounding_s)) {
       throw Failure(ExitCode::bug, fmt::format("integrator: stop {} s lies before {} s", stop_s, time_s_));
@@ -80,8 +77,7 @@ int OdeSolver::shield(const char* what, double time_s, std::span<double> written
       write();
       for (std::size_t i = 0; i < written.size(); ++i) {
         if (!std::isfinite(written[i])) {
-          throw Failure(ExitCode::numerics_failed,
-                        fmt::format("integration failed at {} s: {} {} is {}", time_s, what, i, written[i]));
+          throw Failure(ExitCode::numerics_failed, fmt::format("integration failed at {} s: {} {} is {}", time_s, what, i, written[i]));
         }
       }
       return 0;
@@ -99,8 +95,7 @@ int OdeSolver::derivative(realtype time_s, N_Vector y, N_Vector dydt, void* self
   auto& solver = *static_cast<OdeSolver*>(self);
   ++solver.derivative_count_;
   const std::span<double> written = values(dydt);
-  return solver.shield("derivative", time_s, written,
-                       [&] { solver.system_.derivative(time_s, values(y), written); });
+  return solver.shield("derivative", time_s, written, [&] { solver.system_.derivative(time_s, values(y), written); });
 }
 
 int OdeSolver::events(realtype time_s, N_Vector y, realtype* event_values, void* self) {

@@ -66,9 +66,7 @@ class OdeSolver {
   static void keep_reason(int code, const char* module, const char* function, char* message, void* self);
 
  private:
-  static std::span<double> values(N_Vector v) {
-    return {N_VGetArrayPointer(v), static_cast<std::size_t>(N_VGetLength(v))};
-  }
+  static std::span<double> values(N_Vector v) { return {N_VGetArrayPointer(v), static_cast<std::size_t>(N_VGetLength(v))}; }
   template <typename Write>
   int shield(const char* what, double time_s, std::span<double> written, Write write);
 

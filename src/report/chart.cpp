@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
 
 #include "base/diagnostic.h"
-#include "base/files.h"
 #include "report/chart_plugin.h"
 
 namespace heatsoak {
@@ -39,9 +39,8 @@ fs::path find_plugin() {
     }
     searched += "\n  " + folder.string();
   }
-  throw Failure(ExitCode::bug,
-                fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}",
-                            chart_plugin_file, searched));
+  throw Failure(ExitCode::bug, fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}",
+                                           chart_plugin_file, searched));
 }
 
 /// Never closed: VTK's factories do not survive being unloaded. Opening again costs next to nothing.
@@ -75,13 +74,13 @@ void check_lengths(const Chart& chart) {
 
 }  // namespace
 
-void write_svg(const Chart& chart, const fs::path& path) {
+std::string draw_svg(const Chart& chart) {
   check_lengths(chart);
   std::string text;
   if (!open_plugin()(&chart, &text)) {
     throw Failure(ExitCode::bug, "drawing failed: " + text);
   }
-  write_file(path, text);
+  return text;
 }
 
 }  // namespace heatsoak

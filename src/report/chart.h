@@ -1,7 +1,6 @@
 // What a chart shows, free of how it is drawn.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -50,9 +49,7 @@ struct Chart {
   int panel_height_px = 360;  ///< with its title and tick labels
 };
 
-/// Draws `chart` as SVG without a display; the same chart gives the same bytes. Written under a temporary
-/// name and renamed, so that no half picture is ever left. Throws Failure (bad_input) where the file cannot
-/// be written, (bug) where the drawing library is not found or columns differ in length.
-void write_svg(const Chart& chart, const std::filesystem::path& path);
+/// `chart` as SVG, drawn without a display. Throws Failure (bug) where the drawing library is not found.
+std::string draw_svg(const Chart& chart);
 
 }  // namespace heatsoak

@@ -13,7 +13,9 @@ double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 }  // namespace
 
-double shaft_torque_factor(const Robot& robot, bool drives) { return (drives ? 1.0 / robot.gear_efficiency : robot.gear_efficiency) / robot.gear_ratio; }
+double shaft_torque_factor(const Robot& robot, bool drives) {
+  return (drives ? 1.0 / robot.gear_efficiency : robot.gear_efficiency) / robot.gear_ratio;
+}
 
 DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s) {
   DrivePoint point;
@@ -57,9 +59,16 @@ double heating_factor(const Robot& robot) {
   return robot.commutation == Commutation::sinusoidal ? kSinusoidal : 1.0;
 }
 
-OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C) {
+OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C) {
   const double speed_rad_per_s = std::abs(point.motor_speed_rad_per_s);
-  return {std::abs(point.current_A) * heating_factor(robot), speed_rad_per_s, speed_rad_per_s, ambient_C};
+  // Driving, the back-EMF stands against the supply; braking, it helps.
+  const double back_emf_V =
+      motor.torque_constant_Nm_per_A * speed_rad_per_s * (point.current_A * point.motor_speed_rad_per_s >= 0.0 ? 1.0 : -1.0);
+  return {.current_rms_A = std::abs(point.current_A) * heating_factor(robot),
+          .speed_mean_rad_per_s = speed_rad_per_s,
+          .speed_rms_rad_per_s = speed_rad_per_s,
+          .ambient_C = ambient_C,
+          .resistive_headroom_V = std::max(0.0, robot.available_V() - back_emf_V) * heating_factor(robot)};
 }
 
 }  // namespace heatsoak

@@ -46,6 +46,6 @@ double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, dou
 double heating_factor(const Robot& robot);
 
 /// What the thermal network sees of it.
-OperatingPoint<double> operating_point(const DrivePoint& point, const Robot& robot, double ambient_C);
+OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C);
 
 }  // namespace heatsoak

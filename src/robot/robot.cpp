@@ -18,17 +18,31 @@ constexpr std::array<RobotFigureSpec, 27> kSpecs{{
     {"body", {"center_of_gravity_x", "m", Range::any(), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
     {"body", {"center_of_gravity_y", "m", Range::any(), "left of the robot's axis"}, &Robot::center_of_gravity_y_m},
     {"wheels", {"inertia", "kg m2", Range::positive(), "of one wheel about its axle, without the rotor"}, &Robot::wheel_inertia_kg_m2},
-    {"friction", {"wheel_torque", "N m", Range::non_negative(), "against the turning of one wheel, without the motor's own drag"}, &Robot::wheel_friction_torque_Nm},
-    {"friction", {"wheel_damping", "N m s/rad", Range::non_negative(), "and what grows with the wheel's speed"}, &Robot::wheel_damping_Nm_s_per_rad},
-    {"friction", {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"}, &Robot::roller_drag_ratio},
-    {"friction", {"rolling_efficiency", "", Range::between(0.1, 1.0), "of the wheel's torque that reaches the ground"}, &Robot::rolling_efficiency},
-    {"friction.heading", {"constant", "N m", Range::non_negative(), "friction in translation, mean over the directions"}, &Robot::heading_constant_Nm},
+    {"friction",
+     {"wheel_torque", "N m", Range::non_negative(), "against the turning of one wheel, without the motor's own drag"},
+     &Robot::wheel_friction_torque_Nm},
+    {"friction",
+     {"wheel_damping", "N m s/rad", Range::non_negative(), "and what grows with the wheel's speed"},
+     &Robot::wheel_damping_Nm_s_per_rad},
+    {"friction",
+     {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
+     &Robot::roller_drag_ratio},
+    {"friction",
+     {"rolling_efficiency", "", Range::between(0.1, 1.0), "of the wheel's torque that reaches the ground"},
+     &Robot::rolling_efficiency},
+    {"friction.heading",
+     {"constant", "N m", Range::non_negative(), "friction in translation, mean over the directions"},
+     &Robot::heading_constant_Nm},
     {"friction.heading", {"sine", "N m", Range::any(), "part that grows with the wheel's share of rolling"}, &Robot::heading_sine_Nm},
-    {"friction.heading", {"double_angle", "N m", Range::non_negative(), "amplitude of the part with twice the direction"}, &Robot::heading_double_angle_Nm},
+    {"friction.heading",
+     {"double_angle", "N m", Range::non_negative(), "amplitude of the part with twice the direction"},
+     &Robot::heading_double_angle_Nm},
     {"friction.heading", {"rotation", "N m", Range::non_negative(), "friction in pure rotation"}, &Robot::heading_rotation_Nm},
     {"traction", {"coefficient", "", Range::positive(), "largest rolling force per normal force"}, &Robot::traction_ratio},
     {"traction", {"slip_speed", "m/s", Range::positive(), "slip at which 0.71 of it is used"}, &Robot::slip_speed_m_per_s},
-    {"drive", {"driver_resistance", "ohm", Range::non_negative(), "of switches and traces in series with one motor"}, &Robot::driver_resistance_ohm},
+    {"drive",
+     {"driver_resistance", "ohm", Range::non_negative(), "of switches and traces in series with one motor"},
+     &Robot::driver_resistance_ohm},
     {"drive", {"driver_standby_power", "W", Range::non_negative(), "of one motor's driver without current"}, &Robot::driver_standby_W},
     {"battery", {"full_voltage", "V", Range::positive(), "open circuit, full"}, &Robot::battery_full_V},
     {"battery", {"empty_voltage", "V", Range::positive(), "open circuit, empty"}, &Robot::battery_empty_V},
@@ -39,7 +53,9 @@ constexpr std::array<RobotFigureSpec, 27> kSpecs{{
     {"limits", {"braking", "m/s2", Range::positive(), "when slowing down"}, &Robot::braking_limit_m_per_s2},
     {"limits", {"jerk", "m/s3", Range::positive(), "change of the acceleration"}, &Robot::jerk_limit_m_per_s3},
     {"limits", {"yaw_rate", "rad/s", Range::positive(), "largest rate of turning"}, &Robot::yaw_rate_limit_rad_per_s},
-    {"limits", {"yaw_acceleration", "rad/s2", Range::positive(), "change of the rate of turning"}, &Robot::yaw_acceleration_limit_rad_per_s2},
+    {"limits",
+     {"yaw_acceleration", "rad/s2", Range::positive(), "change of the rate of turning"},
+     &Robot::yaw_acceleration_limit_rad_per_s2},
 }};
 
 constexpr std::array<std::string_view, 3> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency"};
@@ -97,7 +113,8 @@ void read_wheels(Reader& top, Robot& robot) {
   }
   robot.wheel_radius_m = wheels->quantity({"radius", "m", Range::positive(), "of a wheel"}, Need::required).value_or(1.0);
   robot.wheel_contact_radius_m =
-      wheels->quantity({"contact_radius", "m", Range::positive(), "from the robot's axis to the contact points"}, Need::required).value_or(1.0);
+      wheels->quantity({"contact_radius", "m", Range::positive(), "from the robot's axis to the contact points"}, Need::required)
+          .value_or(1.0);
   robot.wheel_axis_rad = read_angles_rad(*wheels, "axis_angles");
   if (robot.wheel_axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
@@ -115,10 +132,14 @@ void read_drive(Reader& top, Robot& robot) {
   robot.gear_ratio = drive->quantity({"gear_ratio", "", Range::positive(), "motor turns per wheel turn"}, Need::required).value_or(1.0);
   robot.gear_efficiency =
       drive->quantity({"gear_efficiency", "", Range::between(0.1, 1.0), "torque that the gear hands on"}, Need::optional).value_or(1.0);
-  robot.voltage_limit_V = drive->quantity({"voltage_limit", "V", Range::positive(), "largest command to one motor"}, Need::optional).value_or(robot.voltage_limit_V);
-  robot.current_limit_A = drive->quantity({"current_limit", "A", Range::positive(), "largest equivalent DC current of one motor"}, Need::optional).value_or(robot.current_limit_A);
+  robot.voltage_limit_V = drive->quantity({"voltage_limit", "V", Range::positive(), "largest command to one motor"}, Need::optional)
+                              .value_or(robot.voltage_limit_V);
+  robot.current_limit_A =
+      drive->quantity({"current_limit", "A", Range::positive(), "largest equivalent DC current of one motor"}, Need::optional)
+          .value_or(robot.current_limit_A);
   constexpr std::array<std::string_view, 2> kCommutations{"block", "sinusoidal"};
-  robot.commutation = drive->choice("commutation", kCommutations, Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
+  robot.commutation =
+      drive->choice("commutation", kCommutations, Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
   read_figures(*drive, "drive", robot);
   drive->finish();
 }
@@ -133,7 +154,8 @@ void require_figures(const Robot& robot, std::span<const std::string_view> table
     const bool asked = std::ranges::find(tables, each.table) != tables.end();
     const bool optional = std::ranges::find(kOptionalKeys, each.spec.key) != kOptionalKeys.end();
     if (asked && !optional && std::isnan(robot.*each.value)) {
-      diagnostics.add({robot.file.string()}, fmt::format("{}.{}", each.table, each.spec.key), fmt::format("is missing: {}", each.spec.meaning));
+      diagnostics.add({robot.file.string()}, fmt::format("{}.{}", each.table, each.spec.key),
+                      fmt::format("is missing: {}", each.spec.meaning));
     }
   }
   diagnostics.throw_if_any();

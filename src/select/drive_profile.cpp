@@ -16,21 +16,25 @@ DutySample draw_sample(const Duty& duty, Random& random) {
   return sample;
 }
 
-OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& robot, DutyKind kind, const LoadBin& bin, const DutySample& sample) {
+OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& robot, DutyKind kind, const LoadBin& bin,
+                                       const DutySample& sample) {
   const double to_shaft = shaft_torque_factor(robot, bin.torque_along_motion_Nm >= 0.0) * sample.load;
   const double torque_rms_Nm = bin.torque_rms_Nm * to_shaft;
   const double drag_Nm = drag_torque_Nm(motor);
-  const double torque2 = torque_rms_Nm * torque_rms_Nm + 2.0 * drag_Nm * bin.torque_along_motion_Nm * to_shaft + drag_Nm * drag_Nm * bin.moving_share;
-  const double wanted_A = kind == DutyKind::torque ? std::sqrt(std::max(0.0, torque2)) / motor.torque_constant_Nm_per_A : bin.current_rms_A * sample.load;
+  const double torque2 =
+      torque_rms_Nm * torque_rms_Nm + 2.0 * drag_Nm * bin.torque_along_motion_Nm * to_shaft + drag_Nm * drag_Nm * bin.moving_share;
+  const double wanted_A =
+      kind == DutyKind::torque ? std::sqrt(std::max(0.0, torque2)) / motor.torque_constant_Nm_per_A : bin.current_rms_A * sample.load;
   const double direction = bin.torque_along_motion_Nm < 0.0 ? -1.0 : 1.0;
   const double speed_rad_per_s = bin.speed_mean_rad_per_s * robot.gear_ratio;
   DrivePoint point = clamped_point(motor, robot, direction * wanted_A, speed_rad_per_s);
-  OperatingPoint<double> at = operating_point(point, robot, sample.ambient_C);
+  OperatingPoint<double> at = operating_point(point, motor, robot, sample.ambient_C);
   at.speed_rms_rad_per_s = bin.speed_rms_rad_per_s * robot.gear_ratio;
   return at;
 }
 
-std::vector<Interval> intervals(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample) {
+std::vector<Interval> intervals(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand,
+                                const DutySample& sample) {
   std::vector<Interval> result;
   result.reserve(demand.bins.size());
   for (const LoadBin& bin : demand.bins) {
@@ -49,14 +53,16 @@ double current_rms_A(const std::vector<Interval>& intervals) {
   return duration_s > 0.0 ? std::sqrt(current2_s / duration_s) : 0.0;
 }
 
-Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample, double winding_C) {
+Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample,
+                        double winding_C) {
   Feasibility result;
   MotorValues warm = motor;
   warm.terminal_resistance_ohm *= 1.0 + motor.temperature_coefficient_per_K * (winding_C - 25.0);
   double short_s = 0.0;
   for (const LoadPoint& each : demand.points) {
-    const DrivePoint point = kind == DutyKind::torque ? drive_point(warm, robot, {each.torque_Nm * sample.load, each.speed_rad_per_s})
-                                                      : drive_point_of_current(warm, robot, each.current_A * sample.load, each.speed_rad_per_s);
+    const DrivePoint point = kind == DutyKind::torque
+                                 ? drive_point(warm, robot, {each.torque_Nm * sample.load, each.speed_rad_per_s})
+                                 : drive_point_of_current(warm, robot, each.current_A * sample.load, each.speed_rad_per_s);
     DrivePoint wanted = point;
     wanted.current_A = point.current_wanted_A;
     result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(terminal_voltage_V(warm, wanted, 25.0)));

@@ -20,21 +20,24 @@ DutySample draw_sample(const Duty& duty, Random& random);
 
 /// What the thermal network sees of a bin: the rms current that its torque takes, clamped to what voltage (at
 /// the bin's mean speed, 25 °C) and driver let through.
-OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& robot, DutyKind kind, const LoadBin& bin, const DutySample& sample);
+OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& robot, DutyKind kind, const LoadBin& bin,
+                                       const DutySample& sample);
 
-std::vector<Interval> intervals(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample);
+std::vector<Interval> intervals(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand,
+                                const DutySample& sample);
 
 /// Root mean square of the heating current over the whole of it.
 double current_rms_A(const std::vector<Interval>& intervals);
 
 /// Whether voltage and current suffice, point by point of the demand.
 struct Feasibility {
-  double least_share = 1.0;         ///< smallest ratio of delivered to demanded current
+  double least_share = 1.0;             ///< smallest ratio of delivered to demanded current
   DriveLimit limit = DriveLimit::none;  ///< what cut it there
-  double short_time_share = 0.0;    ///< part of the time in which more than kTolerableShortage is missing
-  double highest_voltage_V = 0.0;   ///< demanded at the terminals
+  double short_time_share = 0.0;        ///< part of the time in which more than kTolerableShortage is missing
+  double highest_voltage_V = 0.0;       ///< demanded at the terminals
 };
 inline constexpr double kTolerableShortage = 0.005;
-Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample, double winding_C);
+Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand, const DutySample& sample,
+                        double winding_C);
 
 }  // namespace heatsoak

@@ -1,5 +1,7 @@
 #include "select/evaluate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -9,6 +11,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 #include "select/drive_profile.h"
 #include "thermal/ensemble.h"
@@ -23,7 +26,8 @@ constexpr std::size_t kBandCells = 160;
 /// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
 class Block {
  public:
-  Block(const Motor& motor, const Robot& robot, const Duty& duty, const WheelDemand& demand, const EvaluateOptions& options, int first_sample)
+  Block(const Motor& motor, const Robot& robot, const Duty& duty, const WheelDemand& demand, const EvaluateOptions& options,
+        int first_sample)
       : robot_(robot), kind_(duty.kind), demand_(demand) {
     std::vector<Network> networks;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -61,6 +65,7 @@ class Block {
   }
 
   [[nodiscard]] const MotorSample& motor(int lane) const { return motors_[static_cast<std::size_t>(lane)]; }
+  [[nodiscard]] const DutySample& duty(int lane) const { return duties_[static_cast<std::size_t>(lane)]; }
 
  private:
   [[nodiscard]] OperatingPoint<Lanes> point(const LoadBin& bin) const {
@@ -72,17 +77,27 @@ class Block {
       at.speed_mean_rad_per_s[lane] = one.speed_mean_rad_per_s;
       at.speed_rms_rad_per_s[lane] = one.speed_rms_rad_per_s;
       at.ambient_C[lane] = one.ambient_C;
+      at.resistive_headroom_V[lane] = one.resistive_headroom_V;
     }
     return at;
   }
 
   /// The step that suits every bin: the network is fastest where current or speed is highest, or where there is none.
   [[nodiscard]] double shortest_of_longest_steps_s() const {
-    const auto by_current = std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
+    const auto by_current =
+        std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
     const auto by_speed = std::ranges::max_element(demand_.bins, {}, &LoadBin::speed_rms_rad_per_s);
     double step_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
     for (const auto& bin : {by_current, by_speed}) {
       step_s = std::min(step_s, longest_step_s(network_, parameters_, point(*bin)));
+    }
+    if (demand_.duration_s() / step_s > static_cast<double>(kMostSteps)) {
+      throw Failure(
+          ExitCode::numerics_failed,
+          fmt::format(
+              "a duty of {:.0f} s has too many steps for a thermal network that settles within {:.2g} s; is a thermal resistance or a "
+              "heat capacity too small?",
+              demand_.duration_s(), step_s));
     }
     return step_s;
   }
@@ -118,6 +133,7 @@ struct Work {
   MotorEvaluation result;
   std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
   std::vector<char> over_limit;                       ///< per sample
+  std::vector<char> short_of_demand;                  ///< per sample
   Envelope winding_envelope_C, stator_envelope_C;
 };
 
@@ -177,6 +193,10 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
   return std::lerp(low, high, share);
 }
 
+LimitingFactor limiting_factor_of(DriveLimit limit) {
+  return limit == DriveLimit::current ? LimitingFactor::current : LimitingFactor::voltage;
+}
+
 /// One nominal run at one wheel, through the reference.
 struct NominalRun {
   std::vector<Interval> intervals;
@@ -195,11 +215,13 @@ NominalRun run_nominal(const Network& network, const MotorSample& sample, const 
     run.curves.winding_C.push_back(moment.state_C[winding]);
     run.curves.stator_C.push_back(moment.state_C[stator]);
   };
-  run.transient = run_transient(network, network.values(), run.intervals, options, with_curves ? TransientObserver(keep) : TransientObserver());
+  run.transient =
+      run_transient(network, network.values(), run.intervals, options, with_curves ? TransientObserver(keep) : TransientObserver());
   return run;
 }
 
-void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels, const EvaluateOptions& options) {
+void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
+                      const EvaluateOptions& options) {
   const Motor& motor = *work.motor;
   MotorEvaluation& result = work.result;
   const MotorSample sample = nominal_sample(motor);
@@ -219,12 +241,13 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   }
   const TransientResult& transient = run.transient;
   const DutySample demanded = nominal_sample(duty);
-  const Feasibility cold = feasibility(sample.values, robot, duty.kind, *work.wheel, demanded, 25.0);
-  const Feasibility hot = feasibility(sample.values, robot, duty.kind, *work.wheel, demanded, std::min(transient.peak_C[winding], kDestroyed_C));
+  const Feasibility hot = feasibility(sample.values, robot, duty.kind, *work.wheel, demanded,
+                                      std::min(transient.peak_C[winding], sample.values.winding_limit_C));
   result.wheel = work.wheel->wheel;
   result.curves = std::move(run.curves);
   result.highest_voltage_V = hot.highest_voltage_V;
-  result.short_time_share = cold.short_time_share;
+  result.short_time_share = hot.short_time_share;
+  result.short_limit = limiting_factor_of(hot.limit);
   result.motor_id = motor.id;
   result.data_quality = data_quality(motor);
   result.winding_limit_C = sample.values.winding_limit_C;
@@ -232,7 +255,7 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   result.stator_peak_C.nominal = transient.peak_C[stator];
   result.destroyed = transient.destroyed;
   result.current_rms_A = current_rms_A(run.intervals);
-  result.least_torque_share = cold.least_share;
+  result.least_torque_share = hot.least_share;
   result.margin_K = result.winding_limit_C - transient.peak_C[winding];
   if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, result.winding_limit_C)) {
     result.margin_A = (*factor - 1.0) * result.current_rms_A;
@@ -245,15 +268,13 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
       first_limit = i;
     }
   }
-  if (cold.short_time_share > kTolerableShortTime) {
+  // As hot as the winding may be: what a cold motor still delivers does not count, nor what a burnt one no longer does.
+  if (hot.short_time_share > kTolerableShortTime) {
     result.verdict = Verdict::infeasible;
-    result.limiting_factor = cold.limit == DriveLimit::voltage ? LimitingFactor::voltage : LimitingFactor::current;
+    result.limiting_factor = limiting_factor_of(hot.limit);
   } else if (result.time_to_limit_s) {
     result.verdict = Verdict::fail;
     result.limiting_factor = first_limit == 0 ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
-  } else if (hot.short_time_share > kTolerableShortTime) {
-    result.verdict = Verdict::infeasible;
-    result.limiting_factor = LimitingFactor::voltage;
   }
 }
 
@@ -285,6 +306,9 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
     work.winding_peak_C[place] = peak_C[winding][lane];
     work.stator_peak_C[place] = peak_C[stator][lane];
     work.over_limit[place] = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
+    const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
+    work.short_of_demand[place] =
+        feasibility(values, robot, duty.kind, *work.wheel, block.duty(lane), hottest_C).short_time_share > kTolerableShortTime;
   }
 }
 
@@ -316,10 +340,14 @@ void conclude(Work& work, const EvaluateOptions& options) {
   result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
   result.probability_over_limit =
       options.samples > 0 ? static_cast<double>(std::ranges::count(work.over_limit, char{1})) / options.samples : kNothing;
-  if (result.verdict == Verdict::pass && result.probability_over_limit > kMarginalProbability) {
+  result.short_probability =
+      options.samples > 0 ? static_cast<double>(std::ranges::count(work.short_of_demand, char{1})) / options.samples : kNothing;
+  if (result.verdict == Verdict::pass && std::max(result.probability_over_limit, result.short_probability) > kMarginalProbability) {
     result.verdict = Verdict::marginal;
     const bool winding_first = !result.stator_limit_C || result.margin_K < *result.stator_limit_C - result.stator_peak_C.nominal;
-    result.limiting_factor = winding_first ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
+    result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit
+                             : winding_first                                          ? LimitingFactor::winding_temperature
+                                                                                      : LimitingFactor::stator_temperature;
   }
   if (options.with_curves && options.samples > 0) {
     finish_band(work, options.samples);
@@ -374,8 +402,8 @@ std::string_view to_string(LimitingFactor factor) {
   return kNames.at(static_cast<std::size_t>(factor));
 }
 
-std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels, std::span<const Motor> motors, const EvaluateOptions& options,
-                                      const Progress& progress) {
+std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
+                                      std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress) {
   const auto samples = static_cast<std::size_t>(options.samples);
   const std::size_t blocks = (samples + kLanes - 1) / kLanes;
   std::vector<Work> works(motors.size());
@@ -384,14 +412,17 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].winding_peak_C.resize(samples);
     works[i].stator_peak_C.resize(samples);
     works[i].over_limit.resize(samples);
+    works[i].short_of_demand.resize(samples);
     works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
   }
   const std::size_t jobs = motors.size() * (blocks + 1);
   // The samples need to know the hottest wheel, so every motor's nominal run comes first.
-  in_parallel(motors.size(), options.threads, 0, jobs, progress, [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
-  in_parallel(motors.size() * blocks, options.threads, motors.size(), jobs, progress,
-              [&](std::size_t job) { evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * kLanes); });
+  in_parallel(motors.size(), options.threads, 0, jobs, progress,
+              [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
+  in_parallel(motors.size() * blocks, options.threads, motors.size(), jobs, progress, [&](std::size_t job) {
+    evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * kLanes);
+  });
   std::vector<MotorEvaluation> results;
   for (Work& work : works) {
     conclude(work, options);

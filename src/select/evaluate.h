@@ -32,7 +32,7 @@ inline constexpr double kTolerableShortTime = 0.01;
 struct EvaluateOptions {
   int samples = 500;  ///< 0: nominal only
   std::uint64_t seed = 1;
-  int threads = 0;          ///< 0: all cores; the result does not depend on it
+  int threads = 0;           ///< 0: all cores; the result does not depend on it
   bool with_curves = false;  ///< keep what a picture needs
 };
 
@@ -63,15 +63,17 @@ struct MotorEvaluation {
   std::optional<double> stator_limit_C;
   Spread95 winding_peak_C;
   Spread95 stator_peak_C;
-  double probability_over_limit = 0.0;        ///< of any temperature limit; NaN without samples
-  std::optional<double> time_to_limit_s;      ///< nominal, first of the limits
-  double current_rms_A = 0.0;                 ///< heating current over the whole duty
-  double margin_K = 0.0;                      ///< winding limit minus nominal peak
-  std::optional<double> margin_A;             ///< how much more rms current the winding bears at the same speeds
-  double least_torque_share = 1.0;            ///< delivered over demanded, worst moment
-  double short_time_share = 0.0;              ///< part of the time in which the demand is not met
-  double highest_voltage_V = 0.0;             ///< needed at the terminals, hot
-  bool destroyed = false;                     ///< runaway: the nominal run ended at 1000 °C
+  double probability_over_limit = 0.0;                   ///< of any temperature limit; NaN without samples
+  std::optional<double> time_to_limit_s;                 ///< nominal, first of the limits
+  double current_rms_A = 0.0;                            ///< heating current over the whole duty
+  double margin_K = 0.0;                                 ///< winding limit minus nominal peak
+  std::optional<double> margin_A;                        ///< how much more rms current the winding bears at the same speeds
+  double least_torque_share = 1.0;                       ///< delivered over demanded, worst moment
+  double short_time_share = 0.0;                         ///< part of the time in which the demand is not met, hot but within the limit
+  LimitingFactor short_limit = LimitingFactor::voltage;  ///< what cuts the current first, if anything does
+  double short_probability = 0.0;  ///< samples that miss the demand for more than kTolerableShortTime; NaN without samples
+  double highest_voltage_V = 0.0;  ///< needed at the terminals, hot
+  bool destroyed = false;          ///< runaway: the nominal run ended at 1000 °C
   TemperatureCurves curves;
 };
 
@@ -80,7 +82,7 @@ using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Best first: pass, marginal, fail, infeasible; within them by margin. `wheels` is the duty's demand; every figure is
 /// of the wheel whose winding gets hottest. `progress` is called from one thread at a time.
-std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels, std::span<const Motor> motors, const EvaluateOptions& options,
-                                      const Progress& progress = {});
+std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
+                                      std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress = {});
 
 }  // namespace heatsoak

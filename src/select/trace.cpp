@@ -87,8 +87,8 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
 std::string to_csv(const Trace& trace) {
   std::string text = "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W\n";
   for (const TraceRow& row : trace.rows) {
-    fmt::format_to(std::back_inserter(text), "{:.10g},{:.4f},{:.4f},{:.2f},{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.time_s, row.winding_C, row.stator_C,
-                   row.ambient_C, row.current_A, row.speed_rad_per_s, row.torque_Nm, row.motor_V, row.power_in_W);
+    fmt::format_to(std::back_inserter(text), "{:.10g},{:.4f},{:.4f},{:.2f},{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.time_s, row.winding_C,
+                   row.stator_C, row.ambient_C, row.current_A, row.speed_rad_per_s, row.torque_Nm, row.motor_V, row.power_in_W);
   }
   return text;
 }

@@ -14,11 +14,11 @@ struct TraceRow {
   double winding_C = 0.0;
   double stator_C = 0.0;
   double ambient_C = 0.0;
-  double current_A = 0.0;       ///< equivalent DC current, signed like the torque
+  double current_A = 0.0;        ///< equivalent DC current, signed like the torque
   double speed_rad_per_s = 0.0;  ///< of the motor
-  double torque_Nm = 0.0;       ///< at the motor's shaft
-  double motor_V = 0.0;         ///< at the terminals, at this winding temperature
-  double power_in_W = 0.0;      ///< into the terminals
+  double torque_Nm = 0.0;        ///< at the motor's shaft
+  double motor_V = 0.0;          ///< at the terminals, at this winding temperature
+  double power_in_W = 0.0;       ///< into the terminals
 };
 
 /// Heat that one effect brought into one node, as the mean over the run.

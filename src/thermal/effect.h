@@ -5,6 +5,7 @@
 // only losses do.
 #pragma once
 
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -17,10 +18,13 @@ namespace heatsoak {
 /// without changing any heat: I²R takes the rms current, a loss ∝ |ω| the mean, one ∝ ω² the rms.
 template <class S>
 struct OperatingPoint {
-  S current_rms_A = S(0.0);  ///< equivalent DC current of the terminals: I²·R of two phases in series is the heat
+  S current_rms_A = S(0.0);         ///< equivalent DC current of the terminals: I²·R of two phases in series is the heat
   S speed_mean_rad_per_s = S(0.0);  ///< mean of |ω|, motor shaft
   S speed_rms_rad_per_s = S(0.0);   ///< root mean square of ω, motor shaft
   S ambient_C = S(25.0);
+  /// Voltage that is left for I·R beside the back-EMF, per current that heats: as the winding gets hot and its
+  /// resistance rises, less current flows than is asked for. Infinite where voltage is no limit.
+  S resistive_headroom_V = S(std::numeric_limits<double>::infinity());
 };
 
 /// What a law may look at: the operating point, its own parameters and the temperatures of its nodes,
@@ -28,8 +32,7 @@ struct OperatingPoint {
 template <class S>
 class Situation {
  public:
-  Situation(const OperatingPoint<S>& point, const S* parameters, const int* parameter_index, const S* temperatures_C,
-            const int* node_index)
+  Situation(const OperatingPoint<S>& point, const S* parameters, const int* parameter_index, const S* temperatures_C, const int* node_index)
       : at(point), parameters_(parameters), parameter_index_(parameter_index), temperatures_C_(temperatures_C), node_index_(node_index) {}
 
   const OperatingPoint<S>& at;  // NOLINT(misc-non-private-member-variables-in-classes): a view, read only

@@ -9,6 +9,9 @@
 
 namespace heatsoak {
 
+/// More steps than this for one run are refused: the network is far too fast for the duty.
+inline constexpr long kMostSteps = 2'000'000;
+
 /// The longest step with which the classical Runge-Kutta method stays below 1e-5 of the fastest
 /// transient, from a bound on the network's eigenvalues at `at`.
 double longest_step_s(const Network& network, std::span<const Lanes> parameters, const OperatingPoint<Lanes>& at);

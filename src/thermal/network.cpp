@@ -56,7 +56,8 @@ std::string_view Network::node_name(int node) const {
 
 void Network::add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters) {
   if (nodes.size() != type.nodes.size() || parameters.size() != type.parameters.size()) {
-    throw std::logic_error(fmt::format("{}: {} needs {} nodes and {} parameters", name, type.name, type.nodes.size(), type.parameters.size()));
+    throw std::logic_error(
+        fmt::format("{}: {} needs {} nodes and {} parameters", name, type.name, type.nodes.size(), type.parameters.size()));
   }
   EffectInPlace effect{.name = std::move(name), .type = &type, .node_index = {}, .parameter_index = {}};
   for (const std::string& node : nodes) {
@@ -73,6 +74,31 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
   effects_.push_back(std::move(effect));
 }
 
+void Network::limit_current_by(std::string_view copper_effect) {
+  const auto found = std::ranges::find(effects_, copper_effect, &EffectInPlace::name);
+  if (found == effects_.end() || found->parameter_index.size() != 2 || found->node_index.size() != 1) {
+    throw std::logic_error(fmt::format("'{}' is no copper loss of this network", copper_effect));
+  }
+  limiting_effect_ = static_cast<int>(found - effects_.begin());
+}
+
+template <class S>
+OperatingPoint<S> Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const {
+  OperatingPoint<S> limited = at;
+  if (limiting_effect_ >= 0) {
+    const EffectInPlace& copper = effects_[static_cast<std::size_t>(limiting_effect_)];
+    const S rise_K = temperature_C[copper.node_index[0]] - 25.0;
+    const S most_A =
+        at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * (1.0 + parameters[copper.parameter_index[1]] * rise_K));
+    if constexpr (std::is_same_v<S, double>) {
+      limited.current_rms_A = std::min(at.current_rms_A, most_A);
+    } else {
+      limited.current_rms_A = at.current_rms_A.min(most_A);
+    }
+  }
+  return limited;
+}
+
 std::vector<double> Network::values() const {
   std::vector<double> all;
   for (const NetworkParameter& parameter : parameters_) {
@@ -82,13 +108,15 @@ std::vector<double> Network::values() const {
 }
 
 template <class S>
-void Network::rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const {
+void Network::rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C,
+                           std::span<S> rate) const {
   std::array<S, kMostNodes> heat_W;
   const std::size_t states = node_names_.size();
   std::fill_n(heat_W.begin(), states + 1, S(0.0));
   temperature_C[states] = at.ambient_C;
+  const OperatingPoint<S> limited = within_headroom(at, parameters.data(), temperature_C.data());
   for (const EffectInPlace& effect : effects_) {
-    book<S>(effect, at, parameters.data(), temperature_C.data(), heat_W.data());
+    book<S>(effect, limited, parameters.data(), temperature_C.data(), heat_W.data());
   }
   for (std::size_t node = 0; node < states; ++node) {
     rate[node] = heat_W[node] / parameters[static_cast<std::size_t>(capacity_index_[node])];
@@ -101,12 +129,14 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
   temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
   std::ranges::fill(heat_W, 0.0);
+  const OperatingPoint<double> limited = within_headroom(at, parameters.data(), temperature_C.data());
   for (std::size_t e = 0; e < effects_.size(); ++e) {
-    book<double>(effects_[e], at, parameters.data(), temperature_C.data(), heat_W.data() + e * static_cast<std::size_t>(node_count()));
+    book<double>(effects_[e], limited, parameters.data(), temperature_C.data(), heat_W.data() + e * static_cast<std::size_t>(node_count()));
   }
 }
 
-template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
+template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>,
+                                            std::span<double>) const;
 template void Network::rate_K_per_s<Lanes>(const OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
 
 }  // namespace heatsoak

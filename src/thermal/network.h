@@ -36,6 +36,10 @@ class Network {
   /// `nodes` and `parameters` in the order of the type's declaration. Nodes must exist.
   void add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters);
 
+  /// The current is cut to what the operating point's headroom drives through R25·(1+α·(T−25 °C)) of a copper loss.
+  /// `copper_effect` is the name of an effect with terminal_resistance and temperature_coefficient as its parameters.
+  void limit_current_by(std::string_view copper_effect);
+
   [[nodiscard]] int state_count() const { return static_cast<int>(node_names_.size()); }
   [[nodiscard]] int node_count() const { return state_count() + 1; }
   /// -1 where there is no such node; ambient is state_count().
@@ -56,14 +60,19 @@ class Network {
 
  private:
   int add_parameter(NetworkParameter parameter);
+  template <class S>
+  [[nodiscard]] OperatingPoint<S> within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
 
   std::vector<std::string> node_names_;
   std::vector<int> capacity_index_;
   std::vector<EffectInPlace> effects_;
   std::vector<NetworkParameter> parameters_;
+  int limiting_effect_ = -1;  ///< whose resistance limits the current
 };
 
-extern template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
-extern template void Network::rate_K_per_s<Lanes>(const OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
+extern template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>,
+                                                   std::span<double>) const;
+extern template void Network::rate_K_per_s<Lanes>(const OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>,
+                                                  std::span<Lanes>) const;
 
 }  // namespace heatsoak

@@ -70,10 +70,10 @@ OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurre
   const double cold_rise_K = total_K_per_W * resistance_ambient_ohm * result.current_rms_A * result.current_rms_A;
   const double denominator = 1.0 - coefficient_per_K * cold_rise_K;
   result.runaway = !(denominator > 0.0);
-  const double winding_rise_K = cold_rise_K / denominator;                                                                // (9)
-  const double stator_rise_K = motor.thermal_resistance_stator_ambient_K_per_W / total_K_per_W * winding_rise_K;          // (10)
-  result.stator_C = current.ambient_C + stator_rise_K;                                                                    // (11)
-  result.winding_C = current.ambient_C + winding_rise_K;                                                                  // (12)
+  const double winding_rise_K = cold_rise_K / denominator;                                                        // (9)
+  const double stator_rise_K = motor.thermal_resistance_stator_ambient_K_per_W / total_K_per_W * winding_rise_K;  // (10)
+  result.stator_C = current.ambient_C + stator_rise_K;                                                            // (11)
+  result.winding_C = current.ambient_C + winding_rise_K;                                                          // (12)
   return result;
 }
 

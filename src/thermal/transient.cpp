@@ -1,7 +1,11 @@
 #include "thermal/transient.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "base/diagnostic.h"
 
 namespace heatsoak {
 namespace {
@@ -43,6 +47,9 @@ class NetworkSystem final : public OdeSystem {
   std::vector<double> temperature_C_;
   std::size_t ledger_size_;
 };
+
+/// Some ten seconds of work; a match has a hundredth of it.
+constexpr long kMostTransientSteps = 10'000'000;
 
 /// Highest value of the cubic through two ends with their slopes, and where it is (0 to 1).
 std::pair<double, double> hermite_peak(double from, double to, double slope_from, double slope_to) {
@@ -104,6 +111,13 @@ class Run {
     system_.derivative(start_s, y_, slope_);
     observe(start_s, index, true);
     while (result_.end_s < stop_s && !result_.destroyed) {
+      if (++steps_ > kMostTransientSteps) {
+        throw Failure(
+            ExitCode::numerics_failed,
+            fmt::format(
+                "{} steps took the run only to {:.6g} s; is a thermal resistance or a heat capacity too small, or the duty too long?",
+                kMostTransientSteps, result_.end_s));
+      }
       const OdeStep step = integrator_.step(stop_s);
       note_crossings(step);
       advance_to(step.time_s);
@@ -170,6 +184,7 @@ class Run {
   std::vector<double> slope_;
   std::vector<double> slope_before_;
   TransientResult result_;
+  long steps_ = 0;
 };
 
 }  // namespace

@@ -42,11 +42,11 @@ struct TransientMoment {
 };
 
 struct TransientResult {
-  std::vector<double> end_C;        ///< per state node
-  std::vector<double> peak_C;       ///< per state node, between the steps too
-  std::vector<double> peak_time_s;  ///< per state node
+  std::vector<double> end_C;                           ///< per state node
+  std::vector<double> peak_C;                          ///< per state node, between the steps too
+  std::vector<double> peak_time_s;                     ///< per state node
   std::vector<std::optional<double>> time_to_limit_s;  ///< per limit: first crossing from below, located by the solver
-  bool destroyed = false;           ///< a node passed kDestroyed_C at end_s and the rest was not run
+  bool destroyed = false;                              ///< a node passed kDestroyed_C at end_s and the rest was not run
   double end_s = 0.0;
   /// With a ledger: heat in J that effect e booked into node n at [e · node_count + n].
   std::vector<double> heat_J;

@@ -24,7 +24,8 @@ TEST(DidYouMean, is_silent_where_nothing_is_near) {
 }
 
 TEST(DidYouMean, takes_the_nearer_of_two) {
-  EXPECT_EQ(did_you_mean("speed_constnt", std::vector<std::string>{"speed_constants", "speed_constant"}), "; did you mean 'speed_constant'?");
+  EXPECT_EQ(did_you_mean("speed_constnt", std::vector<std::string>{"speed_constants", "speed_constant"}),
+            "; did you mean 'speed_constant'?");
 }
 
 TEST(Diagnostic, is_written_so_that_editors_jump) {

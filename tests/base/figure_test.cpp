@@ -34,8 +34,9 @@ double share_below(const Figure& figure, double bound, int draws = 200000) {
   return static_cast<double>(below) / draws;
 }
 
-const std::vector<Figure> kFigures{tolerance(1.07, 0.1), tolerance(30.0, 0.9), range(3.8, 2.2, 6.0, true), range(0.25, 0.15, 0.45, true),
-                                   range(25.0, 20.0, 32.0, false), range(0.0, -5.0, 3.0, false), range(2.0, 2.0, 3.0, true), range(2.0, 1.0, 2.0, true)};
+const std::vector<Figure> kFigures{tolerance(1.07, 0.1),          tolerance(30.0, 0.9),           range(3.8, 2.2, 6.0, true),
+                                   range(0.25, 0.15, 0.45, true), range(25.0, 20.0, 32.0, false), range(0.0, -5.0, 3.0, false),
+                                   range(2.0, 2.0, 3.0, true),    range(2.0, 1.0, 2.0, true)};
 
 TEST(FigureQuantile, without_spread_is_the_figure) {
   Figure figure;

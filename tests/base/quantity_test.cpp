@@ -33,23 +33,24 @@ TEST_P(SheetSpelling, is_read) {
 // Values computed by hand from the definitions of the units.
 INSTANTIATE_TEST_SUITE_P(
     Sheets, SheetSpelling,
-    testing::Values(Spelling{"36.9 mNm/A", "N m/A", 0.0369}, Spelling{"36.9 mN m/A", "N m/A", 0.0369}, Spelling{"36.9mNm/A", "N m/A", 0.0369},
-                    Spelling{"0.0369 Nm/A", "N m/A", 0.0369}, Spelling{"0.0369 N m/A", "N m/A", 0.0369}, Spelling{"181 gcm2", "kg m2", 1.81e-5},
-                    Spelling{"181 g cm2", "kg m2", 1.81e-5}, Spelling{"181 gcm²", "kg m2", 1.81e-5}, Spelling{"181 g cm²", "kg m2", 1.81e-5},
-                    Spelling{"265 rpm/V", "rad/s/V", 265.0 * kRpm_rad_per_s}, Spelling{"4.26 rpm/mNm", "rad/s/(N m)", 4260.0 * kRpm_rad_per_s},
-                    Spelling{"4.26 rpm/(mN m)", "rad/s/(N m)", 4260.0 * kRpm_rad_per_s}, Spelling{"6000 rpm", "rad/s", 200.0 * std::numbers::pi},
-                    Spelling{"12 rad/s", "rad/s", 12.0}, Spelling{"90 deg", "rad", std::numbers::pi / 2.0}, Spelling{"-30 deg", "rad", -std::numbers::pi / 6.0},
-                    Spelling{"0.463 mH", "H", 0.463e-3}, Spelling{"463 uH", "H", 0.463e-3}, Spelling{"463 µH", "H", 0.463e-3} /* U+00B5 */,
-                    Spelling{"463 μH", "H", 0.463e-3} /* U+03BC */, Spelling{"5 µNm", "N m", 5e-6}, Spelling{"5 μNm", "N m", 5e-6},
-                    Spelling{"5 uNm", "N m", 5e-6}, Spelling{"2 kNm", "N m", 2000.0}, Spelling{"155 degC", "degC", 155.0},
-                    Spelling{"155 °C", "degC", 155.0}, Spelling{"311 degF", "degC", 155.0}, Spelling{"428.15 K", "degC", 155.0},
-                    Spelling{"-40 degC", "degC", -40.0}, Spelling{"3.8 K/W", "K/W", 3.8}, Spelling{"12 s", "s", 12.0}, Spelling{"12 ms", "s", 0.012},
-                    Spelling{"2 min", "s", 120.0}, Spelling{"0.39 %/K", "1/K", 0.0039}, Spelling{"10 %", "", 0.1}, Spelling{"10%", "", 0.1},
-                    Spelling{"8", "", 8.0}, Spelling{"0.85", "", 0.85}, Spelling{"1.07 ohm", "ohm", 1.07}, Spelling{"1.07 Ω", "ohm", 1.07},
-                    Spelling{"205 mohm", "ohm", 0.205}, Spelling{"48 V", "V", 48.0}, Spelling{"71 g", "kg", 0.071}, Spelling{"32 mm", "m", 0.032},
-                    Spelling{"50 W", "W", 50.0}, Spelling{"1 kWh", "J", 3.6e6}, Spelling{"10 Wh", "J", 36000.0}, Spelling{"1300 mAh", "C", 4680.0},
-                    Spelling{"1.5e-3 A", "A", 0.0015}, Spelling{"+5 A", "A", 5.0}, Spelling{"  5   A  ", "A", 5.0}, Spelling{"\t5\tA", "A", 5.0},
-                    Spelling{"-2.5 A", "A", -2.5}, Spelling{".5 A", "A", 0.5}));
+    testing::Values(
+        Spelling{"36.9 mNm/A", "N m/A", 0.0369}, Spelling{"36.9 mN m/A", "N m/A", 0.0369}, Spelling{"36.9mNm/A", "N m/A", 0.0369},
+        Spelling{"0.0369 Nm/A", "N m/A", 0.0369}, Spelling{"0.0369 N m/A", "N m/A", 0.0369}, Spelling{"181 gcm2", "kg m2", 1.81e-5},
+        Spelling{"181 g cm2", "kg m2", 1.81e-5}, Spelling{"181 gcm²", "kg m2", 1.81e-5}, Spelling{"181 g cm²", "kg m2", 1.81e-5},
+        Spelling{"265 rpm/V", "rad/s/V", 265.0 * kRpm_rad_per_s}, Spelling{"4.26 rpm/mNm", "rad/s/(N m)", 4260.0 * kRpm_rad_per_s},
+        Spelling{"4.26 rpm/(mN m)", "rad/s/(N m)", 4260.0 * kRpm_rad_per_s}, Spelling{"6000 rpm", "rad/s", 200.0 * std::numbers::pi},
+        Spelling{"12 rad/s", "rad/s", 12.0}, Spelling{"90 deg", "rad", std::numbers::pi / 2.0},
+        Spelling{"-30 deg", "rad", -std::numbers::pi / 6.0}, Spelling{"0.463 mH", "H", 0.463e-3}, Spelling{"463 uH", "H", 0.463e-3},
+        Spelling{"463 µH", "H", 0.463e-3} /* U+00B5 */, Spelling{"463 μH", "H", 0.463e-3} /* U+03BC */, Spelling{"5 µNm", "N m", 5e-6},
+        Spelling{"5 μNm", "N m", 5e-6}, Spelling{"5 uNm", "N m", 5e-6}, Spelling{"2 kNm", "N m", 2000.0},
+        Spelling{"155 degC", "degC", 155.0}, Spelling{"155 °C", "degC", 155.0}, Spelling{"311 degF", "degC", 155.0},
+        Spelling{"428.15 K", "degC", 155.0}, Spelling{"-40 degC", "degC", -40.0}, Spelling{"3.8 K/W", "K/W", 3.8},
+        Spelling{"12 s", "s", 12.0}, Spelling{"12 ms", "s", 0.012}, Spelling{"2 min", "s", 120.0}, Spelling{"0.39 %/K", "1/K", 0.0039},
+        Spelling{"10 %", "", 0.1}, Spelling{"10%", "", 0.1}, Spelling{"8", "", 8.0}, Spelling{"0.85", "", 0.85},
+        Spelling{"1.07 ohm", "ohm", 1.07}, Spelling{"1.07 Ω", "ohm", 1.07}, Spelling{"205 mohm", "ohm", 0.205}, Spelling{"48 V", "V", 48.0},
+        Spelling{"71 g", "kg", 0.071}, Spelling{"32 mm", "m", 0.032}, Spelling{"50 W", "W", 50.0}, Spelling{"1 kWh", "J", 3.6e6},
+        Spelling{"10 Wh", "J", 36000.0}, Spelling{"1300 mAh", "C", 4680.0}, Spelling{"1.5e-3 A", "A", 0.0015}, Spelling{"+5 A", "A", 5.0},
+        Spelling{"  5   A  ", "A", 5.0}, Spelling{"\t5\tA", "A", 5.0}, Spelling{"-2.5 A", "A", -2.5}, Spelling{".5 A", "A", 0.5}));
 
 class Refused : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
@@ -60,16 +61,18 @@ TEST_P(Refused, with_a_reason) {
   EXPECT_NE(parsed.problem, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Texts, Refused,
-    testing::Values(std::pair{"", "A"}, std::pair{" ", "A"}, std::pair{"A", "A"}, std::pair{"five A", "A"}, std::pair{"5", "A"},
-                    std::pair{"5 ", "K/W"}, std::pair{"5 V", "A"}, std::pair{"5 W/K", "K/W"}, std::pair{"5 parsnip", "A"}, std::pair{"5 m", ""},
-                    std::pair{"nan A", "A"}, std::pair{"NaN A", "A"}, std::pair{"inf A", "A"}, std::pair{"-inf A", "A"}, std::pair{"infinity A", "A"},
-                    std::pair{"1e999 A", "A"}, std::pair{"nan", ""}, std::pair{"inf", ""}, std::pair{"1,5 A", "A"}, std::pair{"1.5.2 A", "A"},
-                    std::pair{"5 A A", "A"}, std::pair{"5 A 6", "A"}, std::pair{"+-5 A", "A"}, std::pair{"--5 A", "A"}, std::pair{"0x10 A", "A"},
-                    // A sheet's "1/min" means rpm; as a unit it is 2π less.
-                    std::pair{"6000 1/min", "rad/s"}, std::pair{"6000 min-1", "rad/s"}, std::pair{"100 Hz", "rad/s"}, std::pair{"100 1/s", "rad/s"},
-                    std::pair{"5 K", "K/W"}, std::pair{"155 deg", "degC"}));
+INSTANTIATE_TEST_SUITE_P(Texts, Refused,
+                         testing::Values(std::pair{"", "A"}, std::pair{" ", "A"}, std::pair{"A", "A"}, std::pair{"five A", "A"},
+                                         std::pair{"5", "A"}, std::pair{"5 ", "K/W"}, std::pair{"5 V", "A"}, std::pair{"5 W/K", "K/W"},
+                                         std::pair{"5 parsnip", "A"}, std::pair{"5 m", ""}, std::pair{"nan A", "A"},
+                                         std::pair{"NaN A", "A"}, std::pair{"inf A", "A"}, std::pair{"-inf A", "A"},
+                                         std::pair{"infinity A", "A"}, std::pair{"1e999 A", "A"}, std::pair{"nan", ""},
+                                         std::pair{"inf", ""}, std::pair{"1,5 A", "A"}, std::pair{"1.5.2 A", "A"}, std::pair{"5 A A", "A"},
+                                         std::pair{"5 A 6", "A"}, std::pair{"+-5 A", "A"}, std::pair{"--5 A", "A"},
+                                         std::pair{"0x10 A", "A"},
+                                         // A sheet's "1/min" means rpm; as a unit it is 2π less.
+                                         std::pair{"6000 1/min", "rad/s"}, std::pair{"6000 min-1", "rad/s"}, std::pair{"100 Hz", "rad/s"},
+                                         std::pair{"100 1/s", "rad/s"}, std::pair{"5 K", "K/W"}, std::pair{"155 deg", "degC"}));
 
 TEST(ParseQuantity, says_what_is_wrong_and_what_was_expected) {
   EXPECT_NE(parse_quantity("5", "A").problem.find("has no unit"), std::string::npos);
@@ -166,11 +169,12 @@ TEST_P(Significant, is_plain_and_without_trailing_zeros) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Numbers, Significant,
-                         testing::Values(Rounded{3.8, 3, "3.8"}, Rounded{0.0041, 3, "0.0041"}, Rounded{161.97, 3, "162"}, Rounded{0.0, 3, "0"},
-                                         Rounded{-0.0, 3, "0"}, Rounded{-3.14159, 3, "-3.14"}, Rounded{99.96, 3, "100"}, Rounded{0.99996, 3, "1"},
-                                         Rounded{9.996, 3, "10"}, Rounded{123456.0, 2, "120000"}, Rounded{999999.0, 3, "1000000"},
-                                         Rounded{1e-7, 2, "0.0000001"}, Rounded{1e15, 3, "1000000000000000"}, Rounded{2.0, 5, "2"},
-                                         Rounded{100.0, 6, "100"}, Rounded{-0.0004, 1, "-0.0004"}, Rounded{1234.5, 5, "1234.5"}));
+                         testing::Values(Rounded{3.8, 3, "3.8"}, Rounded{0.0041, 3, "0.0041"}, Rounded{161.97, 3, "162"},
+                                         Rounded{0.0, 3, "0"}, Rounded{-0.0, 3, "0"}, Rounded{-3.14159, 3, "-3.14"},
+                                         Rounded{99.96, 3, "100"}, Rounded{0.99996, 3, "1"}, Rounded{9.996, 3, "10"},
+                                         Rounded{123456.0, 2, "120000"}, Rounded{999999.0, 3, "1000000"}, Rounded{1e-7, 2, "0.0000001"},
+                                         Rounded{1e15, 3, "1000000000000000"}, Rounded{2.0, 5, "2"}, Rounded{100.0, 6, "100"},
+                                         Rounded{-0.0004, 1, "-0.0004"}, Rounded{1234.5, 5, "1234.5"}));
 
 TEST(Significant, is_within_half_a_digit) {
   std::mt19937_64 engine(902);

@@ -39,10 +39,11 @@ void process(benchmark::State& state, const std::vector<std::string>& arguments,
   }
 }
 
-const std::string kPicture = (std::filesystem::temp_directory_path() / ("heatsoak_benchmark_" + std::to_string(getpid()) + ".svg")).string();
+const std::string kPicture =
+    (std::filesystem::temp_directory_path() / ("heatsoak_benchmark_" + std::to_string(getpid()) + ".svg")).string();
 // The motor is too hot, which the exit code 1 says.
-const std::vector<std::string> kEvaluate{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent",
-                                         "--motors", "maxon_ecx_flat_32l_48v", "--samples", "0"};
+const std::vector<std::string> kEvaluate{
+    "evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors", "maxon_ecx_flat_32l_48v", "--samples", "0"};
 
 std::vector<std::string> evaluate_with_picture() {
   std::vector<std::string> arguments = kEvaluate;

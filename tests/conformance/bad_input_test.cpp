@@ -4,7 +4,6 @@
 // place and beginning of the message; a file that cannot hold a comment has them in <file>.expect.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -58,7 +57,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// As stderr has it.
 std::string line_of(const json& diagnostic) {
-  return to_string(Diagnostic{{diagnostic.at("file"), diagnostic.at("line"), diagnostic.at("column")}, diagnostic.at("key"), diagnostic.at("message")});
+  return to_string(
+      Diagnostic{{diagnostic.at("file"), diagnostic.at("line"), diagnostic.at("column")}, diagnostic.at("key"), diagnostic.at("message")});
 }
 
 std::vector<std::string> lines_of(const json& error) {
@@ -144,15 +144,18 @@ std::vector<std::string> bad_files() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(tests_data, BadFile, testing::ValuesIn(bad_files()), [](const auto& instance) { return test_name(instance.param); });
+INSTANTIATE_TEST_SUITE_P(tests_data, BadFile, testing::ValuesIn(bad_files()),
+                         [](const auto& instance) { return test_name(instance.param); });
 
 // Files that are made when the test runs: too large to store, or no files at all.
 
 std::string good_motor() { return content_of(fs::path(HEATSOAK_SOURCE_DIR) / "motor_db" / "maxon_ec45_flat_70w_24v.toml"); }
 
 std::string recorded(const std::string& csv) {
-  return "summary = \"x\"\norigin = \"x\"\nshape = \"recorded\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = \"x\" }\n"
-         "[recorded]\nquantity = \"torque\"\nfile = \"" + csv + "\"\n";
+  return "summary = \"x\"\norigin = \"x\"\nshape = \"recorded\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = "
+         "\"x\" }\n"
+         "[recorded]\nquantity = \"torque\"\nfile = \"" +
+         csv + "\"\n";
 }
 
 /// Ends quickly, within bounds, with a reason.
@@ -164,7 +167,8 @@ void expect_refused(const ProgramRun& result, const std::string& reason) {
 }
 
 ProgramRun run_duty(const fs::path& duty) {
-  return run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", duty.string(), "--motors", "maxon_ec45_flat_70w_24v", "--samples", "0"});
+  return run(
+      {"evaluate", "--robot", "roboteam_twente_v2024", "--duty", duty.string(), "--motors", "maxon_ec45_flat_70w_24v", "--samples", "0"});
 }
 
 TEST(HugeFile, toml) {
@@ -262,8 +266,9 @@ TEST_P(NoFile, is_refused_at_once) {
 }
 
 INSTANTIATE_TEST_SUITE_P(odd, NoFile,
-                         testing::Values(Oddity{"device", "device"}, Oddity{"folder", "folder"}, Oddity{"pipe", "pipe"}, Oddity{"missing", "No such file"},
-                                         Oddity{"link_to_itself", "symbolic links"}, Oddity{"link_to_nothing", "No such file"}),
+                         testing::Values(Oddity{"device", "device"}, Oddity{"folder", "folder"}, Oddity{"pipe", "pipe"},
+                                         Oddity{"missing", "No such file"}, Oddity{"link_to_itself", "symbolic links"},
+                                         Oddity{"link_to_nothing", "No such file"}),
                          [](const auto& instance) { return instance.param.name; });
 
 TEST(NoPermission, is_told) {
@@ -273,7 +278,8 @@ TEST(NoPermission, is_told) {
   fs::permissions(folder.path(), fs::perms::all);
   const std::string lint = " lint '" + (folder.path() / "secret.toml").string() + "'";
   // root may read everything, so it becomes somebody who may not
-  const ProgramRun result = ::geteuid() != 0 ? run_line("heatsoak" + lint) : run_line("setpriv --reuid 65534 --regid 65534 --clear-groups heatsoak" + lint);
+  const ProgramRun result =
+      ::geteuid() != 0 ? run_line("heatsoak" + lint) : run_line("setpriv --reuid 65534 --regid 65534 --clear-groups heatsoak" + lint);
   if (result.exit_code == 126 || result.exit_code == 127 || result.err.starts_with("setpriv")) {
     GTEST_SKIP() << result.err;
   }
@@ -296,7 +302,8 @@ TEST(OddButGood, carriage_returns_and_byte_order_mark) {
   write(folder.path() / "duty.toml", oddly(recorded("duty.csv")));
   RunOptions inside;
   inside.folder = folder.path();
-  const ProgramRun result = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "duty.toml", "--motors", "motor.toml", "--samples", "0"}, inside);
+  const ProgramRun result =
+      run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "duty.toml", "--motors", "motor.toml", "--samples", "0"}, inside);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(run({"lint", "motor.toml", "duty.toml"}, inside).exit_code, 0);
 }
@@ -304,10 +311,12 @@ TEST(OddButGood, carriage_returns_and_byte_order_mark) {
 TEST(OddButGood, long_texts_and_dots_in_texts_and_comments) {
   const TemporaryFolder folder;
   const std::string dots(5000, '.');
-  write(folder.path() / "robot.toml", "# a" + dots + "\nname = \"" + dots + "\"\nsource = \"\"\"a\n" + dots + "\\\"\n\"\"\"\nnotes = ['" + dots + "', \"\\\"" + dots +
-                                          "\"]  # " + dots + "\n" + "mass = \"2.6 kg\"\n[wheels]\nradius = \"28 mm\"\ncontact_radius = \"80 mm\"\n"
-                                          "axis_angles = [\"-30 deg\", \"30 deg\", \"180 deg\"]\n[drive]\nmotor = \"x\"\ngear_ratio = \"1\"\ncommutation = \"block\"\n"
-                                          "[battery]\nnominal_voltage = \"22 V\"\n");
+  write(folder.path() / "robot.toml",
+        "# a" + dots + "\nname = \"" + dots + "\"\nsource = \"\"\"a\n" + dots + "\\\"\n\"\"\"\nnotes = ['" + dots + "', \"\\\"" + dots +
+            "\"]  # " + dots + "\n" +
+            "mass = \"2.6 kg\"\n[wheels]\nradius = \"28 mm\"\ncontact_radius = \"80 mm\"\n"
+            "axis_angles = [\"-30 deg\", \"30 deg\", \"180 deg\"]\n[drive]\nmotor = \"x\"\ngear_ratio = \"1\"\ncommutation = \"block\"\n"
+            "[battery]\nnominal_voltage = \"22 V\"\n");
   EXPECT_EQ(run({"lint", (folder.path() / "robot.toml").string()}).err, "");
 }
 

@@ -28,7 +28,13 @@ Words operator+(Words a, const Words& b) {
 }
 
 const Words kSteady{"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6A", "--time-on", "4s", "--time-off", "6s"};
-const Words kEvaluate{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors", "maxon_ec45_flat_70w_24v,maxon_ecx_flat_32l_48v"};
+const Words kEvaluate{"evaluate",
+                      "--robot",
+                      "roboteam_twente_v2024",
+                      "--duty",
+                      "paper_intermittent",
+                      "--motors",
+                      "maxon_ec45_flat_70w_24v,maxon_ecx_flat_32l_48v"};
 const Words kSimulate{"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent"};
 
 /// A folder as the examples expect it: the data folders within reach.
@@ -154,15 +160,17 @@ TEST_P(Data, loads_is_sound_and_is_described) {
 
 TEST_P(Data, is_evaluated) {
   const auto& [kind, file] = GetParam();
-  const ProgramRun result = run({"evaluate", "--motors", kind == "motors" ? file.string() : "maxon_ec45_flat_70w_24v", "--robot", kind == "robots" ? file.string() : "roboteam_twente_v2024",
-                                 "--duty", kind == "duties" ? file.string() : "paper_intermittent", "--samples", "3", "--json", "-"});
+  const ProgramRun result = run({"evaluate", "--motors", kind == "motors" ? file.string() : "maxon_ec45_flat_70w_24v", "--robot",
+                                 kind == "robots" ? file.string() : "roboteam_twente_v2024", "--duty",
+                                 kind == "duties" ? file.string() : "paper_intermittent", "--samples", "3", "--json", "-"});
   EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.err;
   EXPECT_EQ(result.json().at("motors").size(), 1U);
 }
 
 std::vector<DataFile> data_files() {
   std::vector<DataFile> all;
-  for (const auto& [kind, folder] : {std::pair{"motors", kSource / "motor_db"}, {"robots", kSource / "robot_core" / "robots"}, {"duties", kSource / "duty_profiles"}}) {
+  for (const auto& [kind, folder] :
+       {std::pair{"motors", kSource / "motor_db"}, {"robots", kSource / "robot_core" / "robots"}, {"duties", kSource / "duty_profiles"}}) {
     for (const std::string& name : files_of(folder, "", ".toml")) {
       all.push_back({kind, folder / name});
     }
@@ -170,7 +178,8 @@ std::vector<DataFile> data_files() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(folders, Data, testing::ValuesIn(data_files()), [](const auto& instance) { return test_name(instance.param.file.filename().string()); });
+INSTANTIATE_TEST_SUITE_P(folders, Data, testing::ValuesIn(data_files()),
+                         [](const auto& instance) { return test_name(instance.param.file.filename().string()); });
 
 TEST(List, shows_every_file_of_the_data_folders) {
   for (const DataFile& each : data_files()) {
@@ -197,7 +206,9 @@ TEST(ExitCode, says_whether_a_limit_is_exceeded) {
   EXPECT_EQ(run(kEvaluate + Words{"--samples", "0"}).exit_code, 1);  // the paper's motor fails
 }
 
-void expect_number_or_null(const json& value, const std::string& key) { EXPECT_TRUE(value.at(key).is_number() || value.at(key).is_null()) << key; }
+void expect_number_or_null(const json& value, const std::string& key) {
+  EXPECT_TRUE(value.at(key).is_number() || value.at(key).is_null()) << key;
+}
 
 TEST(Json, of_steady_keeps_the_contract) {
   const ProgramRun result = run(kSteady + Words{"--json", "-"});
@@ -211,7 +222,8 @@ TEST(Json, of_steady_keeps_the_contract) {
 }
 
 TEST(Json, of_a_runaway_has_no_temperatures) {
-  const ProgramRun result = run({"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "60", "--time-on", "1", "--time-off", "0", "--json", "-"});
+  const ProgramRun result =
+      run({"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "60", "--time-on", "1", "--time-off", "0", "--json", "-"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.json().at("runaway"), true);
   EXPECT_TRUE(result.json().at("winding_C").is_null());
@@ -237,7 +249,8 @@ void expect_evaluate_contract(const json& answer, bool sampled) {
     expect_number_or_null(motor, "time_to_limit_s");
     EXPECT_TRUE(motor.at("current_rms_A").is_number());
     EXPECT_THAT(motor.at("verdict").get<std::string>(), MatchesRegex("pass|marginal|fail|infeasible"));
-    EXPECT_THAT(motor.at("limiting_factor").get<std::string>(), MatchesRegex("winding_temperature|stator_temperature|voltage|current|none"));
+    EXPECT_THAT(motor.at("limiting_factor").get<std::string>(),
+                MatchesRegex("winding_temperature|stator_temperature|voltage|current|none"));
     EXPECT_THAT(motor.at("data_quality").get<std::string>(), MatchesRegex("datasheet|mixed|estimated"));
   }
 }
@@ -257,7 +270,12 @@ TEST(Json, goes_to_stdout_alone_or_to_its_file) {
   const TemporaryFolder folder;
   RunOptions inside;
   inside.folder = folder.path();
-  const std::vector<Words> lines{kSteady, kEvaluate + Words{"--samples", "0"}, kSimulate, {"list", "robots"}, {"describe", "tigers_v2020"}, {"lint", (kSource / "duty_profiles" / "paper_intermittent.toml").string()}};
+  const std::vector<Words> lines{kSteady,
+                                 kEvaluate + Words{"--samples", "0"},
+                                 kSimulate,
+                                 {"list", "robots"},
+                                 {"describe", "tigers_v2020"},
+                                 {"lint", (kSource / "duty_profiles" / "paper_intermittent.toml").string()}};
   for (const Words& words : lines) {
     const ProgramRun on_stdout = run(words + Words{"--json", "-"}, inside);
     const ProgramRun in_file = run(words + Words{"--json=answer.json"}, inside);
@@ -277,8 +295,9 @@ TEST(Json, tells_errors_of_usage_too) {
   const TemporaryFolder folder;
   RunOptions inside;
   inside.folder = folder.path();
-  for (const Words& wrong : {Words{"evaluate"}, Words{"evaluate", "--robt", "x"}, Words{"steady", "--motor", "x", "--current-on", "6V"}, Words{"evalute"},
-                             Words{"steady", "--motor", "nosuch", "--current-on", "1", "--time-on", "1", "--time-off", "1"}, Words{"list", "\xff"}}) {
+  for (const Words& wrong :
+       {Words{"evaluate"}, Words{"evaluate", "--robt", "x"}, Words{"steady", "--motor", "x", "--current-on", "6V"}, Words{"evalute"},
+        Words{"steady", "--motor", "nosuch", "--current-on", "1", "--time-on", "1", "--time-off", "1"}, Words{"list", "\xff"}}) {
     const ProgramRun result = run(wrong + Words{"--json", "-"}, inside);
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.json().at("error").at("code"), 2);
@@ -304,7 +323,9 @@ TEST(Seed, gives_the_same_bytes_for_any_number_of_threads) {
 
 TEST(Seed, gives_a_motor_the_same_figures_in_any_company) {
   const auto of = [](const std::string& motors) {
-    const json answer = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "60", "--json", "-", "--motors", motors}).json();
+    const json answer = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "60", "--json",
+                             "-", "--motors", motors})
+                            .json();
     for (const json& motor : answer.at("motors")) {
       if (motor.at("id") == "maxon_ec45_flat_70w_24v") {
         return motor;
@@ -342,28 +363,51 @@ TEST_P(Usage, is_refused_with_a_hint) {
 INSTANTIATE_TEST_SUITE_P(
     mistakes, Usage,
     testing::Values(
-        Mistake{"nothing", {}, "--help"}, Mistake{"unknown_verb", {"evaluat"}, "did you mean 'evaluate'?"}, Mistake{"far_verb", {"zzzzzzzz"}, "--help"},
-        Mistake{"empty_verb", {""}, "--help"}, Mistake{"option_before_verb", {"--db", "/tmp", "list", "motors"}, "--db"},
+        Mistake{"nothing", {}, "--help"}, Mistake{"unknown_verb", {"evaluat"}, "did you mean 'evaluate'?"},
+        Mistake{"far_verb", {"zzzzzzzz"}, "--help"}, Mistake{"empty_verb", {""}, "--help"},
+        Mistake{"option_before_verb", {"--db", "/tmp", "list", "motors"}, "--db"},
         Mistake{"unknown_option", kEvaluate + Words{"--sample", "5"}, "did you mean '--samples'?"},
-        Mistake{"missing_value", kSteady + Words{"--json"}, "--json"}, Mistake{"option_twice", kSteady + Words{"--current-on", "5"}, "--current-on"},
+        Mistake{"missing_value", kSteady + Words{"--json"}, "--json"},
+        Mistake{"option_twice", kSteady + Words{"--current-on", "5"}, "--current-on"},
         Mistake{"missing_option", {"steady", "--motor", "maxon_ec45_flat_70w_24v"}, "is required"},
         Mistake{"unknown_kind", {"list", "motor"}, "motors"},
-        Mistake{"unknown_motor", {"steady", "--motor", "maxon_ec45_flat_70w_24", "--current-on", "1", "--time-on", "1", "--time-off", "1"}, "did you mean 'maxon_ec45_flat_70w_24v'?"},
+        Mistake{"unknown_motor",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24", "--current-on", "1", "--time-on", "1", "--time-off", "1"},
+                "did you mean 'maxon_ec45_flat_70w_24v'?"},
         Mistake{"unknown_robot", {"evaluate", "--robot", "tigers_v2021", "--duty", "paper_intermittent"}, "did you mean 'tigers_v2020'?"},
-        Mistake{"unknown_duty", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermitent"}, "did you mean 'paper_intermittent'?"},
+        Mistake{
+            "unknown_duty", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermitent"}, "did you mean 'paper_intermittent'?"},
         Mistake{"unknown_name", {"describe", "conducton"}, "did you mean 'conduction'?"},
-        Mistake{"empty_motor", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""}, "there is no motor ''"},
-        Mistake{"current_in_volt", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"}, "unit of something else"},
-        Mistake{"negative_current", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "-6", "--time-on", "1", "--time-off", "1"}, "out of range"},
-        Mistake{"current_nan", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "nan", "--time-on", "1", "--time-off", "1"}, "not a finite number"},
-        Mistake{"current_1e400", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "1e400", "--time-on", "1", "--time-off", "1"}, "too large"},
-        Mistake{"decimal_comma", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6,5A", "--time-on", "1", "--time-off", "1"}, "decimal comma"},
-        Mistake{"zero_time_on", {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6", "--time-on", "0", "--time-off", "1"}, "out of range"},
-        Mistake{"cold_ambient", kSteady + Words{"--ambient", "-300 degC"}, "out of range"}, Mistake{"negative_samples", kEvaluate + Words{"--samples", "-1"}, "--samples"},
-        Mistake{"half_samples", kEvaluate + Words{"--samples", "2.5"}, "--samples"}, Mistake{"too_many_samples", kEvaluate + Words{"--samples", "1000001"}, "--samples"},
-        Mistake{"octal_samples", kEvaluate + Words{"--samples", "010"}, "--samples"}, Mistake{"too_many_threads", kEvaluate + Words{"--threads", "1025"}, "--threads"},
-        Mistake{"negative_seed", kEvaluate + Words{"--seed", "-1"}, "--seed"}, Mistake{"huge_seed", kEvaluate + Words{"--seed", "99999999999999999999"}, "--seed"},
-        Mistake{"every_zero", kSimulate + Words{"--every", "0"}, "out of range"}, Mistake{"db_missing", {"list", "motors", "--db", "/nonexistent"}, "no such folder"},
+        Mistake{
+            "empty_motor", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""}, "there is no motor ''"},
+        Mistake{"current_in_volt",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"},
+                "unit of something else"},
+        Mistake{"negative_current",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "-6", "--time-on", "1", "--time-off", "1"},
+                "out of range"},
+        Mistake{"current_nan",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "nan", "--time-on", "1", "--time-off", "1"},
+                "not a finite number"},
+        Mistake{"current_1e400",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "1e400", "--time-on", "1", "--time-off", "1"},
+                "too large"},
+        Mistake{"decimal_comma",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6,5A", "--time-on", "1", "--time-off", "1"},
+                "decimal comma"},
+        Mistake{"zero_time_on",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6", "--time-on", "0", "--time-off", "1"},
+                "out of range"},
+        Mistake{"cold_ambient", kSteady + Words{"--ambient", "-300 degC"}, "out of range"},
+        Mistake{"negative_samples", kEvaluate + Words{"--samples", "-1"}, "--samples"},
+        Mistake{"half_samples", kEvaluate + Words{"--samples", "2.5"}, "--samples"},
+        Mistake{"too_many_samples", kEvaluate + Words{"--samples", "1000001"}, "--samples"},
+        Mistake{"octal_samples", kEvaluate + Words{"--samples", "010"}, "--samples"},
+        Mistake{"too_many_threads", kEvaluate + Words{"--threads", "1025"}, "--threads"},
+        Mistake{"negative_seed", kEvaluate + Words{"--seed", "-1"}, "--seed"},
+        Mistake{"huge_seed", kEvaluate + Words{"--seed", "99999999999999999999"}, "--seed"},
+        Mistake{"every_zero", kSimulate + Words{"--every", "0"}, "out of range"},
+        Mistake{"db_missing", {"list", "motors", "--db", "/nonexistent"}, "no such folder"},
         Mistake{"db_is_a_file", {"list", "motors", "--db", "/dev/null"}, "no such folder"},
         Mistake{"db_name_too_long", {"list", "motors", "--db", std::string(5000, 'a')}, "no such folder"},
         Mistake{"motor_name_too_long", {"lint", std::string(5000, 'a') + ".toml"}, "File name too long"}),
@@ -372,9 +416,12 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(UsageOf, a_trace_that_would_fill_the_memory_is_refused) {
   const TemporaryFolder folder;
   write(folder.path() / "long.toml",
-        "summary = \"x\"\norigin = \"x\"\nshape = \"intermittent\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = \"x\" }\n[intermittent]\n"
-        "torque_on = { value = \"50 mN m\", origin = \"estimated\", derivation = \"x\" }\nspeed_on = \"40 rad/s\"\ntime_on = \"4 s\"\ntime_off = \"6 s\"\nrepeats = \"90000\"\n");
-  const ProgramRun result = run({"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", "roboteam_twente_v2024", "--duty", (folder.path() / "long.toml").string(), "--every", "1 ms"});
+        "summary = \"x\"\norigin = \"x\"\nshape = \"intermittent\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = "
+        "\"x\" }\n[intermittent]\n"
+        "torque_on = { value = \"50 mN m\", origin = \"estimated\", derivation = \"x\" }\nspeed_on = \"40 rad/s\"\ntime_on = \"4 "
+        "s\"\ntime_off = \"6 s\"\nrepeats = \"90000\"\n");
+  const ProgramRun result = run({"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", "roboteam_twente_v2024", "--duty",
+                                 (folder.path() / "long.toml").string(), "--every", "1 ms"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--every"));
   EXPECT_LT(result.memory_MB, 300.0);
@@ -389,18 +436,19 @@ TEST(UsageOf, negative_temperature_needs_no_quoting) {
 
 TEST(Unwritable, target_is_told_and_leaves_nothing) {
   const TemporaryFolder folder;
-  fs::create_directory(folder.path() / "taken");
+  fs::create_directory(folder.path() / "taken.svg");
   RunOptions inside;
   inside.folder = folder.path();
-  for (const std::string target : {"no_such_folder/x", "taken", "taken/", "/proc/x"}) {
-    for (const Words& words : {kSteady + Words{"--json", target}, kEvaluate + Words{"--samples", "0", "--plot", target}, kSimulate + Words{"--out", target}, kSimulate + Words{"--plot", target}}) {
+  for (const std::string target : {"no_such_folder/x.svg", "taken.svg", "taken.svg/", "/proc/x.svg"}) {
+    for (const Words& words : {kSteady + Words{"--json", target}, kEvaluate + Words{"--samples", "0", "--plot", target},
+                               kSimulate + Words{"--out", target}, kSimulate + Words{"--plot", target}}) {
       const ProgramRun result = run(words, inside);
       EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(words) << result.err;
       EXPECT_THAT(result.err, HasSubstr("writ")) << target;
-      EXPECT_THAT(folder.names(), UnorderedElementsAre("taken")) << target;
+      EXPECT_THAT(folder.names(), UnorderedElementsAre("taken.svg")) << target;
     }
   }
-  EXPECT_TRUE(fs::is_empty(folder.path() / "taken"));
+  EXPECT_TRUE(fs::is_empty(folder.path() / "taken.svg"));
 }
 
 TEST(Unwritable, full_disk_is_told_and_the_device_survives) {
@@ -486,8 +534,10 @@ TEST(Database, may_be_a_copied_tree) {
   const Words database{"--db", folder.path().string()};
   EXPECT_THAT(ids(run(Words{"list", "motors", "--json", "-"} + database).json()), UnorderedElementsAre("mine"));
   EXPECT_THAT(ids(run(Words{"list", "duties", "--json", "-"} + database).json()), UnorderedElementsAre("my_duty"));
-  EXPECT_THAT(ids(run(Words{"list", "robots", "--json", "-"} + database).json()), Contains("tigers_v2020"));  // not in the copy: the usual ones
-  const ProgramRun result = run(Words{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "my_duty", "--samples", "0", "--json", "-"} + database);
+  EXPECT_THAT(ids(run(Words{"list", "robots", "--json", "-"} + database).json()),
+              Contains("tigers_v2020"));  // not in the copy: the usual ones
+  const ProgramRun result =
+      run(Words{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "my_duty", "--samples", "0", "--json", "-"} + database);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.json().at("motors").at(0).at("id"), "mine");
 }
@@ -497,13 +547,15 @@ TEST(Database, may_be_a_folder_of_motor_files_alone) {
   fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "mine.toml");
   const Words database{"--db", folder.path().string()};
   EXPECT_THAT(ids(run(Words{"list", "motors", "--json", "-"} + database).json()), UnorderedElementsAre("mine"));
-  EXPECT_EQ(run(Words{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "0"} + database).exit_code, 0);
+  EXPECT_EQ(
+      run(Words{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "0"} + database).exit_code, 0);
   EXPECT_EQ(run(Words{"steady", "--motor", "mine", "--current-on", "6A", "--time-on", "4s", "--time-off", "6s"} + database).exit_code, 0);
 }
 
 TEST(Database, without_any_motor_passes_no_verdict) {
   const TemporaryFolder folder;
-  const ProgramRun result = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--db", folder.path().string()});
+  const ProgramRun result =
+      run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--db", folder.path().string()});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("there is no motor file"));
 }
@@ -514,7 +566,8 @@ TEST(Database, a_motor_may_be_a_path) {
   inside.folder = folder.path();
   fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "mine with blanks, ä.toml");
   const Words rest{"--current-on", "6A", "--time-on", "4s", "--time-off", "6s", "--json", "-"};
-  for (const std::string& path : {std::string("mine with blanks, ä.toml"), std::string("./mine with blanks, ä.toml"), (folder.path() / "mine with blanks, ä.toml").string()}) {
+  for (const std::string& path : {std::string("mine with blanks, ä.toml"), std::string("./mine with blanks, ä.toml"),
+                                  (folder.path() / "mine with blanks, ä.toml").string()}) {
     const ProgramRun result = run(Words{"steady", "--motor", path} + rest, inside);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.json().at("motor"), "mine with blanks, ä");
@@ -534,7 +587,8 @@ TEST(Database, a_broken_file_is_told_and_not_passed_over) {
 }
 
 TEST(Completion, offers_every_verb_and_runs_in_bash) {
-  const ProgramRun result = run_line("source <(heatsoak completion); COMP_WORDS=(heatsoak ''); COMP_CWORD=1; _heatsoak; echo \"${COMPREPLY[@]}\"");
+  const ProgramRun result =
+      run_line("source <(heatsoak completion); COMP_WORDS=(heatsoak ''); COMP_CWORD=1; _heatsoak; echo \"${COMPREPLY[@]}\"");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   for (const std::string& verb : verbs()) {
     EXPECT_THAT(result.out, HasSubstr(verb));

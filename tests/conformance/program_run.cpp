@@ -125,7 +125,8 @@ std::vector<std::string> files_of(const fs::path& folder, const std::string& beg
 
 std::string test_name(const std::string& file) {
   std::string name = file.substr(0, file.rfind('.'));
-  std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 }
 

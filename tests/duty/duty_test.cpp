@@ -19,7 +19,8 @@ class DutyTest : public testing::Test {
   void write(const std::string& name, const std::string& content) { std::ofstream(folder_ / name, std::ios::binary) << content; }
   Duty read(const std::string& shape, const std::string& lines) {
     write("mine.toml", "summary = \"a test\"\norigin = \"made up\"\nshape = \"" + shape +
-                           "\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = \"made up\" }\n[" + shape + "]\n" + lines);
+                           "\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = \"made up\" }\n[" + shape + "]\n" +
+                           lines);
     return read_duty(folder_ / "mine.toml");
   }
   std::string problem(const std::string& shape, const std::string& lines) {
@@ -75,7 +76,9 @@ TEST_F(DutyTest, intermittent_without_a_pause_has_no_pieces_of_no_length) {
 
 TEST_F(DutyTest, the_spread_of_the_demand_becomes_a_factor) {
   const std::string rest = "speed_on = \"0 rpm\"\ntime_on = \"4 s\"\ntime_off = \"6 s\"\nrepeats = \"2\"\n";
-  const Duty range = read("intermittent", "torque_on = { value = \"100 mN m\", origin = \"estimated\", derivation = \"x\", range = [\"50 mN m\", \"0.13 N m\"] }\n" + rest);
+  const Duty range = read(
+      "intermittent",
+      "torque_on = { value = \"100 mN m\", origin = \"estimated\", derivation = \"x\", range = [\"50 mN m\", \"0.13 N m\"] }\n" + rest);
   ASSERT_TRUE(range.load.spread);
   EXPECT_DOUBLE_EQ(range.load.value, 1.0);
   EXPECT_DOUBLE_EQ(range.load.spread->low, 0.5);
@@ -83,7 +86,8 @@ TEST_F(DutyTest, the_spread_of_the_demand_becomes_a_factor) {
   EXPECT_NEAR(range.load.quantile(0.5), 1.0, 1e-12);
   EXPECT_NEAR(range.load.quantile(1e-12), 0.5, 1e-6);
   EXPECT_NEAR(range.load.quantile(1.0 - 1e-12), 1.3, 1e-6);
-  const Duty tolerance = read("intermittent", "current_on = { value = \"2 A\", origin = \"estimated\", derivation = \"x\", tolerance = \"20 %\" }\n" + rest);
+  const Duty tolerance =
+      read("intermittent", "current_on = { value = \"2 A\", origin = \"estimated\", derivation = \"x\", tolerance = \"20 %\" }\n" + rest);
   ASSERT_TRUE(tolerance.load.spread);
   EXPECT_NEAR(tolerance.load.spread->low, 0.8, 1e-12);
   EXPECT_NEAR(tolerance.load.spread->high, 1.2, 1e-12);
@@ -127,7 +131,8 @@ TEST_F(DutyTest, a_recording_too_long_for_the_memory_is_refused) {
     content += std::to_string(i) + ",1,10\n";
   }
   write("log.csv", content);
-  EXPECT_THAT(problem("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"10000\"\n"), HasSubstr("recorded.repeats: makes more than"));
+  EXPECT_THAT(problem("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"10000\"\n"),
+              HasSubstr("recorded.repeats: makes more than"));
 }
 
 }  // namespace

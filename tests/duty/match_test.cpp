@@ -19,7 +19,9 @@ const MatchInputs& division_a() {
 Robot twente() { return read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"); }
 
 double clock_s(const std::vector<MatchPhase>& game) {
-  return std::accumulate(game.begin(), game.end(), 0.0, [](double sum_s, const MatchPhase& span) { return sum_s + (rule_of(span.phase).clock_runs ? span.duration_s : 0.0); });
+  return std::accumulate(game.begin(), game.end(), 0.0, [](double sum_s, const MatchPhase& span) {
+    return sum_s + (rule_of(span.phase).clock_runs ? span.duration_s : 0.0);
+  });
 }
 
 TEST(Game, the_clock_runs_for_two_halves_exactly) {
@@ -105,7 +107,10 @@ Seen watch(const MatchInputs& inputs, std::uint64_t seed, MatchLoad* load = null
     for (std::size_t i = 0; i < 4; ++i) {
       const double torque_Nm = now.wheels->torque_Nm[i];
       const double speed_rad_per_s = now.wheels->speed_rad_per_s[i];
-      const double current_A = (torque_Nm + kDrag_Nm * (speed_rad_per_s > 0.0 ? 1.0 : speed_rad_per_s < 0.0 ? -1.0 : 0.0)) / kTorqueConstant_Nm_per_A;
+      const double current_A = (torque_Nm + kDrag_Nm * (speed_rad_per_s > 0.0   ? 1.0
+                                                        : speed_rad_per_s < 0.0 ? -1.0
+                                                                                : 0.0)) /
+                               kTorqueConstant_Nm_per_A;
       seen.torque_squared_Nm2_s[i] += torque_Nm * torque_Nm * now.step_s;
       seen.current_squared_A2_s[i] += current_A * current_A * now.step_s;
       if (now.duel) {
@@ -149,9 +154,10 @@ TEST(Match, bins_conserve_the_heat_of_every_motor) {
     double binned_A2_s = 0.0;
     double points_s = 0.0;
     for (const LoadBin& bin : load.wheels[i].bins) {
-      binned_A2_s += bin.duration_s *
-                     (bin.torque_rms_Nm * bin.torque_rms_Nm + 2.0 * kDrag_Nm * bin.torque_along_motion_Nm + kDrag_Nm * kDrag_Nm * bin.moving_share) /
-                     (kTorqueConstant_Nm_per_A * kTorqueConstant_Nm_per_A);
+      binned_A2_s +=
+          bin.duration_s *
+          (bin.torque_rms_Nm * bin.torque_rms_Nm + 2.0 * kDrag_Nm * bin.torque_along_motion_Nm + kDrag_Nm * kDrag_Nm * bin.moving_share) /
+          (kTorqueConstant_Nm_per_A * kTorqueConstant_Nm_per_A);
     }
     for (const LoadPoint& point : load.wheels[i].points) {
       points_s += point.time_s;

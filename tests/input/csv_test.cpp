@@ -95,7 +95,8 @@ TEST_F(CsvTest, places_of_bad_cells) {
 TEST_F(CsvTest, cells_of_other_columns_may_hold_anything) { EXPECT_THAT(problems("time_s,note,current_A\n0,nan,1\n1,,2\n"), IsEmpty()); }
 
 TEST_F(CsvTest, a_missing_column_has_a_suggestion) {
-  EXPECT_THAT(problems("time_s,curent_A\n0,1\n"), ElementsAre(HasSubstr("1:1 current_A: there is no such column; did you mean 'curent_A'?")));
+  EXPECT_THAT(problems("time_s,curent_A\n0,1\n"),
+              ElementsAre(HasSubstr("1:1 current_A: there is no such column; did you mean 'curent_A'?")));
 }
 
 TEST_F(CsvTest, lists_twenty_problems_and_counts_the_rest) {

@@ -1,4 +1,3 @@
-#include "base/files.h"
 #include "input/reader.h"
 
 #include <gmock/gmock.h>
@@ -7,6 +6,8 @@
 
 #include <fstream>
 #include <optional>
+
+#include "base/files.h"
 
 namespace heatsoak {
 namespace {
@@ -111,7 +112,9 @@ TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
 }
 
 TEST_F(ReaderTest, a_range_has_units_of_its_own) {
-  const Figure figure = figure_of(read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }").figure(kResistance, Need::required));
+  const Figure figure =
+      figure_of(read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }")
+                    .figure(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
   EXPECT_DOUBLE_EQ(figure.spread->low, 1.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 2.5);

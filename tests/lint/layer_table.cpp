@@ -36,17 +36,17 @@ std::vector<std::string> words(const std::string& text) {
 }  // namespace
 
 LayerTable read_layer_table(std::string_view cmake, const std::set<std::string>& folders) {
-  static const std::regex kDeclaration(R"((?:^|\n)[ \t]*(add_layer|add_plugin)\(([^)]*)\))");
+  static const std::regex kDeclaration(R"((?:^|\n)[ \t]*(add_core|add_layer|add_plugin)\(([^)]*)\))");
   LayerTable table;
   const std::string text(cmake);
   for (std::sregex_iterator each(text.begin(), text.end(), kDeclaration), end; each != end; ++each) {
-    const bool is_layer = (*each)[1] == "add_layer";
+    const bool is_layer = (*each)[1] != "add_plugin";
     const std::vector<std::string> declaration = words((*each)[2]);
     const std::string& name = declaration.at(0);
     std::set<std::string> reach;
     bool in_uses = false;
     for (const std::string& word : declaration) {
-      if (word == "USES" || word == "HIDES" || word == "REGISTERS") {
+      if (word == "USES" || word == "HIDES" || word == "REGISTERS" || word == "ROOMS") {
         in_uses = word == "USES";
       } else if (in_uses && table.uses.contains(word)) {
         reach.insert(table.uses[word].begin(), table.uses[word].end());

@@ -50,7 +50,7 @@ std::vector<SourceFile> files_in(const fs::path& folder) {
   for (fs::recursive_directory_iterator each(folder.empty() ? kRoot : kRoot / folder), end; each != end; ++each) {
     if (each->is_directory() && is_skipped(each->path())) {
       each.disable_recursion_pending();
-    } else if (each->is_regular_file()) {
+    } else if (each->is_regular_file() && each->path().filename() != ".git") {  // a worktree's pointer
       std::ifstream stream(each->path(), std::ios::binary);
       std::string text{std::istreambuf_iterator<char>(stream), {}};
       if (text.find('\0') == std::string::npos) {

@@ -14,9 +14,24 @@ namespace {
 const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "realtype", "Lanes", "S"};
 
 /// A pure number; the last word of the name says which.
-const std::set<std::string, std::less<>> kPureNumbers{
-    "count",   "efficiency",           "factor",     "headroom", "load", "probability", "probability_over_limit", "ratio", "share",
-    "uniform", "kMarginalProbability", "kTolerableShortage", "kTolerableShortTime", "pole_pairs", "relative", "confidence", "weight"};
+const std::set<std::string, std::less<>> kPureNumbers{"count",
+                                                      "efficiency",
+                                                      "factor",
+                                                      "headroom",
+                                                      "load",
+                                                      "probability",
+                                                      "probability_over_limit",
+                                                      "ratio",
+                                                      "share",
+                                                      "uniform",
+                                                      "kMarginalProbability",
+                                                      "kTolerableShortage",
+                                                      "kTolerableShortTime",
+                                                      "aggressiveness",
+                                                      "pole_pairs",
+                                                      "relative",
+                                                      "confidence",
+                                                      "weight"};
 
 /// The unit is not known where the name is written, but stands beside it.
 const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit

@@ -36,8 +36,8 @@ double value_of(const Network& network, std::string_view name) {
 TEST(DatasheetNetwork, heat_capacity_is_time_constant_over_resistance) {
   const Motor motor = simple_motor();
   const Network network = datasheet_network(motor, nominal_sample(motor));
-  EXPECT_DOUBLE_EQ(value_of(network, "winding.heat_capacity"), 3.0);   // 12 s / 4 K/W
-  EXPECT_DOUBLE_EQ(value_of(network, "stator.heat_capacity"), 40.0);   // 80 s / 2 K/W
+  EXPECT_DOUBLE_EQ(value_of(network, "winding.heat_capacity"), 3.0);  // 12 s / 4 K/W
+  EXPECT_DOUBLE_EQ(value_of(network, "stator.heat_capacity"), 40.0);  // 80 s / 2 K/W
 }
 
 TEST(DatasheetNetwork, drag_torque_is_torque_constant_times_no_load_current) {

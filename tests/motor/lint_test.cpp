@@ -57,13 +57,15 @@ class MotorOfDatabase : public testing::TestWithParam<std::string> {};
 
 TEST_P(MotorOfDatabase, has_no_contradiction) {
   for (const LintFinding& finding : lint(motor_of_database(GetParam()))) {
-    EXPECT_EQ(finding.level, LintFinding::Level::note) << finding.at.file << ":" << finding.at.line << ": " << finding.check << ": " << finding.message;
+    EXPECT_EQ(finding.level, LintFinding::Level::note)
+        << finding.at.file << ":" << finding.at.line << ": " << finding.check << ": " << finding.message;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(each, MotorOfDatabase, testing::ValuesIn(motors_of_database()), [](const auto& each) {
   std::string name = each.param;
-  std::ranges::replace_if(name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 });
 
@@ -85,11 +87,12 @@ TEST_P(NominalPointOfSheet, meets_the_thermal_limit_of_the_network) {
 
 INSTANTIATE_TEST_SUITE_P(ec45_flat, NominalPointOfSheet,
                          testing::Values(KnownHeat{"maxon_ec45_flat_70w_24v", 1.026}, KnownHeat{"maxon_ec45_flat_70w_30v_402685", 1.028},
-                                         KnownHeat{"maxon_ec45_flat_70w_36v_402686", 1.034}, KnownHeat{"maxon_ec45_flat_70w_48v_402687", 0.946},
-                                         KnownHeat{"maxon_ec45_flat_50w_18v", 1.041}, KnownHeat{"maxon_ec45_flat_50w_24v", 1.033},
-                                         KnownHeat{"maxon_ec45_flat_50w_36v", 1.023}, KnownHeat{"maxon_ec45_flat_50w_48v", 1.018},
-                                         KnownHeat{"maxon_ec45_flat_70w_43mm_24v", 1.045}, KnownHeat{"maxon_ec45_flat_70w_43mm_36v", 1.032},
-                                         KnownHeat{"maxon_ec45_flat_70w_43mm_48v", 1.026}, KnownHeat{"maxon_ec45_flat_70w_43mm_60v", 1.004}),
+                                         KnownHeat{"maxon_ec45_flat_70w_36v_402686", 1.034},
+                                         KnownHeat{"maxon_ec45_flat_70w_48v_402687", 0.946}, KnownHeat{"maxon_ec45_flat_50w_18v", 1.041},
+                                         KnownHeat{"maxon_ec45_flat_50w_24v", 1.033}, KnownHeat{"maxon_ec45_flat_50w_36v", 1.023},
+                                         KnownHeat{"maxon_ec45_flat_50w_48v", 1.018}, KnownHeat{"maxon_ec45_flat_70w_43mm_24v", 1.045},
+                                         KnownHeat{"maxon_ec45_flat_70w_43mm_36v", 1.032}, KnownHeat{"maxon_ec45_flat_70w_43mm_48v", 1.026},
+                                         KnownHeat{"maxon_ec45_flat_70w_43mm_60v", 1.004}),
                          [](const auto& each) { return each.param.id; });
 
 // By hand for 397172: (128 + 36.9 · 0.234) mN m / 36.9 mN m/A = 3.703 A. Drag 8.635 mN m · 508.9 rad/s = 4.394 W, · 3.56 K/W
@@ -172,7 +175,7 @@ TEST(WrongFigures, are_found_at_their_line) {
 
 struct Slip {
   std::string name;
-  double MotorValues::* figure;
+  double MotorValues::*figure;
   double factor;
   std::vector<std::string> expected;
 };
@@ -241,10 +244,14 @@ TEST(Slip, saturation_is_guessed_and_a_wrong_flag_is_found) {
 
 // A convention declared wrongly is found from either side and named.
 TEST(Slip, torque_constant_in_another_convention_is_named) {
-  const std::vector<std::pair<double, std::string>> factors = {{1.0 / 1.654, "peak EMF of one phase"}, {0.907, "per_peak_phase_ampere"},
-                                                                {1.283, "per_rms_phase_ampere"},       {1.0 / 0.907, "\"per_dc_ampere\""},
-                                                                {1.0 / 1.283, "\"per_dc_ampere\""},    {1.732, "sqrt(3)"},
-                                                                {1.155, "2/sqrt(3)"},                  {0.5, "2 between two phases"}};
+  const std::vector<std::pair<double, std::string>> factors = {{1.0 / 1.654, "peak EMF of one phase"},
+                                                               {0.907, "per_peak_phase_ampere"},
+                                                               {1.283, "per_rms_phase_ampere"},
+                                                               {1.0 / 0.907, "\"per_dc_ampere\""},
+                                                               {1.0 / 1.283, "\"per_dc_ampere\""},
+                                                               {1.732, "sqrt(3)"},
+                                                               {1.155, "2/sqrt(3)"},
+                                                               {0.5, "2 between two phases"}};
   for (const auto& [factor, name] : factors) {
     Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
     motor.nominal.torque_constant_Nm_per_A *= factor;

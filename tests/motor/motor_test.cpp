@@ -19,7 +19,8 @@ type = "brushless"
 [sources]
 sheet = "a sheet"
 [conventions]
-terminal_resistance = ")" << resistance << "\"\ntorque_constant = \"" << torque << R"("
+terminal_resistance = ")"
+                      << resistance << "\"\ntorque_constant = \"" << torque << R"("
 [figures]
 nominal_voltage = { value = "24 V", origin = "datasheet", source = "sheet" }
 terminal_resistance = { value = "0.5 ohm", origin = "datasheet", source = "sheet", tolerance = "10 %" }

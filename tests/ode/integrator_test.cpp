@@ -184,8 +184,8 @@ TEST_P(IntegratorTest, error_falls_with_the_tolerance) {
     Integrator integrator(system, method(), {.relative = tolerance, .absolute = tolerance});
     integrator.start(0.0, std::array{0.0, 1.0});
     integrator.advance(3.0);
-    error.push_back(std::hypot(integrator.state()[0] - std::sin(3.0 * kAngular_rad_per_s),
-                               integrator.state()[1] - std::cos(3.0 * kAngular_rad_per_s)));
+    error.push_back(
+        std::hypot(integrator.state()[0] - std::sin(3.0 * kAngular_rad_per_s), integrator.state()[1] - std::cos(3.0 * kAngular_rad_per_s)));
     EXPECT_LT(error.back(), 1e3 * tolerance);
   }
   for (std::size_t i = 1; i < error.size(); ++i) {
@@ -212,8 +212,7 @@ TEST_P(IntegratorTest, restart_at_a_jump_is_not_less_accurate_than_going_on) {
   bodies.heat_W = 30.0;
   const TwoBody idle;
   const auto error_K = [&](bool restarts) {
-    TestSystem system(
-        2, [&](double time_s, State y, Values dydt) { (time_s < 1.0 ? bodies : idle).derivative(y, dydt); });
+    TestSystem system(2, [&](double time_s, State y, Values dydt) { (time_s < 1.0 ? bodies : idle).derivative(y, dydt); });
     Integrator integrator(system, method(), {.relative = 1e-7, .absolute = 1e-7});
     integrator.start(0.0, std::array{0.0, 0.0});
     if (restarts) {
@@ -467,7 +466,7 @@ TEST_P(IntegratorTest, exception_of_the_system_arrives_as_thrown) {
       EXPECT_STREQ(thrown.what(), "no such winding");
       EXPECT_EQ(thrown.payload, 42);
     }
-    EXPECT_EQ(thrown_count, 1);  // SUNDIALS may go on trying, the system is left alone
+    EXPECT_EQ(thrown_count, 1);                      // SUNDIALS may go on trying, the system is left alone
     EXPECT_THROW(integrator.advance(1.0), Failure);  // not without a start()
 
     armed = false;
@@ -619,8 +618,7 @@ TEST(ArkodeTest, a_short_piece_is_one_step) {
   EXPECT_EQ(run_piece(102, 0.1), 7);
 }
 
-INSTANTIATE_TEST_SUITE_P(methods, IntegratorTest,
-                         testing::Values(OdeMethod::cvodes_bdf, OdeMethod::cvodes_adams, OdeMethod::arkode_erk),
+INSTANTIATE_TEST_SUITE_P(methods, IntegratorTest, testing::Values(OdeMethod::cvodes_bdf, OdeMethod::cvodes_adams, OdeMethod::arkode_erk),
                          [](const testing::TestParamInfo<OdeMethod>& each) -> std::string {
                            switch (each.param) {
                              case OdeMethod::cvodes_bdf:

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/files.h"
 
 namespace heatsoak {
 namespace {
@@ -121,14 +122,12 @@ std::vector<SeenPanel> seen_panels(const std::vector<Element>& elements) {
     SeenAxis& axis = is_y_label ? panels.back().y : panels.back().x;
     axis.values.push_back(std::stod(each.text));
     constexpr double half_capital_height = 0.36;
-    axis.places_px.push_back(is_y_label ? each.number("y") - half_capital_height * each.number("font-size")
-                                        : each.number("x"));
+    axis.places_px.push_back(is_y_label ? each.number("y") - half_capital_height * each.number("font-size") : each.number("x"));
   }
   return panels;
 }
 
-std::vector<std::vector<Point>> lines(const std::vector<Element>& elements, const std::string& color,
-                                      std::size_t least_points = 3) {
+std::vector<std::vector<Point>> lines(const std::vector<Element>& elements, const std::string& color, std::size_t least_points = 3) {
   std::vector<std::vector<Point>> result;
   for (const Element& each : elements) {
     if (each.name == "polyline" && each.at("stroke") == color && points(each.at("points")).size() >= least_points) {
@@ -139,8 +138,8 @@ std::vector<std::vector<Point>> lines(const std::vector<Element>& elements, cons
 }
 
 std::size_t texts(const std::vector<Element>& elements, const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      elements, [&](const Element& each) { return each.name == "text" && each.text == text; }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(elements, [&](const Element& each) { return each.name == "text" && each.text == text; }));
 }
 
 bool is_band(const Element& element) { return element.at("fill-opacity") == "0.2"; }
@@ -199,14 +198,12 @@ class ChartTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   [[nodiscard]] std::string svg(const Chart& chart) const {
-    write_svg(chart, folder_ / "chart.svg");
+    write_file(folder_ / "chart.svg", draw_svg(chart));
     std::ifstream in(folder_ / "chart.svg");
     return {std::istreambuf_iterator<char>(in), {}};
   }
   [[nodiscard]] std::vector<Element> drawn(const Chart& chart) const { return parsed(svg(chart)); }
-  [[nodiscard]] std::ptrdiff_t files() const {
-    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
-  }
+  [[nodiscard]] std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
 
   fs::path folder_;
 };
@@ -221,8 +218,8 @@ TEST_F(ChartTest, IsOneSvgWithItsSize) {
 
 TEST_F(ChartTest, WritesEveryNameOnce) {
   const auto elements = drawn(warm_up());
-  for (const char* text : {"Warm-up", "5 A & 25 °C <measured>", "time / min", "stator", "winding",
-                           "winding temperature / °C", "maxon_ecx_flat_32l_48v  162 °C", "df45", "5 % to 95 %"}) {
+  for (const char* text : {"Warm-up", "5 A & 25 °C <measured>", "time / min", "stator", "winding", "winding temperature / °C",
+                           "maxon_ecx_flat_32l_48v  162 °C", "df45", "5 % to 95 %"}) {
     EXPECT_EQ(texts(elements, text), 1U) << text;
   }
   EXPECT_GE(texts(elements, "winding limit 155 °C"), 1U);
@@ -344,7 +341,9 @@ TEST_F(ChartTest, LongTitleIsBrokenIntoLines) {
 
 TEST_F(ChartTest, NamesFromFilesCannotBreakTheXml) {
   Chart chart = warm_up();
-  chart.title = "a\x01" "b \xFF \xE2\x82 \xC0\xAF \"<&>'";
+  chart.title =
+      "a\x01"
+      "b \xFF \xE2\x82 \xC0\xAF \"<&>'";
   EXPECT_EQ(texts(drawn(chart), "a b \uFFFD \uFFFD\uFFFD \uFFFD\uFFFD \"<&>'"), 1U);
 }
 
@@ -360,7 +359,7 @@ TEST_F(ChartTest, DrawsWhereThereIsLittleToShow) {
 
 void expect_failure(const Chart& chart, const fs::path& path, ExitCode code, const std::string& words) {
   try {
-    write_svg(chart, path);
+    write_file(path, draw_svg(chart));
     FAIL() << "wrote " << path;
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), code);

@@ -190,7 +190,7 @@ TEST(Motor, power_at_the_terminals_is_loss_and_shaft) {
 // --- what the network sees --------------------------------------------------------------------------------
 
 TEST(OperatingPoint, has_no_signs) {
-  const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {-0.09, -100.0}), robot(), 31.0);
+  const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {-0.09, -100.0}), motor(), robot(), 31.0);
   EXPECT_NEAR(at.current_rms_A, 3.2, 1e-13);
   EXPECT_EQ(at.speed_mean_rad_per_s, 100.0);
   EXPECT_EQ(at.speed_rms_rad_per_s, 100.0);
@@ -203,8 +203,8 @@ TEST(OperatingPoint, sinusoidal_commutation_heats_0_912_of_block) {
   Robot sinusoidal = robot();
   sinusoidal.commutation = Commutation::sinusoidal;
   const DrivePoint point = drive_point(motor(), robot(), {0.09, 100.0});
-  const double block_A = operating_point(point, robot(), 25.0).current_rms_A;
-  const double sinusoidal_A = operating_point(point, sinusoidal, 25.0).current_rms_A;
+  const double block_A = operating_point(point, motor(), robot(), 25.0).current_rms_A;
+  const double sinusoidal_A = operating_point(point, motor(), sinusoidal, 25.0).current_rms_A;
   const double emf_V = 1.0;
   const double current_A = 1.0;
   const double mean_power_W = 3.0 / std::numbers::pi * emf_V * current_A;

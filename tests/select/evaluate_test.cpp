@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "motor/datasheet_network.h"
 #include "given_demand.h"
+#include "motor/datasheet_network.h"
 #include "select/drive_profile.h"
 #include "thermal/steady_state.h"
 
@@ -27,7 +27,7 @@ constexpr double kAlpha_per_K = 0.0039;
 constexpr double kInner_K_per_W = 4.0;
 constexpr double kOuter_K_per_W = 2.0;
 
-void give(Motor& motor, std::string_view key, double MotorValues::* value, const Figure& figure) {
+void give(Motor& motor, std::string_view key, double MotorValues::*value, const Figure& figure) {
   motor.figures[key] = figure;
   motor.nominal.*value = figure.value;
 }
@@ -116,7 +116,8 @@ TEST(Evaluate, too_hot_fails_and_says_when) {
   EXPECT_EQ(result.limiting_factor, LimitingFactor::winding_temperature);
   ASSERT_TRUE(result.time_to_limit_s.has_value());
   // Cut the duty there: it ends on the limit.
-  EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), constant_current(8.0, *result.time_to_limit_s)).winding_peak_C.nominal, 155.0, 1e-4);
+  EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), constant_current(8.0, *result.time_to_limit_s)).winding_peak_C.nominal, 155.0,
+              1e-4);
 }
 
 TEST(Evaluate, stator_limit_is_a_limit_too) {
@@ -140,7 +141,8 @@ TEST(Evaluate, infeasible_by_voltage) {
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
   EXPECT_EQ(result.verdict, Verdict::infeasible);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::voltage);
-  EXPECT_NEAR(result.least_torque_share, 0.3, 1e-9);
+  const double hot_ratio = 1.0 + kAlpha_per_K * (result.winding_peak_C.nominal - 25.0);
+  EXPECT_NEAR(result.least_torque_share, 0.3 / hot_ratio, 1e-9);
 }
 
 TEST(Evaluate, infeasible_by_current) {
@@ -157,8 +159,16 @@ TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
   Duty duty = constant_current(5.0);
   give(duty, {{600.0, 0.0, 21.4 / 0.03, 5.0}});  // 21.4 V + 2.5 V = 23.9 V
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
-  EXPECT_EQ(result.least_torque_share, 1.0);
-  EXPECT_NEAR(result.highest_voltage_V, 21.4 + 2.5 * (1.0 + kAlpha_per_K * (rest_C(kResistance_ohm, 5.0) - 25.0)), 1e-6);
+  // The hot winding gets 2.6 V only: it rests where 6 K/W · (2.6 V)²/R(T) is what leaves.
+  double rest_at_voltage_C = 25.0;
+  for (int i = 0; i < 100; ++i) {
+    rest_at_voltage_C = 25.0 + 6.0 * 2.6 * 2.6 / (kResistance_ohm * (1.0 + kAlpha_per_K * (rest_at_voltage_C - 25.0)));
+  }
+  EXPECT_NEAR(result.winding_peak_C.nominal, rest_at_voltage_C, 0.01);
+  EXPECT_LT(result.winding_peak_C.nominal, rest_C(kResistance_ohm, 5.0) - 5.0);
+  const double hot_ohm = kResistance_ohm * (1.0 + kAlpha_per_K * (result.winding_peak_C.nominal - 25.0));
+  EXPECT_NEAR(result.highest_voltage_V, 21.4 + 5.0 * hot_ohm, 1e-6);
+  EXPECT_NEAR(result.least_torque_share, 2.6 / hot_ohm / 5.0, 1e-6);
   EXPECT_EQ(result.verdict, Verdict::infeasible);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::voltage);
 }
@@ -210,7 +220,8 @@ TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
   const Robot robot = robot_of_file("roboteam_twente_v2024");
   Duty duty = duty_of_file("paper_intermittent");
   shorten(duty, 60);
-  const std::vector<Motor> motors{motor_of_file("maxon_ecx_flat_32l_48v"), motor_of_file("maxon_ecx_flat_42m_24v"), motor_of_file("nanotec_df45l024048_a2")};
+  const std::vector<Motor> motors{motor_of_file("maxon_ecx_flat_32l_48v"), motor_of_file("maxon_ecx_flat_42m_24v"),
+                                  motor_of_file("nanotec_df45l024048_a2")};
   EvaluateOptions options{.samples = 61, .seed = 7, .threads = 1, .with_curves = true};
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
   const std::vector<MotorEvaluation> one = evaluate(robot, duty, duty.demand(robot, options.seed), motors, options);
@@ -220,7 +231,8 @@ TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
     ASSERT_EQ(many.size(), one.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
       EXPECT_EQ(one[i].motor_id, many[i].motor_id);
-      for (const auto& [a, b] : {std::pair{one[i].winding_peak_C, many[i].winding_peak_C}, std::pair{one[i].stator_peak_C, many[i].stator_peak_C}}) {
+      for (const auto& [a, b] :
+           {std::pair{one[i].winding_peak_C, many[i].winding_peak_C}, std::pair{one[i].stator_peak_C, many[i].stator_peak_C}}) {
         EXPECT_EQ(bits(a.nominal), bits(b.nominal));
         EXPECT_EQ(bits(a.p05), bits(b.p05));
         EXPECT_EQ(bits(a.p50), bits(b.p50));
@@ -369,11 +381,12 @@ TEST(Progress, counts_up_to_all_of_the_work) {
   std::size_t before = 0;
   std::size_t all = 0;
   const Duty duty = constant_current(5.0);
-  evaluate(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1), {.samples = 50}, [&](std::size_t done, std::size_t total) {
-    EXPECT_EQ(done, before + 1);
-    before = done;
-    all = total;
-  });
+  evaluate(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1), {.samples = 50},
+           [&](std::size_t done, std::size_t total) {
+             EXPECT_EQ(done, before + 1);
+             before = done;
+             all = total;
+           });
   EXPECT_EQ(before, all);
   EXPECT_GT(all, 0U);
 }

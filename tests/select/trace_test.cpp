@@ -1,4 +1,3 @@
-#include "given_demand.h"
 #include "select/trace.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-
+#include "given_demand.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {

@@ -12,7 +12,8 @@ namespace {
 
 /// One effect alone, with its parameters and nodes in declared order.
 template <class S>
-std::vector<S> heat_W(const EffectType& type, const OperatingPoint<S>& at, const std::vector<S>& parameters, const std::vector<S>& temperature_C) {
+std::vector<S> heat_W(const EffectType& type, const OperatingPoint<S>& at, const std::vector<S>& parameters,
+                      const std::vector<S>& temperature_C) {
   std::vector<int> parameter_index(parameters.size());
   std::iota(parameter_index.begin(), parameter_index.end(), 0);
   std::vector<int> node_index(temperature_C.size());
@@ -80,7 +81,8 @@ TEST_P(EveryEffect, worked_example) {
   ASSERT_EQ(example.expected_heat_W.size(), type().nodes.size());
   const std::vector<double> heat = heat_W(type(), example.at, example.parameters, example.temperature_C);
   for (std::size_t node = 0; node < heat.size(); ++node) {
-    EXPECT_NEAR(heat[node], example.expected_heat_W[node], 1e-9 * std::max(1.0, std::abs(example.expected_heat_W[node]))) << type().nodes[node].role;
+    EXPECT_NEAR(heat[node], example.expected_heat_W[node], 1e-9 * std::max(1.0, std::abs(example.expected_heat_W[node])))
+        << type().nodes[node].role;
   }
   EXPECT_GT(size_of(heat), 0.0) << "an example of no heat shows nothing";
   for (std::size_t i = 0; i < example.parameters.size(); ++i) {
@@ -117,7 +119,8 @@ TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::vector<double> alone = heat_W(type(), at[lane], parameters[lane], temperature_C[lane]);
       for (std::size_t node = 0; node < alone.size(); ++node) {
-        EXPECT_EQ(std::bit_cast<std::uint64_t>(alone[node]), std::bit_cast<std::uint64_t>(side_by_side[node][static_cast<Eigen::Index>(lane)]))
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(alone[node]),
+                  std::bit_cast<std::uint64_t>(side_by_side[node][static_cast<Eigen::Index>(lane)]))
             << alone[node] << " alone, " << side_by_side[node][static_cast<Eigen::Index>(lane)] << " in lane " << lane;
       }
     }
@@ -150,7 +153,8 @@ TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
 TEST_P(EveryEffect, makes_heat_or_moves_it_but_takes_none_away) {
   Chance chance(801);
   for (int i = 0; i < 500; ++i) {
-    const std::vector<double> heat = heat_W(type(), random_point(chance), random_parameters(chance, type()), random_temperatures(chance, type()));
+    const std::vector<double> heat =
+        heat_W(type(), random_point(chance), random_parameters(chance, type()), random_temperatures(chance, type()));
     EXPECT_GE(sum(heat), -1e-12 * size_of(heat));
   }
 }
@@ -177,7 +181,8 @@ TEST_P(EveryEffect, at_rest_and_at_one_temperature_nothing_happens) {
   for (int i = 0; i < 100; ++i) {
     OperatingPoint<double> at;
     at.ambient_C = chance.between(-40.0, 60.0);
-    const std::vector<double> heat = heat_W(type(), at, random_parameters(chance, type()), std::vector<double>(type().nodes.size(), at.ambient_C));
+    const std::vector<double> heat =
+        heat_W(type(), at, random_parameters(chance, type()), std::vector<double>(type().nodes.size(), at.ambient_C));
     EXPECT_EQ(size_of(heat), 0.0);
   }
 }

@@ -171,8 +171,9 @@ TEST(Ensemble, error_has_order_four_in_the_step) {
     Lanes error;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const double ambient_C = eight.duties[lane][0].at.ambient_C;
-      error[static_cast<int>(lane)] = std::abs(outcome.end_C[winding][static_cast<int>(lane)] -
-                                               static_cast<double>(eight.motors[lane].after(eight.duties[lane], {ambient_C, ambient_C})[winding]));
+      error[static_cast<int>(lane)] =
+          std::abs(outcome.end_C[winding][static_cast<int>(lane)] -
+                   static_cast<double>(eight.motors[lane].after(eight.duties[lane], {ambient_C, ambient_C})[winding]));
     }
     error_K.push_back(error);
   }
@@ -203,8 +204,10 @@ TEST(Ensemble, a_sample_has_the_same_bits_in_every_lane_whatever_its_neighbours)
     other.duties[place] = eight.duties[0];
     const Eight::Outcome moved = other.run(step_s);
     for (const std::size_t node : {0U, 1U}) {
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(first.end_C[node][0]), std::bit_cast<std::uint64_t>(moved.end_C[node][static_cast<int>(place)]));
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(first.peak_C[node][0]), std::bit_cast<std::uint64_t>(moved.peak_C[node][static_cast<int>(place)]));
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(first.end_C[node][0]),
+                std::bit_cast<std::uint64_t>(moved.end_C[node][static_cast<int>(place)]));
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(first.peak_C[node][0]),
+                std::bit_cast<std::uint64_t>(moved.peak_C[node][static_cast<int>(place)]));
     }
   }
 }

@@ -106,8 +106,10 @@ TEST(SteadyState, is_the_rest_of_the_linear_system_with_drag_too) {
     const TwoNode::Pair expected = motor.rest_C(at);
     const std::optional<SteadyState> rest = steady_state(motor.network(), at);
     ASSERT_TRUE(rest.has_value()) << i;
-    EXPECT_NEAR(rest->temperature_C[winding], static_cast<double>(expected[winding]), 1e-9 * static_cast<double>(std::abs(expected[winding])));
-    EXPECT_NEAR(rest->temperature_C[stator], static_cast<double>(expected[stator]), 1e-9 * static_cast<double>(std::abs(expected[winding])));
+    EXPECT_NEAR(rest->temperature_C[winding], static_cast<double>(expected[winding]),
+                1e-9 * static_cast<double>(std::abs(expected[winding])));
+    EXPECT_NEAR(rest->temperature_C[stator], static_cast<double>(expected[stator]),
+                1e-9 * static_cast<double>(std::abs(expected[winding])));
   }
 }
 
@@ -129,7 +131,8 @@ TEST(SteadyState, nothing_above_the_critical_current) {
 TwoNode::Pair periodic_mean_K(const TwoNode& motor, double current_A, double on_s, double off_s, double ambient_C) {
   const Network network = motor.network();
   const std::vector<double> values = network.values();
-  const double slowest_s = static_cast<double>(-1.0L / motor.eigenvalues_per_s(current_point(current_A * std::sqrt(on_s / (on_s + off_s))))[0]);
+  const double slowest_s =
+      static_cast<double>(-1.0L / motor.eigenvalues_per_s(current_point(current_A * std::sqrt(on_s / (on_s + off_s))))[0]);
   TransientOptions options;
   options.tolerances = {1e-12, 1e-12};
   const OnOffSteadyState closed = on_off_steady_state(closed_form_motor(motor), {current_A, on_s, off_s, ambient_C});
@@ -145,8 +148,12 @@ TwoNode::Pair periodic_mean_K(const TwoNode& motor, double current_A, double on_
   return {stator_K + inner_K, stator_K};
 }
 
-constexpr TwoNode kMotor{.resistance_25C_ohm = 0.9, .temperature_coefficient_per_K = 0.0039, .winding_stator_K_per_W = 3.8,
-                         .stator_ambient_K_per_W = 2.8, .winding_J_per_K = 3.2, .stator_J_per_K = 28.0};
+constexpr TwoNode kMotor{.resistance_25C_ohm = 0.9,
+                         .temperature_coefficient_per_K = 0.0039,
+                         .winding_stator_K_per_W = 3.8,
+                         .stator_ambient_K_per_W = 2.8,
+                         .winding_J_per_K = 3.2,
+                         .stator_J_per_K = 28.0};
 
 TEST(OnOffSteadyState, is_the_mean_of_the_integrated_model_exactly_where_alpha_is_zero) {
   TwoNode motor = kMotor;

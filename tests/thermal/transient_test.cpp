@@ -14,8 +14,13 @@ namespace {
 enum Node { winding, stator, ambient };
 enum Effect { copper, drag, inner, outer };
 
-constexpr TwoNode kMotor{.resistance_25C_ohm = 0.9, .temperature_coefficient_per_K = 0.0039, .drag_torque_Nm = 0.008,
-                         .winding_stator_K_per_W = 3.8, .stator_ambient_K_per_W = 2.8, .winding_J_per_K = 3.2, .stator_J_per_K = 28.0};
+constexpr TwoNode kMotor{.resistance_25C_ohm = 0.9,
+                         .temperature_coefficient_per_K = 0.0039,
+                         .drag_torque_Nm = 0.008,
+                         .winding_stator_K_per_W = 3.8,
+                         .stator_ambient_K_per_W = 2.8,
+                         .winding_J_per_K = 3.2,
+                         .stator_J_per_K = 28.0};
 
 TransientResult run(const TwoNode& motor, std::span<const Interval> intervals, const TransientOptions& options = {},
                     const TransientObserver& observer = {}) {
@@ -46,7 +51,8 @@ class EveryMethod : public testing::TestWithParam<OdeMethod> {
 std::string method_name(const testing::TestParamInfo<OdeMethod>& info) {
   return info.param == OdeMethod::cvodes_bdf ? "bdf" : info.param == OdeMethod::cvodes_adams ? "adams" : "erk";
 }
-INSTANTIATE_TEST_SUITE_P(Transient, EveryMethod, testing::Values(OdeMethod::cvodes_bdf, OdeMethod::cvodes_adams, OdeMethod::arkode_erk), method_name);
+INSTANTIATE_TEST_SUITE_P(Transient, EveryMethod, testing::Values(OdeMethod::cvodes_bdf, OdeMethod::cvodes_adams, OdeMethod::arkode_erk),
+                         method_name);
 
 // --- against the two exponentials -------------------------------------------------------------------------
 
@@ -212,7 +218,8 @@ TEST_P(EveryMethod, limits_of_random_motors_are_crossed_within_1_ms) {
     for (std::size_t node : {0U, 1U}) {
       const auto above = [&](long double time_s) { return motor.after(time_s, start_C, at)[node] - options.limits[node].limit_C; };
       ASSERT_TRUE(result.time_to_limit_s[node].has_value()) << "sweep " << i << " node " << node;
-      EXPECT_NEAR(*result.time_to_limit_s[node], static_cast<double>(bisected(0.0L, duration_s, above)), 1e-3) << "sweep " << i << " node " << node;
+      EXPECT_NEAR(*result.time_to_limit_s[node], static_cast<double>(bisected(0.0L, duration_s, above)), 1e-3)
+          << "sweep " << i << " node " << node;
     }
   }
   EXPECT_GT(crossed, 30);
@@ -429,14 +436,15 @@ TEST_P(EveryMethod, without_a_source_the_hottest_never_gets_hotter_nor_the_colde
     const double ambient_C = chance.between(-20.0, 60.0);
     double hottest_C = std::max({options.start_C[0], options.start_C[1], ambient_C});
     double coldest_C = std::min({options.start_C[0], options.start_C[1], ambient_C});
-    const TransientResult result = run(motor, std::vector<Interval>{{2000.0, current_point(0.0, ambient_C)}}, options, [&](const TransientMoment& moment) {
-      const double highest_C = std::max({moment.state_C[0], moment.state_C[1], ambient_C});
-      const double lowest_C = std::min({moment.state_C[0], moment.state_C[1], ambient_C});
-      EXPECT_LE(highest_C, hottest_C + 1e-6) << i;
-      EXPECT_GE(lowest_C, coldest_C - 1e-6) << i;
-      hottest_C = highest_C;
-      coldest_C = lowest_C;
-    });
+    const TransientResult result =
+        run(motor, std::vector<Interval>{{2000.0, current_point(0.0, ambient_C)}}, options, [&](const TransientMoment& moment) {
+          const double highest_C = std::max({moment.state_C[0], moment.state_C[1], ambient_C});
+          const double lowest_C = std::min({moment.state_C[0], moment.state_C[1], ambient_C});
+          EXPECT_LE(highest_C, hottest_C + 1e-6) << i;
+          EXPECT_GE(lowest_C, coldest_C - 1e-6) << i;
+          hottest_C = highest_C;
+          coldest_C = lowest_C;
+        });
     EXPECT_LE(result.peak_C[winding], std::max({options.start_C[0], options.start_C[1], ambient_C}) + 1e-6);
   }
 }

@@ -20,7 +20,9 @@ struct Description {
   Json json;
 };
 
-std::string with_unit(double value, std::string_view unit) { return unit.empty() ? significant(value, 4) : fmt::format("{} {}", significant(value, 4), unit_for_display(unit)); }
+std::string with_unit(double value, std::string_view unit) {
+  return unit.empty() ? significant(value, 4) : fmt::format("{} {}", significant(value, 4), unit_for_display(unit));
+}
 
 Json figure_json(std::string_view key, std::string_view unit, const Figure& figure) {
   Json json{{"key", key}, {"value", figure.value}, {"unit", unit}, {"origin", to_string(figure.origin)}, {"source", figure.source}};
@@ -45,7 +47,11 @@ std::string figure_text(std::string_view key, std::string_view unit, const Figur
 Description describe_motor(const Motor& motor) {
   Description result{fmt::format("{}: {} {}{}{}\n{} thermal data; file {}\n", motor.id, motor.manufacturer, motor.name,
                                  motor.part_number.empty() ? "" : ", ", motor.part_number, data_quality(motor), motor.file.string()),
-                     {{"kind", "motor"}, {"id", motor.id}, {"manufacturer", motor.manufacturer}, {"name", motor.name}, {"data_quality", data_quality(motor)}}};
+                     {{"kind", "motor"},
+                      {"id", motor.id},
+                      {"manufacturer", motor.manufacturer},
+                      {"name", motor.name},
+                      {"data_quality", data_quality(motor)}}};
   result.text += "\nfigures (value, origin, 95 % band or range, source)\n";
   for (const MotorFigureSpec& each : motor_figure_specs()) {
     if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
@@ -70,41 +76,64 @@ Description describe_motor(const Motor& motor) {
 }
 
 Description describe_robot(const Robot& robot) {
-  std::string limits = std::isfinite(robot.voltage_limit_V) ? fmt::format(", command at most {} V", significant(robot.voltage_limit_V, 4)) : "";
-  limits += std::isfinite(robot.current_limit_A) ? fmt::format(", at most {} A", significant(robot.current_limit_A, 4)) : ", no current limit";
+  std::string limits =
+      std::isfinite(robot.voltage_limit_V) ? fmt::format(", command at most {} V", significant(robot.voltage_limit_V, 4)) : "";
+  limits +=
+      std::isfinite(robot.current_limit_A) ? fmt::format(", at most {} A", significant(robot.current_limit_A, 4)) : ", no current limit";
   std::vector<std::string> angles;
   for (const double angle_rad : robot.wheel_axis_rad) {
     angles.push_back(significant(convert(angle_rad, "rad", "deg"), 4));
   }
-  return {fmt::format("{}: {}\n  mass {} kg, wheel radius {} mm, contact radius {} mm, wheel axes at {} °\n  motor {}, gear {}:1, {} commutation\n"
-                      "  battery {} V{}\n  source: {}\n",
-                      robot.id, robot.name, significant(robot.mass_kg, 4), significant(1e3 * robot.wheel_radius_m, 3),
-                      significant(1e3 * robot.wheel_contact_radius_m, 3), fmt::join(angles, ", "), robot.drive_motor, significant(robot.gear_ratio, 3),
-                      robot.commutation == Commutation::block ? "block" : "sinusoidal", significant(robot.battery_V, 3), limits, robot.source),
-          {{"kind", "robot"}, {"id", robot.id}, {"name", robot.name}, {"motor", robot.drive_motor}, {"mass_kg", robot.mass_kg},
-           {"wheel_radius_m", robot.wheel_radius_m}, {"gear_ratio", robot.gear_ratio}, {"available_V", robot.available_V()}, {"source", robot.source}}};
+  return {
+      fmt::format(
+          "{}: {}\n  mass {} kg, wheel radius {} mm, contact radius {} mm, wheel axes at {} °\n  motor {}, gear {}:1, {} commutation\n"
+          "  battery {} V{}\n  source: {}\n",
+          robot.id, robot.name, significant(robot.mass_kg, 4), significant(1e3 * robot.wheel_radius_m, 3),
+          significant(1e3 * robot.wheel_contact_radius_m, 3), fmt::join(angles, ", "), robot.drive_motor, significant(robot.gear_ratio, 3),
+          robot.commutation == Commutation::block ? "block" : "sinusoidal", significant(robot.battery_V, 3), limits, robot.source),
+      {{"kind", "robot"},
+       {"id", robot.id},
+       {"name", robot.name},
+       {"motor", robot.drive_motor},
+       {"mass_kg", robot.mass_kg},
+       {"wheel_radius_m", robot.wheel_radius_m},
+       {"gear_ratio", robot.gear_ratio},
+       {"available_V", robot.available_V()},
+       {"source", robot.source}}};
 }
 
 Description describe_duty(const Duty& duty) {
-  return {fmt::format("{}: {}\n  shape {}, ambient {:.0f} °C\n  load: {}\n  {}\n", duty.id, duty.summary, duty.shape, duty.ambient_C.value, duty.origin, fmt::join(duty.notes, "\n  ")),
-          {{"kind", "duty"}, {"id", duty.id}, {"summary", duty.summary}, {"origin", duty.origin}, {"shape", duty.shape},
-           {"ambient_C", duty.ambient_C.value}, {"notes", duty.notes}}};
+  return {fmt::format("{}: {}\n  shape {}, ambient {:.0f} °C\n  load: {}\n  {}\n", duty.id, duty.summary, duty.shape, duty.ambient_C.value,
+                      duty.origin, fmt::join(duty.notes, "\n  ")),
+          {{"kind", "duty"},
+           {"id", duty.id},
+           {"summary", duty.summary},
+           {"origin", duty.origin},
+           {"shape", duty.shape},
+           {"ambient_C", duty.ambient_C.value},
+           {"notes", duty.notes}}};
 }
 
 Description describe_effect(const EffectType& effect) {
   Description result{fmt::format("{}: {}\n\n  {}\n\n", effect.name, effect.summary, effect.equation),
-                     {{"kind", "effect"}, {"id", effect.name}, {"summary", effect.summary}, {"equation", effect.equation}, {"reference", effect.reference}}};
+                     {{"kind", "effect"},
+                      {"id", effect.name},
+                      {"summary", effect.summary},
+                      {"equation", effect.equation},
+                      {"reference", effect.reference}}};
   std::string keys;
   for (const ParameterSpec& spec : effect.parameters) {
-    result.text += fmt::format("  {:26} {:8} {}; {}\n", spec.key, unit_for_display(spec.unit), spec.meaning, to_string(spec.range, spec.unit));
+    result.text +=
+        fmt::format("  {:26} {:8} {}; {}\n", spec.key, unit_for_display(spec.unit), spec.meaning, to_string(spec.range, spec.unit));
     result.json["parameters"].push_back({{"key", spec.key}, {"unit", spec.unit}, {"meaning", spec.meaning}});
     keys += fmt::format("{} = {{ value = \"… {}\", origin = \"estimated\", derivation = \"…\" }}\n", spec.key, spec.unit);
   }
   for (const NodeRole& role : effect.nodes) {
     result.text += fmt::format("  {:26} {:8} node; '{}' unless named\n", role.role, "", role.default_node);
   }
-  result.text += fmt::format("\n  typical size: {}\n  look-alikes: {}\n  reference: {}\n\nin a motor file:\n[effects.my_{}]\ntype = \"{}\"\n{}", effect.typical,
-                             effect.look_alike, effect.reference, effect.name, effect.name, keys);
+  result.text +=
+      fmt::format("\n  typical size: {}\n  look-alikes: {}\n  reference: {}\n\nin a motor file:\n[effects.my_{}]\ntype = \"{}\"\n{}",
+                  effect.typical, effect.look_alike, effect.reference, effect.name, effect.name, keys);
   return result;
 }
 
@@ -115,7 +144,8 @@ Description describe(const std::string& name, const DataFolders& folders) {
   }
   for (const ShapeType& shape : all_shapes()) {
     if (shape.name == name) {
-      return {fmt::format("{}: a duty shape, {}\n\n{}", shape.name, shape.summary, shape.example), {{"kind", "shape"}, {"id", shape.name}, {"example", shape.example}}};
+      return {fmt::format("{}: a duty shape, {}\n\n{}", shape.name, shape.summary, shape.example),
+              {{"kind", "shape"}, {"id", shape.name}, {"example", shape.example}}};
     }
   }
   std::vector<std::string> known;
@@ -136,7 +166,8 @@ Description describe(const std::string& name, const DataFolders& folders) {
   for (const EffectType& effect : all_effects()) {
     known.emplace_back(effect.name);
   }
-  throw Failure(ExitCode::bad_input, fmt::format("there is no '{}' among motors, robots, duties, shapes and effects{}", name, did_you_mean(name, known)));
+  throw Failure(ExitCode::bad_input,
+                fmt::format("there is no '{}' among motors, robots, duties, shapes and effects{}", name, did_you_mean(name, known)));
 }
 
 }  // namespace

@@ -61,14 +61,15 @@ std::string duty_file(const std::filesystem::path& csv, const std::string& summa
       nlohmann::json(summary).dump(), nlohmann::json(origin).dump(), nlohmann::json(csv.filename().string()).dump());
 }
 
-void write_duty(const Options& options, const std::vector<WheelDemand>& wheels, const std::string& summary, const std::string& origin, const Session& session) {
+void write_duty(const Options& options, const std::vector<WheelDemand>& wheels, const std::string& summary, const std::string& origin,
+                Session& session) {
   if (options.out.empty()) {
     return;
   }
   std::filesystem::path description = options.out;
   description.replace_extension(".toml");
-  write_file(options.out, to_csv(wheels));
-  write_file(description, duty_file(options.out, summary, origin));
+  session.write(options.out, to_csv(wheels));
+  session.write(description, duty_file(options.out, summary, origin));
   session.say(fmt::format("written: {} and {} (heatsoak evaluate --duty {})\n", options.out, description.string(), description.string()));
 }
 
@@ -80,7 +81,8 @@ std::string phase_table(const MatchLoad& load) {
       all_Nm2_s += wheel_Nm2_s;
     }
   }
-  std::string text = fmt::format("{:22} {:>8} {:>8} {:>10} {:>12} {:>14}\n", "phase", "time / s", "duels / s", "rms / mN m", "of all heat", "of it in duels");
+  std::string text = fmt::format("{:22} {:>8} {:>8} {:>10} {:>12} {:>14}\n", "phase", "time / s", "duels / s", "rms / mN m", "of all heat",
+                                 "of it in duels");
   for (std::size_t i = 0; i < load.phases.size(); ++i) {
     const PhaseLoad& phase = load.phases[i];
     double sum_Nm2_s = 0.0;
@@ -89,8 +91,8 @@ std::string phase_table(const MatchLoad& load) {
     }
     if (phase.time_s > 0.0) {
       text += fmt::format("{:22} {:8.0f} {:8.0f} {:10.0f} {:10.0f} % {:12.0f} %\n", kPhaseNames[i], phase.time_s, phase.duel_s,
-                          1e3 * std::sqrt(sum_Nm2_s / phase.time_s / static_cast<double>(load.wheels.size())), 100.0 * sum_Nm2_s / all_Nm2_s,
-                          sum_Nm2_s > 0.0 ? 100.0 * phase.duel_torque_squared_Nm2_s / sum_Nm2_s : 0.0);
+                          1e3 * std::sqrt(sum_Nm2_s / phase.time_s / static_cast<double>(load.wheels.size())),
+                          100.0 * sum_Nm2_s / all_Nm2_s, sum_Nm2_s > 0.0 ? 100.0 * phase.duel_torque_squared_Nm2_s / sum_Nm2_s : 0.0);
     }
   }
   return text;
@@ -100,26 +102,32 @@ nlohmann::ordered_json phase_json(const MatchLoad& load) {
   nlohmann::ordered_json phases = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < load.phases.size(); ++i) {
     const PhaseLoad& phase = load.phases[i];
-    phases.push_back({{"phase", kPhaseNames[i]}, {"time_s", rounded(phase.time_s, 3)}, {"duel_s", rounded(phase.duel_s, 3)}, {"slip_s", rounded(phase.slip_s, 3)},
-                      {"torque_squared_Nm2_s", phase.torque_squared_Nm2_s}, {"duel_torque_squared_Nm2_s", phase.duel_torque_squared_Nm2_s}});
+    phases.push_back({{"phase", kPhaseNames[i]},
+                      {"time_s", rounded(phase.time_s, 3)},
+                      {"duel_s", rounded(phase.duel_s, 3)},
+                      {"slip_s", rounded(phase.slip_s, 3)},
+                      {"torque_squared_Nm2_s", phase.torque_squared_Nm2_s},
+                      {"duel_torque_squared_Nm2_s", phase.duel_torque_squared_Nm2_s}});
   }
   return phases;
 }
 
-ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, const Session& session) {
+ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, Session& session) {
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
   if (!match) {
     const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
     session.say(fmt::format("{}: {}\n{}, {:.0f} s\n", duty.id, duty.summary, duty.origin, wheels.front().duration_s()));
     write_duty(options, wheels, duty.summary, duty.origin, session);
-    session.answer({{"schema", "heatsoak.duty/1"}, {"duty", duty.id}, {"origin", duty.origin}, {"duration_s", wheels.front().duration_s()}});
+    session.answer(
+        {{"schema", "heatsoak.duty/1"}, {"duty", duty.id}, {"origin", duty.origin}, {"duration_s", wheels.front().duration_s()}});
     return ExitCode::done;
   }
   const Planner planner = options.bang_bang ? Planner::bang_bang : Planner::jerk_limited;
-  const MatchLoad load = play_match(match->inputs(), match->inputs().nominal(), robot, options.seed, planner, options.out.empty() ? 0.25 : options.every_s);
+  const MatchLoad load =
+      play_match(match->inputs(), match->inputs().nominal(), robot, options.seed, planner, options.out.empty() ? 0.25 : options.every_s);
   session.say(fmt::format("{} of {} as {}, seed {}: {:.0f} min, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
-                          kRoleNames[static_cast<std::size_t>(match->inputs().role)], options.seed, load.duration_s / 60.0, load.play_s, load.distance_m / 1e3,
-                          duty.origin, phase_table(load)));
+                          kRoleNames[static_cast<std::size_t>(match->inputs().role)], options.seed, load.duration_s / 60.0, load.play_s,
+                          load.distance_m / 1e3, duty.origin, phase_table(load)));
   write_duty(options, load.wheels, duty.summary, duty.origin, session);
   session.answer({{"schema", "heatsoak.duty/1"},
                   {"duty", duty.id},
@@ -133,7 +141,7 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
   return ExitCode::done;
 }
 
-ExitCode import(const Options& options, const Robot& robot, const Session& session) {
+ExitCode import(const Options& options, const Robot& robot, Session& session) {
   const GameDemand game = demand_of_game(options.log, options.player, robot, options.every_s);
   std::string text;
   for (const std::string& line : game.sentences) {
@@ -143,20 +151,26 @@ ExitCode import(const Options& options, const Robot& robot, const Session& sessi
   if (game.wheels.empty()) {
     throw Failure(ExitCode::cannot_answer, fmt::format("{}: no robot is seen long enough to follow its motion", options.log));
   }
-  const std::string summary = fmt::format("{} of {}, driven by {}", game.player, std::filesystem::path(options.log).filename().string(), robot.name);
+  const std::string summary =
+      fmt::format("{} of {}, driven by {}", game.player, std::filesystem::path(options.log).filename().string(), robot.name);
   write_duty(options, game.wheels, summary, "measured motion of a recorded game, wheel torques computed from the robot's file", session);
-  session.answer({{"schema", "heatsoak.duty/1"}, {"log", options.log}, {"player", game.player}, {"robot", robot.id},
-                  {"duration_s", rounded(game.wheels.front().duration_s(), 3)}, {"report", game.sentences}});
+  session.answer({{"schema", "heatsoak.duty/1"},
+                  {"log", options.log},
+                  {"player", game.player},
+                  {"robot", robot.id},
+                  {"duration_s", rounded(game.wheels.front().duration_s(), 3)},
+                  {"report", game.sentences}});
   return ExitCode::done;
 }
 
-ExitCode run(const Options& options, const Session& session) {
+ExitCode run(const Options& options, Session& session) {
   const DataFolders folders = session.folders();
   if (options.duty.empty() == options.log.empty()) {
     throw Failure(ExitCode::bad_input, "expected one of --duty and --import (`heatsoak duty --help` shows examples)");
   }
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
-  return options.log.empty() ? generate(options, robot, read_duty(file_of(folders.duties, "duty", options.duty)), session) : import(options, robot, session);
+  return options.log.empty() ? generate(options, robot, read_duty(file_of(folders.duties, "duty", options.duty)), session)
+                             : import(options, robot, session);
 }
 
 }  // namespace
@@ -168,11 +182,15 @@ Command duty_command() {
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->type_name("D");
-            app.add_option("--import", options->log, "recorded game: CSV (t_s, team, robot_id, x_m, y_m, yaw_rad) or SSL_LOG_FILE (.log, .log.gz)")->type_name("LOG");
+            app.add_option("--import", options->log,
+                           "recorded game: CSV (t_s, team, robot_id, x_m, y_m, yaw_rad) or SSL_LOG_FILE (.log, .log.gz)")
+                ->type_name("LOG");
             app.add_option("--player", options->player, "of the recorded game, \"yellow 3\"; the busiest one unless given")->type_name("P");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-            app.add_option("--out", options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate")->type_name("FILE.csv");
-            add_quantity(app, "--every", options->every_s, {"every", "s", Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
+            app.add_option("--out", options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate")
+                ->type_name("FILE.csv");
+            add_quantity(app, "--every", options->every_s,
+                         {"every", "s", Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
             app.add_option("--seed", options->seed, "same seed, same game")->capture_default_str();
             app.add_flag("--bang-bang", options->bang_bang, "plan with jumping acceleration, for comparison");
             session.add_data_option(app);

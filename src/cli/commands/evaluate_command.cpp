@@ -3,10 +3,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/command.h"
+#include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
 #include "duty/duty.h"
 #include "motor/motor.h"
@@ -28,8 +31,12 @@ struct Options {
 std::vector<Motor> read_motors(const std::vector<std::string>& names, const DataFolders& folders) {
   const bool all = names.size() == 1 && names.front() == "all";
   std::vector<Motor> motors;
+  std::set<std::filesystem::path> taken;
   for (const std::string& name : all ? ids_in(folders.motors) : names) {
-    motors.push_back(read_motor(all ? folders.motors / (name + ".toml") : file_of(folders.motors, "motor", name)));
+    const std::filesystem::path file = all ? folders.motors / (name + ".toml") : file_of(folders.motors, "motor", name);
+    if (taken.insert(file).second) {
+      motors.push_back(read_motor(file));
+    }
   }
   if (motors.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", folders.motors.string()));
@@ -38,7 +45,8 @@ std::vector<Motor> read_motors(const std::vector<std::string>& names, const Data
 }
 
 std::string peak_text(const Spread95& peak) {
-  return std::isfinite(peak.p05) ? fmt::format("{:4.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95) : fmt::format("{:4.0f}", peak.nominal);
+  return std::isfinite(peak.p05) ? fmt::format("{:4.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
+                                 : fmt::format("{:4.0f}", peak.nominal);
 }
 
 std::string time_text(const std::optional<double>& time_s) {
@@ -49,11 +57,13 @@ std::string time_text(const std::optional<double>& time_s) {
 }
 
 std::string row(std::size_t rank, const MotorEvaluation& each) {
-  const std::string probability = std::isfinite(each.probability_over_limit) ? fmt::format("{:.0f} %", 100.0 * each.probability_over_limit) : "–";
-  return fmt::format("{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank, each.motor_id, to_string(each.verdict),
-                     each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor), peak_text(each.winding_peak_C),
-                     each.winding_limit_C, probability, time_text(each.time_to_limit_s), each.margin_K,
-                     each.margin_A ? fmt::format("{:+.1f}", *each.margin_A) : "–", each.current_rms_A, each.data_quality);
+  const std::string probability =
+      std::isfinite(each.probability_over_limit) ? fmt::format("{:.0f} %", 100.0 * each.probability_over_limit) : "–";
+  return fmt::format("{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank, each.motor_id,
+                     to_string(each.verdict), each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor),
+                     peak_text(each.winding_peak_C), each.winding_limit_C, probability, time_text(each.time_to_limit_s), each.margin_K,
+                     each.margin_A && each.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *each.margin_A) : "–",
+                     each.current_rms_A, each.data_quality);
 }
 
 std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& robot) {
@@ -61,29 +71,39 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
   bool estimated = false;
   for (const MotorEvaluation& each : results) {
     estimated = estimated || each.data_quality == "estimated";
-    if (each.verdict == Verdict::infeasible && each.least_torque_share < 0.995) {
-      text += fmt::format("{}: only {:.0f} % of the demanded torque current at the worst moment ({} limit: {:.1f} V available)\n", each.motor_id,
-                          100.0 * each.least_torque_share, to_string(each.limiting_factor), robot.available_V());
+    if (each.verdict == Verdict::infeasible && each.limiting_factor == LimitingFactor::voltage) {
+      text += fmt::format(
+          "{}: needs up to {:.1f} V when hot, {:.1f} V are available: {:.0f} % of the demanded current at the worst moment, too little for "
+          "{:.0f} % of the time\n",
+          each.motor_id, each.highest_voltage_V, robot.available_V(), 100.0 * each.least_torque_share, 100.0 * each.short_time_share);
     } else if (each.verdict == Verdict::infeasible) {
-      text += fmt::format("{}: needs {:.1f} V when hot, {:.1f} V are available\n", each.motor_id, each.highest_voltage_V, robot.available_V());
+      text += fmt::format(
+          "{}: the driver's {:.1f} A are {:.0f} % of the demanded current at the worst moment, too little for {:.0f} % of the time\n",
+          each.motor_id, robot.current_limit_A, 100.0 * each.least_torque_share, 100.0 * each.short_time_share);
+    } else if (each.short_probability > kMarginalProbability) {
+      text += fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})\n", each.motor_id,
+                          100.0 * each.short_probability, to_string(each.short_limit));
     }
     if (each.destroyed) {
       text += fmt::format("{}: thermal runaway, the calculation ended at 1000 °C\n", each.motor_id);
     }
   }
   if (estimated) {
-    text += "data \"estimated\": thermal figures that nobody publishes are estimates from similar motors; the verdict rests on them\n"
-            "(`heatsoak describe MOTOR` shows how each was found). Calibrate on a bench before you rely on it.\n";
+    text +=
+        "data \"estimated\": thermal figures that nobody publishes are estimates from similar motors; the verdict rests on them\n"
+        "(`heatsoak describe MOTOR` shows how each was found). Calibrate on a bench before you rely on it.\n";
   }
   return text;
 }
 
-std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, double duration_s, const Options& options) {
-  std::string text = fmt::format("{} on {}: {:.0f} min, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duration_s / 60.0,
-                                 duty.ambient_C.value, options.evaluate.samples > 0
-                                                          ? fmt::format("{} samples of all declared tolerances, seed {}", options.evaluate.samples, options.evaluate.seed)
-                                                          : "nominal figures only",
-                                 duty.origin);
+std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, double duration_s,
+                   const Options& options) {
+  std::string text =
+      fmt::format("{} on {}: {:.0f} min, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duration_s / 60.0, duty.ambient_C.value,
+                  options.evaluate.samples > 0 ? fmt::format("{} sample{} of all declared tolerances, seed {}", options.evaluate.samples,
+                                                             options.evaluate.samples == 1 ? "" : "s", options.evaluate.seed)
+                                               : "nominal figures only",
+                  duty.origin);
   text += fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict", "limited by",
                       "winding peak °C", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -93,11 +113,14 @@ std::string report(const std::vector<MotorEvaluation>& results, const Robot& rob
 }
 
 nlohmann::ordered_json json(const Spread95& peak) {
-  return {{"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
+  return {
+      {"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
 }
 
 nlohmann::ordered_json json(const MotorEvaluation& each) {
-  const auto optional = [](const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : nlohmann::ordered_json(); };
+  const auto optional = [](const std::optional<double>& value, int decimals) {
+    return value ? rounded(*value, decimals) : nlohmann::ordered_json();
+  };
   return {{"id", each.motor_id},
           {"winding_limit_C", rounded(each.winding_limit_C, 2)},
           {"winding_peak_C", json(each.winding_peak_C)},
@@ -114,6 +137,7 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"stator_limit_C", optional(each.stator_limit_C, 2)},
           {"delivered_share", rounded(each.least_torque_share, 4)},
           {"short_time_share", rounded(each.short_time_share, 4)},
+          {"short_probability", rounded(each.short_probability, 4)},
           {"voltage_needed_V", rounded(each.highest_voltage_V, 3)},
           {"runaway", each.destroyed}};
 }
@@ -126,7 +150,7 @@ std::string whole_number(const std::string& text) {
   return good ? "" : fmt::format("'{}' is not a whole number from 0 to 18446744073709551615", text);
 }
 
-ExitCode run(Options& options, const Session& session) {
+ExitCode run(Options& options, Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
@@ -135,14 +159,18 @@ ExitCode run(Options& options, const Session& session) {
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
   const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
   if (!options.plot.empty()) {
-    write_svg(verdict_chart(results, robot, duty), options.plot);
+    session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
   session.say(report(results, robot, duty, wheels.front().duration_s(), options));
   if (!options.plot.empty()) {
     session.say(fmt::format("picture: {}\n", options.plot));
   }
-  nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"}, {"robot", robot.id},        {"duty", duty.id},
-                                {"duty_origin", duty.origin},      {"seed", options.evaluate.seed}, {"samples", options.evaluate.samples}};
+  nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"},
+                                {"robot", robot.id},
+                                {"duty", duty.id},
+                                {"duty_origin", duty.origin},
+                                {"seed", options.evaluate.seed},
+                                {"samples", options.evaluate.samples}};
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
   for (const MotorEvaluation& each : results) {
@@ -156,26 +184,34 @@ ExitCode run(Options& options, const Session& session) {
 }  // namespace
 
 Command evaluate_command() {
-  return {.name = {},
-          .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
-          .example = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors "
-                     "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
-            const auto options = std::make_shared<Options>();
-            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-            app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
-            app.add_option("--motors", options->motors, "ids or files separated by commas, or all")->delimiter(',')->type_name("M,M")->default_str("all");
-            app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
-                ->check(whole_number)
-                ->check(CLI::Range(0, 1'000'000))
-                ->capture_default_str();
-            app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")->check(whole_number)->capture_default_str();
-            app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")->check(whole_number)->check(CLI::Range(0, 1024))->capture_default_str();
-            app.add_option("--plot", options->plot, "picture of stator and winding temperature over time")->type_name("FILE.svg");
-            session.add_data_option(app);
-            session.add_json_option(app);
-            return [options, &session] { return run(*options, session); };
-          }};
+  return {
+      .name = {},
+      .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
+      .example =
+          "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors "
+          "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
+      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+        const auto options = std::make_shared<Options>();
+        app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+        app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
+        app.add_option("--motors", options->motors, "ids or files separated by commas, or all")
+            ->delimiter(',')
+            ->type_name("M,M")
+            ->default_str("all");
+        app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
+            ->check(whole_number)
+            ->check(CLI::Range(0, 1'000'000))
+            ->capture_default_str();
+        app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")->check(whole_number)->capture_default_str();
+        app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")
+            ->check(whole_number)
+            ->check(CLI::Range(0, 1024))
+            ->capture_default_str();
+        add_picture(app, options->plot, "picture of stator and winding temperature over time");
+        session.add_data_option(app);
+        session.add_json_option(app);
+        return [options, &session] { return run(*options, session); };
+      }};
 }
 
 }  // namespace heatsoak::commands

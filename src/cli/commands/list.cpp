@@ -49,7 +49,7 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
   return result;
 }
 
-ExitCode run(const std::string& what, const Session& session) {
+ExitCode run(const std::string& what, Session& session) {
   const std::vector<Row> all = rows(what, session.folders());
   std::string text;
   nlohmann::ordered_json items = nlohmann::ordered_json::array();

@@ -5,10 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
 #include "cli/command.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
-#include "base/files.h"
 #include "report/chart.h"
 #include "select/trace.h"
 
@@ -42,7 +42,7 @@ nlohmann::ordered_json balance_json(const Trace& trace) {
   return rows;
 }
 
-ExitCode run(const Options& options, const Session& session) {
+ExitCode run(const Options& options, Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
@@ -51,7 +51,8 @@ ExitCode run(const Options& options, const Session& session) {
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
   const double duration_s = wheels.front().duration_s();
   if (duration_s / options.every_s > kMostRows) {
-    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time", options.every_s, kMostRows, duration_s));
+    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time",
+                                                   options.every_s, kMostRows, duration_s));
   }
   const std::vector<Motor> one{motor};
   EvaluateOptions nominal;
@@ -61,14 +62,16 @@ ExitCode run(const Options& options, const Session& session) {
   const MotorEvaluation& result = results.front();
   const Trace trace = run_trace(robot, duty, *std::ranges::find(wheels, result.wheel, &WheelDemand::wheel), motor, options.every_s);
   if (!options.out.empty()) {
-    write_file(options.out, to_csv(trace));
+    session.write(options.out, to_csv(trace));
   }
   if (!options.plot.empty()) {
-    write_svg(verdict_chart(results, robot, duty), options.plot);
+    session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
-  session.say(fmt::format("{} on {}, {} ({:.0f} min, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms current {:.2f} A: {}\n{}",
-                          motor.id, robot.id, duty.id, duration_s / 60.0, result.wheel, result.data_quality, duty.origin, result.winding_peak_C.nominal,
-                          result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A, to_string(result.verdict), balance_text(trace)));
+  session.say(fmt::format(
+      "{} on {}, {} ({:.0f} min, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms "
+      "current {:.2f} A: {}\n{}",
+      motor.id, robot.id, duty.id, duration_s / 60.0, result.wheel, result.data_quality, duty.origin, result.winding_peak_C.nominal,
+      result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A, to_string(result.verdict), balance_text(trace)));
   for (const std::string& file : {options.out, options.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }
@@ -94,16 +97,20 @@ ExitCode run(const Options& options, const Session& session) {
 Command simulate() {
   return {.name = {},
           .summary = "One motor through one duty: every signal over time as CSV, and which effect heats which node",
-          .example = "heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty paper_intermittent --out trace.csv --plot trace.svg",
+          .example =
+              "heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty paper_intermittent --out trace.csv "
+              "--plot trace.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
-            app.add_option("--out", options->out, "every signal; names end in units, a row's inputs hold until the next row")->type_name("FILE.csv");
-            app.add_option("--plot", options->plot, "picture of stator and winding temperature")->type_name("FILE.svg");
+            app.add_option("--out", options->out, "every signal; names end in units, a row's inputs hold until the next row")
+                ->type_name("FILE.csv");
+            add_picture(app, options->plot, "picture of stator and winding temperature");
             app.add_option("--seed", options->seed, "of a generated match; same seed, same bytes")->capture_default_str();
-            add_quantity(app, "--every", options->every_s, {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
+            add_quantity(app, "--every", options->every_s,
+                         {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
             session.add_data_option(app);
             session.add_json_option(app);
             return [options, &session] { return run(*options, session); };

@@ -17,17 +17,18 @@ struct Options {
   OnOffCurrent current;
 };
 
-ExitCode run(const Options& options, const Session& session) {
+ExitCode run(const Options& options, Session& session) {
   const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.motor));
   const MotorValues& values = motor.nominal;
-  const OnOffSteadyState state = on_off_steady_state({.terminal_resistance_25C_ohm = values.terminal_resistance_ohm,
-                                                      .temperature_coefficient_per_K = values.temperature_coefficient_per_K,
-                                                      .thermal_resistance_winding_stator_K_per_W = values.thermal_resistance_winding_stator_K_per_W,
-                                                      .thermal_resistance_stator_ambient_K_per_W = values.thermal_resistance_stator_ambient_K_per_W},
-                                                     options.current);
+  const OnOffSteadyState state =
+      on_off_steady_state({.terminal_resistance_25C_ohm = values.terminal_resistance_ohm,
+                           .temperature_coefficient_per_K = values.temperature_coefficient_per_K,
+                           .thermal_resistance_winding_stator_K_per_W = values.thermal_resistance_winding_stator_K_per_W,
+                           .thermal_resistance_stator_ambient_K_per_W = values.thermal_resistance_stator_ambient_K_per_W},
+                          options.current);
   const bool over = state.runaway || state.winding_C > values.winding_limit_C;
-  std::string text = fmt::format("{} ({} thermal data), rms current {:.2f} A, ambient {:.0f} °C\n", motor.id, data_quality(motor), state.current_rms_A,
-                                 options.current.ambient_C);
+  std::string text = fmt::format("{} ({} thermal data), rms current {:.2f} A, ambient {:.0f} °C\n", motor.id, data_quality(motor),
+                                 state.current_rms_A, options.current.ambient_C);
   if (state.runaway) {
     text += "thermal runaway: there is no steady state, the winding's loss grows faster than heat can leave\n";
   } else {
@@ -56,10 +57,15 @@ Command steady() {
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
-            add_quantity(app, "--current-on", options->current.current_on_A, {"current-on", "A", Range::non_negative(), "current while on"})->required();
-            add_quantity(app, "--time-on", options->current.time_on_s, {"time-on", "s", Range::positive(), "time of a cycle with current"})->required();
-            add_quantity(app, "--time-off", options->current.time_off_s, {"time-off", "s", Range::non_negative(), "time of a cycle without current"})->required();
-            add_quantity(app, "--ambient", options->current.ambient_C, {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
+            add_quantity(app, "--current-on", options->current.current_on_A, {"current-on", "A", Range::non_negative(), "current while on"})
+                ->required();
+            add_quantity(app, "--time-on", options->current.time_on_s, {"time-on", "s", Range::positive(), "time of a cycle with current"})
+                ->required();
+            add_quantity(app, "--time-off", options->current.time_off_s,
+                         {"time-off", "s", Range::non_negative(), "time of a cycle without current"})
+                ->required();
+            add_quantity(app, "--ambient", options->current.ambient_C,
+                         {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
             session.add_data_option(app);
             session.add_json_option(app);
             return [options, &session] { return run(*options, session); };

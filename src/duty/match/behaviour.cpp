@@ -43,7 +43,7 @@ constexpr double kLogSpread = 0.7;
 Behaviour::Behaviour(const MatchInputs& inputs, const MatchValues& values, Random& random)
     : role_(inputs.role), values_(values), field_(field_of(inputs.division)), random_(random) {}
 
-double Behaviour::exponential(double mean) { return -mean * std::log(random_.uniform()); }
+double Behaviour::exponential(double value) { return -value * std::log(random_.uniform()); }
 
 FieldPose Behaviour::near(const FieldPose& now, double distance_m) {
   const RoleShape shape = shape_of(role_);
@@ -86,7 +86,11 @@ MotionCommand Behaviour::play(double left_s, const FieldPose& now) {
     normal += random_.uniform();
   }
   const FieldPose target = near(now, values_.distance_median_m * shape.distance_factor * std::exp(kLogSpread * normal));
-  return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s)), .stand = false, .x_m = target.x_m, .y_m = target.y_m, .yaw_rad = target.yaw_rad};
+  return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s)),
+          .stand = false,
+          .x_m = target.x_m,
+          .y_m = target.y_m,
+          .yaw_rad = target.yaw_rad};
 }
 
 MotionCommand Behaviour::next(Phase phase, double into_phase_s, double left_s, const FieldPose& now) {

@@ -8,8 +8,8 @@ namespace heatsoak {
 /// Hold for `duration_s`: go to the target, come to a stand where braking ends, or push against another robot there.
 struct MotionCommand {
   double duration_s = 0.0;
-  bool stand = false;     ///< brake and stay: the target plays no part
-  double x_m = 0.0;  ///< field frame: centre of the field, x towards the opponents' goal
+  bool stand = false;  ///< brake and stay: the target plays no part
+  double x_m = 0.0;    ///< field frame: centre of the field, x towards the opponents' goal
   double y_m = 0.0;
   double yaw_rad = 0.0;
   double speed_limit_m_per_s = std::numeric_limits<double>::infinity();
@@ -35,7 +35,7 @@ class Behaviour {
   MotionCommand play(double left_s, const FieldPose& now);
   MotionCommand walk(double left_s, const FieldPose& now, double distance_m, double speed_limit_m_per_s);
   FieldPose near(const FieldPose& now, double distance_m);
-  double exponential(double mean);
+  double exponential(double value);
 
   Role role_;
   MatchValues values_;

@@ -12,8 +12,8 @@
 namespace heatsoak {
 
 enum class Phase { kick_off_preparation, running, stop, free_kick, ball_placement, halt, timeout, half_time };
-inline constexpr std::array<std::string_view, 8> kPhaseNames{"kick_off_preparation", "running",        "stop", "free_kick",
-                                                             "ball_placement",       "halt",           "timeout", "half_time"};
+inline constexpr std::array<std::string_view, 8> kPhaseNames{"kick_off_preparation", "running", "stop",    "free_kick",
+                                                             "ball_placement",       "halt",    "timeout", "half_time"};
 
 struct MatchPhase {
   Phase phase = Phase::halt;

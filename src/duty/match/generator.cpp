@@ -27,10 +27,12 @@ double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a;
 class IdealTracking final : public Follower {
  public:
   IdealTracking(const Robot& robot, double aggressiveness, Planner planner) : planner_(planner) {
-    plane_ = {robot.speed_limit_m_per_s * aggressiveness, std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2) * aggressiveness,
+    plane_ = {robot.speed_limit_m_per_s * aggressiveness,
+              std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2) * aggressiveness,
               robot.jerk_limit_m_per_s3 * aggressiveness};
     // No team publishes a jerk of yaw: a tenth of a second to full angular acceleration.
-    yaw_ = AxisLimits<double>::symmetric(robot.yaw_rate_limit_rad_per_s * aggressiveness, robot.yaw_acceleration_limit_rad_per_s2 * aggressiveness,
+    yaw_ = AxisLimits<double>::symmetric(robot.yaw_rate_limit_rad_per_s * aggressiveness,
+                                         robot.yaw_acceleration_limit_rad_per_s2 * aggressiveness,
                                          10.0 * robot.yaw_acceleration_limit_rad_per_s2 * aggressiveness);
     for (const double limit : {plane_.speed_max, plane_.acceleration_max, plane_.jerk_max, yaw_.velocity_max, yaw_.jerk_max}) {
       if (!(limit > 0.0)) {
@@ -43,9 +45,12 @@ class IdealTracking final : public Follower {
     const AxisState<double> target[3] = {{command.x_m, 0.0, 0.0}, {command.y_m, 0.0, 0.0}, {command.yaw_rad, 0.0, 0.0}};
     PlaneLimits<double> plane = plane_;
     plane.speed_max = least(plane.speed_max, std::max(0.05, command.speed_limit_m_per_s));
-    const PlanResult result = command.stand ? brake() : planner_ == Planner::jerk_limited ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_) : bang_bang(target, plane);
+    const PlanResult result = command.stand                       ? brake()
+                              : planner_ == Planner::jerk_limited ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_)
+                                                                  : bang_bang(target, plane);
     if (result != PlanResult::ok) {
-      throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: planner code {}", command.x_m, command.y_m, static_cast<int>(result)));
+      throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: planner code {}", command.x_m, command.y_m,
+                                                           static_cast<int>(result)));
     }
     time_s_ = 0.0;
   }
@@ -59,7 +64,9 @@ class IdealTracking final : public Follower {
 
   [[nodiscard]] Pose pose() const override { return {state_[0].position, state_[1].position, state_[2].position}; }
   [[nodiscard]] BodyVelocity velocity_global() const override { return {state_[0].velocity, state_[1].velocity, state_[2].velocity}; }
-  [[nodiscard]] BodyAcceleration acceleration_global() const override { return {state_[0].acceleration, state_[1].acceleration, state_[2].acceleration}; }
+  [[nodiscard]] BodyAcceleration acceleration_global() const override {
+    return {state_[0].acceleration, state_[1].acceleration, state_[2].acceleration};
+  }
   [[nodiscard]] bool at_rest() const override {
     return std::ranges::all_of(trajectories_, [&](const Trajectory<double>& each) { return time_s_ >= each.duration_s; });
   }
@@ -100,7 +107,8 @@ class IdealTracking final : public Follower {
 
 class Match {
  public:
-  Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, double bin_s, const MatchObserver& observer)
+  Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, double bin_s,
+        const MatchObserver& observer)
       : random_(seed, 0),
         game_(generate_game(inputs.division, inputs.overtime, values, random_)),
         behaviour_(inputs, values, random_),

@@ -49,9 +49,9 @@ struct MatchMoment {
 struct PhaseLoad {
   double time_s = 0.0;
   double duel_s = 0.0;
-  PerWheel torque_squared_Nm2_s{};       ///< ∫M²dt per wheel: copper heat is this times R/K_t²
+  PerWheel torque_squared_Nm2_s{};         ///< ∫M²dt per wheel: copper heat is this times R/K_t²
   double duel_torque_squared_Nm2_s = 0.0;  ///< part of it, all wheels, that comes from duels
-  double slip_s = 0.0;                   ///< time in which the ground cannot pass on what is demanded
+  double slip_s = 0.0;                     ///< time in which the ground cannot pass on what is demanded
 };
 
 struct MatchLoad {
@@ -64,8 +64,8 @@ struct MatchLoad {
 
 using MatchObserver = std::function<void(const MatchMoment&)>;
 
-/// Runs one game at 1 kHz into bins of `bin_s`, short against a winding's time constant. The rotor's inertia is left out, so that the demand is the same for every motor.
-/// Throws Failure (bad_input) where the robot's file lacks what motion needs.
+/// Runs one game at 1 kHz into bins of `bin_s`, short against a winding's time constant. The rotor's inertia is left out, so that the
+/// demand is the same for every motor. Throws Failure (bad_input) where the robot's file lacks what motion needs.
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
                      double bin_s = 0.25, const MatchObserver& observer = {});
 

@@ -8,6 +8,7 @@ namespace {
 constexpr Range kSeconds = Range::between(0.1, 600.0);
 constexpr Range kShare = Range::between(0.0, 1.0);
 
+// clang-format off
 constexpr std::array kSpecs = {
     MatchInputSpec{{"running_mean", "s", kSeconds, "mean stretch of play between interruptions"}, &MatchValues::running_mean_s},
     MatchInputSpec{{"stop_mean", "s", kSeconds, "mean length of a stop"}, &MatchValues::stop_mean_s},
@@ -23,6 +24,7 @@ constexpr std::array kSpecs = {
     MatchInputSpec{{"duel_mean", "s", kSeconds, "mean length of a duel"}, &MatchValues::duel_mean_s},
     MatchInputSpec{{"duel_push_share", "", kShare, "part of the transmissible force that pushes in a duel"}, &MatchValues::duel_push_share},
 };
+// clang-format on
 
 }  // namespace
 

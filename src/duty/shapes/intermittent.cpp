@@ -20,7 +20,8 @@ Figure as_factor(const Figure& figure) {
 
 class Intermittent final : public DutyShape {
  public:
-  Intermittent(const LoadBin& on, double off_s, int repeats, const LoadPoint& point) : on_(on), off_s_(off_s), repeats_(repeats), point_(point) {}
+  Intermittent(const LoadBin& on, double off_s, int repeats, const LoadPoint& point)
+      : on_(on), off_s_(off_s), repeats_(repeats), point_(point) {}
 
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& /*robot*/, std::uint64_t /*seed*/) const override {
     WheelDemand wheel{.wheel = "any wheel", .bins = {}, .points = {point_}};
@@ -46,7 +47,8 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   const ParameterSpec current{"current_on", "A", Range::positive(), "through the motor, while it is on"};
   const std::optional<Figure> torque_on = table.figure(torque, Need::optional);
   const std::optional<Figure> current_on = table.figure(current, Need::optional);
-  const std::optional<double> speed_on = table.quantity({"speed_on", "rad/s", Range::non_negative(), "of the wheel, while it is on"}, Need::required);
+  const std::optional<double> speed_on =
+      table.quantity({"speed_on", "rad/s", Range::non_negative(), "of the wheel, while it is on"}, Need::required);
   const std::optional<double> on_s = table.quantity({"time_on", "s", Range::positive(), "of one cycle"}, Need::required);
   const std::optional<double> off_s = table.quantity({"time_off", "s", Range::non_negative(), "of one cycle"}, Need::required);
   const std::optional<double> repeats = table.quantity({"repeats", "", Range::between(1.0, 1e6), "how many cycles"}, Need::required);

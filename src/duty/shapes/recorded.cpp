@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kMostRows = 2'000'000;  ///< a day at 20 rows a second; more would fill the memory
 
 constexpr int kMostWheels = 4;
+constexpr double kLongest_s = 1e6;
+constexpr double kLargest = 1e5;  ///< N m, A or rad/s
 
 /// "torque_Nm, speed_rad_per_s" of one wheel, or "torque_1_Nm, speed_1_rad_per_s, torque_2_Nm, …" of several.
 std::string column(DutyKind kind, int wheel, bool demand) {
@@ -53,6 +55,10 @@ class Recording {
  private:
   /// Whether the header names a column.
   [[nodiscard]] bool names(const std::string& wanted) const {
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(file_, unknown)) {
+      return false;  // a pipe would keep us waiting; read_csv() says what is wrong with it
+    }
     std::ifstream in(file_);
     std::string header;
     header.resize(1 << 12);
@@ -68,7 +74,21 @@ class Recording {
       throw bad_input({file_.string(), row.line, 1}, "", fmt::format("has more than {} rows; expected something like a match", kMostRows));
     }
     if (now_s <= before_s_ && diagnostics_.list().size() < 20) {
-      diagnostics_.add({file_.string(), row.line, 1}, "time_s", fmt::format("{} s does not come after {} s; time must increase", now_s, before_s_));
+      diagnostics_.add({file_.string(), row.line, 1}, "time_s",
+                       fmt::format("{} s does not come after {} s; time must increase", now_s, before_s_));
+    }
+    if (rows_ == 1) {
+      first_s_ = now_s;
+    }
+    if (now_s - first_s_ > kLongest_s && diagnostics_.list().size() < 20) {
+      diagnostics_.add({file_.string(), row.line, 1}, "time_s",
+                       fmt::format("{} s is more than {:.0f} s after the first row; expected something like a match", now_s, kLongest_s));
+    }
+    for (std::size_t i = 1; i < row.values.size() && diagnostics_.list().size() < 20; ++i) {
+      if (std::abs(row.values[i]) > kLargest) {
+        diagnostics_.add({file_.string(), row.line, 1}, "",
+                         fmt::format("{} is beyond any motor; expected at most {:.0f}", row.values[i], kLargest));
+      }
     }
     for (std::size_t i = 1; i + 1 < row.values.size(); i += 2) {
       if (!std::isfinite(row.values[i])) {
@@ -94,6 +114,7 @@ class Recording {
   Diagnostics diagnostics_;
   std::size_t rows_ = 0;
   double before_s_ = std::nan("");
+  double first_s_ = 0.0;
 };
 
 class Recorded final : public DutyShape {
@@ -127,7 +148,8 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
   const std::optional<std::string> file = table.text("file", Need::required);
   constexpr std::array<std::string_view, 2> kQuantities{"torque", "current"};
   const std::optional<std::string> quantity = table.choice("quantity", kQuantities, Need::required);
-  const double repeats = table.quantity({"repeats", "", Range::between(1.0, 1e4), "how often the recording is run"}, Need::optional).value_or(1.0);
+  const double repeats =
+      table.quantity({"repeats", "", Range::between(1.0, 1e4), "how often the recording is run"}, Need::optional).value_or(1.0);
   if (repeats != std::floor(repeats)) {
     table.problem("repeats", "is not a whole number");
   }
@@ -159,7 +181,9 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
 
 ShapeType recorded() {
   return {.name = {},
-          .summary = "a CSV file with time_s, speed_rad_per_s and torque_Nm or current_A (or torque_1_Nm, speed_1_rad_per_s, … of several wheels); a row holds until the next",
+          .summary =
+              "a CSV file with time_s, speed_rad_per_s and torque_Nm or current_A (or torque_1_Nm, speed_1_rad_per_s, … of several "
+              "wheels); a row holds until the next",
           .example = R"(shape = "recorded"
 [recorded]
 file = "my_game.csv"

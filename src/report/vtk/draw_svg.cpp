@@ -71,8 +71,7 @@ void add_column(vtkTable* table, const char* name, const std::vector<double>& va
   table->AddColumn(column);
 }
 
-void add_line(vtkChartXY* chart, const std::vector<CurvePoint>& points, const Color& color, float width_px,
-              bool is_dashed) {
+void add_line(vtkChartXY* chart, const std::vector<CurvePoint>& points, const Color& color, float width_px, bool is_dashed) {
   std::vector<double> x_px, y_px;
   for (const CurvePoint& point : points) {
     x_px.push_back(point.x_px);
@@ -122,8 +121,7 @@ void set_axis(vtkAxis* axis, const AxisScale& scale, const std::vector<AxisTick>
   axis->SetCustomTickPositions(positions, labels);
   axis->SetTitle("");
   axis->GetLabelProperties()->SetFontSize(tick_style.size_px);
-  axis->GetLabelProperties()->SetColor(tick_style.color[0] / 255.0, tick_style.color[1] / 255.0,
-                                       tick_style.color[2] / 255.0);
+  axis->GetLabelProperties()->SetColor(tick_style.color[0] / 255.0, tick_style.color[1] / 255.0, tick_style.color[2] / 255.0);
   axis->GetPen()->SetColor(0x77, 0x77, 0x77);
   axis->GetGridPen()->SetColor(0xE4, 0xE4, 0xE4);
 }
@@ -134,8 +132,7 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
   const AxisScale& up = place.vertical;
   chart->SetLayoutStrategy(vtkChart::AXES_TO_RECT);
   chart->SetSize(vtkRectf(static_cast<float>(across.low_px), static_cast<float>(up.low_px),
-                          static_cast<float>(across.high_px - across.low_px),
-                          static_cast<float>(up.high_px - up.low_px)));
+                          static_cast<float>(across.high_px - across.low_px), static_cast<float>(up.high_px - up.low_px)));
   chart->SetBackgroundBrush(nullptr);
   chart->SetRenderEmpty(true);
   chart->SetAutoAxes(false);
@@ -166,7 +163,9 @@ class Lettering : public vtkContextItem {
   static Lettering* New();
   vtkTypeMacro(Lettering, vtkContextItem)
 
-  void set_page(const Page* page) { page_ = page; }
+      void set_page(const Page* page) {
+    page_ = page;
+  }
 
   bool Paint(vtkContext2D* painter) override {
     for (const LegendSwatch& swatch : page_->swatches) {
@@ -258,13 +257,19 @@ std::string draw(const Chart& chart) {
 
   const std::string width = std::to_string(page.width_px);
   const std::string height = std::to_string(page.height_px);
-  const auto root = element("svg", {{"xmlns", "http://www.w3.org/2000/svg"}, {"width", width}, {"height", height},
-                                    {"viewBox", "0 0 " + width + " " + height}, {"role", "img"},
+  const auto root = element("svg", {{"xmlns", "http://www.w3.org/2000/svg"},
+                                    {"width", width},
+                                    {"height", height},
+                                    {"viewBox", "0 0 " + width + " " + height},
+                                    {"role", "img"},
                                     {"aria-label", printable(chart.title)}});
   const auto paper = element("rect", {{"width", width}, {"height", height}, {"fill", "#ffffff"}});
   // Half a pixel: lines on whole pixels then fill one row of them instead of greying two.
-  const auto group = element("g", {{"transform", "translate(0.5,0.5)"}, {"fill", "none"}, {"stroke-linejoin", "round"},
-                                   {"font-family", "sans-serif"}, {"xml:space", "preserve"}});
+  const auto group = element("g", {{"transform", "translate(0.5,0.5)"},
+                                   {"fill", "none"},
+                                   {"stroke-linejoin", "round"},
+                                   {"font-family", "sans-serif"},
+                                   {"xml:space", "preserve"}});
   const auto definitions = element("defs", {});
   paint(scene, page, group, definitions);
   root->AddNestedElement(paper);
@@ -278,8 +283,7 @@ std::string draw(const Chart& chart) {
 }  // namespace
 }  // namespace heatsoak
 
-extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_svg(const heatsoak::Chart* chart,
-                                                                         std::string* text) {
+extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_svg(const heatsoak::Chart* chart, std::string* text) {
   try {
     *text = heatsoak::draw(*chart);
     return true;

@@ -15,8 +15,7 @@ constexpr TextStyle title_style{.size_px = 20, .is_bold = true, .color = {0x11, 
 constexpr TextStyle subtitle_style{.size_px = 13, .is_bold = false, .color = {0x6B, 0x6B, 0x6B}};
 constexpr TextStyle panel_title_style{.size_px = 14, .is_bold = true};
 constexpr TextStyle label_style{.size_px = 13};
-constexpr TextStyle limit_style{
-    .size_px = 12, .is_bold = false, .color = {limit_color[0], limit_color[1], limit_color[2]}};
+constexpr TextStyle limit_style{.size_px = 12, .is_bold = false, .color = {limit_color[0], limit_color[1], limit_color[2]}};
 
 constexpr double margin_px = 24.0;
 constexpr double label_line_px = 18.0;
@@ -129,8 +128,7 @@ std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box
 }
 
 /// All unbroken pieces of all curves.
-std::vector<std::vector<CurvePoint>> curves_px(const ChartPanel& panel, const AxisScale& horizontal,
-                                               const AxisScale& vertical) {
+std::vector<std::vector<CurvePoint>> curves_px(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
   std::vector<std::vector<CurvePoint>> all;
   for (const ChartCurve& curve : panel.curves) {
     std::ranges::move(reduce(curve, horizontal, vertical), std::back_inserter(all));
@@ -221,8 +219,7 @@ class PageBuilder {
   void add_y_label(const ChartPanel& panel, double middle_px) {
     double x_px = y_label_x_px_;
     for (const std::string& line : y_label(panel)) {
-      add({.text = line, .x_px = x_px, .y_px = middle_px, .style = label_style, .anchor = Anchor::middle,
-           .is_upright = true});
+      add({.text = line, .x_px = x_px, .y_px = middle_px, .style = label_style, .anchor = Anchor::middle, .is_upright = true});
       x_px += label_line_px;
     }
   }
@@ -245,19 +242,16 @@ class PageBuilder {
       const double y_px = line_px - vertical.high_px < limit_style.size_px + 1.0 ? line_px + 14.0 : line_px - 5.0;
       const Box at_right{right_px_ - 6.0 - width_px, right_px_ - 6.0, y_px - limit_style.size_px, y_px + 3.0};
       // On a curve it is still readable, on another name it is not.
-      const Box box = free_place(at_right, left_px_, names, curves)
-                          .value_or(free_place(at_right, left_px_, names, {}).value_or(at_right));
+      const Box box = free_place(at_right, left_px_, names, curves).value_or(free_place(at_right, left_px_, names, {}).value_or(at_right));
       names.push_back(box);
-      add({.text = name, .x_px = box.right_px, .y_px = y_px, .style = limit_style, .anchor = Anchor::right,
-           .has_rim = true});
+      add({.text = name, .x_px = box.right_px, .y_px = y_px, .style = limit_style, .anchor = Anchor::right, .has_rim = true});
     }
   }
 
   void add_x_label() {
     for (const std::string& line : wrapped(printable(chart_.x_label), label_style, right_px_ - left_px_)) {
       y_px_ += label_line_px;
-      add({.text = line, .x_px = (left_px_ + right_px_) / 2.0, .y_px = y_px_ - 4.0, .style = label_style,
-           .anchor = Anchor::middle});
+      add({.text = line, .x_px = (left_px_ + right_px_) / 2.0, .y_px = y_px_ - 4.0, .style = label_style, .anchor = Anchor::middle});
     }
   }
 

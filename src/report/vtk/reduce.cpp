@@ -45,8 +45,7 @@ std::vector<PixelColumn> pixel_columns(const std::vector<double>& x, const AxisS
 
 }  // namespace
 
-std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal,
-                                            const AxisScale& vertical) {
+std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical) {
   const auto columns = pixel_columns(curve.x, horizontal, [&](std::size_t i) { return std::isfinite(curve.y[i]); });
   std::vector<std::vector<CurvePoint>> pieces;
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -74,11 +73,9 @@ std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisS
   return pieces;
 }
 
-std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal,
-                                           const AxisScale& vertical) {
-  const auto columns = pixel_columns(band.x, horizontal, [&](std::size_t i) {
-    return std::isfinite(band.low[i]) && std::isfinite(band.high[i]);
-  });
+std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal, const AxisScale& vertical) {
+  const auto columns =
+      pixel_columns(band.x, horizontal, [&](std::size_t i) { return std::isfinite(band.low[i]) && std::isfinite(band.high[i]); });
   std::vector<std::vector<BandPoint>> pieces;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const std::vector<std::size_t>& samples = columns[k].samples;

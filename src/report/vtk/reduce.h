@@ -20,9 +20,7 @@ struct BandPoint {
 };
 
 /// The unbroken pieces of a curve, with the minimum and maximum of each pixel column and both ends.
-std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal,
-                                            const AxisScale& vertical);
-std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal,
-                                           const AxisScale& vertical);
+std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical);
+std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal, const AxisScale& vertical);
 
 }  // namespace heatsoak

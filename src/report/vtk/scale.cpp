@@ -55,9 +55,7 @@ AxisRange AxisRange::with_headroom(double headroom) const {
   return {low - headroom * (high - low), high + headroom * (high - low)};
 }
 
-double AxisScale::to_px(double value) const {
-  return low_px + (value - range.low) / (range.high - range.low) * (high_px - low_px);
-}
+double AxisScale::to_px(double value) const { return low_px + (value - range.low) / (range.high - range.low) * (high_px - low_px); }
 
 std::vector<AxisTick> ticks(const AxisRange& range, double count) {
   const double step = round_step((range.high - range.low) / std::max(3.0, count));

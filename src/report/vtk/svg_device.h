@@ -13,8 +13,8 @@ class SvgDevice : public vtkSVGContextDevice2D {
   static SvgDevice* New();
   vtkTypeMacro(SvgDevice, vtkSVGContextDevice2D)
 
-  /// A text property's "bottom" is the base line; its "shadow" is drawn as a white rim.
-  void DrawString(float* point, const vtkStdString& text) override;
+      /// A text property's "bottom" is the base line; its "shadow" is drawn as a white rim.
+      void DrawString(float* point, const vtkStdString& text) override;
   using vtkSVGContextDevice2D::DrawString;
 
   void SetClipping(int*) override {}

@@ -62,8 +62,7 @@ double text_width_px(const std::string& text, const TextStyle& style) {
   property->SetBold(style.is_bold);
   vtkTextRenderer::Metrics metrics;
   constexpr int one_point_per_pixel_dpi = 72;
-  vtkTextRenderer::GetInstance()->GetMetrics(property, vtkStdString(text), metrics, one_point_per_pixel_dpi,
-                                             vtkTextRenderer::FreeType);
+  vtkTextRenderer::GetInstance()->GetMetrics(property, vtkStdString(text), metrics, one_point_per_pixel_dpi, vtkTextRenderer::FreeType);
   return widest_font * (metrics.BoundingBox[1] - metrics.BoundingBox[0] + 1);
 }
 

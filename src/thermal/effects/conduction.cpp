@@ -22,10 +22,11 @@ EffectType conduction() {
       .equation = "P_hot→cold = (T_hot − T_cold) / R_th",
       .reference = "Fourier's law; the R_th1 and R_th2 of maxon's data sheets",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"thermal_resistance", "K/W", Range::positive(), "between the two nodes"}},
+      .parameters = {{"thermal_resistance", "K/W", Range::between(1e-3, std::numeric_limits<double>::infinity()), "between the two nodes"}},
       .typical = "winding to stator 1 to 8 K/W, stator to ambient 1.5 to 18 K/W",
-      .look_alike = "Natural convection and radiation: over one narrow range of temperature they are a resistance too; "
-                    "a cool-down from 80 K to 5 K above ambient tells.",
+      .look_alike =
+          "Natural convection and radiation: over one narrow range of temperature they are a resistance too; "
+          "a cool-down from 80 K to 5 K above ambient tells.",
       // (80 °C − 30 °C) / 2.5 K/W = 20 W leave the hot node and reach the cold one
       .example = {.parameters = {2.5}, .at = {}, .temperature_C = {80.0, 30.0}, .expected_heat_W = {-20.0, 20.0}},
       .laws = laws<Conduction>(),

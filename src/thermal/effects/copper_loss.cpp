@@ -9,8 +9,8 @@ enum Parameter { terminal_resistance, temperature_coefficient };
 struct CopperLoss {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S resistance_ohm = x.parameter(terminal_resistance) *
-                             (1.0 + x.parameter(temperature_coefficient) * (x.temperature_C(winding) - 25.0));
+    const S resistance_ohm =
+        x.parameter(terminal_resistance) * (1.0 + x.parameter(temperature_coefficient) * (x.temperature_C(winding) - 25.0));
     heat.source(winding, x.at.current_rms_A * x.at.current_rms_A * resistance_ohm);
   }
 };
@@ -27,8 +27,9 @@ EffectType copper_loss() {
       .parameters = {{"terminal_resistance", "ohm", Range::positive(), "between two terminals at 25 °C"},
                      {"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the resistance, at 25 °C; copper 0.0039 1/K"}},
       .typical = "5 to 10 W at nominal current",
-      .look_alike = "A wrong resistance or current gain scales all heat and cannot be told from heat capacities and "
-                    "thermal resistances; a 4-wire resistance measurement tells.",
+      .look_alike =
+          "A wrong resistance or current gain scales all heat and cannot be told from heat capacities and "
+          "thermal resistances; a 4-wire resistance measurement tells.",
       // (3 A)² · 0.6 Ω · (1 + 0.004 /K · 100 K) = 9 · 0.6 · 1.4 = 7.56 W
       .example = {.parameters = {0.6, 0.004},
                   .at = {.current_rms_A = 3.0, .speed_mean_rad_per_s = 0.0, .speed_rms_rad_per_s = 0.0, .ambient_C = 25.0},
