@@ -30,6 +30,7 @@ struct Spread {
 struct Figure {
   double value = 0.0;  ///< in the unit that the declaration of its key names
   Origin origin = Origin::estimated;
+  std::string printed;     ///< the value as the file gives it, "36.9 mN m/A"
   std::string source;      ///< ids of the file's [sources], comma separated; may be empty for estimates
   std::string derivation;  ///< how a derived or estimated figure was found
   std::optional<Spread> spread;

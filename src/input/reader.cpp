@@ -192,6 +192,7 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
   }
   if (parsed) {
     figure.value = *parsed;
+    figure.printed = value->find("value")->text;
     inner.read_spread(spec, figure);
   } else {
     inner.asked_.insert({"tolerance", "range"});

@@ -36,9 +36,12 @@ Json figure_json(std::string_view key, std::string_view unit, const Figure& figu
 }
 
 std::string figure_text(std::string_view key, std::string_view unit, const Figure& figure) {
-  std::string text = fmt::format("  {:36} {:>22}  {:12}", key, with_unit(figure.value, unit), to_string(figure.origin));
-  if (figure.spread) {
-    text += fmt::format(" {} … {}", significant(figure.spread->low, 3), significant(figure.spread->high, 3));
+  std::string text = fmt::format("  {:36} {:>22}  {:12}", key, figure.printed, to_string(figure.origin));
+  if (figure.spread && unit != "degC") {
+    text += fmt::format(" {:+.0f} … {:+.0f} %", 100.0 * (figure.spread->low / figure.value - 1.0),
+                        100.0 * (figure.spread->high / figure.value - 1.0));
+  } else if (figure.spread) {
+    text += fmt::format(" {} … {} °C", significant(figure.spread->low, 3), significant(figure.spread->high, 3));
   }
   text += figure.source.empty() ? "\n" : fmt::format("  [{}]\n", figure.source);
   return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
