@@ -44,9 +44,9 @@ class Block {
     network_ = std::move(networks.front());
   }
 
-  /// Gives `visit(time_s, state_C)` the end of every bin.
+  /// Gives `visit(time_s, state_C)` the end of every bin, and moments between no further apart than `longest_visit_s`.
   template <class Visit>
-  std::vector<Lanes> peaks(const Visit& visit) const {
+  std::vector<Lanes> peaks(double longest_visit_s, const Visit& visit) const {
     std::vector<Lanes> start_C(static_cast<std::size_t>(network_.state_count()));
     for (int lane = 0; lane < kLanes; ++lane) {
       for (Lanes& node : start_C) {
@@ -57,9 +57,13 @@ class Block {
     const double step_s = shortest_of_longest_steps_s();
     double time_s = 0.0;
     for (const LoadBin& bin : demand_.bins) {
-      run.over(bin.duration_s, point(bin), step_s);
-      time_s += bin.duration_s;
-      visit(time_s, run.state_C());
+      const double parts = std::max(1.0, std::ceil(bin.duration_s / longest_visit_s));
+      const OperatingPoint<Lanes> at = point(bin);
+      for (int part = 0; part < static_cast<int>(parts); ++part) {
+        run.over(bin.duration_s / parts, at, step_s);
+        time_s += bin.duration_s / parts;
+        visit(time_s, run.state_C());
+      }
     }
     return run.peak_C();
   }
@@ -290,16 +294,17 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
       work.stator_envelope_C.take(place, state_C[stator][lane]);
     }
   };
-  const std::vector<Lanes> peak_C = block.peaks([&](double time_s, const std::vector<Lanes>& state_C) {
-    if (!options.with_curves) {
-      return;
-    }
-    take(state_C);
-    while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
-      ++cell;
-      take(state_C);
-    }
-  });
+  const std::vector<Lanes> peak_C = block.peaks(
+      options.with_curves ? cell_s : std::numeric_limits<double>::infinity(), [&](double time_s, const std::vector<Lanes>& state_C) {
+        if (!options.with_curves) {
+          return;
+        }
+        take(state_C);
+        while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
+          ++cell;
+          take(state_C);
+        }
+      });
   for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
     const auto place = static_cast<std::size_t>(first_sample + lane);
     const MotorValues& values = block.motor(lane).values;
