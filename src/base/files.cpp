@@ -131,8 +131,8 @@ Target target_of(const std::filesystem::path& path) {
   }
   const bool in_place = exists && !S_ISREG(about.st_mode);
   std::error_code no_link;
-  const std::filesystem::path target =
-      exists && !in_place ? std::filesystem::canonical(path, no_link) : std::filesystem::weakly_canonical(path, no_link);
+  const std::filesystem::path target = exists && !in_place ? std::filesystem::canonical(path, no_link)
+                                                           : std::filesystem::weakly_canonical(std::filesystem::absolute(path), no_link);
   return {no_link ? path : target, in_place};
 }
 

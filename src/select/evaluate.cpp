@@ -137,7 +137,7 @@ struct Work {
   MotorEvaluation result;
   std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
   std::vector<char> over_limit;                       ///< per sample
-  std::vector<char> short_of_demand;                  ///< per sample
+  std::vector<DriveLimit> short_of_demand;            ///< per sample: what leaves the demand unmet, or none
   Envelope winding_envelope_C, stator_envelope_C;
 };
 
@@ -312,8 +312,8 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
     work.stator_peak_C[place] = peak_C[stator][lane];
     work.over_limit[place] = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
     const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
-    work.short_of_demand[place] =
-        feasibility(values, robot, duty.kind, *work.wheel, block.duty(lane), hottest_C).short_time_share > kTolerableShortTime;
+    const Feasibility each = feasibility(values, robot, duty.kind, *work.wheel, block.duty(lane), hottest_C);
+    work.short_of_demand[place] = each.short_time_share > kTolerableShortTime ? each.limit : DriveLimit::none;
   }
 }
 
@@ -345,8 +345,12 @@ void conclude(Work& work, const EvaluateOptions& options) {
   result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
   result.probability_over_limit =
       options.samples > 0 ? static_cast<double>(std::ranges::count(work.over_limit, char{1})) / options.samples : kNothing;
-  result.short_probability =
-      options.samples > 0 ? static_cast<double>(std::ranges::count(work.short_of_demand, char{1})) / options.samples : kNothing;
+  const auto by_voltage = std::ranges::count(work.short_of_demand, DriveLimit::voltage);
+  const auto by_current = std::ranges::count(work.short_of_demand, DriveLimit::current);
+  result.short_probability = options.samples > 0 ? static_cast<double>(by_voltage + by_current) / options.samples : kNothing;
+  if (result.verdict != Verdict::infeasible) {
+    result.short_limit = by_current > by_voltage ? LimitingFactor::current : LimitingFactor::voltage;
+  }
   if (result.verdict == Verdict::pass && std::max(result.probability_over_limit, result.short_probability) > kMarginalProbability) {
     result.verdict = Verdict::marginal;
     const bool winding_first = !result.stator_limit_C || result.margin_K < *result.stator_limit_C - result.stator_peak_C.nominal;

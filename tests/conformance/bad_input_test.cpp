@@ -226,6 +226,24 @@ TEST(HugeFile, csv_with_nothing_but_problems) {
   EXPECT_THAT(result.err, HasSubstr("more problems; the rest was not read"));
 }
 
+// A time stamp since 1970 in one row makes a duty of decades.
+TEST(Endless, recording_of_decades) {
+  const TemporaryFolder folder;
+  write(folder.path() / "long.csv", "time_s,torque_Nm,speed_rad_per_s\n0,0.05,40\n1700000000,0,0\n");
+  write(folder.path() / "duty.toml", recorded("long.csv"));
+  expect_refused(run_duty(folder.path() / "duty.toml"), "expected something like a match");
+}
+
+TEST(Endless, effect_that_settles_within_microseconds) {
+  const TemporaryFolder folder;
+  write(folder.path() / "motor.toml", good_motor() +
+                                          "\n[effects.flange]\ntype = \"conduction\"\nhot = \"winding\"\ncold = \"stator\"\n"
+                                          "thermal_resistance = { value = \"1e-5 K/W\", origin = \"estimated\", derivation = \"x\" }\n");
+  expect_refused(run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors",
+                      (folder.path() / "motor.toml").string()}),
+                 "out of range");
+}
+
 TEST(HugeFile, recording_repeated_without_end) {
   const TemporaryFolder folder;
   std::string content = "time_s,torque_Nm,speed_rad_per_s\n";

@@ -434,6 +434,20 @@ TEST(UsageOf, negative_temperature_needs_no_quoting) {
 
 // Where output cannot go.
 
+TEST(Unwritable, one_of_several_outputs_leaves_none_of_them) {
+  const TemporaryFolder folder;
+  RunOptions inside;
+  inside.folder = folder.path();
+  for (const Words& words : {kEvaluate + Words{"--samples", "0", "--plot", "p.svg", "--json", "no_such_folder/a.json"},
+                             kSimulate + Words{"--out", "x.csv", "--plot", "no_such_folder/p.svg"},
+                             kSimulate + Words{"--out", "same.svg", "--plot", "./same.svg"}}) {
+    const ProgramRun result = run(words, inside);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(folder.names(), UnorderedElementsAre());
+  }
+}
+
 TEST(Unwritable, target_is_told_and_leaves_nothing) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "taken.svg");

@@ -154,6 +154,24 @@ TEST(Evaluate, infeasible_by_current) {
   EXPECT_NEAR(result.least_torque_share, 0.8, 1e-12);
 }
 
+// The driver gives 5.1 A for a demand of 5 A in the file and ±10 % in the world: 40 % of a cut-off normal lie above 2 %.
+TEST(Evaluate, samples_that_cannot_deliver_make_a_motor_marginal) {
+  Duty duty = constant_current(5.0);
+  duty.load.spread = Spread{Spread::Kind::tolerance, 0.9, 1.1, true};
+  Robot robot = simple_robot();
+  robot.current_limit_A = 5.1;
+  Motor motor = simple_motor();
+  motor.nominal.winding_limit_C = 390.0;
+  const MotorEvaluation result = evaluate_one(motor, robot, duty, {.samples = 4000});
+  EXPECT_EQ(result.verdict, Verdict::marginal);
+  EXPECT_EQ(result.limiting_factor, LimitingFactor::current);
+  EXPECT_EQ(result.probability_over_limit, 0.0);
+  // More than 0.5 % short means a load above 5.1/0.995/5 = 1.0251: above 0.502 of two standard deviations of ±0.05.
+  const double above = 0.5 * std::erfc(0.5025 / std::sqrt(2.0));
+  const double cut_off = 0.5 * std::erfc(2.0 / std::sqrt(2.0));
+  EXPECT_NEAR(result.short_probability, (above - cut_off) / (1.0 - 2.0 * cut_off), 0.03);
+}
+
 // Cold it is just enough, hot the resistance takes more: 5 A · 0.5 Ω · 1.35… instead of 2.5 V.
 TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
   Duty duty = constant_current(5.0);
