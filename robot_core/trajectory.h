@@ -131,6 +131,13 @@ template <typename Real>
 PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,
                              Trajectory<Real>* trajectories, Target how = Target::at_position, int* failed_axis = nullptr);
 
+/// Several axes that reach the velocities and accelerations of their targets together, as early as that is possible,
+/// wherever that leads. With symmetric limits and no acceleration at both ends, each keeps the shape of its fastest change:
+/// axes with equal limits go straight from one velocity to the other.
+template <typename Real>
+PlanResult plan_velocity_synchronised(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target,
+                                      const AxisLimits<Real>* limits, Trajectory<Real>* trajectories, int* failed_axis = nullptr);
+
 /// Limits of motion in the plane that hold in every direction: of the lengths of the vectors.
 template <typename Real>
 struct PlaneLimits {
@@ -148,5 +155,16 @@ struct PlaneLimits {
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);
+
+/// x, y and yaw, reaching the velocities of their targets together: a stand, for one. Acceleration and jerk are shared by x
+/// and y as plan_plane shares them, under the same condition on the start; positions and speeds play no part.
+template <typename Real>
+PlanResult plan_plane_velocity(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
+                               const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3]);
+
+/// For comparison: plan_bang_bang in the plane. x and y share the circle so that both are equally slow; yaw is on its own.
+template <typename Real>
+PlanResult plan_plane_bang_bang(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
+                                const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);
 
 }  // namespace robot_core
