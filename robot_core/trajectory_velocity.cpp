@@ -120,6 +120,30 @@ Extreme<Real> path_of(const VelocityChange<Real>& c, const Swing<Real>& swing, R
   return path;
 }
 
+/// Rounding errors of a blended acceleration, which may be small beside the limits, add up over a long hold: the hold
+/// takes what is missing at the end.
+template <typename Real>
+void close_velocity(Real velocity, Trajectory<Real>& trajectory) {
+  int hold = -1;
+  for (int i = 0; i < trajectory.segment_count; ++i) {
+    if (trajectory.segments[i].jerk == Real(0) && (hold < 0 || trajectory.segments[i].duration_s > trajectory.segments[hold].duration_s)) {
+      hold = i;
+    }
+  }
+  const Real missing = velocity - trajectory.target.velocity;
+  if (hold < 0 || absolute(missing) <= kRounding<Real> * (absolute(velocity) + absolute(trajectory.segments[0].start.velocity))) {
+    return;
+  }
+  trajectory.segments[hold].start.acceleration += missing / trajectory.segments[hold].duration_s;
+  for (int i = hold; i < trajectory.segment_count; ++i) {
+    const TrajectorySegment<Real>& segment = trajectory.segments[i];
+    AxisState<Real>& next = i + 1 < trajectory.segment_count ? trajectory.segments[i + 1].start : trajectory.target;
+    const AxisState<Real> end = Trajectory<Real>::advanced(segment.start, segment.jerk, segment.duration_s);
+    next.position = end.position;
+    next.velocity = end.velocity;
+  }
+}
+
 template <typename Real>
 bool lay_out_change(const VelocityChange<Real>& c, const TimedChange<Real>& timed, const AxisState<Real>& start,
                     const AxisState<Real>& target, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
@@ -135,6 +159,9 @@ bool lay_out_change(const VelocityChange<Real>& c, const TimedChange<Real>& time
   if (!lay_out(way, start, limits, trajectory)) {
     trajectory.segment_count = 0;
     return false;
+  }
+  if (timed.up_share > Real(0) && timed.up_share < Real(1)) {
+    close_velocity(target.velocity, trajectory);
   }
   trajectory.target.velocity = target.velocity;
   trajectory.target.acceleration = target.acceleration;

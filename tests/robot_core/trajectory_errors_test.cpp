@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "robot_core/trajectory.h"
+#include "trajectory_expectations.h"
+#include "trajectory_reference.h"
+
+namespace robot_core::reference {
+namespace {
+
+TEST(TrajectoryErrors, AreCodes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Task good{{0, 0.5, 0.1}, {1, 0.5, -0.1}, {2, -2, 2, -2, 6}};
+  const auto result = [](const Task& task) {
+    Motion motion;
+    const PlanResult position = plan_position(task.start, task.target, task.limits, motion);
+    Motion motions[2];
+    const State start[2] = {{}, task.start};
+    const State target[2] = {{}, task.target};
+    const Limits limits[2] = {Limits::symmetric(1, 1, 1), task.limits};
+    int failed_axis = -1;
+    EXPECT_EQ(plan_synchronised(2, start, target, limits, motions, Target::at_position, &failed_axis), position);
+    EXPECT_EQ(failed_axis, position == PlanResult::ok ? -1 : 1);
+    return position;
+  };
+  EXPECT_EQ(result(good), PlanResult::ok);
+  double Limits::*const fields[] = {&Limits::velocity_max, &Limits::velocity_min, &Limits::acceleration_max, &Limits::acceleration_min,
+                                    &Limits::jerk_max};
+  for (double Limits::*const field : fields) {
+    Task task = good;
+    task.limits.*field = 0.0;
+    EXPECT_EQ(result(task), PlanResult::limit_without_room);
+    task.limits.*field = -(good.limits.*field);
+    EXPECT_EQ(result(task), PlanResult::limit_without_room);
+    for (const double value : {nan, infinity, -infinity}) {
+      task.limits.*field = value;
+      EXPECT_EQ(result(task), PlanResult::not_finite);
+    }
+  }
+  double State::*const values[] = {&State::position, &State::velocity, &State::acceleration};
+  for (double State::*const value : values) {
+    for (const double bad : {nan, infinity, -infinity}) {
+      Task task = good;
+      task.start.*value = bad;
+      EXPECT_EQ(result(task), PlanResult::not_finite);
+      task = good;
+      task.target.*value = bad;
+      EXPECT_EQ(result(task), PlanResult::not_finite);
+    }
+  }
+  Task task = good;
+  task.target.velocity = 2.001;
+  EXPECT_EQ(result(task), PlanResult::target_velocity_beyond_limit);
+  task = good;
+  task.target.acceleration = -2.001;
+  EXPECT_EQ(result(task), PlanResult::target_acceleration_beyond_limit);
+  task.target = {1, -1.9, 1.9};  // who accelerates so much at that velocity was slower than -2 before
+  EXPECT_EQ(result(task), PlanResult::target_without_approach);
+  task = good;
+  task.target = {1, 2.0, 0};
+  Motion motion;
+  EXPECT_EQ(plan_position(task.start, task.target, task.limits, motion), PlanResult::ok);
+  EXPECT_EQ(plan_position(task.start, task.target, task.limits, motion, Target::moving_on), PlanResult::target_velocity_beyond_limit);
+  task = good;
+  task.target.position = 1e308;
+  task.limits.jerk_max = 1e-300;
+  EXPECT_NE(result(task), PlanResult::ok);
+}
+
+TEST(TrajectoryErrors, WildNumbersNeverHang) {
+  std::mt19937_64 random(16);
+  const double wild[] = {0.0,
+                         -0.0,
+                         1e-320,
+                         1e-300,
+                         1e-150,
+                         1e-12,
+                         1.0,
+                         -1.0,
+                         1e12,
+                         1e150,
+                         1e300,
+                         std::numeric_limits<double>::max(),
+                         std::numeric_limits<double>::infinity(),
+                         std::numeric_limits<double>::quiet_NaN()};
+  const auto any = [&] { return (random() % 2 == 0 ? -1 : 1) * wild[random() % std::size(wild)]; };
+  for (int i = 0; i < problem_count(); ++i) {
+    const State start[3] = {{any(), any(), any()}, {any(), any(), any()}, {any(), any(), any()}};
+    const State target[3] = {{any(), any(), any()}, {any(), any(), any()}, {any(), any(), any()}};
+    Limits limits[3];
+    for (Limits& l : limits) {
+      l = {std::abs(any()), -std::abs(any()), std::abs(any()), -std::abs(any()), std::abs(any())};
+    }
+    Motion motions[3];
+    const PlanResult result = plan_position(start[0], target[0], limits[0], motions[0]);
+    if (result == PlanResult::ok) {
+      EXPECT_TRUE(std::isfinite(motions[0].duration_s));
+      EXPECT_LE(motions[0].segment_count, Motion::kMostSegments);
+    }
+    plan_velocity(start[0], target[0], limits[0], motions[0]);
+    plan_bang_bang(start[0], target[0], limits[0], motions[0]);
+    plan_synchronised(3, start, target, limits, motions);
+    plan_plane(start, target, {any(), any(), any()}, limits[2], motions);
+  }
+}
+
+}  // namespace
+}  // namespace robot_core::reference
