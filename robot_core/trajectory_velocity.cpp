@@ -14,7 +14,7 @@ namespace {
 template <typename Real>
 struct VelocityChange {
   Real highest, lowest;                     ///< of a0 and a1
-  Real acceleration_max, acceleration_min;  ///< magnitude of the minimum
+  Real acceleration_max, acceleration_min;  ///< magnitude of the minimum; what a0 and a1 have beyond is a rounding error
   bool rises;                               ///< a1 above a0
   Real gain;
   Real scale;  ///< of what `gain` is the difference of
@@ -37,7 +37,7 @@ template <typename Real>
 Swing<Real> swing_of_gain(Real end, Real bound, Real gain) {
   const Real top = square_root(end * end + gain);
   const Real slope_s = end > Real(0) ? gain / (end + top) : top - end;
-  const Real most_s = larger(bound - end, Real(0));
+  const Real most_s = bound - end;
   if (slope_s <= most_s) {
     return {slope_s, Real(0), gain};
   }
@@ -46,7 +46,7 @@ Swing<Real> swing_of_gain(Real end, Real bound, Real gain) {
 
 template <typename Real>
 Swing<Real> swing_of_duration(Real end, Real bound, Real extra_s) {
-  const Real slope_s = smaller(extra_s / Real(2), larger(bound - end, Real(0)));
+  const Real slope_s = smaller(extra_s / Real(2), bound - end);
   const Real hold_s = extra_s - Real(2) * slope_s;
   return {slope_s, hold_s, slope_s * (Real(2) * end + slope_s) + hold_s * (end + slope_s)};
 }
@@ -73,8 +73,8 @@ void pose_change(const AxisState<Real>& start, const AxisState<Real>& target, co
   c.rises = a1 > a0;
   c.highest = larger(a0, a1);
   c.lowest = smaller(a0, a1);
-  c.acceleration_max = limits.acceleration_max * over_jerk;
-  c.acceleration_min = -limits.acceleration_min * over_jerk;
+  c.acceleration_max = larger(limits.acceleration_max * over_jerk, c.highest);
+  c.acceleration_min = larger(-limits.acceleration_min * over_jerk, -c.lowest);
   const Real brake_gain = c.brake_s * (start.acceleration - excess / Real(2)) * over_jerk;
   const Real ramp_gain = (c.highest - c.lowest) * (c.highest + c.lowest) / Real(2);
   const Real change = (target.velocity - start.velocity) * over_jerk;

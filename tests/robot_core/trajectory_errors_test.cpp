@@ -74,6 +74,33 @@ TEST(TrajectoryErrors, AreCodes) {
   EXPECT_NE(result(task), PlanResult::ok);
 }
 
+TEST(TrajectoryErrors, OfThePlaneAreCodes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const State still[3] = {};
+  const Limits yaw = Limits::symmetric(6, 20, 100);
+  const auto result = [&](const State& x, const State& y, const PlaneLimits<double>& plane) {
+    Motion motions[3];
+    const State target[3] = {x, y, {}};
+    return plan_plane(still, target, plane, yaw, motions);
+  };
+  EXPECT_EQ(result({1, 0, 0}, {1, 0, 0}, {2, 2, 6}), PlanResult::ok);
+  EXPECT_EQ(result({1, 0, 0}, {1, 0, 0}, {2, 0, 6}), PlanResult::limit_without_room);
+  EXPECT_EQ(result({1, 0, 0}, {1, 0, 0}, {2, 2, nan}), PlanResult::not_finite);
+  EXPECT_EQ(result({1, nan, 0}, {1, 0, 0}, {2, 2, 6}), PlanResult::not_finite);
+  // Each is inside of the square, but not of the circle.
+  EXPECT_EQ(result({1, 1.5, 0}, {1, 1.5, 0}, {2, 2, 6}), PlanResult::target_velocity_beyond_limit);
+  EXPECT_EQ(result({1, 0, 1.5}, {1, 0, 1.5}, {2, 2, 6}), PlanResult::target_acceleration_beyond_limit);
+  // Velocity along x and acceleration along y, both close to the limit, leave no split.
+  EXPECT_EQ(result({1, 1.9, 0}, {1, 0, 1.9}, {2, 2, 6}), PlanResult::target_acceleration_beyond_limit);
+  Motion motions[3];
+  const State fast_x[3] = {{0, 0, 2.1}, {}, {}};
+  EXPECT_EQ(plan_plane_velocity(still, fast_x, {2, 2, 6}, yaw, motions), PlanResult::target_acceleration_beyond_limit);
+  const State fast_yaw[3] = {{}, {}, {0, 0, 21}};
+  EXPECT_EQ(plan_plane_velocity(still, fast_yaw, {2, 2, 6}, yaw, motions), PlanResult::target_acceleration_beyond_limit);
+  const State running_yaw[3] = {{}, {}, {0, 7, 0}};
+  EXPECT_EQ(plan_plane_bang_bang(still, running_yaw, {2, 2, 6}, yaw, motions), PlanResult::target_velocity_beyond_limit);
+}
+
 TEST(TrajectoryErrors, WildNumbersNeverHang) {
   std::mt19937_64 random(16);
   const double wild[] = {0.0,
@@ -107,7 +134,11 @@ TEST(TrajectoryErrors, WildNumbersNeverHang) {
     plan_velocity(start[0], target[0], limits[0], motions[0]);
     plan_bang_bang(start[0], target[0], limits[0], motions[0]);
     plan_synchronised(3, start, target, limits, motions);
-    plan_plane(start, target, {any(), any(), any()}, limits[2], motions);
+    plan_velocity_synchronised(3, start, target, limits, motions);
+    const PlaneLimits<double> plane{any(), any(), any()};
+    plan_plane(start, target, plane, limits[2], motions);
+    plan_plane_velocity(start, target, plane, limits[2], motions);
+    plan_plane_bang_bang(start, target, plane, limits[2], motions);
   }
 }
 
