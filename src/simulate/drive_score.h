@@ -10,12 +10,12 @@ namespace heatsoak {
 struct DriveScore {
   double time_s = 0.0;
   double distance_m = 0.0;
-  double slip_m = 0.0;           ///< ∫|slip|dt, mean of the wheels: creep under load and sliding
-  double sliding_m = 0.0;        ///< the part of it beyond the creep, where more than 0.71 of the grip is used
-  double sliding_s = 0.0;        ///< time in which any wheel does so
-  double tracking_rms_m = 0.0;   ///< distance between plan and robot while the plan moves
-  double tracking_most_m = 0.0;  ///< at any time
-  double arrivals_count = 0.0;   ///< commands whose plan came to a stand
+  double slip_m = 0.0;            ///< ∫|slip|dt, mean of the wheels: creep under load and sliding
+  double sliding_m = 0.0;         ///< the part of it beyond the creep, where more than 0.71 of the grip is used
+  double sliding_s = 0.0;         ///< time in which any wheel does so
+  double tracking_rms_m = 0.0;    ///< distance between plan and robot while the plan moves
+  double tracking_most_m = 0.0;   ///< at any time
+  double arrivals_count = 0.0;    ///< commands whose plan came to a stand
   double overshoot_mean_m = 0.0;  ///< over the arrivals: how far the robot goes on when the plan stands
   double overshoot_most_m = 0.0;
   double peak_current_A = 0.0;  ///< of any motor

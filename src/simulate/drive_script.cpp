@@ -30,10 +30,9 @@ class Duel {
     const Pose& pose = robot.state().pose;
     const BodyVelocity velocity = robot.velocity_global();
     const double into_m = along(pose.x_m, pose.y_m) - wall_m_;
-    const double force_N =
-        into_m > 0.0
-            ? std::max(0.0, opponent_.stiffness_N_per_m * into_m + opponent_.damping_N_s_per_m * along(velocity.x_m_per_s, velocity.y_m_per_s))
-            : 0.0;
+    const double force_N = into_m > 0.0 ? std::max(0.0, opponent_.stiffness_N_per_m * into_m +
+                                                            opponent_.damping_N_s_per_m * along(velocity.x_m_per_s, velocity.y_m_per_s))
+                                        : 0.0;
     return to_local(Wrench{-force_N * x_share_, -force_N * y_share_, 0.0}, pose.yaw_rad);
   }
 
@@ -100,8 +99,8 @@ class Loop {
 
 }  // namespace
 
-void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script, double end_s,
-                  double control_period_s, const LoopObserver& observer) {
+void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script,
+                  double end_s, double control_period_s, const LoopObserver& observer) {
   Loop(robot, controller, plan, control_period_s, observer).run(script, end_s);
 }
 

@@ -34,8 +34,8 @@ struct Opponent {
 /// Drives `script` until `end_s`, from the plan's and the robot's present state on. Every `control_period_s` (a multiple of
 /// the plant's period) the controller is asked. In a duel the robot pushes from when its plan stands still. Times of
 /// the script are taken to the nearest period of the plant.
-void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script, double end_s,
-                  double control_period_s, const LoopObserver& observer);
+void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script,
+                  double end_s, double control_period_s, const LoopObserver& observer);
 
 /// That of the robot's file. Throws Failure (bad_input) where it has none.
 double control_period_s(const Robot& robot);

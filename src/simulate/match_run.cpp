@@ -1,5 +1,6 @@
 #include "simulate/match_run.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace heatsoak {
@@ -14,6 +15,8 @@ MatchRun run_match(const MatchInputs& inputs, const Robot& robot, const Motor& m
   const std::unique_ptr<Follower> plan = ideal_tracking(robot, values.aggressiveness, options.planner);
   MatchRun run;
   DriveScorer scorer;
+  const auto all_s = static_cast<std::size_t>(game.duration_s);
+  std::size_t whole_s = 0;
   drive_script(simulated, *controller, *plan, game.script, game.duration_s, period_s, [&](const LoopMoment& moment) {
     scorer.take(moment);
     PhaseHeat& phase = run.phases.at(static_cast<std::size_t>(moment.command->phase));
@@ -21,6 +24,9 @@ MatchRun run_match(const MatchInputs& inputs, const Robot& robot, const Motor& m
     phase.copper_J += std::accumulate(moment.out->copper_W.begin(), moment.out->copper_W.end(), 0.0) * SimulatedRobot::kPeriod_s;
     if (observer) {
       observer(moment);
+    }
+    if (options.progress && moment.time_s >= static_cast<double>(whole_s + 1)) {
+      options.progress(std::min(++whole_s, all_s), all_s);
     }
   });
   run.score = scorer.finish();

@@ -1,6 +1,7 @@
 // One match in a closed loop: the game's commands as the ideal robot got them, driven by the real one.
 #pragma once
 
+#include "base/parallel.h"
 #include "duty/match/match_duty.h"
 #include "simulate/drive_score.h"
 
@@ -10,6 +11,7 @@ struct MatchRunOptions {
   Planner planner = Planner::jerk_limited;
   std::uint64_t seed = 1;
   double ambient_C = 25.0;
+  Progress progress;  ///< in whole seconds of the match
 };
 
 /// What the phases cost the motors.

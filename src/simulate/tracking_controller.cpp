@@ -45,13 +45,11 @@ class TrackingController final : public DriveController {
  private:
   [[nodiscard]] static BodyAcceleration corrected(const Setpoint& setpoint, const Sensed& sensed) {
     const BodyVelocity now = to_global(sensed.velocity, sensed.pose.yaw_rad);
-    const auto correction = [](double behind, double slower) {
-      return kFrequency_per_s * (2.0 * slower + kFrequency_per_s * behind);
-    };
+    const auto correction = [](double behind, double slower) { return kFrequency_per_s * (2.0 * slower + kFrequency_per_s * behind); };
     return {setpoint.acceleration.x_m_per_s2 + correction(setpoint.pose.x_m - sensed.pose.x_m, setpoint.velocity.x_m_per_s - now.x_m_per_s),
             setpoint.acceleration.y_m_per_s2 + correction(setpoint.pose.y_m - sensed.pose.y_m, setpoint.velocity.y_m_per_s - now.y_m_per_s),
-            setpoint.acceleration.yaw_rad_per_s2 + correction(wrapped_rad(setpoint.pose.yaw_rad - sensed.pose.yaw_rad),
-                                                              setpoint.velocity.yaw_rad_per_s - now.yaw_rad_per_s)};
+            setpoint.acceleration.yaw_rad_per_s2 +
+                correction(wrapped_rad(setpoint.pose.yaw_rad - sensed.pose.yaw_rad), setpoint.velocity.yaw_rad_per_s - now.yaw_rad_per_s)};
   }
 
   [[nodiscard]] double voltage_V(double wheel_torque_Nm, double wheel_speed_rad_per_s) const {
