@@ -188,8 +188,8 @@ TEST(ClosedLoop, rows_hold_the_heat) {
       copper_J += 0.1 * std::stod(cells[16 + 9 * i + 8]);
     }
   }
-  EXPECT_EQ(rows, 69);  // the last of them is still open
-  EXPECT_NEAR(copper_J, driven.score.energy.copper_J, 0.02 * driven.score.energy.copper_J);
+  EXPECT_EQ(rows, 70);
+  EXPECT_NEAR(copper_J, driven.score.energy.copper_J, 1e-4 * driven.score.energy.copper_J);
 }
 
 TEST(ClosedLoop, what_a_robot_lacks_is_named) {
