@@ -125,6 +125,7 @@ class Match {
   /// no longer than the `left_s` of the phase. Returns how long it took.
   double follow(Phase phase, const MotionCommand& command, double left_s) {
     motion_->take(command);
+    load_.script.push_back({load_.duration_s, phase, command});
     double done_s = 0.0;
     double length_s = std::max(command.duration_s, kStep_s);
     if (command.duel) {
