@@ -33,7 +33,7 @@ struct QuantityMapping {
   /// Canonical value = value + scale_factor · file value: the unit and the sign.
   double scale_factor = 1.0;
   double value = 0.0;
-  double clock_offset_s = 0.0;          ///< the sample at the row's time t is of t + clock_offset
+  double clock_offset_s = 0.0;          ///< added to the row's time gives the moment of the sample
   std::string valid;                    ///< expression; where it is 0 the sample is left out; empty: always
   std::optional<double> saturates_low;  ///< at or beyond it the sensor is at its end, in the quantity's unit
   std::optional<double> saturates_high;
@@ -53,6 +53,7 @@ struct Mapping {
   Location valid_at;
   std::string run_column;  ///< a change of its value begins a run; may be empty
   Location run_column_at;
+  std::optional<double> longest_gap_s;  ///< a longer gap between rows splits the run; three usual ones unless given
   InputHabit inputs = InputHabit::held;
   std::string motor;
   std::map<std::string, std::string> conditions;

@@ -8,7 +8,9 @@
 
 #include "base/diagnostic.h"
 #include "identify/measurement/channel_source.h"
+#include "identify/measurement/interval_values.h"
 #include "identify/measurement/row_order.h"
+#include "identify/measurement/screening.h"
 #include "input/number_table.h"
 
 namespace heatsoak {
@@ -53,6 +55,8 @@ class Intake {
     report_.file_bytes = table_.bytes_read();
     Recording recording = order();
     describe(recording);
+    to_interval_values(recording, mapping_.inputs, offsets_s_);
+    leave_out_bad_samples(recording, report_);
     return recording;
   }
 
@@ -173,7 +177,7 @@ class Intake {
     }
     report_.rows_kept = kept;
     Recording recording;
-    recording.run_begins = run_begins(time_s_, run_value_);
+    recording.run_begins = run_begins(time_s_, run_value_, mapping_.longest_gap_s);
     recording.time_s = std::move(time_s_);
     recording.line = std::move(line_);
     return recording;
@@ -212,6 +216,7 @@ class Intake {
         report_.notes.push_back(fmt::format("{}: {} blank samples are filled as the mapping says", quantity.key, sources_[i].filled()));
       }
       recording.channels.push_back({quantity, std::move(columns_[i])});
+      offsets_s_.push_back(sources_[i].clock_offset_s());
     }
     if (recording.channels.empty()) {
       throw Failure(ExitCode::cannot_answer, fmt::format("{}: no quantity beside the time holds a number", log_.string()));
@@ -234,6 +239,7 @@ class Intake {
   std::vector<int> line_;
   std::vector<double> run_value_;
   std::vector<std::vector<double>> columns_;
+  std::vector<double> offsets_s_;  ///< of the recording's channels
 };
 
 }  // namespace

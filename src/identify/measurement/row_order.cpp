@@ -7,7 +7,8 @@
 namespace heatsoak {
 namespace {
 
-constexpr double kLongestStep_ratio = 3.0;
+/// Three, and a little: a step of exactly three periods must not split by rounding.
+constexpr double kLongestStep_ratio = 3.0 * (1.0 + 1e-6);
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 double median_step_s(std::span<const double> time_s) {
@@ -48,15 +49,16 @@ std::vector<char> increasing_rows(std::span<const double> time_s) {
   return stays;
 }
 
-std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> run_value) {
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> run_values,
+                                    std::optional<double> longest_gap_s) {
   std::vector<std::size_t> begins;
   if (time_s.empty()) {
     return begins;
   }
   begins.push_back(0);
-  const double longest_s = time_s.size() > 1 ? kLongestStep_ratio * median_step_s(time_s) : 0.0;
+  const double longest_s = longest_gap_s ? *longest_gap_s : time_s.size() > 1 ? kLongestStep_ratio * median_step_s(time_s) : 0.0;
   for (std::size_t row = 1; row < time_s.size(); ++row) {
-    if (time_s[row] - time_s[row - 1] > longest_s || (!run_value.empty() && changes(run_value[row - 1], run_value[row]))) {
+    if (time_s[row] - time_s[row - 1] > longest_s || (!run_values.empty() && changes(run_values[row - 1], run_values[row]))) {
       begins.push_back(row);
     }
   }

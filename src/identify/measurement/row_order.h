@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace heatsoak {
 /// of rows with one time the first stays. One char per row: 1 stays.
 std::vector<char> increasing_rows(std::span<const double> time_s);
 
-/// The first rows of runs: 0, each row after a gap of more than three usual (median) steps, each row where `run_value`
-/// (empty, or one per row) changes.
-std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> run_value);
+/// The first rows of runs: 0, each row after a gap of more than `longest_gap_s` (three median steps unless given), each row where
+/// `run_value` (empty, or one per row) changes.
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> run_values,
+                                    std::optional<double> longest_gap_s);
 
 }  // namespace heatsoak
