@@ -59,7 +59,7 @@ std::vector<Group> groups_of(const Recording& recording) {
       const auto found = std::ranges::find(names, name);
       if (found == names.end()) {
         names.push_back(name);
-        const std::string unit = channel.quantity.unit.empty() ? "1" : unit_for_display(channel.quantity.unit);
+        const std::string unit = channel.quantity.unit.empty() ? "ratio" : unit_for_display(channel.quantity.unit);
         groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, {&channel}});
       } else {
         groups[static_cast<std::size_t>(found - names.begin())].channels.push_back(&channel);
@@ -74,7 +74,6 @@ std::vector<Group> groups_of(const Recording& recording) {
       }
       group.title = fmt::format("{}", fmt::join(keys, ", "));
     }
-    group.y_label = (is_temperature(*group.channels.front()) ? "temperature / " : "value / ") + group.y_label;
   }
   return groups;
 }
@@ -92,7 +91,7 @@ class LogChart {
     chart.title = recording_.name + (recording_.motor.empty() ? "" : ", motor " + recording_.motor);
     chart.subtitle = subtitle();
     chart.x_label = scale_.label;
-    chart.panel_height_px = 260;
+    chart.panel_height_px = 220;
     bool is_named = false;
     for (const Group& group : groups_of(recording_)) {
       chart.panels.push_back(panel(group, is_named));
@@ -115,12 +114,15 @@ class LogChart {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t i = 0; i < group.channels.size(); ++i) {
-      result.curves.push_back(curve(*group.channels[i], static_cast<int>(i % kCurveColors), i >= kCurveColors));
+      result.curves.push_back(curve(*group.channels[i], static_cast<int>(i % kCurveColors), i >= kCurveColors, group.channels.size() == 1));
       for (const double value : group.channels[i]->values) {
         low = std::isnan(value) ? low : std::min(low, value);
         high = std::isnan(value) ? high : std::max(high, value);
       }
     }
+    const double margin = high > low ? 0.0 : 0.5 * std::max(std::abs(high), 1.0);
+    low -= margin;
+    high += margin;
     for (const auto& [begin, end] : marks(group)) {
       result.bands.push_back({is_named ? "" : "left out", {begin, end}, {low, low}, {high, high}, kLeftOutColor});
       is_named = true;
@@ -128,8 +130,8 @@ class LogChart {
     return result;
   }
 
-  [[nodiscard]] ChartCurve curve(const Channel& channel, int color, bool dashed) const {
-    ChartCurve result{channel.quantity.key, {}, {}, color, dashed};
+  [[nodiscard]] ChartCurve curve(const Channel& channel, int color, bool dashed, bool is_alone) const {
+    ChartCurve result{is_alone ? "" : channel.quantity.key, {}, {}, color, dashed};
     for (const auto& [begin, end] : recording_.runs()) {
       for (std::size_t row = begin; row < end; ++row) {
         result.x.push_back(recording_.time_s[row] * scale_.factor);

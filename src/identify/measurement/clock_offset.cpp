@@ -15,9 +15,9 @@
 namespace heatsoak {
 namespace {
 
-constexpr int kDelays = 81;
+constexpr int kDelays = 61;
 constexpr int kParts = 8;  ///< of the log, left out in turn
-constexpr std::size_t kMostWindows = 4000;
+constexpr std::size_t kMostWindows = 1500;
 constexpr std::size_t kFewestWindows = 40;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -171,10 +171,11 @@ class DelayScan {
  private:
   [[nodiscard]] std::vector<Window> windows_of(double length_s, double reach_s) const {
     std::vector<Window> found;
+    const std::size_t stride = time_s_.size() / kMostWindows + 1;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
       const auto& [begin, end] = pieces_[p];
       std::size_t to = begin;
-      for (std::size_t from = begin; from < end; ++from) {
+      for (std::size_t from = begin; from < end; from += stride) {
         while (to + 1 < end && time_s_[to] - time_s_[from] < length_s) {
           ++to;
         }
@@ -185,12 +186,7 @@ class DelayScan {
         }
       }
     }
-    const std::size_t stride = found.size() / kMostWindows + 1;
-    std::vector<Window> thinned;
-    for (std::size_t i = 0; i < found.size(); i += stride) {
-      thinned.push_back(found[i]);
-    }
-    return thinned;
+    return found;
   }
 
   static std::array<double, kParts + 1> errors_of(const std::array<Eigen::MatrixXd, kParts>& products, Eigen::Index size) {

@@ -7,15 +7,15 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::size_t kMostValues = 200'000;  ///< of which a step is sought
+constexpr std::size_t kMostValues = 200'000;  ///< that are looked at, spread over the log
 constexpr double kMedianToSigma = 1.4826;
 
 /// The grid that the values lie on, or where they lie on none but come back again and again, how far apart they are.
 double step_of(std::span<const double> values) {
   std::vector<double> sorted;
-  for (const double value : values.first(std::min(values.size(), kMostValues))) {
-    if (!std::isnan(value)) {
-      sorted.push_back(value);
+  for (std::size_t i = 0; i < values.size(); i += values.size() / kMostValues + 1) {
+    if (!std::isnan(values[i])) {
+      sorted.push_back(values[i]);
     }
   }
   const std::size_t count = sorted.size();
@@ -55,8 +55,9 @@ NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair
   std::vector<double> changes;
   std::vector<double> bends;
   std::size_t pairs = 0;
+  const std::size_t stride = values.size() / kMostValues + 1;
   for (const auto& [begin, end] : runs) {
-    for (std::size_t i = begin + 1; i < end; ++i) {
+    for (std::size_t i = begin + 1; i < end; i += stride) {
       const double change = std::abs(values[i] - values[i - 1]);
       pairs += std::isnan(change) ? 0 : 1;
       if (change > 0.0) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <unordered_map>
 #include <utility>
 
 #include "identify/measurement/noise.h"
@@ -132,24 +132,31 @@ bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habi
   if (habits.repeats_share > kFine_share) {
     return false;
   }
-  std::map<double, std::size_t> counts;
+  std::size_t there = 0;
   std::size_t arrivals = 0;
   std::size_t usual_arrivals = 0;
   for (const std::vector<Stretch>& run : runs) {
     for (std::size_t i = 0; i < run.size(); ++i) {
-      counts[run[i].value] += run[i].samples;
-      if (i > 0 && run[i].value == end) {
+      if (run[i].value == end) {
+        there += run[i].samples;
         ++arrivals;
-        usual_arrivals += std::abs(run[i].value - run[i - 1].value) >= 0.5 * habits.noise.usual ? 1 : 0;
+        usual_arrivals += i > 0 && std::abs(run[i].value - run[i - 1].value) >= 0.5 * habits.noise.usual ? 1 : 0;
       }
     }
   }
-  const std::size_t there = std::exchange(counts[end], 0);
-  std::size_t elsewhere = 0;
-  for (const auto& [value, count] : counts) {
-    elsewhere = std::max(elsewhere, count);
+  if (there < kPile || arrivals < 3 || 2 * usual_arrivals < arrivals) {
+    return false;
   }
-  return there >= kPile && there > kPile_ratio * elsewhere && arrivals >= 3 && 2 * usual_arrivals >= arrivals;
+  std::unordered_map<double, std::size_t> counts;
+  std::size_t elsewhere = 0;
+  for (const std::vector<Stretch>& run : runs) {
+    for (const Stretch& stretch : run) {
+      if (stretch.value != end) {
+        elsewhere = std::max(elsewhere, counts[stretch.value] += stretch.samples);
+      }
+    }
+  }
+  return there > kPile_ratio * elsewhere;
 }
 
 void leave_out_stretches(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
@@ -191,6 +198,20 @@ double median(std::array<double, kWindow>& values, std::size_t count) {
   return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
+/// Three of the six neighbours within the distance: then the median of the seven is within it too, and there is nothing to sort.
+bool has_near_majority(std::span<const double> values, std::span<const std::size_t> rows, std::size_t k, double distance) {
+  constexpr std::size_t kSide = kWindow / 2;
+  if (k < kSide || k + kSide >= rows.size()) {
+    return false;
+  }
+  const double value = values[rows[k]];
+  std::size_t near = 0;
+  for (std::size_t j = k - kSide; j <= k + kSide; ++j) {
+    near += std::abs(values[rows[j]] - value) <= distance ? 1 : 0;
+  }
+  return near > kSide;
+}
+
 /// Hampel's rule on the samples that are there, window 7, 6 median deviations.
 void leave_out_outliers(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
   constexpr double kDeviations = 6.0;
@@ -206,6 +227,9 @@ void leave_out_outliers(Recording& recording, Channel& channel, const NoiseLevel
       }
     }
     for (std::size_t k = 0; k < rows.size() && rows.size() >= kWindow; ++k) {
+      if (has_near_majority(channel.values, rows, k, kDeviations * least_deviation)) {
+        continue;
+      }
       const std::size_t first = k >= kWindow / 2 ? k - kWindow / 2 : 0;
       const std::size_t last = std::min(rows.size(), k + kWindow / 2 + 1);
       std::array<double, kWindow> window{};
