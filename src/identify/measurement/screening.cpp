@@ -47,6 +47,7 @@ struct Habits {
 };
 
 constexpr std::size_t kShortStretch = 20;
+constexpr std::size_t kPile = 10;  ///< samples at one end of the range, at least, that are called cut off there
 
 Habits habits_of(std::span<const double> values, std::span<const std::vector<Stretch>> runs, const NoiseLevel& noise) {
   Habits habits;
@@ -127,7 +128,6 @@ bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Hab
 /// and it comes there by usual changes, not creeping.
 bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habits& habits) {
   constexpr double kFine_share = 0.2;
-  constexpr std::size_t kPile = 10;
   constexpr std::size_t kPile_ratio = 5;
   if (habits.repeats_share > kFine_share) {
     return false;
@@ -159,7 +159,31 @@ bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habi
   return there > kPile_ratio * elsewhere;
 }
 
+/// Neither five equal neighbours nor ten samples at an end of the range: nothing below could be found. Most long logs end here.
+bool never_rests(std::span<const double> values) {
+  std::size_t longest = 0;
+  std::size_t equal = 0;
+  double before = kLeftOut;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      equal = value == before ? equal + 1 : 1;
+      longest = std::max(longest, equal);
+      low = std::min(low, value);
+      high = std::max(high, value);
+      before = value;
+    }
+  }
+  constexpr std::size_t kRests = 5;
+  const auto at_ends = std::ranges::count_if(values, [low, high](double value) { return value == low || value == high; });
+  return longest < kRests && static_cast<std::size_t>(at_ends) < kPile;
+}
+
 void leave_out_stretches(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
+  if (never_rests(channel.values)) {
+    return;
+  }
   std::vector<std::vector<Stretch>> runs;
   for (const auto& run : recording.runs()) {
     runs.push_back(stretches_of(channel.values, run));
