@@ -218,7 +218,7 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
               std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file = opened(path);
   Table table(path.string(), required, optional, words, row);
-  csv_parser parser;
+  csv_parser parser{};
   csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT | CSV_STRICT_FINI);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);
   Guarded guard{table, nullptr};

@@ -12,7 +12,7 @@ namespace heatsoak {
 namespace {
 
 std::string out_of_range(std::string_view text, const ParameterSpec& spec) {
-  return fmt::format("\"{}\" is out of range; expected {} ({})", text, to_string(spec.range, spec.unit), spec.meaning);
+  return fmt::format(R"("{}" is out of range; expected {} ({}))", text, to_string(spec.range, spec.unit), spec.meaning);
 }
 
 }  // namespace

@@ -85,6 +85,7 @@ const std::array<std::pair<std::string_view, double>, 3> kTorqueConventions{
 template <class Conventions>
 double convention_factor(Reader& conventions, std::string_view key, const Conventions& known) {
   std::vector<std::string_view> names;
+  names.reserve(known.size());
   for (const auto& [name, factor] : known) {
     names.push_back(name);
   }
