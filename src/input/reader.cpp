@@ -138,10 +138,11 @@ std::vector<double> Reader::quantities(const ParameterSpec& spec, Need need) {
     const Value& item = list->items[i];
     const std::string key = fmt::format("{}[{}]", spec.key, i);
     const std::optional<double> parsed = parse(item, key, spec.unit);
-    if (parsed && !spec.range.contains(*parsed)) {
+    const bool is_good = parsed && spec.range.contains(*parsed);
+    if (parsed && !is_good) {
       diagnostics_->add(item.at, full(key), out_of_range(item.text, spec));
     }
-    result.push_back(parsed.value_or(0.0));
+    result.push_back(is_good ? *parsed : 0.0);
   }
   return result;
 }
