@@ -221,7 +221,7 @@ void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose,
               const std::function<void(const CsvRow&)>& row) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file = opened(path);
   Table table(path.string(), choose, words, row);
-  csv_parser parser;
+  csv_parser parser{};
   csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT | CSV_STRICT_FINI);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);
   Guarded guard{table, nullptr};

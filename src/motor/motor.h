@@ -64,6 +64,8 @@ struct MotorFigureSpec {
   bool is_thermal = false;  ///< the temperature calculation rests on it
 };
 std::span<const MotorFigureSpec> motor_figure_specs();
+/// Agreed, not built, such as a limit or the nominal voltage: no part has another one, so it needs no tolerance.
+bool is_agreed(std::string_view key);
 
 /// An effect that the file adds to the datasheet network.
 struct MotorEffect {

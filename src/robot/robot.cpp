@@ -73,20 +73,6 @@ void read_figures(Reader& reader, std::string_view table, Robot& robot) {
   }
 }
 
-/// Angles as texts, one per wheel.
-std::vector<double> read_angles_rad(Reader& reader, std::string_view key) {
-  std::vector<double> angles_rad;
-  for (const std::string& text : reader.texts(key, Need::required)) {
-    const ParsedQuantity angle = parse_quantity(text, "rad");
-    if (angle.ok()) {
-      angles_rad.push_back(angle.value);
-    } else {
-      reader.problem(key, angle.problem);
-    }
-  }
-  return angles_rad;
-}
-
 void read_friction(Reader& top, Robot& robot) {
   std::optional<Reader> friction = top.table("friction", Need::optional);
   if (!friction) {
@@ -95,7 +81,7 @@ void read_friction(Reader& top, Robot& robot) {
   read_figures(*friction, "friction", robot);
   if (std::optional<Reader> heading = friction->table("heading", Need::optional)) {
     read_figures(*heading, "friction.heading", robot);
-    robot.heading_phase_rad = read_angles_rad(*heading, "double_angle_phases");
+    robot.heading_phase_rad = heading->quantities({"double_angle_phases", "rad", Range::any(), "one per wheel"}, Need::required);
     if (robot.heading_phase_rad.size() != robot.wheel_axis_rad.size()) {
       heading->problem("double_angle_phases", "expected one phase per wheel");
     }
@@ -116,7 +102,7 @@ void read_wheels(Reader& top, Robot& robot) {
   robot.wheel_contact_radius_m =
       wheels->quantity({"contact_radius", "m", Range::positive(), "from the robot's axis to the contact points"}, Need::required)
           .value_or(1.0);
-  robot.wheel_axis_rad = read_angles_rad(*wheels, "axis_angles");
+  robot.wheel_axis_rad = wheels->quantities({"axis_angles", "rad", Range::any(), "of the wheels' axes"}, Need::required);
   if (robot.wheel_axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }

@@ -132,6 +132,7 @@ TEST(Evaluate, runaway_is_destroyed) {
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(20.0));
   EXPECT_TRUE(result.destroyed);
   EXPECT_EQ(result.verdict, Verdict::fail);
+  EXPECT_EQ(result.winding_peak_C.nominal, kDestroyed_C) << "where the calculation ends, as for samples";
 }
 
 TEST(Evaluate, infeasible_by_voltage) {

@@ -29,6 +29,9 @@ Json figure_json(std::string_view key, std::string_view unit, const Figure& figu
   if (figure.spread) {
     json["range"] = {figure.spread->low, figure.spread->high};
   }
+  for (const Confirmation& each : figure.confirmed_by) {
+    json["confirmed_by"][each.source] = each.value;
+  }
   if (!figure.derivation.empty()) {
     json["derivation"] = figure.derivation;
   }
@@ -44,6 +47,9 @@ std::string figure_text(std::string_view key, std::string_view unit, const Figur
     text += fmt::format(" {} … {} °C", significant(figure.spread->low, 3), significant(figure.spread->high, 3));
   }
   text += figure.source.empty() ? "\n" : fmt::format("  [{}]\n", figure.source);
+  for (const Confirmation& each : figure.confirmed_by) {
+    text += fmt::format("      {} says {}\n", each.source, each.printed);
+  }
   return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
 }
 
@@ -129,7 +135,9 @@ Description describe_effect(const EffectType& effect) {
     result.text +=
         fmt::format("  {:26} {:8} {}; {}\n", spec.key, unit_for_display(spec.unit), spec.meaning, to_string(spec.range, spec.unit));
     result.json["parameters"].push_back({{"key", spec.key}, {"unit", spec.unit}, {"meaning", spec.meaning}});
-    keys += fmt::format("{} = {{ value = \"… {}\", origin = \"estimated\", derivation = \"…\" }}\n", spec.key, spec.unit);
+    keys += fmt::format(
+        "{} = {{ value = \"… {}\", origin = \"estimated\", source = \"…\", derivation = \"…\", range = [\"… {}\", \"… {}\"] }}\n", spec.key,
+        spec.unit, spec.unit, spec.unit);
   }
   for (const NodeRole& role : effect.nodes) {
     result.text += fmt::format("  {:26} {:8} node; '{}' unless named\n", role.role, "", role.default_node);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -147,11 +148,13 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
 }
 
 /// CLI11 takes -1 for 2^64 − 1, a number too large for the largest one, and 010 for 8.
-std::string whole_number(const std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool good = error == std::errc() && end == text.data() + text.size() && (text == "0" || text.front() != '0');
-  return good ? "" : fmt::format("'{}' is not a whole number from 0 to 18446744073709551615", text);
+auto whole_number(std::uint64_t most) {
+  return [most](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number = error == std::errc() && end == text.data() + text.size() && (text == "0" || text.front() != '0');
+    return is_number && value <= most ? "" : fmt::format("'{}' is not a whole number from 0 to {}", text, most);
+  };
 }
 
 ExitCode run(Options& options, Session& session) {
@@ -208,13 +211,13 @@ Command evaluate_command() {
             ->type_name("M,M")
             ->default_str("all");
         app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
-            ->check(whole_number)
-            ->check(CLI::Range(0, 1'000'000))
+            ->check(whole_number(1'000'000))
             ->capture_default_str();
-        app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")->check(whole_number)->capture_default_str();
+        app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")
+            ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
+            ->capture_default_str();
         app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")
-            ->check(whole_number)
-            ->check(CLI::Range(0, 1024))
+            ->check(whole_number(1024))
             ->capture_default_str();
         add_picture(app, options->plot, "picture of stator and winding temperature over time");
         session.add_data_option(app);
