@@ -1,6 +1,7 @@
 #include "duty/demand.h"
 
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -81,7 +82,8 @@ WheelDemand DemandGatherer::finish() {
     close_bin();
   }
   close_stay();
-  for (const auto& [cell, time_s] : time_at_s_) {
+  // In order, so that the same load gives the same points.
+  for (const auto& [cell, time_s] : std::map<std::pair<int, int>, double>(time_at_s_.begin(), time_at_s_.end())) {
     demand_.points.push_back({cell.first * grid_.torque_step_Nm, cell.second * grid_.speed_step_rad_per_s, 0.0, time_s});
   }
   return std::move(demand_);

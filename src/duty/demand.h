@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -68,7 +68,12 @@ class DemandGatherer {
   double bin_s_;
   Grid grid_;
   std::array<double, integral_count> integrals_{};
-  std::map<std::pair<int, int>, double> time_at_s_;
+  struct CellHash {
+    std::size_t operator()(const std::pair<int, int>& cell) const {
+      return static_cast<std::size_t>(cell.first) * 0x9e3779b97f4a7c15U + static_cast<std::size_t>(cell.second);
+    }
+  };
+  std::unordered_map<std::pair<int, int>, double, CellHash> time_at_s_;
   std::pair<int, int> cell_{0, 0};  ///< where the load is now; it seldom leaves a cell within milliseconds
   double stay_s_ = 0.0;
 };

@@ -36,7 +36,7 @@ struct EvaluateOptions {
   bool with_curves = false;  ///< keep what a picture needs
   /// Demands under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all samples have the
   /// nominal demand.
-  std::span<const std::vector<WheelDemand>> draws;
+  std::span<const std::vector<WheelDemand>> draws{};
 };
 
 /// The figure without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
