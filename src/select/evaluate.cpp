@@ -77,11 +77,7 @@ class Block {
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
       const OperatingPoint<double> one = operating_point(motors_[i].values, robot_, kind_, bin, duties_[i]);
-      at.current_rms_A[lane] = one.current_rms_A;
-      at.speed_mean_rad_per_s[lane] = one.speed_mean_rad_per_s;
-      at.speed_rms_rad_per_s[lane] = one.speed_rms_rad_per_s;
-      at.ambient_C[lane] = one.ambient_C;
-      at.resistive_headroom_V[lane] = one.resistive_headroom_V;
+      for_each_quantity([lane](Lanes& to, const double& from) { to[lane] = from; }, at, one);
     }
     return at;
   }
@@ -173,10 +169,9 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
     EnsembleRun run(network, parameters, start_C);
     for (const Interval& interval : intervals) {
       OperatingPoint<Lanes> at;
-      at.current_rms_A = interval.at.current_rms_A * factor;
-      at.speed_mean_rad_per_s = Lanes::Constant(interval.at.speed_mean_rad_per_s);
-      at.speed_rms_rad_per_s = Lanes::Constant(interval.at.speed_rms_rad_per_s);
-      at.ambient_C = Lanes::Constant(interval.at.ambient_C);
+      for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, at, interval.at);
+      at.current_rms_A *= factor;
+      at.resistive_headroom_V = Lanes::Constant(std::numeric_limits<double>::infinity());
       run.over(interval.duration_s, at, longest_step_s(network, parameters, at));
     }
     const Lanes& peak_C = run.peak_C()[winding];

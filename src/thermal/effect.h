@@ -5,27 +5,15 @@
 // only losses do.
 #pragma once
 
-#include <limits>
 #include <string_view>
 #include <vector>
 
 #include "base/lanes.h"
 #include "base/parameter.h"
+#include "thermal/operating_point.h"
+#include "thermal/tangent.h"
 
 namespace heatsoak {
-
-/// What the machine does during one interval. Means are over the interval, so that intervals can be merged
-/// without changing any heat: I²R takes the rms current, a loss ∝ |ω| the mean, one ∝ ω² the rms.
-template <class S>
-struct OperatingPoint {
-  S current_rms_A = S(0.0);         ///< equivalent DC current of the terminals: I²·R of two phases in series is the heat
-  S speed_mean_rad_per_s = S(0.0);  ///< mean of |ω|, motor shaft
-  S speed_rms_rad_per_s = S(0.0);   ///< root mean square of ω, motor shaft
-  S ambient_C = S(25.0);
-  /// Voltage that is left for I·R beside the back-EMF, per current that heats: as the winding gets hot and its
-  /// resistance rises, less current flows than is asked for. Infinite where voltage is no limit.
-  S resistive_headroom_V = S(std::numeric_limits<double>::infinity());
-};
 
 /// What a law may look at: the operating point, its own parameters and the temperatures of its nodes,
 /// both by their place in the effect's declaration.
@@ -66,17 +54,31 @@ class HeatBook {
 struct Laws {
   void (*one)(const Situation<double>&, HeatBook<double>&) = nullptr;
   void (*lanes)(const Situation<Lanes>&, HeatBook<Lanes>&) = nullptr;
+  void (*tangent)(const Situation<Tangent>&, HeatBook<Tangent>&) = nullptr;
 };
 
 template <class Law>
 constexpr Laws laws() {
   return {[](const Situation<double>& x, HeatBook<double>& heat) { Law::book(x, heat); },
-          [](const Situation<Lanes>& x, HeatBook<Lanes>& heat) { Law::book(x, heat); }};
+          [](const Situation<Lanes>& x, HeatBook<Lanes>& heat) { Law::book(x, heat); },
+          [](const Situation<Tangent>& x, HeatBook<Tangent>& heat) { Law::book(x, heat); }};
 }
 
 struct NodeRole {
   std::string_view role;          ///< key in a file that names another node
   std::string_view default_node;  ///< node that plays the role unless the file says otherwise
+  /// Place of the parameter that is the node's heat capacity, where the effect brings a node of its own; -1 otherwise.
+  int own_capacity = -1;
+};
+
+/// How an effect enters where a model may lack it: its parameters at the typical size of a motor of some 50 W, once for
+/// every shape worth telling apart.
+struct Candidacy {
+  /// Place of the parameter that the heat is proportional to; 0 there is the model without the effect. -1: never a candidate.
+  int size_parameter = -1;
+  std::vector<std::vector<double>> variants;
+  std::string_view family;      ///< what it can be called while the exact law is open: "speed loss at the stator"
+  std::string_view experiment;  ///< what to record so that its look-alikes separate
 };
 
 /// Numbers computed by hand beside the equation; run as a test for every effect.
@@ -98,6 +100,8 @@ struct EffectType {
   std::string_view look_alike;  ///< effects that leave a similar trace, and what tells them apart
   WorkedExample example;
   Laws laws;
+  std::vector<Signal> needs = {};
+  Candidacy candidacy = {};
 };
 
 /// All effects, sorted by name. The list lives as long as the program.

@@ -9,9 +9,6 @@
 namespace heatsoak {
 namespace {
 
-/// Room for the heat of every node on the stack: the rate is called a million times and must not allocate.
-constexpr int kMostNodes = 16;
-
 template <class S>
 void book(const EffectInPlace& effect, const OperatingPoint<S>& at, const S* parameters, const S* temperature_C, S* heat_W) {
   const Situation<S> situation(at, parameters, effect.parameter_index.data(), temperature_C, effect.node_index.data());
@@ -34,12 +31,21 @@ int Network::add_parameter(NetworkParameter parameter) {
 }
 
 int Network::add_node(std::string name, double heat_capacity_J_per_K) {
-  if (!effects_.empty() || node_count() >= kMostNodes) {
-    throw std::logic_error("nodes are added before effects, and at most 15 of them");
+  const int capacity = add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K});
+  return add_state(std::move(name), capacity);
+}
+
+int Network::add_state(std::string name, int capacity_index) {
+  if (node_count() >= kMostNodes || find_node(name) >= 0) {
+    throw std::logic_error(fmt::format("node '{}': there is one of that name, or there are {} already", name, kMostNodes - 1));
   }
-  capacity_index_.push_back(add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K}));
+  const int ambient = state_count();
+  for (EffectInPlace& effect : effects_) {
+    std::ranges::replace(effect.node_index, ambient, ambient + 1);
+  }
+  capacity_index_.push_back(capacity_index);
   node_names_.push_back(std::move(name));
-  return state_count() - 1;
+  return ambient;
 }
 
 int Network::find_node(std::string_view name) const {
@@ -55,21 +61,27 @@ std::string_view Network::node_name(int node) const {
 }
 
 void Network::add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters) {
-  if (nodes.size() != type.nodes.size() || parameters.size() != type.parameters.size()) {
+  if (nodes.size() != type.nodes.size() || parameters.size() != type.parameters.size() || nodes.size() > kMostRoles ||
+      parameters.size() > kMostParameters) {
     throw std::logic_error(
         fmt::format("{}: {} needs {} nodes and {} parameters", name, type.name, type.nodes.size(), type.parameters.size()));
   }
   EffectInPlace effect{.name = std::move(name), .type = &type, .node_index = {}, .parameter_index = {}};
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterSpec& spec = type.parameters[i];
+    effect.parameter_index.push_back(add_parameter({fmt::format("{}.{}", effect.name, spec.key), spec.unit, spec.range, parameters[i]}));
+  }
+  for (std::size_t role = 0; role < nodes.size(); ++role) {
+    if (const int capacity = type.nodes[role].own_capacity; capacity >= 0) {
+      add_state(nodes[role], effect.parameter_index[static_cast<std::size_t>(capacity)]);
+    }
+  }
   for (const std::string& node : nodes) {
     const int index = find_node(node);
     if (index < 0) {
       throw std::logic_error(fmt::format("{}: there is no node '{}'", effect.name, node));
     }
     effect.node_index.push_back(index);
-  }
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const ParameterSpec& spec = type.parameters[i];
-    effect.parameter_index.push_back(add_parameter({fmt::format("{}.{}", effect.name, spec.key), spec.unit, spec.range, parameters[i]}));
   }
   effects_.push_back(std::move(effect));
 }
@@ -79,14 +91,14 @@ void Network::limit_current_by(std::string_view copper_effect) {
   if (found == effects_.end() || found->parameter_index.size() != 2 || found->node_index.size() != 1) {
     throw std::logic_error(fmt::format("'{}' is no copper loss of this network", copper_effect));
   }
-  limiting_effect_ = static_cast<int>(found - effects_.begin());
+  copper_effect_ = static_cast<int>(found - effects_.begin());
 }
 
 template <class S>
 OperatingPoint<S> Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const {
   OperatingPoint<S> limited = at;
-  if (limiting_effect_ >= 0) {
-    const EffectInPlace& copper = effects_[static_cast<std::size_t>(limiting_effect_)];
+  if (copper_effect_ >= 0) {
+    const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
     const S rise_K = temperature_C[copper.node_index[0]] - 25.0;
     const S most_A =
         at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * (1.0 + parameters[copper.parameter_index[1]] * rise_K));
@@ -97,6 +109,14 @@ OperatingPoint<S> Network::within_headroom(const OperatingPoint<S>& at, const S*
     }
   }
   return limited;
+}
+
+std::size_t Network::booked_at(std::size_t turn) const {
+  const auto copper = static_cast<std::size_t>(copper_effect_);
+  if (copper_effect_ < 0 || turn > copper) {
+    return turn;
+  }
+  return turn == 0 ? copper : turn - 1;
 }
 
 std::vector<double> Network::values() const {
@@ -114,9 +134,13 @@ void Network::rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> param
   const std::size_t states = node_names_.size();
   std::fill_n(heat_W.begin(), states + 1, S(0.0));
   temperature_C[states] = at.ambient_C;
-  const OperatingPoint<S> limited = within_headroom(at, parameters.data(), temperature_C.data());
-  for (const EffectInPlace& effect : effects_) {
-    book<S>(effect, limited, parameters.data(), temperature_C.data(), heat_W.data());
+  OperatingPoint<S> seen = within_headroom(at, parameters.data(), temperature_C.data());
+  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
+    const EffectInPlace& effect = effects_[booked_at(turn)];
+    book<S>(effect, seen, parameters.data(), temperature_C.data(), heat_W.data());
+    if (turn == 0 && copper_effect_ >= 0) {
+      seen.copper_loss_W = heat_W[static_cast<std::size_t>(effect.node_index[0])];
+    }
   }
   for (std::size_t node = 0; node < states; ++node) {
     rate[node] = heat_W[node] / parameters[static_cast<std::size_t>(capacity_index_[node])];
@@ -129,9 +153,14 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
   temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
   std::ranges::fill(heat_W, 0.0);
-  const OperatingPoint<double> limited = within_headroom(at, parameters.data(), temperature_C.data());
-  for (std::size_t e = 0; e < effects_.size(); ++e) {
-    book<double>(effects_[e], limited, parameters.data(), temperature_C.data(), heat_W.data() + e * static_cast<std::size_t>(node_count()));
+  OperatingPoint<double> seen = within_headroom(at, parameters.data(), temperature_C.data());
+  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
+    const std::size_t e = booked_at(turn);
+    double* const row_W = heat_W.data() + e * static_cast<std::size_t>(node_count());
+    book<double>(effects_[e], seen, parameters.data(), temperature_C.data(), row_W);
+    if (turn == 0 && copper_effect_ >= 0) {
+      seen.copper_loss_W = row_W[effects_[e].node_index[0]];
+    }
   }
 }
 

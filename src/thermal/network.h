@@ -1,6 +1,7 @@
 // Nodes that store heat, effects that book it, and the parameters of both in one flat list.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,18 +26,31 @@ struct EffectInPlace {
   std::vector<int> parameter_index;
 };
 
+/// Rates of the state nodes and their derivatives at one moment; n state nodes, p parameters.
+struct Linearised {
+  Eigen::VectorXd rate_K_per_s;  ///< n
+  Eigen::MatrixXd by_state;      ///< n × n, 1/s
+  Eigen::MatrixXd by_parameter;  ///< n × p, K/s per unit of the parameter
+};
+
 /// The structure is shared by all samples; the values of the parameters are passed in, so that one network
 /// serves single runs, ensembles and fits. Ambient is the last node; its temperature is prescribed.
 class Network {
  public:
   static constexpr std::string_view kAmbient = "ambient";
+  /// Ambient included. Bounded so that rates, which are asked for a million times, find room on the stack.
+  static constexpr int kMostNodes = 16;
+  static constexpr int kMostRoles = 4;        ///< of one effect
+  static constexpr int kMostParameters = 16;  ///< of one effect
 
   /// Returns the node's index. `heat_capacity_J_per_K` > 0.
   int add_node(std::string name, double heat_capacity_J_per_K);
-  /// `nodes` and `parameters` in the order of the type's declaration. Nodes must exist.
+  /// `nodes` and `parameters` in the order of the type's declaration. Nodes must exist, but for a node of the effect's
+  /// own, which is added under the name given in its place.
   void add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters);
 
-  /// The current is cut to what the operating point's headroom drives through R25·(1+α·(T−25 °C)) of a copper loss.
+  /// Names the copper loss: its heat is the copper_loss_W that other laws see, and the current is cut to what the operating
+  /// point's headroom drives through its R25·(1+α·(T−25 °C)).
   /// `copper_effect` is the name of an effect with terminal_resistance and temperature_coefficient as its parameters.
   void limit_current_by(std::string_view copper_effect);
 
@@ -54,12 +68,20 @@ class Network {
   template <class S>
   void rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const;
 
+  /// Exact derivatives of the laws. The current is taken as given: the operating point's headroom must be infinite.
+  /// `state_C` has state_count() entries. Does not allocate where `out` has its shapes already.
+  void linearise(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
+                 Linearised& out) const;
+
   /// Heat in W that effect e books into node n, at heat_W[e · node_count() + n]; positive into the node.
   void balance_W(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                  std::span<double> heat_W) const;
 
  private:
   int add_parameter(NetworkParameter parameter);
+  int add_state(std::string name, int capacity_index);
+  /// Effects in the order in which they are booked: the copper loss first, for others look at its heat.
+  [[nodiscard]] std::size_t booked_at(std::size_t turn) const;
   template <class S>
   [[nodiscard]] OperatingPoint<S> within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
 
@@ -67,7 +89,7 @@ class Network {
   std::vector<int> capacity_index_;
   std::vector<EffectInPlace> effects_;
   std::vector<NetworkParameter> parameters_;
-  int limiting_effect_ = -1;  ///< whose resistance limits the current
+  int copper_effect_ = -1;
 };
 
 extern template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>,

@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <array>
+
+#include "thermal/network.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr int kMostRoles = Network::kMostRoles;
+constexpr int kMostParameters = Network::kMostParameters;
+
+/// What the copper loss of this moment depends on, for the laws that look at it.
+struct CopperGradient {
+  const EffectInPlace* effect = nullptr;
+  double heat_W = 0.0;
+  std::array<double, kMostRoles> by_temperature{};
+  std::array<double, kMostParameters> by_parameter{};
+};
+
+/// One effect with its temperatures, its parameters and the copper loss as numbers that carry derivatives, eight at a time.
+class LocalLaw {
+ public:
+  LocalLaw(const EffectInPlace& effect, std::span<const double> parameters, const double* temperature_C)
+      : effect_(effect), roles_(static_cast<int>(effect.node_index.size())), count_(static_cast<int>(effect.parameter_index.size())) {
+    for (int role = 0; role < roles_; ++role) {
+      temperature_C_[role] = Tangent(temperature_C[effect.node_index[role]]);
+    }
+    for (int i = 0; i < count_; ++i) {
+      parameter_[i] = Tangent(parameters[effect.parameter_index[i]]);
+    }
+  }
+
+  /// Roles, then parameters, then the copper loss.
+  [[nodiscard]] int direction_count() const { return roles_ + count_ + 1; }
+
+  /// Heat per role with its derivatives in the directions from `first` on.
+  void book(OperatingPoint<Tangent>& at, int first) {
+    for (int role = 0; role < roles_; ++role) {
+      seed(temperature_C_[role], role - first);
+      heat_W_[role] = Tangent(0.0);
+    }
+    for (int i = 0; i < count_; ++i) {
+      seed(parameter_[i], roles_ + i - first);
+    }
+    seed(at.copper_loss_W, roles_ + count_ - first);
+    static constexpr std::array<int, kMostParameters> kOwn{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const Situation<Tangent> situation(at, parameter_.data(), kOwn.data(), temperature_C_.data(), kOwn.data());
+    HeatBook<Tangent> heat(heat_W_.data(), kOwn.data());
+    effect_.type->laws.tangent(situation, heat);
+  }
+  [[nodiscard]] const Tangent& heat_W(int role) const { return heat_W_[role]; }
+
+ private:
+  static void seed(Tangent& number, int direction) {
+    number.v.setZero();
+    if (direction >= 0 && direction < kDirections) {
+      number.v[direction] = 1.0;
+    }
+  }
+
+  const EffectInPlace& effect_;
+  int roles_;
+  int count_;
+  std::array<Tangent, kMostRoles> temperature_C_;
+  std::array<Tangent, kMostParameters> parameter_;
+  std::array<Tangent, kMostRoles> heat_W_;
+};
+
+class Linearisation {
+ public:
+  Linearisation(std::span<const double> parameters, const double* temperature_C, int states, Linearised& out)
+      : parameters_(parameters), temperature_C_(temperature_C), states_(states), out_(out) {
+    out.rate_K_per_s.setZero(states);
+    out.by_state.setZero(states, states);
+    out.by_parameter.setZero(states, static_cast<Eigen::Index>(parameters.size()));
+  }
+
+  void add(const EffectInPlace& effect, OperatingPoint<Tangent>& at, CopperGradient* noted) {
+    LocalLaw law(effect, parameters_, temperature_C_);
+    const int roles = static_cast<int>(effect.node_index.size());
+    for (int first = 0; first < law.direction_count(); first += kDirections) {
+      law.book(at, first);
+      for (int role = 0; role < roles; ++role) {
+        const int node = effect.node_index[role];
+        if (node >= states_) {
+          continue;
+        }
+        if (first == 0) {
+          out_.rate_K_per_s[node] += law.heat_W(role).a;
+        }
+        for (int d = first; d < std::min(first + kDirections, law.direction_count()); ++d) {
+          add_derivative(effect, node, d, law.heat_W(role).v[d - first]);
+          if (noted && role == 0) {
+            note(*noted, roles, d, law.heat_W(role).v[d - first]);
+          }
+        }
+      }
+    }
+    if (noted) {
+      noted->effect = &effect;
+      noted->heat_W = law.heat_W(0).a;
+    }
+  }
+  void set_copper(const CopperGradient& copper) { copper_ = copper; }
+
+  /// From heat to rates: everything so far is in watts.
+  void divide_by(std::span<const int> capacity_index) {
+    for (int node = 0; node < states_; ++node) {
+      const int place = capacity_index[node];
+      const double capacity_J_per_K = parameters_[place];
+      out_.rate_K_per_s[node] /= capacity_J_per_K;
+      out_.by_state.row(node) /= capacity_J_per_K;
+      out_.by_parameter.row(node) /= capacity_J_per_K;
+      out_.by_parameter(node, place) -= out_.rate_K_per_s[node] / capacity_J_per_K;
+    }
+  }
+
+ private:
+  void add_derivative(const EffectInPlace& effect, int node, int direction, double slope) {
+    const int roles = static_cast<int>(effect.node_index.size());
+    const int count = static_cast<int>(effect.parameter_index.size());
+    if (slope == 0.0) {
+      return;
+    }
+    if (direction < roles) {
+      if (const int from = effect.node_index[direction]; from < states_) {
+        out_.by_state(node, from) += slope;
+      }
+    } else if (direction < roles + count) {
+      out_.by_parameter(node, effect.parameter_index[direction - roles]) += slope;
+    } else if (copper_.effect) {
+      const EffectInPlace& copper = *copper_.effect;
+      for (std::size_t role = 0; role < copper.node_index.size(); ++role) {
+        if (copper.node_index[role] < states_) {
+          out_.by_state(node, copper.node_index[role]) += slope * copper_.by_temperature[role];
+        }
+      }
+      for (std::size_t i = 0; i < copper.parameter_index.size(); ++i) {
+        out_.by_parameter(node, copper.parameter_index[i]) += slope * copper_.by_parameter[i];
+      }
+    }
+  }
+  static void note(CopperGradient& copper, int roles, int direction, double slope) {
+    if (direction < roles) {
+      copper.by_temperature[direction] = slope;
+    } else if (direction - roles < kMostParameters) {
+      copper.by_parameter[direction - roles] = slope;
+    }
+  }
+
+  std::span<const double> parameters_;
+  const double* temperature_C_;
+  int states_;
+  Linearised& out_;
+  CopperGradient copper_;
+};
+
+}  // namespace
+
+void Network::linearise(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
+                        Linearised& out) const {
+  std::array<double, kMostNodes> temperature_C{};
+  std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
+  temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
+  OperatingPoint<Tangent> seen;
+  for_each_quantity([](Tangent& to, const double& from) { to = Tangent(from); }, seen, at);
+  Linearisation linearisation(parameters, temperature_C.data(), state_count(), out);
+  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
+    const bool is_copper = turn == 0 && copper_effect_ >= 0;
+    CopperGradient copper;
+    linearisation.add(effects_[booked_at(turn)], seen, is_copper ? &copper : nullptr);
+    if (is_copper) {
+      linearisation.set_copper(copper);
+      seen.copper_loss_W = Tangent(copper.heat_W);
+    }
+  }
+  linearisation.divide_by(capacity_index_);
+}
+
+}  // namespace heatsoak

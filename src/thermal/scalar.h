@@ -1,0 +1,35 @@
+// The few functions that laws need beyond arithmetic, for every scalar that a law runs on.
+#pragma once
+
+#include <cmath>
+
+#include "base/lanes.h"
+#include "thermal/tangent.h"
+
+namespace heatsoak {
+
+/// |x|
+inline double magnitude(double x) { return std::abs(x); }
+inline Lanes magnitude(const Lanes& x) { return x.abs(); }
+inline Tangent magnitude(const Tangent& x) { return ceres::abs(x); }
+
+/// max(0, x)
+inline double positive_part(double x) { return x > 0.0 ? x : 0.0; }
+inline Lanes positive_part(const Lanes& x) { return x.max(0.0); }
+inline Tangent positive_part(const Tangent& x) { return x.a > 0.0 ? x : Tangent(0.0); }
+
+/// base^exponent for base > 0, and 0 with all its derivatives for base ≤ 0.
+inline double power(double base, double exponent) { return base > 0.0 ? std::pow(base, exponent) : 0.0; }
+inline Lanes power(const Lanes& base, const Lanes& exponent) { return (base > 0.0).select(base.max(1e-300).pow(exponent), 0.0); }
+inline Tangent power(const Tangent& base, const Tangent& exponent) { return base.a > 0.0 ? ceres::pow(base, exponent) : Tangent(0.0); }
+
+inline double exponential(double x) { return std::exp(x); }
+inline Lanes exponential(const Lanes& x) { return x.exp(); }
+inline Tangent exponential(const Tangent& x) { return ceres::exp(x); }
+
+/// 1/(1 + e^(−x)): a step that has derivatives.
+inline double soft_step(double x) { return 0.5 * (1.0 + std::tanh(0.5 * x)); }
+inline Lanes soft_step(const Lanes& x) { return 0.5 * (1.0 + (0.5 * x).tanh()); }
+inline Tangent soft_step(const Tangent& x) { return 0.5 * (1.0 + ceres::tanh(0.5 * x)); }
+
+}  // namespace heatsoak

@@ -1,0 +1,46 @@
+// A network over the rows of a log, with the exact derivatives of what was computed: for fits and for filters.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "thermal/network.h"
+
+namespace heatsoak {
+
+/// From the start of an interval to its end; n state nodes, w wanted parameters.
+struct NetworkStep {
+  Eigen::VectorXd state_C;       ///< n, at the end
+  Eigen::MatrixXd by_start;      ///< n × n: derivatives of it by the temperatures at the start, the transition matrix
+  Eigen::MatrixXd by_parameter;  ///< n × w: by the wanted parameters, per unit, with the start held
+};
+
+/// The classical Runge-Kutta method with its own derivatives; steps short against the fastest time constant. Derivatives of
+/// a heat that a constant source of 0 W brings into a node are the response to an unknown heat held over the interval.
+class TangentRun {
+ public:
+  /// `wanted`: places in the network's list of parameters.
+  TangentRun(const Network& network, std::span<const double> parameters, std::span<const int> wanted);
+
+  /// The result is valid until the next call. Throws Failure (numerics_failed) where temperatures leave −273 … 1000 °C or the
+  /// network is too fast for any sensible number of steps. Does not allocate.
+  const NetworkStep& over(std::span<const double> start_C, double duration_s, const OperatingPoint<double>& at);
+
+ private:
+  void one_step(double step_s, const OperatingPoint<double>& at);
+
+  const Network& network_;
+  std::vector<double> parameters_;
+  std::vector<int> wanted_;
+  NetworkStep step_;
+  Linearised slope_;
+  Eigen::VectorXd stage_C_;
+  Eigen::MatrixXd stage_by_start_;
+  Eigen::MatrixXd stage_by_parameter_;
+  Eigen::VectorXd rate_sum_;
+  Eigen::MatrixXd rate_by_start_, by_start_sum_;
+  Eigen::MatrixXd rate_by_parameter_, by_parameter_sum_;
+};
+
+}  // namespace heatsoak
