@@ -51,6 +51,8 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      "acceleration",
                                                      // of a square: in the root of its argument's unit
                                                      "root",
+                                                     // of a channel of a log: its quantity has the unit
+                                                     "columns", "noise", "saturates_high", "saturates_low", "step", "usual",
                                                      // VTK's own signature
                                                      "point",
                                                      // not a number

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kDelays = 61;
 constexpr int kParts = 8;  ///< of the log, left out in turn
-constexpr std::size_t kMostWindows = 1500;
+constexpr std::size_t kMostWindows = 600;
 constexpr std::size_t kFewestWindows = 40;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 

@@ -30,26 +30,27 @@ std::vector<char> increasing_rows(std::span<const double> time_s) {
   if (std::ranges::adjacent_find(time_s, std::greater_equal<>()) == time_s.end()) {
     return std::vector<char>(time_s.size(), 1);
   }
-  // Patience: tails[k] ends the best sequence of k + 1 rows. An equal time does not replace, so the first of them stays.
+  // Patience from the end: tails[k] begins the best sequence of k + 1 rows. Replaced by what stands before it where either
+  // would do, so that the first rows stay.
   std::vector<std::size_t> tails;
-  std::vector<std::size_t> before(time_s.size(), kNone);
-  for (std::size_t row = 0; row < time_s.size(); ++row) {
-    const auto place = std::ranges::lower_bound(tails, time_s[row], {}, [&](std::size_t tail) { return time_s[tail]; });
-    before[row] = place == tails.begin() ? kNone : *(place - 1);
+  std::vector<std::size_t> after(time_s.size(), kNone);
+  for (std::size_t row = time_s.size(); row-- > 0;) {
+    const auto place = std::ranges::lower_bound(tails, -time_s[row], {}, [&](std::size_t tail) { return -time_s[tail]; });
+    after[row] = place == tails.begin() ? kNone : *(place - 1);
     if (place == tails.end()) {
       tails.push_back(row);
-    } else if (time_s[row] < time_s[*place]) {
+    } else {
       *place = row;
     }
   }
   std::vector<char> stays(time_s.size(), 0);
-  for (std::size_t row = tails.empty() ? kNone : tails.back(); row != kNone; row = before[row]) {
+  for (std::size_t row = tails.empty() ? kNone : tails.back(); row != kNone; row = after[row]) {
     stays[row] = 1;
   }
   return stays;
 }
 
-std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> run_values,
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values,
                                     std::optional<double> longest_gap_s) {
   std::vector<std::size_t> begins;
   if (time_s.empty()) {
@@ -58,7 +59,7 @@ std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<co
   begins.push_back(0);
   const double longest_s = longest_gap_s.value_or(kLongestStep_ratio * usual_period_s(time_s));
   for (std::size_t row = 1; row < time_s.size(); ++row) {
-    if (time_s[row] - time_s[row - 1] > longest_s || (!run_values.empty() && changes(run_values[row - 1], run_values[row]))) {
+    if (time_s[row] - time_s[row - 1] > longest_s || (!values.empty() && changes(values[row - 1], values[row]))) {
       begins.push_back(row);
     }
   }
