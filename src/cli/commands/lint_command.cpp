@@ -32,7 +32,8 @@ std::vector<LintFinding> look_into(const std::filesystem::path& file) {
 /// A file, every file of a folder, or the file of an id.
 std::vector<std::string> files_named(const std::string& name, const DataFolders& folders) {
   std::vector<std::string> files;
-  if (std::filesystem::is_directory(name)) {
+  std::error_code unreachable;  // then reading it says why
+  if (std::filesystem::is_directory(name, unreachable)) {
     for (const std::string& id : ids_in(name)) {
       files.push_back((std::filesystem::path(name) / (id + ".toml")).string());
     }
@@ -41,7 +42,7 @@ std::vector<std::string> files_named(const std::string& name, const DataFolders&
     }
     return files;
   }
-  if (name.find('/') != std::string::npos || name.ends_with(".toml") || std::filesystem::exists(name)) {
+  if (name.find('/') != std::string::npos || name.ends_with(".toml") || std::filesystem::exists(name, unreachable)) {
     return {name};
   }
   std::vector<std::string> known;
