@@ -50,7 +50,7 @@ enum class PlanResult : unsigned char {
 
 /// A stretch of constant jerk, with the state at its start.
 template <typename Real>
-struct TrajectorySegment {
+struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): of sixteen in a Trajectory most hold no values
   Real start_s;
   Real duration_s;
   Real jerk;  ///< m/s3 or rad/s3

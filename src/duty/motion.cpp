@@ -343,13 +343,12 @@ std::optional<Motion> MotionTrack::at(double time_s) const {
 void MotionTrack::for_each(double rate_Hz, const std::function<void(const Motion&, std::size_t segment)>& visit) const {
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     const Segment& segment = segments_[s];
-    const double begin_s = segment.front().time_s;
+    const auto time_of = [&](std::size_t step) { return segment.front().time_s + static_cast<double>(step) / rate_Hz; };
     std::size_t step = 0;
     for (std::size_t i = 0; i + 1 < segment.size(); ++i) {
       const Piece piece(segment[i], segment[i + 1]);
-      for (double time_s = begin_s + static_cast<double>(step) / rate_Hz; time_s < segment[i + 1].time_s;
-           time_s = begin_s + static_cast<double>(++step) / rate_Hz) {
-        visit(piece.at(time_s), s);
+      for (; time_of(step) < segment[i + 1].time_s; ++step) {
+        visit(piece.at(time_of(step)), s);
       }
     }
   }

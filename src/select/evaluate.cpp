@@ -161,7 +161,7 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
   double share = 0.5;
   std::vector<Lanes> parameters;
   for (const double value : network.values()) {
-    parameters.push_back(Lanes::Constant(value));
+    parameters.emplace_back(Lanes::Constant(value));
   }
   for (int round = 0; round < kRounds; ++round) {
     const Lanes factor = Lanes::LinSpaced(low, high);
@@ -313,11 +313,12 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
         }
       });
   for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
-    const auto place = static_cast<std::size_t>(first_sample + lane);
+    const std::size_t place = static_cast<std::size_t>(first_sample) + static_cast<std::size_t>(lane);
     const MotorValues& values = block.motor(lane).values;
     work.winding_peak_C[place] = peak_C[winding][lane];
     work.stator_peak_C[place] = peak_C[stator][lane];
-    work.over_limit[place] = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
+    const bool is_over = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
+    work.over_limit[place] = is_over ? 1 : 0;
     const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
     const Feasibility each = feasibility(values, robot, duty.kind, demand, block.duty(lane), hottest_C);
     work.short_of_demand[place] = each.short_time_share > kTolerableShortTime ? each.limit : DriveLimit::none;

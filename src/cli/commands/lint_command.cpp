@@ -30,9 +30,10 @@ std::vector<LintFinding> look_into(const std::filesystem::path& file) {
 }
 
 /// A file, every file of a folder, or the file of an id.
-std::vector<std::string> files_named(const std::string& name, const DataFolders& folders) {
+std::vector<std::string> files_named(const std::string& name, const Session& session) {
   std::vector<std::string> files;
-  if (std::filesystem::is_directory(name)) {
+  std::error_code unreachable;  // then reading it says why
+  if (std::filesystem::is_directory(name, unreachable)) {
     for (const std::string& id : ids_in(name)) {
       files.push_back((std::filesystem::path(name) / (id + ".toml")).string());
     }
@@ -41,9 +42,10 @@ std::vector<std::string> files_named(const std::string& name, const DataFolders&
     }
     return files;
   }
-  if (name.find('/') != std::string::npos || name.ends_with(".toml") || std::filesystem::exists(name)) {
+  if (name.find('/') != std::string::npos || name.ends_with(".toml") || std::filesystem::exists(name, unreachable)) {
     return {name};
   }
+  const DataFolders folders = session.folders();
   std::vector<std::string> known;
   for (const std::filesystem::path& folder : {folders.motors, folders.robots, folders.duties}) {
     for (const std::string& id : ids_in(folder)) {
@@ -63,10 +65,9 @@ std::vector<std::string> files_named(const std::string& name, const DataFolders&
 std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
 ExitCode run(const std::vector<std::string>& names, Session& session) {
-  const DataFolders folders = session.folders();
   std::vector<std::string> files;
   for (const std::string& name : names) {
-    const std::vector<std::string> named = files_named(name, folders);
+    const std::vector<std::string> named = files_named(name, session);
     files.insert(files.end(), named.begin(), named.end());
   }
   std::vector<Diagnostic> unreadable;

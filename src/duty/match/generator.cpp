@@ -129,9 +129,11 @@ class Match {
     double done_s = 0.0;
     double length_s = std::max(command.duration_s, kStep_s);
     if (command.duel) {
-      for (length_s = std::max(left_s, kStep_s); !motion_->at_rest() && length_s - done_s > 0.5 * kStep_s; done_s += kStep_s) {
+      length_s = std::max(left_s, kStep_s);
+      while (!motion_->at_rest() && length_s - done_s > 0.5 * kStep_s) {
         motion_->advance(kStep_s);
         moment(phase, command, kStep_s, false);
+        done_s += kStep_s;
       }
       length_s = std::min(length_s, done_s + command.duration_s);
     }

@@ -1,6 +1,8 @@
 // The match as a duty.
 #pragma once
 
+#include <utility>
+
 #include "duty/duty.h"
 #include "duty/match/generator.h"
 
@@ -8,7 +10,7 @@ namespace heatsoak {
 
 class MatchDuty final : public DutyShape {
  public:
-  explicit MatchDuty(const MatchInputs& inputs) : inputs_(inputs) {}
+  explicit MatchDuty(MatchInputs inputs) : inputs_(std::move(inputs)) {}
 
   [[nodiscard]] const MatchInputs& inputs() const { return inputs_; }
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const override {

@@ -250,18 +250,21 @@ class PageBuilder {
                         line_px + 0.6 * limit_style.size_px};
       const bool has_room_outside =
           outside.right_px <= page_.width_px - 6.0 && outside.top_px > legend_bottom_px_ && !is_taken(outside, names, {});
-      Box box = at_right;
-      double base_px = y_px;
+      PlacedText text{
+          .text = name, .x_px = at_right.right_px, .y_px = y_px, .style = limit_style, .anchor = Anchor::right, .has_rim = true};
       if (const std::optional<Box> free = free_place(at_right, left_px_, names, curves)) {
-        box = *free;
+        text.x_px = free->right_px;
+        names.push_back(*free);
       } else if (has_room_outside) {
-        box = outside;
-        base_px = line_px + 0.36 * limit_style.size_px;
+        text.x_px = outside.left_px;
+        text.y_px = line_px + 0.36 * limit_style.size_px;
+        text.anchor = Anchor::left;
+        names.push_back(outside);
       } else {  // on a curve it is still readable, on another name it is not
-        box = free_place(at_right, left_px_, names, {}).value_or(at_right);
+        names.push_back(free_place(at_right, left_px_, names, {}).value_or(at_right));
+        text.x_px = names.back().right_px;
       }
-      names.push_back(box);
-      add({.text = name, .x_px = box.right_px, .y_px = base_px, .style = limit_style, .anchor = Anchor::right, .has_rim = true});
+      add(std::move(text));
     }
   }
 
