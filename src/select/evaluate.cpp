@@ -88,8 +88,10 @@ class Block {
         std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
     const auto by_speed = std::ranges::max_element(demand_.bins, {}, &LoadBin::speed_rms_rad_per_s);
     double step_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
+    constexpr double kHotter_K = 60.0;
     for (const auto& bin : {by_current, by_speed}) {
-      step_s = std::min(step_s, longest_step_s(network_, parameters_, point(*bin)));
+      const OperatingPoint<Lanes> at = point(*bin);
+      step_s = std::min({step_s, longest_step_s(network_, parameters_, at), longest_step_s(network_, parameters_, at, kHotter_K)});
     }
     if (demand_.duration_s() / step_s > static_cast<double>(kMostSteps)) {
       throw Failure(
@@ -171,6 +173,8 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
       OperatingPoint<Lanes> at;
       for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, at, interval.at);
       at.current_rms_A *= factor;
+      at.input_power_W = at.shaft_power_W * factor + (at.input_power_W - at.shaft_power_W) * factor * factor;
+      at.shaft_power_W *= factor;
       at.resistive_headroom_V = Lanes::Constant(std::numeric_limits<double>::infinity());
       run.over(interval.duration_s, at, longest_step_s(network, parameters, at));
     }
