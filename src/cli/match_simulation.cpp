@@ -72,7 +72,7 @@ constexpr TableRow kRows[] = {
     {"lowest battery voltage / V", [](const DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
     {"copper heat, all motors / kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
     {"  per metre / J", [](const DriveScore& s) { return fmt::format("{:.1f}", s.energy.copper_J / s.distance_m); }},
-    {"  of it in duels / %", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.copper_share_of_duels); }},
+    {"  of it in duels / %", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
     {"winding peak / °C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
     {"stator peak / °C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},
 };
@@ -155,7 +155,7 @@ nlohmann::ordered_json json(const Played& played) {
           {"lowest_battery_V", rounded(s.lowest_battery_V, 3)},
           {"winding_peak_C", rounded(s.winding_peak_C, 3)},
           {"stator_peak_C", rounded(s.stator_peak_C, 3)},
-          {"copper_share_of_duels", rounded(s.copper_share_of_duels, 4)},
+          {"duel_copper_share", rounded(s.duel_copper_share, 4)},
           {"energy", energy},
           {"phases", phases}};
 }

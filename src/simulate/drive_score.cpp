@@ -87,7 +87,7 @@ DriveScore DriveScorer::finish() {
   score_.tracking_rms_m = planned_moving_s_ > 0.0 ? std::sqrt(error_squared_m2_s_ / planned_moving_s_) : 0.0;
   score_.overshoot_mean_m /= std::max(1.0, score_.arrivals_count);
   score_.energy = robot_->energy();
-  score_.copper_share_of_duels = score_.energy.copper_J > 0.0 ? duel_copper_J_ / score_.energy.copper_J : 0.0;
+  score_.duel_copper_share = score_.energy.copper_J > 0.0 ? duel_copper_J_ / score_.energy.copper_J : 0.0;
   score_.current_rms_A = std::sqrt(*std::ranges::max_element(current_squared_A2_s_) / score_.time_s);
   for (int i = 0; i < robot_->wheel_count(); ++i) {
     if (robot_->winding_peak_C(i) > score_.winding_peak_C) {

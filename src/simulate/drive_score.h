@@ -25,7 +25,7 @@ struct DriveScore {
   double winding_peak_C = 0.0;
   double stator_peak_C = 0.0;
   int hottest_wheel = 0;  ///< from 0
-  double copper_share_of_duels = 0.0;
+  double duel_copper_share = 0.0;
   EnergyAccount energy;
 };
 

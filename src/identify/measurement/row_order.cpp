@@ -50,8 +50,7 @@ std::vector<char> increasing_rows(std::span<const double> time_s) {
   return stays;
 }
 
-std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values,
-                                    std::optional<double> longest_gap_s) {
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values, std::optional<double> longest_gap_s) {
   std::vector<std::size_t> begins;
   if (time_s.empty()) {
     return begins;
