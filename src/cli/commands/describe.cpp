@@ -220,7 +220,8 @@ Description describe_effect(const EffectType& effect) {
   result.text += "\n";
   say("typical size", effect.typical);
   say("look-alikes", effect.look_alike);
-  say("needs a log of", fmt::format("{}", fmt::join(needs, ", ")));
+  const bool has_choice = std::ranges::any_of(effect.parameters, [](const ParameterSpec& spec) { return !spec.choices.empty(); });
+  say("needs a log of", has_choice ? "the signal that was chosen" : fmt::format("{}", fmt::join(needs, ", ")));
   if (effect.candidacy.size_parameter >= 0) {
     say("family", effect.candidacy.family);
     say("to tell apart", effect.candidacy.experiment);

@@ -37,7 +37,9 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
     }
   } else if (what == "effects") {
     for (const EffectType& effect : all_effects()) {
-      result.push_back({std::string(effect.name), std::string(effect.summary)});
+      // The first sentence; `describe` has the rest.
+      const std::size_t end = effect.summary.find(". ");
+      result.push_back({std::string(effect.name), std::string(effect.summary.substr(0, end == std::string_view::npos ? end : end + 1))});
     }
   } else {
     for (const ShapeType& shape : all_shapes()) {
