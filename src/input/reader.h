@@ -41,6 +41,8 @@ class Reader {
   /// Every member of this table as a table of its own, for folders of named things.
   std::vector<std::pair<std::string, Reader>> named_tables();
 
+  /// Knows the key without looking at it: where another problem hides what it should hold.
+  void pass_over(std::string_view key) { asked_.insert(std::string(key)); }
   void finish();
 
   /// A problem of the value of `key`, or of the whole table where it has no such key.

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "input/document.h"
-#include "motor/datasheet_network.h"
+#include "motor/motor_effects.h"
 
 namespace heatsoak {
 namespace {
@@ -159,44 +159,6 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   }
 }
 
-void read_effects(Reader& top, Motor& motor) {
-  std::optional<Reader> table = top.table("effects", Need::optional);
-  if (!table) {
-    return;
-  }
-  std::vector<std::string> known;
-  for (const EffectType& type : all_effects()) {
-    known.emplace_back(type.name);
-  }
-  for (auto& [name, reader] : table->named_tables()) {
-    if (std::ranges::find(kDatasheetEffects, name) != kDatasheetEffects.end()) {
-      table->problem(name, "is the name of an effect that every motor has; give this one another name and say type = \"…\"");
-      continue;
-    }
-    const std::string type_name = reader.text("type", Need::optional).value_or(name);
-    const EffectType* type = find_effect(type_name);
-    if (!type) {
-      table->problem(
-          name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
-      continue;
-    }
-    MotorEffect effect{name, type, {}, {}};
-    for (const NodeRole& role : type->nodes) {
-      effect.nodes.push_back(reader.text(role.role, Need::optional).value_or(std::string(role.default_node)));
-      constexpr std::array<std::string_view, 3> kNodes{"winding", "stator", "ambient"};
-      if (std::ranges::find(kNodes, effect.nodes.back()) == kNodes.end()) {
-        reader.problem(role.role, fmt::format("'{}' is no node; expected winding, stator or ambient", effect.nodes.back()));
-      }
-    }
-    for (const ParameterSpec& spec : type->parameters) {
-      effect.parameters.push_back(reader.figure(spec, Need::required).value_or(Figure{}));
-    }
-    reader.finish();
-    motor.effects.push_back(std::move(effect));
-  }
-  table->finish();
-}
-
 }  // namespace
 
 std::span<const MotorFigureSpec> motor_figure_specs() { return kSpecs; }
@@ -230,7 +192,7 @@ Motor read_motor(const std::filesystem::path& path) {
   }
   motor.nominal.temperature_coefficient_per_K = kCopper_per_K;
   read_figures(top, motor, resistance_factor, torque_factor);
-  read_effects(top, motor);
+  motor.effects = read_effects(top);
   top.finish();
   check_sources(motor, diagnostics);
   diagnostics.throw_if_any();
@@ -269,7 +231,11 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
 std::string_view data_quality(const Motor& motor) {
   bool all_of_sheet = true;
   for (const MotorEffect& effect : motor.effects) {
-    for (const Figure& figure : effect.parameters) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      const Figure& figure = effect.parameters[i];
+      if (!effect.type->parameters[i].choices.empty()) {
+        continue;
+      }
       if (figure.origin == Origin::estimated) {
         return "estimated";
       }

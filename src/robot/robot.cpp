@@ -12,7 +12,7 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::array<RobotFigureSpec, 27> kSpecs{{
+constexpr std::array<RobotFigureSpec, 28> kSpecs{{
     {"body", {"yaw_inertia", "kg m2", Range::positive(), "about the vertical through the centre of gravity"}, &Robot::yaw_inertia_kg_m2},
     {"body", {"center_of_gravity_height", "m", Range::non_negative(), "above the ground"}, &Robot::center_of_gravity_height_m},
     {"body", {"center_of_gravity_x", "m", Range::any(), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
@@ -44,6 +44,7 @@ constexpr std::array<RobotFigureSpec, 27> kSpecs{{
      {"driver_resistance", "ohm", Range::non_negative(), "of switches and traces in series with one motor"},
      &Robot::driver_resistance_ohm},
     {"drive", {"driver_standby_power", "W", Range::non_negative(), "of one motor's driver without current"}, &Robot::driver_standby_W},
+    {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "how often the firmware commands the motors"}, &Robot::control_rate_Hz},
     {"battery", {"full_voltage", "V", Range::positive(), "open circuit, full"}, &Robot::battery_full_V},
     {"battery", {"empty_voltage", "V", Range::positive(), "open circuit, empty"}, &Robot::battery_empty_V},
     {"battery", {"internal_resistance", "ohm", Range::non_negative(), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
@@ -58,7 +59,7 @@ constexpr std::array<RobotFigureSpec, 27> kSpecs{{
      &Robot::yaw_acceleration_limit_rad_per_s2},
 }};
 
-constexpr std::array<std::string_view, 3> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency"};
+constexpr std::array<std::string_view, 4> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate"};
 
 void read_figures(Reader& reader, std::string_view table, Robot& robot) {
   for (const RobotFigureSpec& each : kSpecs) {

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
-#include <thread>
+#include <numeric>
+#include <tuple>
 
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
@@ -22,6 +20,8 @@ namespace {
 enum Node { winding, stator };
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
+/// Each takes as long as a nominal run of every motor; the percentiles of a duty's own spread are as coarse as that.
+constexpr int kMostDraws = 16;
 
 /// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
 class Block {
@@ -88,8 +88,10 @@ class Block {
         std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
     const auto by_speed = std::ranges::max_element(demand_.bins, {}, &LoadBin::speed_rms_rad_per_s);
     double step_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
+    constexpr double kHotter_K = 60.0;
     for (const auto& bin : {by_current, by_speed}) {
-      step_s = std::min(step_s, longest_step_s(network_, parameters_, point(*bin)));
+      const OperatingPoint<Lanes> at = point(*bin);
+      step_s = std::min({step_s, longest_step_s(network_, parameters_, at), longest_step_s(network_, parameters_, at, kHotter_K)});
     }
     if (demand_.duration_s() / step_s > static_cast<double>(kMostSteps)) {
       throw Failure(
@@ -171,6 +173,8 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
       OperatingPoint<Lanes> at;
       for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, at, interval.at);
       at.current_rms_A *= factor;
+      at.input_power_W = at.shaft_power_W * factor + (at.input_power_W - at.shaft_power_W) * factor * factor;
+      at.shaft_power_W *= factor;
       at.resistive_headroom_V = Lanes::Constant(std::numeric_limits<double>::infinity());
       run.over(interval.duration_s, at, longest_step_s(network, parameters, at));
     }
@@ -277,8 +281,20 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   }
 }
 
+/// The wheel that works hardest: with draws of a duty it stands for the hottest one, which is known only afterwards.
+const WheelDemand& hardest(const std::vector<WheelDemand>& wheels) {
+  const auto effort_Nm2_s = [](const WheelDemand& wheel) {
+    return std::accumulate(wheel.bins.begin(), wheel.bins.end(), 0.0, [](double sum_Nm2_s, const LoadBin& bin) {
+      return sum_Nm2_s + bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
+    });
+  };
+  return *std::ranges::max_element(wheels, {}, effort_Nm2_s);
+}
+
 void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
-  const Block block(*work.motor, robot, duty, *work.wheel, options, first_sample);
+  const std::size_t turn = static_cast<std::size_t>(first_sample / kLanes);
+  const WheelDemand& demand = options.draws.empty() ? *work.wheel : hardest(options.draws[turn % options.draws.size()]);
+  const Block block(*work.motor, robot, duty, demand, options, first_sample);
   const double cell_s = work.wheel->duration_s() / static_cast<double>(kBandCells);
   const auto samples = static_cast<std::size_t>(options.samples);
   std::size_t cell = 0;
@@ -291,8 +307,8 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
   };
   const std::vector<Lanes> peak_C = block.peaks(
       options.with_curves ? cell_s : std::numeric_limits<double>::infinity(), [&](double time_s, const std::vector<Lanes>& state_C) {
-        if (!options.with_curves) {
-          return;
+        if (!options.with_curves || time_s > work.wheel->duration_s() * (1.0 + 1e-9)) {
+          return;  // the picture ends with the nominal duty, a draw may go on
         }
         take(state_C);
         while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
@@ -308,16 +324,21 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
     const bool is_over = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
     work.over_limit[place] = is_over ? 1 : 0;
     const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
-    const Feasibility each = feasibility(values, robot, duty.kind, *work.wheel, block.duty(lane), hottest_C);
+    const Feasibility each = feasibility(values, robot, duty.kind, demand, block.duty(lane), hottest_C);
     work.short_of_demand[place] = each.short_time_share > kTolerableShortTime ? each.limit : DriveLimit::none;
   }
 }
 
-/// A percentile over the samples in every cell.
+/// A percentile over the samples in every cell that a sample has reached: draws of a duty end sooner or later.
 std::vector<double> percentile(const std::vector<float>& by_cell, int samples, double share) {
   std::vector<double> result;
   for (auto first = by_cell.begin(); first != by_cell.end(); first += samples) {
-    std::vector<double> sorted(first, first + samples);
+    std::vector<double> sorted;
+    std::copy_if(first, first + samples, std::back_inserter(sorted),
+                 [](float value_C) { return std::abs(value_C) < std::numeric_limits<float>::max(); });
+    if (sorted.empty()) {
+      break;
+    }
     std::ranges::sort(sorted);
     result.push_back(quantile(sorted, share));
   }
@@ -326,13 +347,13 @@ std::vector<double> percentile(const std::vector<float>& by_cell, int samples, d
 
 void finish_band(Work& work, int samples) {
   TemperatureCurves& curves = work.result.curves;
-  for (std::size_t cell = 0; cell < kBandCells; ++cell) {
-    curves.band_time_s.push_back(work.wheel->duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
-  }
   curves.winding_p05_C = percentile(work.winding_envelope_C.low_C, samples, 0.05);
   curves.winding_p95_C = percentile(work.winding_envelope_C.high_C, samples, 0.95);
   curves.stator_p05_C = percentile(work.stator_envelope_C.low_C, samples, 0.05);
   curves.stator_p95_C = percentile(work.stator_envelope_C.high_C, samples, 0.95);
+  for (std::size_t cell = 0; cell < curves.winding_p05_C.size(); ++cell) {
+    curves.band_time_s.push_back(work.wheel->duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
+  }
 }
 
 void conclude(Work& work, const EvaluateOptions& options) {
@@ -359,42 +380,6 @@ void conclude(Work& work, const EvaluateOptions& options) {
   }
 }
 
-/// Runs `count` jobs on all threads; the first exception ends the rest and is thrown here. For the progress
-/// they are the ones after `done` of `total`.
-template <class Job>
-void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress, const Job& job) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        job(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        error = error ? error : std::current_exception();
-        next = count;
-      }
-      const std::lock_guard lock(mutex);
-      ++done;
-      if (progress) {
-        progress(done, total);
-      }
-    }
-  };
-  const std::size_t all = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < std::min(all, count); ++i) {
-      helpers.emplace_back(work);
-    }
-    work();
-  }
-  if (error) {
-    std::rethrow_exception(error);
-  }
-}
-
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
@@ -405,6 +390,18 @@ std::string_view to_string(Verdict verdict) {
 std::string_view to_string(LimitingFactor factor) {
   constexpr std::array<std::string_view, 5> kNames{"none", "winding_temperature", "stator_temperature", "voltage", "current"};
   return kNames.at(static_cast<std::size_t>(factor));
+}
+
+int draw_count(const Duty& duty, int samples) {
+  return duty.shape_data->has_unknowns() ? std::min((samples + kLanes - 1) / kLanes, kMostDraws) : 0;
+}
+
+std::vector<std::vector<WheelDemand>> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
+                                                   const Progress& progress) {
+  std::vector<std::vector<WheelDemand>> draws(static_cast<std::size_t>(count));
+  in_parallel(draws.size(), threads, 0, draws.size(), progress,
+              [&](std::size_t draw) { draws[draw] = duty.shape_data->draw(robot, seed, draw); });
+  return draws;
 }
 
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,

@@ -232,6 +232,33 @@ TEST(Lint, fails_for_errors_and_tells_warnings) {
   EXPECT_THAT(warned.out, HasSubstr("1 file: 0 errors, 1 warning\n"));
 }
 
+/// What `describe` prints is ready to paste: an effect's lines behind a motor's.
+class EffectLines : public testing::TestWithParam<std::string> {};
+
+TEST_P(EffectLines, make_a_motor_file_that_runs) {
+  const std::string text = run({"describe", GetParam()}).out;
+  const std::string mark = "in a motor file:\n";
+  ASSERT_NE(text.find(mark), std::string::npos) << text;
+  const TemporaryFolder folder;
+  const fs::path motor = folder.path() / "motor.toml";
+  write(motor, content_of(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml") + "\n" + text.substr(text.find(mark) + mark.size()));
+  const ProgramRun lint = run({"lint", motor.string()});
+  EXPECT_EQ(lint.exit_code, 0) << lint.err << text;
+  const ProgramRun result =
+      run({"simulate", "--motor", motor.string(), "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--json", "-"});
+  EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.err;
+  EXPECT_TRUE(std::ranges::any_of(result.json().at("balance"), [](const json& row) { return row.at("effect") == "my_" + GetParam(); }));
+}
+
+INSTANTIATE_TEST_SUITE_P(catalogue, EffectLines, testing::ValuesIn([] {
+                           std::vector<std::string> ids;
+                           for (const std::string& file : files_of(kSource / "src" / "thermal" / "effects", "", ".cpp")) {
+                             ids.push_back(fs::path(file).stem().string());
+                           }
+                           return ids;
+                         }()),
+                         [](const auto& instance) { return instance.param; });
+
 // Exit codes and JSON.
 
 TEST(ExitCode, says_whether_a_limit_is_exceeded) {

@@ -105,6 +105,10 @@ std::string report(const std::vector<MotorEvaluation>& results, const Robot& rob
                                                              options.evaluate.samples == 1 ? "" : "s", options.evaluate.seed)
                                                : "nominal figures only",
                   duty.origin);
+  if (!options.evaluate.draws.empty()) {
+    text += fmt::format("spread of the duty is included: {} draw{} of its inputs and of the robot's figures, shared by the samples\n",
+                        options.evaluate.draws.size(), options.evaluate.draws.size() == 1 ? "" : "s");
+  }
   text += fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict", "limited by",
                       "winding peak °C", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -160,6 +164,10 @@ ExitCode run(Options& options, Session& session) {
   const std::vector<Motor> motors = read_motors(options.motors, folders);
   options.evaluate.with_curves = !options.plot.empty();
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
+  const std::vector<std::vector<WheelDemand>> draws =
+      draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples), options.evaluate.threads,
+                   progress_bar(fmt::format("playing draws of {}", duty.id)));
+  options.evaluate.draws = draws;
   const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
@@ -173,7 +181,8 @@ ExitCode run(Options& options, Session& session) {
                                 {"duty", duty.id},
                                 {"duty_origin", duty.origin},
                                 {"seed", options.evaluate.seed},
-                                {"samples", options.evaluate.samples}};
+                                {"samples", options.evaluate.samples},
+                                {"duty_draws", draws.size()}};
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
   for (const MotorEvaluation& each : results) {

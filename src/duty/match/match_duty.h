@@ -16,6 +16,14 @@ class MatchDuty final : public DutyShape {
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const override {
     return play_match(inputs_, inputs_.nominal(), robot, seed, Planner::jerk_limited).wheels;
   }
+  [[nodiscard]] bool has_unknowns() const override { return true; }
+  /// Another game with other inputs by a robot with other figures.
+  [[nodiscard]] std::vector<WheelDemand> draw(const Robot& robot, std::uint64_t seed, std::uint64_t draw) const override {
+    constexpr std::uint64_t kBehindTheSamples = std::uint64_t{1} << 32;
+    Random random(seed, kBehindTheSamples + draw);
+    const MatchValues values = inputs_.draw(random);
+    return play_match(inputs_, values, draw_sample(robot, random), seed + kBehindTheSamples * (draw + 1), Planner::jerk_limited).wheels;
+  }
 
  private:
   MatchInputs inputs_;

@@ -1,0 +1,68 @@
+#include "identify/measurement/row_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/measurement/noise.h"
+
+namespace heatsoak {
+namespace {
+
+/// Three, and a little: a step of exactly three periods must not split by rounding.
+constexpr double kLongestStep_ratio = 3.0 * (1.0 + 1e-6);
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+bool changes(double before, double after) { return before != after && !(std::isnan(before) && std::isnan(after)); }
+
+}  // namespace
+
+double usual_period_s(std::span<const double> time_s) {
+  constexpr std::size_t kMostSteps = 200'000;  // of a long log, spread evenly
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < time_s.size(); i += time_s.size() / kMostSteps + 1) {
+    steps_s.push_back(time_s[i] - time_s[i - 1]);
+  }
+  return median_of(std::move(steps_s));
+}
+
+std::vector<char> increasing_rows(std::span<const double> time_s) {
+  if (std::ranges::adjacent_find(time_s, std::greater_equal<>()) == time_s.end()) {
+    return std::vector<char>(time_s.size(), 1);
+  }
+  // Patience from the end: tails[k] begins the best sequence of k + 1 rows. Replaced by what stands before it where either
+  // would do, so that the first rows stay.
+  std::vector<std::size_t> tails;
+  std::vector<std::size_t> after(time_s.size(), kNone);
+  for (std::size_t row = time_s.size(); row-- > 0;) {
+    const auto place = std::ranges::lower_bound(tails, -time_s[row], {}, [&](std::size_t tail) { return -time_s[tail]; });
+    after[row] = place == tails.begin() ? kNone : *(place - 1);
+    if (place == tails.end()) {
+      tails.push_back(row);
+    } else {
+      *place = row;
+    }
+  }
+  std::vector<char> stays(time_s.size(), 0);
+  for (std::size_t row = tails.empty() ? kNone : tails.back(); row != kNone; row = after[row]) {
+    stays[row] = 1;
+  }
+  return stays;
+}
+
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values, std::optional<double> longest_gap_s) {
+  std::vector<std::size_t> begins;
+  if (time_s.empty()) {
+    return begins;
+  }
+  begins.push_back(0);
+  const double longest_s = longest_gap_s.value_or(kLongestStep_ratio * usual_period_s(time_s));
+  for (std::size_t row = 1; row < time_s.size(); ++row) {
+    if (time_s[row] - time_s[row - 1] > longest_s || (!values.empty() && changes(values[row - 1], values[row]))) {
+      begins.push_back(row);
+    }
+  }
+  return begins;
+}
+
+}  // namespace heatsoak
