@@ -91,6 +91,7 @@ function(add_messages name file)
   add_library(${name} STATIC "${out}/${stem}.pb.cc" "${out}/${stem}.pb.h")
   target_include_directories(${name} SYSTEM PUBLIC "${out}")
   target_link_libraries(${name} PUBLIC protobuf::libprotobuf-lite)
+  set_target_properties(${name} PROPERTIES CXX_CLANG_TIDY "")
 endfunction()
 
 function(add_program name)
