@@ -127,7 +127,7 @@ struct Extended {
   std::vector<double> start_C;
 };
 
-Extended extended_by(const Candidate& candidate, Extended extended, double ambient_C) {
+void extend(Extended& extended, const Candidate& candidate, double ambient_C) {
   std::vector<double> parameters = candidate.parameters;
   const auto size = static_cast<std::size_t>(candidate.size_parameter());
   parameters[size] = 0.0;
@@ -140,7 +140,6 @@ Extended extended_by(const Candidate& candidate, Extended extended, double ambie
   }
   extended.network.add_effect(fmt::format("candidate {}", extended.sizes.size()), *candidate.type, nodes, parameters);
   extended.sizes.push_back(extended.network.effects().back().parameter_index[size]);
-  return extended;
 }
 
 }  // namespace
@@ -173,7 +172,7 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Model&
   extended.start_C.assign(start_C.begin(), start_C.end());
   for (const Candidate& candidate : candidates) {
     if (candidate.type) {
-      extended = extended_by(candidate, std::move(extended), run.at.front().ambient_C);
+      extend(extended, candidate, run.at.front().ambient_C);
     }
   }
   std::vector<double> values = extended.network.values();

@@ -70,17 +70,26 @@ RunEvidence EvidenceTable::selected(const RunEvidence& run, std::span<const int>
   return {decomposition.matrixQR().topRows(tall.cols()).triangularView<Eigen::Upper>(), run.log_determinant, run.count};
 }
 
-LinearFit EvidenceTable::fit(std::span<const RunEvidence> runs, std::span<const int> set) const {
+ThetaPrior EvidenceTable::prior_of(std::span<const int> set) const {
   const auto count = free_count() + static_cast<Eigen::Index>(set.size());
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(count);
-  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
-  mean.head(free_count()) = prior_.mean;
-  precision.topLeftCorner(free_count(), free_count()) = prior_.precision;
+  ThetaPrior prior{Eigen::MatrixXd::Zero(count, count), Eigen::VectorXd::Zero(count)};
+  prior.mean.head(free_count()) = prior_.mean;
+  prior.precision.topLeftCorner(free_count(), free_count()) = prior_.precision;
   for (std::size_t i = 0; i < set.size(); ++i) {
     const double sd_share = candidates_[static_cast<std::size_t>(set[i])].prior_sd_share;
-    precision(free_count() + static_cast<Eigen::Index>(i), free_count() + static_cast<Eigen::Index>(i)) = 1.0 / (sd_share * sd_share);
+    const Eigen::Index own = free_count() + static_cast<Eigen::Index>(i);
+    prior.precision(own, own) = 1.0 / (sd_share * sd_share);
   }
-  return linear_fit(runs, mean, precision);
+  return prior;
+}
+
+double EvidenceTable::misfit_now(const FluxGrid::Place& place) {
+  return at(place).all.triangle.rightCols<1>().squaredNorm() + prior_.mean.dot(prior_.precision * prior_.mean);
+}
+
+LinearFit EvidenceTable::fit(std::span<const RunEvidence> runs, std::span<const int> set) const {
+  const ThetaPrior prior = prior_of(set);
+  return linear_fit(runs, prior.mean, prior.precision);
 }
 
 SetScore EvidenceTable::score(std::span<const int> set, const FluxGrid::Place& place) {

@@ -85,6 +85,12 @@ class EvidenceTable {
 
   [[nodiscard]] const FluxGrid& grid() const { return grid_; }
   [[nodiscard]] std::span<const DesignRun> runs() const { return runs_; }
+  /// Of θ and a set's sizes.
+  [[nodiscard]] ThetaPrior prior_of(std::span<const int> set) const;
+  /// Whitened squares that are left where the columns were taken, the start temperatures at their best, the prior's included.
+  [[nodiscard]] double misfit_now(const FluxGrid::Place& place);
+  /// Triangle of [θ, candidates, residual] of all runs.
+  [[nodiscard]] const RunEvidence& all_runs(const FluxGrid::Place& place) { return at(place).all; }
   [[nodiscard]] Eigen::Index free_count() const { return prior_.mean.size(); }
   [[nodiscard]] int places_visited() const { return static_cast<int>(reduced_.size()); }
 
