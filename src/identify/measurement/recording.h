@@ -1,0 +1,43 @@
+// A log as everything that learns from measurements sees it: canonical quantities, checked, in columns.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "identify/measurement/quantities.h"
+
+namespace heatsoak {
+
+struct Channel {
+  Quantity quantity;
+  std::vector<double> values;  ///< one per row, in the quantity's unit; NaN where left out or not recorded
+};
+
+/// Rows of a log. Heat inputs and surroundings stand for the interval from the row's time to the next row's (a current is
+/// the rms over it with the sign of its mean, the others are means), whatever the logger did: loggers with other habits
+/// are brought to this one while reading. Temperatures and other signals are instantaneous.
+struct Recording {
+  std::string name;  ///< the file's stem
+  std::filesystem::path file;
+  std::string motor;                              ///< as the mapping names it; may be empty
+  std::map<std::string, std::string> conditions;  ///< "fan" -> "on"; as the mapping names them
+  std::vector<double> time_s;                     ///< strictly increasing
+  std::vector<int> line;                          ///< of each row in the file, from 1 as an editor counts
+  std::vector<Channel> channels;
+  std::vector<std::size_t> run_begins;  ///< rows before which what happened is unknown; the first one is 0
+
+  [[nodiscard]] const Channel* find(std::string_view key) const;
+  [[nodiscard]] std::size_t rows() const { return time_s.size(); }
+  /// [begin, end) of each run.
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> runs() const;
+};
+
+/// The median time between two rows; 0 with less than two rows.
+double usual_period_s(const Recording& recording);
+
+}  // namespace heatsoak

@@ -1,0 +1,15 @@
+// Samples of temperatures that no sensor in order can give: frozen, saturated, outliers.
+#pragma once
+
+#include "identify/measurement/recording.h"
+#include "identify/measurement/recording_report.h"
+
+namespace heatsoak {
+
+/// Makes them NaN and reports them by line. Heat inputs and other signals may rightly jump and rest: they stay as they are.
+/// - frozen: exactly one value for longer than the channel's noise allows, or until an isolated jump frees it;
+/// - saturated: the same at the channel's largest or smallest value, or a climb that stops dead there;
+/// - outlier: further from the median of its seven neighbours than 6 median deviations (Hampel), and than 4 usual changes.
+void leave_out_bad_samples(Recording& recording, RecordingReport& report);
+
+}  // namespace heatsoak
