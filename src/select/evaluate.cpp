@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
-#include <thread>
 
 #include "base/diagnostic.h"
+#include "base/parallel.h"
 #include "motor/datasheet_network.h"
 #include "select/drive_profile.h"
 #include "thermal/ensemble.h"
@@ -358,42 +355,6 @@ void conclude(Work& work, const EvaluateOptions& options) {
   }
 }
 
-/// Runs `count` jobs on all threads; the first exception ends the rest and is thrown here. For the progress
-/// they are the ones after `done` of `total`.
-template <class Job>
-void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress, const Job& job) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        job(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        error = error ? error : std::current_exception();
-        next = count;
-      }
-      const std::lock_guard lock(mutex);
-      ++done;
-      if (progress) {
-        progress(done, total);
-      }
-    }
-  };
-  const std::size_t all = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < std::min(all, count); ++i) {
-      helpers.emplace_back(work);
-    }
-    work();
-  }
-  if (error) {
-    std::rethrow_exception(error);
-  }
-}
-
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
@@ -420,13 +381,19 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
   }
-  const std::size_t jobs = motors.size() * (blocks + 1);
+  std::size_t done = 0;
+  const auto tell = [&] {
+    if (++done; progress) {
+      progress(done, motors.size() * (blocks + 1));
+    }
+  };
   // The samples need to know the hottest wheel, so every motor's nominal run comes first.
-  in_parallel(motors.size(), options.threads, 0, jobs, progress,
-              [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
-  in_parallel(motors.size() * blocks, options.threads, motors.size(), jobs, progress, [&](std::size_t job) {
+  const auto nominal = [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); };
+  in_parallel(motors.size(), options.threads, nominal, tell);
+  const auto samples_of = [&](std::size_t job) {
     evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * kLanes);
-  });
+  };
+  in_parallel(motors.size() * blocks, options.threads, samples_of, tell);
   std::vector<MotorEvaluation> results;
   for (Work& work : works) {
     conclude(work, options);
