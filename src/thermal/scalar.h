@@ -19,11 +19,9 @@ inline Lanes positive_part(const Lanes& x) { return x.max(0.0); }
 inline Tangent positive_part(const Tangent& x) { return x.a > 0.0 ? x : Tangent(0.0); }
 
 /// A positive part without a kink: (x + √(x² + width²))/2, half the width at 0; in the unit of x.
-template <class S>
-S soft_positive_part(const S& x, double width) {
-  using std::sqrt;
-  return 0.5 * (x + sqrt(x * x + width * width));
-}
+inline double soft_positive_part(double x, double width) { return 0.5 * (x + std::sqrt(x * x + width * width)); }
+inline Lanes soft_positive_part(const Lanes& x, double width) { return 0.5 * (x + (x * x + width * width).sqrt()); }
+inline Tangent soft_positive_part(const Tangent& x, double width) { return 0.5 * (x + ceres::sqrt(x * x + width * width)); }
 
 /// base^exponent for base > 0, and 0 with all its derivatives for base ≤ 0.
 inline double power(double base, double exponent) { return base > 0.0 ? std::pow(base, exponent) : 0.0; }
