@@ -13,10 +13,6 @@ constexpr int kKnots = 7;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
-double log_determinant(const Eigen::MatrixXd& symmetric) {
-  return 2.0 * symmetric.llt().matrixL().toDenseMatrix().diagonal().array().log().sum();
-}
-
 std::vector<double> knots_of(const Driver& driver) {
   if (driver.kind == DriverKind::run) {
     return {1.0};
@@ -26,18 +22,6 @@ std::vector<double> knots_of(const Driver& driver) {
     knots[static_cast<std::size_t>(i)] = driver.low + (driver.high - driver.low) * i / (kKnots - 1.0);
   }
   return knots;
-}
-
-/// Π = 0.1/τ² · I + 2/τ² · DᵀD, with τ the usual size of the curve; for a run alone 1/τ².
-Eigen::MatrixXd precision_of(Eigen::Index knots, double usual) {
-  Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(knots, knots) * (knots > 1 ? 0.1 : 1.0);
-  for (Eigen::Index i = 0; i + 1 < knots; ++i) {
-    precision(i, i) += 2.0;
-    precision(i + 1, i + 1) += 2.0;
-    precision(i, i + 1) -= 2.0;
-    precision(i + 1, i) -= 2.0;
-  }
-  return precision / (usual * usual);
 }
 
 /// How the sensors answer to heats held over the intervals: `heat_W` (intervals × c) into the node with place `flux`, out of `other`.
@@ -226,7 +210,7 @@ class Scanner {
     Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(inner + size, inner + size);
     mean.head(inner) = prior.mean;
     precision.topLeftCorner(inner, inner) = prior.precision;
-    precision.bottomRightCorner(size, size) = precision_of(size, 1.0);
+    precision.bottomRightCorner(size, size) = curve_precision(size);
     const LinearFit fit = linear_fit(evidence, mean, precision);
     return {fit.log_evidence, family.usual * fit.coefficients.tail(size),
             family.usual * family.usual * fit.covariance.bottomRightCorner(size, size)};
@@ -263,7 +247,7 @@ class Scanner {
   }
 
   [[nodiscard]] ScanResult result(const Family& family, const Scored& scored, const FluxGrid::Place& place, double gain_nats) const {
-    ScanResult out{family.term, gain_nats, family.knots, scored.curve, scored.covariance, 0.0, 0.0, place};
+    ScanResult out{family.term, family.usual, gain_nats, family.knots, scored.curve, scored.covariance, 0.0, 0.0, place};
     std::vector<double> magnitude_W;
     const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     for (std::size_t r = 0; r < input_.runs->size(); ++r) {
@@ -329,6 +313,17 @@ Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const
     along[k] = fitted.state_C(node, k) - other_C;
   }
   return along;
+}
+
+Eigen::MatrixXd curve_precision(Eigen::Index knots) {
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(knots, knots) * (knots > 1 ? 0.1 : 1.0);
+  for (Eigen::Index i = 0; i + 1 < knots; ++i) {
+    precision(i, i) += 2.0;
+    precision(i + 1, i + 1) += 2.0;
+    precision(i, i + 1) -= 2.0;
+    precision(i + 1, i) -= 2.0;
+  }
+  return precision;
 }
 
 Eigen::VectorXd hats(const std::vector<double>& knots, double value) {

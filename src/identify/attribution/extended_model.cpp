@@ -90,8 +90,8 @@ double ExtendedModel::high(Eigen::Index coordinate) const {
 std::vector<double> ExtendedModel::values_in(const MeasuredRun& run) const {
   std::vector<double> values = model.values;
   for (const ConditionalTerm& term : conditional) {
-    for (const int place : term.places) {
-      values[static_cast<std::size_t>(place)] *= has_condition(run, term.condition) ? 1.0 : 0.0;
+    if (!has_condition(run, term.condition)) {
+      values[static_cast<std::size_t>(term.place)] = term.off_value;
     }
   }
   return values;
@@ -117,7 +117,7 @@ LinearisedRun linearise(const ExtendedModel& model, std::span<const double> star
   by_theta.leftCols(model.model.free_count()) = heatsoak::by_theta(model.model, model.model.theta(), out.by_parameter);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     for (const ConditionalTerm& term : model.conditional) {
-      if (std::ranges::find(term.places, wanted[i]) != term.places.end() && !has_condition(run, term.condition)) {
+      if (term.place == wanted[i] && !has_condition(run, term.condition)) {
         by_theta.col(static_cast<Eigen::Index>(i)).setZero();
       }
     }

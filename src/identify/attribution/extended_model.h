@@ -10,9 +10,11 @@
 
 namespace heatsoak {
 
-/// Parameters of the network that are as they are where a run has the condition, and 0 elsewhere.
+/// An effect of the network that acts only where a run has the condition.
 struct ConditionalTerm {
-  std::vector<int> places;
+  std::string effect_name;
+  int place = 0;               ///< of the parameter that switches it
+  double off_value = 0.0;      ///< with which the effect does nothing
   std::map<std::string, std::string> condition;
 };
 

@@ -78,6 +78,8 @@ class Selector {
     options_.place = out_.before.place;
     out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
     out_.after = out_.before;
+    out_.grid = options_.grid;
+    out_.weights = options_.weights;
     while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
     }
     check_backwards();
@@ -216,8 +218,11 @@ class Selector {
     const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
     const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
     if (best_scan_nats >= least && best_scan_nats > best_nats + rules_.outside_beyond_nats &&
-        best_scan_nats > catalogue_gain_nats(round, candidates, table, base) + rules_.outside_beyond_nats && take_curve(round)) {
-      return true;
+        best_scan_nats > catalogue_gain_nats(round, candidates, table, base) + rules_.outside_beyond_nats) {
+      if (take_curve(round)) {
+        return true;
+      }
+      out_.open_curve = round.scan.front();
     }
     if (best_nats < least) {
       return false;
@@ -283,14 +288,26 @@ class Selector {
     for (std::size_t i = out_.terms.size(); i-- > 0;) {
       RefitOptions options = options_;
       options.place = out_.after.place;
-      RefitResult without = refit(without_term(out_.after.model, out_.terms[i].effect_name, out_.terms[i].candidate), input_.runs,
-                                  out_.before.start_C, options);
+      RefitResult without = refit(with_values_of(with_terms_except(i), out_.after.model), input_.runs, out_.before.start_C, options);
       out_.terms[i].loss_without_nats = out_.after.evidence_nats - without.evidence_nats;
       if (out_.terms[i].loss_without_nats < rules_.least_gain_nats) {
         out_.after = std::move(without);
         out_.terms.erase(out_.terms.begin() + static_cast<std::ptrdiff_t>(i));
       }
     }
+  }
+
+  [[nodiscard]] ExtendedModel with_terms_except(std::size_t left_out) const {
+    ExtendedModel model = out_.before.model;
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      if (i == left_out) {
+        continue;
+      }
+      const AcceptedTerm& term = out_.terms[i];
+      model = term.candidate ? with_candidate(model, *term.candidate, 1.0)
+                             : *with_curve(model, *term.curve, out_.drivers[static_cast<std::size_t>(term.curve->term.driver)]);
+    }
+    return model;
   }
 
   const SelectionInput& input_;

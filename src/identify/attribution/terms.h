@@ -15,7 +15,7 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
 /// Nothing where physics forbids it (a loss below zero) or no operating point has the driver.
 std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver);
 
-/// Without the effect of that name, or without the candidate's sensor fault.
-ExtendedModel without_term(const ExtendedModel& model, const std::string& effect_name, const std::optional<Candidate>& candidate);
+/// `model` with the values that parameters and sensors of the same name have in `other`.
+ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other);
 
 }  // namespace heatsoak
