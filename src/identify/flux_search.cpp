@@ -10,40 +10,46 @@ namespace {
 
 constexpr double kLeastShare = 1e-3;
 constexpr double kMostShare = 2.0;
+constexpr double kReference_s = 160.0;
 /// Beyond this a coordinate is not told by the data, and a standard deviation says nothing.
 constexpr double kWidest = 1.2;
 
-/// Coordinates: logarithm of each size in units of the mean heat, logarithm of the time scale in s.
+/// Coordinates: the logarithm of the time scale in s, and for each flux that of its size, in units of the mean heat, over the root of the
+/// time scale in kReference_s: what a flux does within a time that is short against its own scale hangs on this ratio alone.
 class Space {
  public:
   explicit Space(const FluxRange& range) : range_(range) {}
 
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(range_.count) + 1; }
   [[nodiscard]] Eigen::VectorXd inside(Eigen::VectorXd x) const {
+    double& time_scale = x[size() - 1];
+    time_scale = std::clamp(time_scale, std::log(range_.shortest_s), std::log(range_.longest_s));
     for (Eigen::Index i = 0; i + 1 < size(); ++i) {
-      x[i] = std::clamp(x[i], std::log(kLeastShare), std::log(kMostShare));
+      const double half = shift(time_scale);
+      x[i] = std::clamp(x[i], std::log(kLeastShare) - half, std::log(kMostShare) - half);
     }
-    x[size() - 1] = std::clamp(x[size() - 1], std::log(range_.shortest_s), std::log(range_.longest_s));
     return x;
   }
   [[nodiscard]] LatentFlux flux(const Eigen::VectorXd& x) const {
     LatentFlux flux;
     flux.time_scale_s = std::exp(x[size() - 1]);
     for (Eigen::Index i = 0; i + 1 < size(); ++i) {
-      flux.rms_W.push_back(range_.unit_W * std::exp(x[i]));
+      flux.rms_W.push_back(range_.unit_W * std::exp(x[i] + shift(x[size() - 1])));
     }
     return flux;
   }
   [[nodiscard]] Eigen::VectorXd point(const LatentFlux& flux) const {
     Eigen::VectorXd x(size());
-    for (Eigen::Index i = 0; i + 1 < size(); ++i) {
-      x[i] = std::log(std::max(flux.rms_W[static_cast<std::size_t>(i)] / range_.unit_W, kLeastShare));
-    }
     x[size() - 1] = std::log(flux.time_scale_s);
+    for (Eigen::Index i = 0; i + 1 < size(); ++i) {
+      x[i] = std::log(std::max(flux.rms_W[static_cast<std::size_t>(i)] / range_.unit_W, kLeastShare)) - shift(x[size() - 1]);
+    }
     return inside(x);
   }
 
  private:
+  static double shift(double log_time_scale) { return 0.5 * (log_time_scale - std::log(kReference_s)); }
+
   const FluxRange& range_;
 };
 
@@ -145,7 +151,7 @@ LatentFlux most_probable_flux(const FluxEvidence& evidence, const FluxRange& ran
     x = space.point(start);
   } else {
     x.setConstant(std::log(0.02));
-    x[space.size() - 1] = std::log(160.0);
+    x[space.size() - 1] = std::log(kReference_s);
     x = space.inside(x);
   }
   double value = at(evidence, space, {x}).front();
