@@ -22,4 +22,13 @@ std::string to_string(const Range& range, std::string_view unit) {
   return fmt::format("{} to {}", with_unit(range.low), with_unit(range.high));
 }
 
+std::string_view unit_of(std::span<const ParameterSpec> specs, std::size_t place, std::span<const double> values) {
+  const int decided_by = specs[place].unit_of;
+  if (decided_by < 0) {
+    return specs[place].unit;
+  }
+  const auto at = static_cast<std::size_t>(decided_by);
+  return specs[at].choices[static_cast<std::size_t>(values[at])].unit;
+}
+
 }  // namespace heatsoak

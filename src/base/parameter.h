@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,11 +27,28 @@ struct Range {
 /// "a positive value", "0 … 1": for messages and documentation.
 std::string to_string(const Range& range, std::string_view unit);
 
+/// One of the things that a parameter may name instead of a number.
+struct Choice {
+  std::string_view name;  ///< as a file has it
+  std::string_view unit;  ///< of the parameters that take theirs from this choice
+  std::string_view meaning;
+};
+
 struct ParameterSpec {
   std::string_view key;
   std::string_view unit;  ///< UDUNITS text; "" is a pure number
   Range range;
   std::string_view meaning;
+  /// Where there are any, a file has one of their names and the value is its place; never sampled, never fitted. Static.
+  std::span<const Choice> choices = {};
+  int unit_of = -1;  ///< place of the choice among the parameters whose unit this one takes
+
+  static constexpr ParameterSpec choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning) {
+    return {key, "", Range::between(0.0, static_cast<double>(choices.size() - 1)), meaning, choices};
+  }
 };
+
+/// The unit of parameter `place`, given the values of those declared before it.
+std::string_view unit_of(std::span<const ParameterSpec> specs, std::size_t place, std::span<const double> values);
 
 }  // namespace heatsoak

@@ -78,7 +78,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
   const TransientResult result = run_transient(network, parameters, all, options, add_row);
   trace.balance = balance(network, result);
   for (int node = 0; node < network.state_count(); ++node) {
-    const double capacity_J_per_K = parameters[static_cast<std::size_t>(node)];
+    const double capacity_J_per_K = parameters[static_cast<std::size_t>(network.capacity_index(node))];
     trace.stored_W += capacity_J_per_K * (result.end_C[static_cast<std::size_t>(node)] - demand.ambient_C) / result.end_s;
   }
   return trace;

@@ -31,7 +31,7 @@ int Network::add_parameter(NetworkParameter parameter) {
 }
 
 int Network::add_node(std::string name, double heat_capacity_J_per_K) {
-  const int capacity = add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K});
+  const int capacity = add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K, false});
   return add_state(std::move(name), capacity);
 }
 
@@ -69,7 +69,8 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
   EffectInPlace effect{.name = std::move(name), .type = &type, .node_index = {}, .parameter_index = {}};
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const ParameterSpec& spec = type.parameters[i];
-    effect.parameter_index.push_back(add_parameter({fmt::format("{}.{}", effect.name, spec.key), spec.unit, spec.range, parameters[i]}));
+    effect.parameter_index.push_back(add_parameter({fmt::format("{}.{}", effect.name, spec.key), unit_of(type.parameters, i, parameters),
+                                                    spec.range, parameters[i], !spec.choices.empty()}));
   }
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (const int capacity = type.nodes[role].own_capacity; capacity >= 0) {

@@ -16,6 +16,7 @@ struct NetworkParameter {
   std::string_view unit;
   Range range;
   double value = 0.0;
+  bool is_choice = false;  ///< the place of what was chosen: not a number to sample or to fit
 };
 
 /// An effect in place: which nodes play its roles, where its parameters stand in the flat list.
@@ -59,6 +60,8 @@ class Network {
   /// -1 where there is no such node; ambient is state_count().
   [[nodiscard]] int find_node(std::string_view name) const;
   [[nodiscard]] std::string_view node_name(int node) const;
+  /// Place of a state node's heat capacity in the list of parameters.
+  [[nodiscard]] int capacity_index(int node) const { return capacity_index_.at(static_cast<std::size_t>(node)); }
   [[nodiscard]] std::span<const EffectInPlace> effects() const { return effects_; }
   [[nodiscard]] std::span<const NetworkParameter> parameters() const { return parameters_; }
   [[nodiscard]] std::vector<double> values() const;

@@ -17,15 +17,17 @@ struct OperatingPoint {
   /// Voltage that is left for I·R beside the back-EMF, per current that heats: as the winding gets hot and its
   /// resistance rises, less current flows than is asked for. Infinite where voltage is no limit.
   S resistive_headroom_V = S(std::numeric_limits<double>::infinity());
-  S shaft_power_W = S(0.0);              ///< mean of M·ω: positive drives, negative brakes
-  S input_power_W = S(0.0);              ///< electrical power that the motor (or its driver, see the log) takes in
-  S bus_V = S(0.0);                      ///< supply of the driver
-  S modulation_ratio = S(0.0);           ///< mean of |terminal voltage| per supply voltage, 0 … 1
-  S vehicle_speed_m_per_s = S(0.0);      ///< mean of the magnitude
-  S neighbour_C = S(25.0);               ///< temperature of the motor next to this one, used where neighbour_share is 1
-  S neighbour_share = S(0.0);            ///< 1 where neighbour_C is known, else 0
-  S age_h = S(0.0);                      ///< hours of running behind it
-  S copper_loss_W = S(0.0);              ///< heat of the network's copper loss; the network fills it in before other laws are asked
+  S shaft_power_W = S(0.0);            ///< mean of M·ω: positive drives, negative brakes
+  S input_power_W = S(0.0);            ///< electrical power that the motor (or its driver, see the log) takes in
+  S bus_V = S(0.0);                    ///< supply of the driver
+  S modulation_ratio = S(0.0);         ///< mean of |terminal voltage| per supply voltage, 0 … 1
+  S vehicle_speed_m_per_s = S(0.0);    ///< mean of the magnitude
+  S neighbour_C = S(25.0);             ///< temperature of the motor next to this one, used where neighbour_share is 1
+  S neighbour_share = S(0.0);          ///< 1 where neighbour_C is known, else 0
+  S age_h = S(0.0);                    ///< hours of running behind it
+  S velocity_rad_per_s = S(0.0);       ///< signed mean of ω, motor shaft: a log of |ω| alone has none of its sign
+  S acceleration_rad_per_s2 = S(0.0);  ///< mean of |dω/dt|, motor shaft
+  S copper_loss_W = S(0.0);            ///< heat of the network's copper loss; the network fills it in before other laws are asked
 };
 
 /// Calls f with each quantity of the points, one quantity after the other.
@@ -44,10 +46,13 @@ constexpr void for_each_quantity(F&& f, Point&... at) {
   f(at.neighbour_C...);
   f(at.neighbour_share...);
   f(at.age_h...);
+  f(at.velocity_rad_per_s...);
+  f(at.acceleration_rad_per_s2...);
   f(at.copper_loss_W...);
 }
 
-/// Signals beside current and ambient that a law may need; a log that lacks one cannot speak for or against the law.
+/// Signals beside temperatures that a law may need; a log that lacks one cannot speak for or against the law. The copper loss
+/// needs the current, velocity and acceleration the speed.
 enum class Signal { current, speed, shaft_power, input_power, modulation, bus_voltage, vehicle_speed, neighbour_temperature, age };
 
 }  // namespace heatsoak

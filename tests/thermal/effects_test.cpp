@@ -1,6 +1,7 @@
 // What every effect owes, driven by the registry: a new file in src/thermal/effects is tested by being there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <numeric>
@@ -150,23 +151,15 @@ TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
   }
 }
 
-TEST_P(EveryEffect, makes_heat_or_moves_it_but_takes_none_away) {
+/// Either heat is made, then no node loses any; or it is moved, then none is gained or lost and it runs downhill: Σ P·T ≤ 0.
+TEST_P(EveryEffect, makes_heat_or_moves_it_downhill) {
   Chance chance(801);
   for (int i = 0; i < 500; ++i) {
-    const std::vector<double> heat =
-        heat_W(type(), random_point(chance), random_parameters(chance, type()), random_temperatures(chance, type()));
-    EXPECT_GE(sum(heat), -1e-12 * size_of(heat));
-  }
-}
-
-/// Without current and speed nothing can be lost, so heat may only be moved, and only downhill: Σ P·T ≤ 0.
-TEST_P(EveryEffect, at_rest_heat_is_conserved_and_runs_downhill) {
-  Chance chance(802);
-  for (int i = 0; i < 500; ++i) {
     const std::vector<double> temperature_C = random_temperatures(chance, type());
-    OperatingPoint<double> at;
-    at.ambient_C = chance.between(-40.0, 60.0);
-    const std::vector<double> heat = heat_W(type(), at, random_parameters(chance, type()), temperature_C);
+    const std::vector<double> heat = heat_W(type(), random_point(chance), random_parameters(chance, type()), temperature_C);
+    if (std::ranges::all_of(heat, [](double each_W) { return each_W >= 0.0; })) {
+      continue;
+    }
     EXPECT_NEAR(sum(heat), 0.0, 1e-12 * size_of(heat));
     double uphill = 0.0;
     for (std::size_t node = 0; node < heat.size(); ++node) {
@@ -176,14 +169,14 @@ TEST_P(EveryEffect, at_rest_heat_is_conserved_and_runs_downhill) {
   }
 }
 
-TEST_P(EveryEffect, at_rest_and_at_one_temperature_nothing_happens) {
+TEST_P(EveryEffect, at_one_temperature_no_heat_is_moved) {
   Chance chance(803);
   for (int i = 0; i < 100; ++i) {
-    OperatingPoint<double> at;
-    at.ambient_C = chance.between(-40.0, 60.0);
-    const std::vector<double> heat =
-        heat_W(type(), at, random_parameters(chance, type()), std::vector<double>(type().nodes.size(), at.ambient_C));
-    EXPECT_EQ(size_of(heat), 0.0);
+    const OperatingPoint<double> at = random_point(chance);
+    for (const double heat :
+         heat_W(type(), at, random_parameters(chance, type()), std::vector<double>(type().nodes.size(), at.ambient_C))) {
+      EXPECT_GE(heat, 0.0);
+    }
   }
 }
 

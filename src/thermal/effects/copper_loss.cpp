@@ -36,6 +36,7 @@ EffectType copper_loss() {
                   .temperature_C = {125.0},
                   .expected_heat_W = {7.56}},
       .laws = laws<CopperLoss>(),
+      .needs = {Signal::current},
   };
 }
 

@@ -31,6 +31,7 @@ EffectType no_load_loss() {
                   .temperature_C = {40.0},
                   .expected_heat_W = {4.0}},
       .laws = laws<NoLoadLoss>(),
+      .needs = {Signal::speed},
   };
 }
 

@@ -1,0 +1,53 @@
+#include "thermal/effect.h"
+#include "thermal/reference_point.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { stator };
+enum Parameter { loss, viscous_share, thinning };
+
+struct BearingFriction {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    const S speed_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
+    const S square_ratio = x.at.speed_rms_rad_per_s * x.at.speed_rms_rad_per_s / (kReferenceSpeed_rad_per_s * kReferenceSpeed_rad_per_s);
+    const S viscous = x.parameter(viscous_share) * exponential(-x.parameter(thinning) * (x.temperature_C(stator) - 25.0));
+    heat.source(stator, x.parameter(loss) * ((1.0 - x.parameter(viscous_share)) * speed_ratio + viscous * square_ratio));
+  }
+};
+
+}  // namespace
+
+EffectType bearing_friction() {
+  return {
+      .name = {},
+      .summary = "Friction of bearings and seals: a dry part ∝ |ω| and a viscous part ∝ ω² that falls as the grease warms.",
+      .equation = "P_stator = P_500 · ((1 − v)·|ω|/(500 rad/s) + v·e^(−κ·(T_stator − 25 °C))·(ω_rms/(500 rad/s))²)",
+      .reference = "SKF, Rolling bearings: the SKF model for calculating the frictional moment; A. Palmgren's load and viscous moments",
+      .nodes = {{"stator", "stator"}},
+      .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s and 25 °C"},
+                     {"viscous_share", "", Range::between(0.0, 1.0), "of it that is viscous"},
+                     {"thinning", "1/K", Range::between(0.0, 0.05),
+                      "relative fall of the viscous part per kelvin; mineral grease 0.02 to 0.04"}},
+      .typical = "0.2 to 1 W at 500 rad/s",
+      .look_alike =
+          "iron_loss_hysteresis and iron_loss_eddy have the same dependence on speed; only the fall with temperature differs, and without "
+          "it no temperature tells them apart.",
+      // 1 W · (0.5 · 0.5 + 0.5 · e^(−0.02/K · 50 K) · 0.25) = 0.25 + 0.125·e^(−1) = 0.25 + 0.04598493014643030 = 0.2959849301464303 W
+      .example = {.parameters = {1.0, 0.5, 0.02},
+                  .at = {.speed_mean_rad_per_s = 250.0, .speed_rms_rad_per_s = 250.0},
+                  .temperature_C = {75.0},
+                  .expected_heat_W = {0.2959849301464303}},
+      .laws = laws<BearingFriction>(),
+      .needs = {Signal::speed},
+      .candidacy = {.size_parameter = loss,
+                    .variants = {{0.5, 0.7, 0.02}},
+                    .family = "speed loss at the stator",
+                    .experiment =
+                        "turn the motor from outside with the supply off and the magnets out, cold and warm: what is left is friction"},
+  };
+}
+
+}  // namespace heatsoak::effects

@@ -1,0 +1,40 @@
+#include "thermal/effect.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { heated };
+enum Parameter { share };
+
+struct BrakingHeat {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    heat.source(heated, x.parameter(share) * positive_part(-x.at.shaft_power_W));
+  }
+};
+
+}  // namespace
+
+EffectType braking_heat() {
+  return {
+      .name = {},
+      .summary = "What the shaft gives back while braking and no battery takes: burnt in the motor or in a brake on it.",
+      .equation = "P_node = k · max(0, −P_shaft)",
+      .reference = "conservation of energy",
+      .nodes = {{"heated", "stator"}},
+      .parameters = {{"share", "", Range::between(0.0, 1.0), "of the braking power that heats the node"}},
+      .typical = "0.1 to 1 of the braking power: hard stops make more heat than driving",
+      .look_alike = "load_friction acts while driving too; copper loss of the braking current is in copper_loss already.",
+      // 0.5 · max(0, 30 W) = 15 W
+      .example = {.parameters = {0.5}, .at = {.shaft_power_W = -30.0}, .temperature_C = {40.0}, .expected_heat_W = {15.0}},
+      .laws = laws<BrakingHeat>(),
+      .needs = {Signal::shaft_power},
+      .candidacy = {.size_parameter = share,
+                    .variants = {{0.3}},
+                    .family = "heat with load at the stator",
+                    .experiment = "the same run with soft and with hard stops; one stop with the driver switched off"},
+  };
+}
+
+}  // namespace heatsoak::effects

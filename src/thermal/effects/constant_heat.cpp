@@ -1,0 +1,39 @@
+#include "thermal/effect.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { heated };
+enum Parameter { power };
+
+struct ConstantHeat {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    heat.source(heated, x.parameter(power));
+  }
+};
+
+}  // namespace
+
+EffectType constant_heat() {
+  return {
+      .name = {},
+      .summary = "A constant heat from outside: electronics in standby, a lamp, the sun, a hot neighbour that nobody measured.",
+      .equation = "P_node = P",
+      .reference = "definition",
+      .nodes = {{"heated", "stator"}},
+      .parameters = {{"power", "W", Range::non_negative(), "that the node takes up"}},
+      .typical = "0.5 to 3 W",
+      .look_alike = "An offset of the stator's sensor or of the ambient's: the first minutes before power tell.",
+      // 1.5 W, whatever the motor does
+      .example = {.parameters = {1.5}, .at = {}, .temperature_C = {40.0}, .expected_heat_W = {1.5}},
+      .laws = laws<ConstantHeat>(),
+      .needs = {},
+      .candidacy = {.size_parameter = power,
+                    .variants = {{1.0}},
+                    .family = "heat that no signal drives",
+                    .experiment = "half an hour at rest in the same place, from equal temperatures of motor and surroundings"},
+  };
+}
+
+}  // namespace heatsoak::effects

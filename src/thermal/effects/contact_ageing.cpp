@@ -1,0 +1,50 @@
+#include "thermal/effect.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { hot, cold };
+enum Parameter { conductance, time_constant, fresh_share };
+
+struct ContactAgeing {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    const S fresh = exponential(-x.at.age_h / x.parameter(time_constant));
+    const S present = x.parameter(fresh_share) * fresh + (1.0 - x.parameter(fresh_share)) * (1.0 - fresh);
+    heat.flow(hot, cold, x.parameter(conductance) * present * (x.temperature_C(hot) - x.temperature_C(cold)));
+  }
+};
+
+}  // namespace
+
+EffectType contact_ageing() {
+  return {
+      .name = {},
+      .summary =
+          "A thermal contact that changes with hours of running: glue that cracks, paste that dries, a clamp that settles. It is the part "
+          "of the contact that comes or goes; the rest stays in the resistance beside it.",
+      .equation = "P_hot→cold = G·(f·e^(−a/τ) + (1 − f)·(1 − e^(−a/τ)))·(T_hot − T_cold), age a",
+      .reference =
+          "D. Staton, A. Boglietti, A. Cavagnino, Solving the more difficult aspects of electric motor thermal analysis, IEEE Trans. "
+          "Energy "
+          "Convers. 20 (2005): gaps between parts decide; the exponential is a choice",
+      .nodes = {{"hot", "winding"}, {"cold", "stator"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "that comes or goes, beside the resistance of the settled contact"},
+                     {"time_constant", "h", Range::positive(), "of the change"},
+                     {"fresh_share", "", Range::between(0.0, 1.0),
+                      "1: there when fresh, lost with age; 0: absent when fresh, comes with age"}},
+      .typical = "0.03 to 0.1 W/K: 10 to 30 % of the conductance between winding and stator, over hours to hundreds of hours",
+      .look_alike = "contact_temperature_dependence where runs got hotter one after the other; a repeated run at equal temperature tells.",
+      // fresh, so e^0 = 1: 0.1 W/K · (0.75·1 + 0.25·0) · (80 − 60) K = 1.5 W
+      .example = {.parameters = {0.1, 10.0, 0.75}, .at = {.age_h = 0.0}, .temperature_C = {80.0, 60.0}, .expected_heat_W = {-1.5, 1.5}},
+      .laws = laws<ContactAgeing>(),
+      .needs = {Signal::age},
+      .candidacy = {.size_parameter = conductance,
+                    .variants = {{0.1, 2.0, 1.0}, {0.1, 2.0, 0.0}, {0.1, 50.0, 1.0}, {0.1, 50.0, 0.0}},
+                    .family = "contact between winding and stator",
+                    .experiment = "the same locked-rotor run at the first and at the last hour of a week, from equal temperatures"},
+  };
+}
+
+}  // namespace heatsoak::effects

@@ -1,0 +1,45 @@
+#include "thermal/effect.h"
+#include "thermal/reference_point.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { stator };
+enum Parameter { loss };
+
+struct IronLossHysteresis {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    heat.source(stator, x.parameter(loss) * (x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s));
+  }
+};
+
+}  // namespace
+
+EffectType iron_loss_hysteresis() {
+  return {
+      .name = {},
+      .summary = "Hysteresis of the iron: the same energy for every reversal of the field, so a loss in proportion to speed.",
+      .equation = "P_stator = P_500 · |ω| / (500 rad/s)",
+      .reference =
+          "C. P. Steinmetz, On the law of hysteresis, Trans. AIEE 9 (1892): energy per cycle at one induction; G. Bertotti, General "
+          "properties of power losses in soft ferromagnetic materials, IEEE Trans. Magn. 24 (1988)",
+      .nodes = {{"stator", "stator"}},
+      .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s"}},
+      .typical = "1 to 3 W at 500 rad/s",
+      .look_alike =
+          "iron_loss_eddy and windage bend upwards with speed; the dry part of bearing_friction is the same term and cannot be told from "
+          "temperatures; no_load_loss of a data sheet is the same term too, and this one then is what the sheet leaves out.",
+      // 2 W · 250/500 = 1 W
+      .example = {.parameters = {2.0}, .at = {.speed_mean_rad_per_s = 250.0}, .temperature_C = {40.0}, .expected_heat_W = {1.0}},
+      .laws = laws<IronLossHysteresis>(),
+      .needs = {Signal::speed},
+      .candidacy = {.size_parameter = loss,
+                    .variants = {{2.0}},
+                    .family = "speed loss at the stator",
+                    .experiment =
+                        "a staircase of speeds without load, each step until the stator settles: does the loss grow with ω, ω² or ω³?"},
+  };
+}
+
+}  // namespace heatsoak::effects

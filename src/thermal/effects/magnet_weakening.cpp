@@ -1,0 +1,44 @@
+#include "thermal/effect.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { winding, magnet };
+enum Parameter { temperature_coefficient };
+
+struct MagnetWeakening {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    constexpr double kWidth_K = 2.0;
+    const S weaker = x.parameter(temperature_coefficient) * soft_positive_part(x.temperature_C(magnet) - 25.0, kWidth_K);
+    heat.source(winding, 2.0 * weaker * x.at.copper_loss_W);
+  }
+};
+
+}  // namespace
+
+EffectType magnet_weakening() {
+  return {
+      .name = {},
+      .summary = "Warm magnets give less torque per ampere: where a torque is asked for, more current flows than the cold constant says.",
+      .equation = "P_winding = P_copper · 2·β·max(0, T_magnet − 25 °C), first order of 1/(1 − β·ΔT)², corner rounded over 2 K",
+      .reference = "reversible temperature coefficient of remanence, IEC 60404-8-1: NdFeB −0.10 to −0.12 %/K, ferrite −0.2 %/K",
+      .nodes = {{"winding", "winding"}, {"magnet", "stator"}},
+      .parameters = {{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "loss of torque constant per kelvin above 25 °C"}},
+      .typical = "0.001 to 0.0012 1/K: 14 % more copper loss at 60 K",
+      .look_alike =
+          "A temperature coefficient of the resistance that is too low. Where the current was measured it is in the measurement already: "
+          "then look there first.",
+      // ΔT = 1.5 K: soft part (1.5 + √(1.5² + 2²))/2 = (1.5 + 2.5)/2 = 2 K; 2 · 0.001/K · 2 K · 10 W = 0.04 W
+      .example = {.parameters = {0.001}, .at = {.copper_loss_W = 10.0}, .temperature_C = {60.0, 26.5}, .expected_heat_W = {0.04, 0.0}},
+      .laws = laws<MagnetWeakening>(),
+      .needs = {Signal::current},
+      .candidacy = {.size_parameter = temperature_coefficient,
+                    .variants = {{0.0012}},
+                    .family = "extra copper loss",
+                    .experiment = "the back-EMF per speed, cold and hot; the same torque demand from a cold and from a hot motor"},
+  };
+}
+
+}  // namespace heatsoak::effects

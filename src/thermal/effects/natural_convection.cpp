@@ -1,0 +1,46 @@
+#include "thermal/effect.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { hot, cold };
+enum Parameter { conductance, exponent };
+
+struct NaturalConvection {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    constexpr double kReference_K = 40.0;
+    const S difference_K = x.temperature_C(hot) - x.temperature_C(cold);
+    const S conductance_W_per_K = x.parameter(conductance) * power(magnitude(difference_K) / kReference_K, x.parameter(exponent));
+    heat.flow(hot, cold, conductance_W_per_K * difference_K);
+  }
+};
+
+}  // namespace
+
+EffectType natural_convection() {
+  return {
+      .name = {},
+      .summary = "Warm air rises by itself, the faster the warmer: cooling grows more than in proportion to the difference in temperature.",
+      .equation = "P_hot→cold = G_40 · (|T_hot − T_cold|/(40 K))^p · (T_hot − T_cold), p = 1/4",
+      .reference = "W. H. McAdams, Heat Transmission (1954): h ∝ ΔT^¼ laminar, ΔT^⅓ turbulent; VDI Heat Atlas, natural convection",
+      .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "at a difference of 40 K"},
+                     {"exponent", "", Range::between(0.1, 0.5), "of the difference; 1/4 laminar, 1/3 turbulent"}},
+      .typical = "0.03 to 0.1 W/K at 40 K: ±8 % of the resistance to ambient between 20 and 60 K",
+      .look_alike =
+          "A smaller resistance to ambient and radiation: over one range of temperature 99 % of it is such a resistance. A cool-down from "
+          "80 K to 5 K above ambient tells.",
+      // (2.5/40)^0.25 = (1/16)^0.25 = 0.5; 0.1 W/K · 0.5 · 2.5 K = 0.125 W
+      .example = {.parameters = {0.1, 0.25}, .at = {}, .temperature_C = {27.5, 25.0}, .expected_heat_W = {-0.125, 0.125}},
+      .laws = laws<NaturalConvection>(),
+      .needs = {},
+      .candidacy = {.size_parameter = conductance,
+                    .variants = {{0.1, 0.25}},
+                    .family = "cooling that grows with temperature",
+                    .experiment = "a cool-down at rest from 80 K to 5 K above ambient, two hours long"},
+  };
+}
+
+}  // namespace heatsoak::effects

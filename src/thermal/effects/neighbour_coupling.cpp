@@ -1,0 +1,44 @@
+#include "thermal/effect.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { node, surroundings };
+enum Parameter { conductance };
+
+struct NeighbourCoupling {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    heat.flow(node, surroundings, x.at.neighbour_share * x.parameter(conductance) * (x.temperature_C(node) - x.at.neighbour_C));
+  }
+};
+
+}  // namespace
+
+EffectType neighbour_coupling() {
+  return {
+      .name = {},
+      .summary =
+          "Heat from or to the motor next to this one, through the chassis or the air between. Where its temperature is unknown nothing is "
+          "booked.",
+      .equation = "P_node→surroundings = G·(T_node − T_neighbour)",
+      .reference = "Newton's law of cooling; the neighbour's temperature is given and counts to the surroundings",
+      .nodes = {{"node", "stator"}, {"surroundings", "ambient"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "between the two motors"}},
+      .typical = "0.02 to 0.1 W/K between motors on one plate",
+      .look_alike = "third_node and enclosure_warm_up: running the neighbour alone tells.",
+      // 0.05 W/K · (40 − 60) K = −1 W: the hotter neighbour brings 1 W
+      .example = {.parameters = {0.05},
+                  .at = {.neighbour_C = 60.0, .neighbour_share = 1.0},
+                  .temperature_C = {40.0, 25.0},
+                  .expected_heat_W = {1.0, -1.0}},
+      .laws = laws<NeighbourCoupling>(),
+      .needs = {Signal::neighbour_temperature},
+      .candidacy = {.size_parameter = conductance,
+                    .variants = {{0.05}},
+                    .family = "heat from the neighbourhood",
+                    .experiment = "the neighbour alone under load, with this motor at rest and logged"},
+  };
+}
+
+}  // namespace heatsoak::effects

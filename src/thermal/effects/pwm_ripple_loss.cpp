@@ -1,0 +1,53 @@
+#include "thermal/effect.h"
+#include "thermal/reference_point.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { winding, stator };
+enum Parameter { loss, stator_share };
+
+struct PwmRippleLoss {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    const S duty = magnitude(x.at.modulation_ratio);
+    const S bus_ratio = x.at.bus_V / kReferenceBus_V;
+    const S loss_W = x.parameter(loss) * 4.0 * duty * positive_part(1.0 - duty) * bus_ratio * bus_ratio;
+    heat.source(winding, (1.0 - x.parameter(stator_share)) * loss_W);
+    heat.source(stator, x.parameter(stator_share) * loss_W);
+  }
+};
+
+}  // namespace
+
+EffectType pwm_ripple_loss() {
+  return {
+      .name = {},
+      .summary =
+          "The driver's switching leaves a ripple of voltage, largest at half modulation, that heats copper and iron even without load.",
+      .equation = "P = P_24 · 4·D·(1 − D) · (V_bus / 24 V)², D = |V_motor|/V_bus; (1 − s)·P to the winding, s·P to the stator",
+      .reference =
+          "variance D·(1 − D)·V² of a chopped voltage, see N. Mohan, T. Undeland, W. Robbins, Power Electronics, chapter on dc choppers; "
+          "eddy currents take its square",
+      .nodes = {{"winding", "winding"}, {"stator", "stator"}},
+      .parameters = {{"loss", "W", Range::non_negative(), "at half modulation of 24 V"},
+                     {"stator_share", "", Range::between(0.0, 1.0), "of it that heats the stator; 0: all in the winding"}},
+      .typical = "0.3 to 2 W at half modulation of 24 V",
+      .look_alike =
+          "iron_loss_hysteresis at one supply voltage, where modulation follows speed; another supply voltage at the same speed tells.",
+      // 1.6 W · 4 · 0.25 · 0.75 · (12/24)² = 1.6 · 0.75 · 0.25 = 0.3 W, three quarters of it to the winding
+      .example = {.parameters = {1.6, 0.25},
+                  .at = {.bus_V = 12.0, .modulation_ratio = 0.25},
+                  .temperature_C = {40.0, 35.0},
+                  .expected_heat_W = {0.225, 0.075}},
+      .laws = laws<PwmRippleLoss>(),
+      .needs = {Signal::modulation, Signal::bus_voltage},
+      .candidacy = {.size_parameter = loss,
+                    .variants = {{1.0, 0.0}, {1.0, 1.0}},
+                    .family = "switching loss in the motor",
+                    .experiment = "one speed without load from two supply voltages: the ripple changes, friction and iron do not"},
+  };
+}
+
+}  // namespace heatsoak::effects

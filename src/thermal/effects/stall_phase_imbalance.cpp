@@ -1,0 +1,46 @@
+#include "thermal/effect.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { winding };
+enum Parameter { excess, stall_speed };
+
+struct StallPhaseImbalance {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    constexpr double kStepsPerSpeed = 5.0;
+    const S stalled = soft_step(kStepsPerSpeed * (1.0 - x.at.speed_mean_rad_per_s / x.parameter(stall_speed)));
+    heat.source(winding, x.parameter(excess) * x.at.copper_loss_W * stalled);
+  }
+};
+
+}  // namespace
+
+EffectType stall_phase_imbalance() {
+  return {
+      .name = {},
+      .summary = "A motor that holds without turning heats its phases unevenly: the worst one gets up to twice the mean copper loss.",
+      .equation = "P_winding = P_copper · k / (1 + e^(−5·(1 − |ω|/ω_s))): a step as wide as a fifth of ω_s",
+      .reference = "sinusoidal currents at standstill: peak² against mean square is 2; block commutation: two of three phases carry all",
+      .nodes = {{"winding", "winding"}},
+      .parameters = {{"excess", "", Range::between(0.0, 1.0), "of the hottest phase over the mean copper loss, at standstill"},
+                     {"stall_speed", "rad/s", Range::between(0.1, 1000.0), "below which phases no longer share the heat"}},
+      .typical = "0.3 to 1 below some 10 rad/s",
+      .look_alike = "third_node while runs begin with a stall; turning the rotor by 60 electrical degrees between stalls tells.",
+      // at the stall speed half of it: 0.5 · 0.8 · 10 W = 4 W
+      .example = {.parameters = {0.8, 10.0},
+                  .at = {.speed_mean_rad_per_s = 10.0, .copper_loss_W = 10.0},
+                  .temperature_C = {60.0},
+                  .expected_heat_W = {4.0}},
+      .laws = laws<StallPhaseImbalance>(),
+      .needs = {Signal::current, Signal::speed},
+      .candidacy = {.size_parameter = excess,
+                    .variants = {{0.4, 5.0}, {0.4, 20.0}},
+                    .family = "extra copper loss",
+                    .experiment = "locked-rotor pulses of one current at three rotor angles, 60 electrical degrees apart"},
+  };
+}
+
+}  // namespace heatsoak::effects

@@ -1,0 +1,150 @@
+#include <array>
+
+#include "thermal/effect.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { hot, cold, watched, reference };
+enum Parameter { driver, form, first_knot, last_knot, first_value };
+constexpr int kKnots = 7;
+
+enum Driver {
+  speed,
+  velocity,
+  acceleration,
+  current,
+  current_speed_squared,
+  shaft_power,
+  input_power,
+  modulation,
+  bus_voltage,
+  vehicle_speed,
+  age,
+  temperature,
+  temperature_difference,
+  neighbour_difference,
+};
+constexpr std::array kDrivers{
+    Choice{"speed", "rad/s", "mean of |ω|"},
+    Choice{"velocity", "rad/s", "ω with its sign"},
+    Choice{"acceleration", "rad/s2", "mean of |dω/dt|"},
+    Choice{"current", "A", "rms"},
+    Choice{"current_speed_squared", "A rad2/s2", "|I|·ω²"},
+    Choice{"shaft_power", "W", "more than 0 drives"},
+    Choice{"input_power", "W", "electrical"},
+    Choice{"modulation", "", "|V_motor|/V_bus"},
+    Choice{"bus_voltage", "V", "supply"},
+    Choice{"vehicle_speed", "m/s", "magnitude"},
+    Choice{"age", "h", "hours of running"},
+    Choice{"temperature", "degC", "of the node 'watched'"},
+    Choice{"temperature_difference", "K", "of the node 'watched' above 'reference'"},
+    Choice{"neighbour_difference", "K", "of the next motor above the node 'watched'"},
+};
+
+enum Form { heat_into, per_copper_loss, per_difference };
+constexpr std::array kForms{
+    Choice{"heat", "W", "the curve is the heat into 'hot'"},
+    Choice{"per_copper_loss", "", "the curve times the copper loss is the heat into 'hot'"},
+    Choice{"per_difference", "W/K", "the curve is a conductance from 'hot' to 'cold'"},
+};
+
+template <class S>
+S value_of_driver(const Situation<S>& x) {
+  switch (chosen(x.parameter(driver))) {
+    case speed:
+      return x.at.speed_mean_rad_per_s;
+    case velocity:
+      return x.at.velocity_rad_per_s;
+    case acceleration:
+      return x.at.acceleration_rad_per_s2;
+    case current:
+      return x.at.current_rms_A;
+    case current_speed_squared:
+      return x.at.current_rms_A * x.at.speed_rms_rad_per_s * x.at.speed_rms_rad_per_s;
+    case shaft_power:
+      return x.at.shaft_power_W;
+    case input_power:
+      return x.at.input_power_W;
+    case modulation:
+      return x.at.modulation_ratio;
+    case bus_voltage:
+      return x.at.bus_V;
+    case vehicle_speed:
+      return x.at.vehicle_speed_m_per_s;
+    case age:
+      return x.at.age_h;
+    case temperature:
+      return x.temperature_C(watched);
+    case temperature_difference:
+      return x.temperature_C(watched) - x.temperature_C(reference);
+    default:
+      return x.at.neighbour_share * (x.at.neighbour_C - x.temperature_C(watched));
+  }
+}
+
+struct Tabulated {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    constexpr double kLast = kKnots - 1;
+    constexpr double kNoSpan = 1e-30;  // first and last knot in one place: the first value everywhere, not 0/0
+    const S span = x.parameter(last_knot) - x.parameter(first_knot);
+    const S place = kLast * (value_of_driver(x) - x.parameter(first_knot)) * span / (span * span + kNoSpan);
+    const S within = kLast - positive_part(kLast - positive_part(place));
+    S curve = x.parameter(first_value) * positive_part(1.0 - within);
+    for (int knot = 1; knot < kKnots; ++knot) {
+      curve += x.parameter(first_value + knot) * positive_part(1.0 - magnitude(within - static_cast<double>(knot)));
+    }
+    switch (chosen(x.parameter(form))) {
+      case heat_into:
+        heat.source(hot, curve);
+        break;
+      case per_copper_loss:
+        heat.source(hot, curve * x.at.copper_loss_W);
+        break;
+      default:
+        heat.flow(hot, cold, curve * (x.temperature_C(hot) - x.temperature_C(cold)));
+    }
+  }
+};
+
+std::vector<ParameterSpec> parameters() {
+  std::vector<ParameterSpec> specs{
+      ParameterSpec::choice("driver", kDrivers, "the signal that the curve is drawn over"),
+      ParameterSpec::choice("form", kForms, "what the curve's values are"),
+      {"first_knot", "", Range::any(), "value of the driver at value_1", {}, driver},
+      {"last_knot", "", Range::any(), "value of the driver at value_7; the others stand evenly between", {}, driver}};
+  constexpr std::array<std::string_view, kKnots> kKeys{"value_1", "value_2", "value_3", "value_4", "value_5", "value_6", "value_7"};
+  for (const std::string_view key : kKeys) {
+    specs.push_back({key, "", Range::non_negative(), "of the curve", {}, form});
+  }
+  return specs;
+}
+
+}  // namespace
+
+EffectType tabulated() {
+  return {
+      .name = {},
+      .summary = "A measured curve over one signal, for an effect that has no law yet. Outside its knots the curve stays at its ends.",
+      .equation = "P = g(d), g(d)·P_copper or g(d)·(T_hot − T_cold); g ≥ 0 is straight between seven knots and constant outside",
+      .reference = "linear interpolation; a curve that is nowhere negative can only make heat, or move it downhill",
+      .nodes = {{"hot", "stator"}, {"cold", "ambient"}, {"watched", "stator"}, {"reference", "ambient"}},
+      .parameters = parameters(),
+      .typical = "0.1 to 3 W, 0.05 to 1 of the copper loss, 0.02 to 0.3 W/K",
+      .look_alike =
+          "Every effect over the same signal: the curve fits where a law does, but says nothing beyond the values it was measured at.",
+      // 2.5 rad/s of 10 lie at knot 1.5 of 6, half way between value_2 = 1 W/K and value_3 = 3 W/K: 2 W/K · (60 − 50) K = 20 W
+      .example = {.parameters = {speed, per_difference, 0.0, 10.0, 0.0, 1.0, 3.0, 3.0, 3.0, 3.0, 3.0},
+                  .at = {.speed_mean_rad_per_s = 2.5},
+                  .temperature_C = {60.0, 50.0, 60.0, 50.0},
+                  .expected_heat_W = {-20.0, 20.0, 0.0, 0.0}},
+      .laws = laws<Tabulated>(),
+      .needs = {Signal::current, Signal::speed, Signal::shaft_power, Signal::input_power, Signal::modulation, Signal::bus_voltage,
+                Signal::vehicle_speed, Signal::neighbour_temperature, Signal::age},
+      .candidacy = {},
+  };
+}
+
+}  // namespace heatsoak::effects

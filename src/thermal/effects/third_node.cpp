@@ -1,0 +1,46 @@
+#include "thermal/effect.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { node, body, ambient };
+enum Parameter { conductance, leak_ratio, heat_capacity };
+
+struct ThirdNode {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    const S coupling_W_per_K = x.parameter(conductance);
+    heat.flow(node, body, coupling_W_per_K * (x.temperature_C(node) - x.temperature_C(body)));
+    heat.flow(body, ambient, coupling_W_per_K * x.parameter(leak_ratio) * (x.temperature_C(body) - x.temperature_C(ambient)));
+  }
+};
+
+}  // namespace
+
+EffectType third_node() {
+  return {
+      .name = {},
+      .summary = "A body of its own that the motor warms: mount, chassis, rotor, end winding. It makes the tail of a cool-down long.",
+      .equation = "P_node→body = G·(T_node − T_body), P_body→ambient = r·G·(T_body − T_ambient), C_body·dT_body/dt = what is left",
+      .reference =
+          "P. H. Mellor, D. Roberts, D. R. Turner, Lumped parameter thermal model for electrical machines of TEFC design, IEE Proc. B 138 "
+          "(1991)",
+      .nodes = {{"node", "stator"}, {"body", "third_node", heat_capacity}, {"ambient", "ambient"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "between node and body"},
+                     {"leak_ratio", "", Range::between(0.0, 100.0), "conductance from body to ambient per conductance from node to body"},
+                     {"heat_capacity", "J/K", Range::positive(), "of the body"}},
+      .typical = "0.05 to 0.3 W/K and 30 to 500 J/K (aluminium 900 J/(kg K), steel 460 J/(kg K))",
+      .look_alike =
+          "enclosure_warm_up, a drift of a sensor; a body of another capacity. A long soak with cool-down tells, and weighing the part.",
+      // into the body 0.2 W/K · (60 − 40) K = 4 W; out of it 0.5 · 0.2 W/K · (40 − 20) K = 2 W
+      .example = {.parameters = {0.2, 0.5, 100.0}, .at = {}, .temperature_C = {60.0, 40.0, 20.0}, .expected_heat_W = {-4.0, 2.0, 2.0}},
+      .laws = laws<ThirdNode>(),
+      .needs = {},
+      .candidacy = {.size_parameter = conductance,
+                    .variants = {{0.15, 0.0, 60.0}, {0.15, 0.0, 300.0}, {0.15, 0.5, 300.0}},
+                    .family = "a body that the motor warms",
+                    .experiment = "an hour of soak at constant load and two hours of cool-down"},
+  };
+}
+
+}  // namespace heatsoak::effects

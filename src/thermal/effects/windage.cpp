@@ -1,0 +1,45 @@
+#include "thermal/effect.h"
+#include "thermal/reference_point.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { stator };
+enum Parameter { loss };
+
+struct Windage {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    const S mean_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
+    const S rms_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
+    heat.source(stator, x.parameter(loss) * mean_ratio * rms_ratio * rms_ratio);
+  }
+};
+
+}  // namespace
+
+EffectType windage() {
+  return {
+      .name = {},
+      .summary = "Air drag of the rotor (or of a fan on its shaft): a torque with ω², so a loss with ω³.",
+      .equation = "P_stator = P_500 · |ω|·ω_rms² / (500 rad/s)³",
+      .reference = "J. E. Vrancik, Prediction of windage power loss in alternators, NASA TN D-4849 (1968)",
+      .nodes = {{"stator", "stator"}},
+      .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s"}},
+      .typical = "below 0.1 W at 500 rad/s for a smooth rotor, 0.5 W with a fan",
+      .look_alike = "iron_loss_eddy (ω²): only the highest speeds tell; a cover over the rotor's openings changes windage alone.",
+      // 0.5 W · (250/500)³ = 0.0625 W
+      .example = {.parameters = {0.5},
+                  .at = {.speed_mean_rad_per_s = 250.0, .speed_rms_rad_per_s = 250.0},
+                  .temperature_C = {40.0},
+                  .expected_heat_W = {0.0625}},
+      .laws = laws<Windage>(),
+      .needs = {Signal::speed},
+      .candidacy = {.size_parameter = loss,
+                    .variants = {{0.3}},
+                    .family = "speed loss at the stator",
+                    .experiment = "a staircase of speeds without load up to the highest one, with the rotor's openings free and covered"},
+  };
+}
+
+}  // namespace heatsoak::effects

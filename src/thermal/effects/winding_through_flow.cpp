@@ -1,0 +1,46 @@
+#include "thermal/effect.h"
+#include "thermal/reference_point.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { hot, cold };
+enum Parameter { conductance };
+
+struct WindingThroughFlow {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    const S conductance_W_per_K = x.parameter(conductance) * (x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s);
+    heat.flow(hot, cold, conductance_W_per_K * (x.temperature_C(hot) - x.temperature_C(cold)));
+  }
+};
+
+}  // namespace
+
+EffectType winding_through_flow() {
+  return {
+      .name = {},
+      .summary = "Open motors pump air through the winding: it cools to ambient directly, with speed.",
+      .equation = "P_hot→cold = G_500 · |ω|/(500 rad/s) · (T_hot − T_cold)",
+      .reference = "Newton's law of cooling; a centrifugal fan's flow is straight in its speed (fan laws)",
+      .nodes = {{"hot", "winding"}, {"cold", "ambient"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s"}},
+      .typical = "0.03 to 0.1 W/K at 500 rad/s in outrunners, none in closed motors",
+      .look_alike =
+          "air_gap_stirring takes the heat to the stator instead; ac_copper_loss heats the winding with speed. Tape over the openings "
+          "tells.",
+      // 0.1 W/K · 250/500 · (90 − 30) K = 3 W
+      .example = {.parameters = {0.1},
+                  .at = {.speed_mean_rad_per_s = 250.0},
+                  .temperature_C = {90.0, 30.0},
+                  .expected_heat_W = {-3.0, 3.0}},
+      .laws = laws<WindingThroughFlow>(),
+      .needs = {Signal::speed},
+      .candidacy = {.size_parameter = conductance,
+                    .variants = {{0.06}},
+                    .family = "winding cooled with speed",
+                    .experiment = "one current at two speeds, with the motor's openings free and taped"},
+  };
+}
+
+}  // namespace heatsoak::effects
