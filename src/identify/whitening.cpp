@@ -33,6 +33,8 @@ Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const Sen
   const Eigen::Index rows = run.samples() * run.sensors();
   gain_.resize(static_cast<std::size_t>(rows * size_));
   inverse_sd_per_K_.assign(static_cast<std::size_t>(rows), 0.0);
+  expected_K2_.assign(static_cast<std::size_t>(rows), 0.0);
+  noise_K_ = noise.noise_K;
   forget_ratio_.resize(run.duration_s.size());
   for (std::size_t k = 0; k < run.duration_s.size(); ++k) {
     forget_ratio_[k] = std::exp(-run.duration_s[k] / flux.time_scale_s);
@@ -67,11 +69,12 @@ void Whitening::build(const SensorNoise& noise) {
       const Eigen::Index row = k * run_->sensors() + sensor;
       Eigen::Map<Eigen::VectorXd> gain(gain_.data() + row * size_, size_);
       const double weight = noise.weight.size() > 0 ? noise.weight[row] : 1.0;
+      const int node = run_->sensor_node[static_cast<std::size_t>(sensor)];
+      expected_K2_[static_cast<std::size_t>(row)] = covariance(node, node);
       if (std::isnan(run_->residual_K[row]) || weight <= 0.0) {
         gain.setZero();
         continue;
       }
-      const int node = run_->sensor_node[static_cast<std::size_t>(sensor)];
       const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
       const double variance_K2 = covariance(node, node) + noise_K * noise_K / weight;
       gain = covariance.col(node) / variance_K2;
@@ -131,6 +134,31 @@ void Whitening::apply(Eigen::Ref<Columns> columns) const {
       state.bottomRows(q) *= forget_ratio_[static_cast<std::size_t>(k)];
     }
   }
+}
+
+Innovations Whitening::innovations(const Eigen::VectorXd& residual_K) const {
+  Innovations all{residual_K, residual_K};
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(size_);
+  Square<Eigen::Dynamic> transition(size_, size_);
+  for (Eigen::Index k = 0; k < run_->samples(); ++k) {
+    for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
+      const Eigen::Index row = k * run_->sensors() + sensor;
+      const auto place = static_cast<std::size_t>(row);
+      const double noise_K = noise_K_[static_cast<std::size_t>(sensor)];
+      const double variance_K2 = expected_K2_[place] + noise_K * noise_K;
+      const double innovation_K = residual_K[row] - state[run_->sensor_node[static_cast<std::size_t>(sensor)]];
+      all.standardised[row] = innovation_K / std::sqrt(variance_K2);
+      all.noise_share[row] = noise_K * noise_K / variance_K2;
+      if (inverse_sd_per_K_[place] > 0.0) {
+        state += innovation_K * Eigen::Map<const Eigen::VectorXd>(gain_.data() + row * size_, size_);
+      }
+    }
+    if (k + 1 < run_->samples()) {
+      set_transition<Eigen::Dynamic>(*run_, k, forget_ratio_[static_cast<std::size_t>(k)], transition);
+      state = transition * state.eval();
+    }
+  }
+  return all;
 }
 
 Eigen::MatrixXd Whitening::smoothed_flux_W(const Eigen::VectorXd& residual_K) const {

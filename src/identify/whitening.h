@@ -25,6 +25,13 @@ struct SensorNoise {
   Eigen::VectorXd weight;  ///< n·s, 0 … 1; empty: all 1. 0 leaves the sample out
 };
 
+/// What each sample says that those before it did not; NaN where nothing was measured. Samples that were left out for their weight of 0
+/// are judged too, by the noise that they would have.
+struct Innovations {
+  Eigen::VectorXd standardised;  ///< n·s, at weight 1
+  Eigen::VectorXd noise_share;   ///< n·s: of the variance, what is the sensor's noise
+};
+
 /// The linear operator W with Wᵀ·W = V⁻¹, V the covariance of noise and flux as the sensors see them, for one run; the start temperatures
 /// are taken as known. Masked samples become rows of zeros.
 class Whitening {
@@ -38,8 +45,7 @@ class Whitening {
   [[nodiscard]] double log_determinant() const { return log_determinant_; }
   /// Samples that count.
   [[nodiscard]] Eigen::Index count() const { return count_; }
-  /// Standard deviation of each innovation in K; infinite where masked.
-  [[nodiscard]] double innovation_sd_K(Eigen::Index row) const { return 1.0 / inverse_sd_per_K_[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] Innovations innovations(const Eigen::VectorXd& residual_K) const;
   /// Best estimate of the unknown heat in W (fluxes × n), given all samples of a residual from which everything known is removed
   /// (n·s, in K): the smoother of Bryson and Frazier.
   [[nodiscard]] Eigen::MatrixXd smoothed_flux_W(const Eigen::VectorXd& residual_K) const;
@@ -54,6 +60,8 @@ class Whitening {
   std::vector<double> forget_ratio_;      ///< per interval: what is left of a flux
   std::vector<double> gain_;              ///< per row: size_ numbers
   std::vector<double> inverse_sd_per_K_;  ///< per row; 0 where masked
+  std::vector<double> expected_K2_;       ///< per row: variance of the prediction, without noise
+  std::vector<double> noise_K_;           ///< per sensor, at weight 1
   double log_determinant_ = 0.0;
   Eigen::Index count_ = 0;
 };

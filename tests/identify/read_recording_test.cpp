@@ -1,12 +1,17 @@
 // A canonical log becomes a recording; what is no measurement is left out and said by line.
 #include "identify/measurement/read_recording.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/diagnostic.h"
+#include "base/random.h"
+#include "identify/measurement/quality.h"
+#include "identify/measurement/write_recording.h"
 #include "log_files.h"
 
 namespace heatsoak {
@@ -55,6 +60,131 @@ TEST(ReadRecording, GapOfMoreThanThreePeriodsSplitsTheRun) {
 TEST(ReadRecording, WithoutTimeSaysWhatToDo) {
   EXPECT_THAT(failure_of("tme_s,winding_C\n0,20\n"),
               HasSubstr("log.csv:1:1: error: time_s: there is no such column; did you mean 'tme_s'?"));
+}
+
+TEST(ReadRecording, RowsThatAreNoneAreLeftOutByLine) {
+  RecordingReport report;
+  const Recording recording = read(
+      "# a comment\n\ntime_s,winding_C,current_A\r\n0,20,1\n1,,1\n# "
+      "pause\n2,nan,1\n2,21,1\n1.5,21,1\n3,warm,1,\n,22,1\n4,22,inf\n5,-300,1\n"
+      "6,\"22.5\",1\n7,22,1\n8,22,1\n9,22,1\n10,22,1\n11,22,1\n12,22,1\n13,22,1\n14,22,1\n15,22,1\n16,22,1\n17,22,1\n18,22,1\n19,22,1\n20,"
+      "22,1\n21,22,1\n22,2",
+      report);
+  const auto line_of = [&report](const char* quantity, LeftOutReason reason) {
+    const LeftOut* const entry = report.find(quantity, reason);
+    return entry == nullptr || entry->count != 1 ? -1 : entry->lines.front().first;
+  };
+  EXPECT_EQ(line_of("winding_C", LeftOutReason::not_recorded), 5);
+  EXPECT_EQ(line_of("winding_C", LeftOutReason::not_a_number), 7);
+  EXPECT_EQ(line_of("", LeftOutReason::wrong_number_of_cells), 10);
+  EXPECT_EQ(line_of("", LeftOutReason::without_time), 11);
+  EXPECT_EQ(line_of("current_A", LeftOutReason::not_a_number), 12);
+  EXPECT_EQ(line_of("winding_C", LeftOutReason::impossible), 13);
+  EXPECT_EQ(line_of("", LeftOutReason::cut_off), 30);
+  ASSERT_NE(report.find("", LeftOutReason::time_does_not_increase), nullptr);
+  EXPECT_THAT(report.find("", LeftOutReason::time_does_not_increase)->lines.front().first, 8);
+  EXPECT_EQ(report.find("", LeftOutReason::time_does_not_increase)->count, 2U);
+  EXPECT_EQ(report.repeated_times, 1U);
+  EXPECT_EQ(report.rows_in_file, 26U);
+  EXPECT_EQ(recording.rows(), 21U);
+  EXPECT_DOUBLE_EQ(recording.find("winding_C")->values[5], 22.5);
+}
+
+/// One wild time must not take the rows after it along.
+TEST(ReadRecording, OneTimeFarAheadGoesAlone) {
+  RecordingReport report;
+  std::string text = "time_s,winding_C\n";
+  for (int i = 0; i < 100; ++i) {
+    text += std::to_string(i == 40 ? 1000000 : i) + ",20\n";
+  }
+  const Recording recording = read(text, report);
+  EXPECT_EQ(recording.rows(), 99U);
+  EXPECT_EQ(report.find("", LeftOutReason::time_does_not_increase)->lines.front().first, 42);
+}
+
+TEST(ReadRecording, FilesThatAreNoLogs) {
+  EXPECT_THAT(failure_of(""), HasSubstr("is empty"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n"), HasSubstr("has a header but no rows"));
+  EXPECT_THAT(failure_of("winding_C\n20\n"), HasSubstr("the header has one column only"));
+  EXPECT_THAT(failure_of("time_s;winding_C\n0;20\n"), HasSubstr("the header has one column only"));
+  EXPECT_THAT(failure_of(std::string("time_s,winding_C\n0,\0\n", 21)), HasSubstr("binary file"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,20,1\n1,20,1\n"), HasSubstr("none of its 2 rows can be used; another number of cells"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,\"20\n1,21\n"), HasSubstr(":2:1: error: a quote in this row is not closed"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0," + std::string(3 << 20, '1') + "\n"), HasSubstr("a line of more than 1 MB"));
+  EXPECT_THAT(failure_of("time_s,winding_C,winding_C\n0,20,20\n"), HasSubstr("'winding_C' stands twice in the header"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n5,20\n4,20\n3,20\n2,20\n"), HasSubstr(":3:1: error: time_s: time does not increase"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,\n1,nan\n"), HasSubstr("no quantity beside the time holds a number"));
+}
+
+TEST(ReadRecording, ExitCodesTellWhatIsWrong) {
+  const auto code_of = [](const std::string& text) {
+    RecordingReport report;
+    try {
+      read(text, report);
+    } catch (const Failure& failure) {
+      return failure.code();
+    }
+    return ExitCode::done;
+  };
+  EXPECT_EQ(code_of("time_s,winding_C\n5,20\n4,20\n3,20\n"), ExitCode::bad_input);
+  EXPECT_EQ(code_of("time_s,winding_C\n0,\n1,nan\n"), ExitCode::cannot_answer);
+}
+
+/// Whatever is done to a log, it ends in a recording whose columns fit together, or in a Failure that says why.
+TEST(ReadRecording, DamagedLogsNeverCrash) {
+  std::string sound = "time_s,winding_C,stator_C,current_A\n";
+  for (int i = 0; i < 200; ++i) {
+    sound += fmt::format("{},{:.2f},{:.2f},{}\n", i, 25.0 + 0.1 * i, 25.0 + 0.05 * i, i % 7);
+  }
+  const std::string_view spoilers(",;\"\n\r #\0-+.eEnN9\xff\xef", 21);
+  int failures = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed, 0);
+    std::string damaged = sound;
+    const int hits = 1 + static_cast<int>(random.uniform() * 30.0);
+    for (int hit = 0; hit < hits; ++hit) {
+      const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(damaged.size()));
+      const double what = random.uniform();
+      if (what < 0.5) {
+        damaged[at] = spoilers[static_cast<std::size_t>(random.uniform() * static_cast<double>(spoilers.size()))];
+      } else if (what < 0.8) {
+        damaged.erase(at, static_cast<std::size_t>(random.uniform() * 40.0));
+      } else if (what < 0.95) {
+        damaged.insert(at, damaged.substr(static_cast<std::size_t>(random.uniform() * static_cast<double>(damaged.size())), 60));
+      } else {
+        damaged.resize(at + 1);
+      }
+    }
+    RecordingReport report;
+    try {
+      const Recording recording = read(damaged, report);
+      EXPECT_EQ(recording.line.size(), recording.rows());
+      for (const Channel& channel : recording.channels) {
+        EXPECT_EQ(channel.values.size(), recording.rows());
+      }
+      EXPECT_EQ(std::ranges::adjacent_find(recording.time_s, std::greater_equal<>()), recording.time_s.end());
+      assess(recording, report);
+    } catch (const Failure& failure) {
+      ++failures;
+      EXPECT_NE(failure.code(), ExitCode::bug);
+      EXPECT_NE(std::string(failure.what()), "");
+    }
+  }
+  EXPECT_GT(failures, 10);
+  EXPECT_LT(failures, 190);
+}
+
+TEST(ReadRecording, CanonicalFormReadsBackTheSame) {
+  RecordingReport report;
+  const Recording first = read("time_s,winding_C,current_A,flow_m3_per_s\n0.1,20.123456789,1,0.5\n1.1,,2,\n2.1,22,0.1,7e-9\n", report);
+  EXPECT_EQ(first.find("flow_m3_per_s")->quantity.unit, "m3/s");
+  const Recording again = read(to_canonical_csv(first), report);
+  ASSERT_EQ(again.channels.size(), 3U);
+  EXPECT_EQ(again.time_s, first.time_s);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(again.channels[i].quantity.key, first.channels[i].quantity.key);
+    EXPECT_THAT(again.channels[i].values, testing::Pointwise(testing::NanSensitiveDoubleEq(), first.channels[i].values));
+  }
 }
 
 }  // namespace

@@ -296,6 +296,14 @@ TEST_F(ChartTest, NanBreaksLineAndBand) {
   EXPECT_EQ(std::ranges::count_if(elements, is_band), 2 + 1);  // and the legend
 }
 
+TEST_F(ChartTest, BandOfTwoSamplesIsDrawn) {
+  Chart chart = warm_up();
+  const ChartCurve& curve = chart.panels[1].curves[0];
+  chart.panels[1].bands = {{"left out", {curve.x[10], curve.x[20]}, {30.0, 30.0}, {60.0, 60.0}, 0}};
+  const std::vector<Element> elements = parsed(svg(chart));
+  EXPECT_EQ(std::ranges::count_if(elements, is_band), 1 + 1);  // and the legend
+}
+
 TEST_F(ChartTest, LongCurvesStaySmallAndKeepTheirSpikes) {
   Chart chart{.title = "log", .subtitle = "", .x_label = "time / s", .panels = {{}}};
   for (int color = 0; color < 3; ++color) {

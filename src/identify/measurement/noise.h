@@ -8,6 +8,9 @@
 
 namespace heatsoak {
 
+/// 0 where there is none; NaN are not allowed.
+double median_of(std::vector<double> values);
+
 struct NoiseLevel {
   double step = 0.0;   ///< smallest difference that the values have in common (resolution); 0 where none is seen
   double usual = 0.0;  ///< median change from one sample to the next, of those that change at all
@@ -16,7 +19,8 @@ struct NoiseLevel {
   double repeats_share = 0.0;  ///< of neighbours that are equal
 };
 
-/// Of values in the order of time; NaN are skipped, second differences span evenly spaced rows only within `runs` ([begin, end)).
+/// Of values in the order of time; NaN are skipped, differences do not reach over `runs` ([begin, end)). Of a long log
+/// some 200 000 samples are looked at, spread evenly.
 NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs);
 
 }  // namespace heatsoak

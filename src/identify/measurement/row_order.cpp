@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "identify/measurement/noise.h"
+
 namespace heatsoak {
 namespace {
 
@@ -11,39 +13,38 @@ namespace {
 constexpr double kLongestStep_ratio = 3.0 * (1.0 + 1e-6);
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-double median_step_s(std::span<const double> time_s) {
-  std::vector<double> steps_s;
-  steps_s.reserve(time_s.size());
-  for (std::size_t i = 1; i < time_s.size(); ++i) {
-    steps_s.push_back(time_s[i] - time_s[i - 1]);
-  }
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::ranges::nth_element(steps_s, middle);
-  return *middle;
-}
-
 bool changes(double before, double after) { return before != after && !(std::isnan(before) && std::isnan(after)); }
 
 }  // namespace
+
+double usual_period_s(std::span<const double> time_s) {
+  constexpr std::size_t kMostSteps = 200'000;  // of a long log, spread evenly
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < time_s.size(); i += time_s.size() / kMostSteps + 1) {
+    steps_s.push_back(time_s[i] - time_s[i - 1]);
+  }
+  return median_of(std::move(steps_s));
+}
 
 std::vector<char> increasing_rows(std::span<const double> time_s) {
   if (std::ranges::adjacent_find(time_s, std::greater_equal<>()) == time_s.end()) {
     return std::vector<char>(time_s.size(), 1);
   }
-  // Patience: tails[k] ends the best sequence of k + 1 rows. An equal time does not replace, so the first of them stays.
+  // Patience from the end: tails[k] begins the best sequence of k + 1 rows. Replaced by what stands before it where either
+  // would do, so that the first rows stay.
   std::vector<std::size_t> tails;
-  std::vector<std::size_t> before(time_s.size(), kNone);
-  for (std::size_t row = 0; row < time_s.size(); ++row) {
-    const auto place = std::ranges::lower_bound(tails, time_s[row], {}, [&](std::size_t tail) { return time_s[tail]; });
-    before[row] = place == tails.begin() ? kNone : *(place - 1);
+  std::vector<std::size_t> after(time_s.size(), kNone);
+  for (std::size_t row = time_s.size(); row-- > 0;) {
+    const auto place = std::ranges::lower_bound(tails, -time_s[row], {}, [&](std::size_t tail) { return -time_s[tail]; });
+    after[row] = place == tails.begin() ? kNone : *(place - 1);
     if (place == tails.end()) {
       tails.push_back(row);
-    } else if (time_s[row] < time_s[*place]) {
+    } else {
       *place = row;
     }
   }
   std::vector<char> stays(time_s.size(), 0);
-  for (std::size_t row = tails.empty() ? kNone : tails.back(); row != kNone; row = before[row]) {
+  for (std::size_t row = tails.empty() ? kNone : tails.back(); row != kNone; row = after[row]) {
     stays[row] = 1;
   }
   return stays;
@@ -56,7 +57,7 @@ std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<co
     return begins;
   }
   begins.push_back(0);
-  const double longest_s = longest_gap_s ? *longest_gap_s : time_s.size() > 1 ? kLongestStep_ratio * median_step_s(time_s) : 0.0;
+  const double longest_s = longest_gap_s.value_or(kLongestStep_ratio * usual_period_s(time_s));
   for (std::size_t row = 1; row < time_s.size(); ++row) {
     if (time_s[row] - time_s[row - 1] > longest_s || (!run_values.empty() && changes(run_values[row - 1], run_values[row]))) {
       begins.push_back(row);

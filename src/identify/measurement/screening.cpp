@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 
 #include "identify/measurement/noise.h"
 
@@ -45,6 +47,7 @@ struct Habits {
 };
 
 constexpr std::size_t kShortStretch = 20;
+constexpr std::size_t kPile = 10;  ///< samples at one end of the range, at least, that are called cut off there
 
 Habits habits_of(std::span<const double> values, std::span<const std::vector<Stretch>> runs, const NoiseLevel& noise) {
   Habits habits;
@@ -76,12 +79,13 @@ Habits habits_of(std::span<const double> values, std::span<const std::vector<Str
   return habits;
 }
 
-/// The change out of the stretch stands alone: what follows moves far less.
+/// The change out of the stretch stands alone: what follows moves far less. A sensor that held still while the temperature went on.
 bool ends_in_isolated_jump(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
   constexpr std::size_t kLongHold = 30;
   constexpr double kIsolated_ratio = 4.0;
   constexpr std::size_t kAfter = 5;
-  if (run[at].samples < kLongHold || at + 2 >= run.size()) {
+  const std::size_t long_hold = habits.longest_chance > 0 ? habits.longest_chance : kLongHold;
+  if (run[at].samples <= long_hold || at + 2 >= run.size()) {
     return false;
   }
   const double jump = std::abs(run[at + 1].value - run[at].value);
@@ -90,6 +94,18 @@ bool ends_in_isolated_jump(const std::vector<Stretch>& run, std::size_t at, cons
     after = std::max(after, std::abs(run[i].value - run[i - 1].value));
   }
   return jump > std::max(kIsolated_ratio * after, 6.0 * habits.noise.noise);
+}
+
+/// Noise that never stopped before has stopped for good, after a slope that would have gone on.
+bool stays_still_to_the_end(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
+  constexpr std::size_t kSlopeStretches = 10;
+  constexpr double kFarAway_ratio = 20.0;
+  if (at + 1 != run.size() || at < kSlopeStretches || habits.longest_chance == 0 || run[at].samples <= habits.longest_chance) {
+    return false;
+  }
+  const Stretch& from = run[at - kSlopeStretches];
+  const double slope = (run[at].value - from.value) / static_cast<double>(run[at].begin - from.begin);
+  return std::abs(slope) * static_cast<double>(run[at].samples) > kFarAway_ratio * std::max(habits.noise.noise, habits.noise.usual);
 }
 
 /// Three steps towards the extreme, each at least usual, and then none at all.
@@ -108,7 +124,66 @@ bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Hab
   return run[at - 1].samples == 1;
 }
 
+/// A noisy channel whose noise is cut off: far more samples at the very end of its range than at any value within,
+/// and it comes there by usual changes, not creeping.
+bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habits& habits) {
+  constexpr double kFine_share = 0.2;
+  constexpr std::size_t kPile_ratio = 5;
+  if (habits.repeats_share > kFine_share) {
+    return false;
+  }
+  std::size_t there = 0;
+  std::size_t arrivals = 0;
+  std::size_t usual_arrivals = 0;
+  for (const std::vector<Stretch>& run : runs) {
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      if (run[i].value == end) {
+        there += run[i].samples;
+        ++arrivals;
+        usual_arrivals += i > 0 && std::abs(run[i].value - run[i - 1].value) >= 0.5 * habits.noise.usual ? 1 : 0;
+      }
+    }
+  }
+  if (there < kPile || arrivals < 3 || 2 * usual_arrivals < arrivals) {
+    return false;
+  }
+  std::unordered_map<double, std::size_t> counts;
+  std::size_t elsewhere = 0;
+  for (const std::vector<Stretch>& run : runs) {
+    for (const Stretch& stretch : run) {
+      if (stretch.value != end) {
+        elsewhere = std::max(elsewhere, counts[stretch.value] += stretch.samples);
+      }
+    }
+  }
+  return there > kPile_ratio * elsewhere;
+}
+
+/// Neither five equal neighbours nor ten samples at an end of the range: nothing below could be found. Most long logs end here.
+bool never_rests(std::span<const double> values) {
+  std::size_t longest = 0;
+  std::size_t equal = 0;
+  double before = kLeftOut;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      equal = value == before ? equal + 1 : 1;
+      longest = std::max(longest, equal);
+      low = std::min(low, value);
+      high = std::max(high, value);
+      before = value;
+    }
+  }
+  constexpr std::size_t kRests = 5;
+  const auto at_ends = std::ranges::count_if(values, [low, high](double value) { return value == low || value == high; });
+  return longest < kRests && static_cast<std::size_t>(at_ends) < kPile;
+}
+
 void leave_out_stretches(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
+  if (never_rests(channel.values)) {
+    return;
+  }
   std::vector<std::vector<Stretch>> runs;
   for (const auto& run : recording.runs()) {
     runs.push_back(stretches_of(channel.values, run));
@@ -117,16 +192,19 @@ void leave_out_stretches(Recording& recording, Channel& channel, const NoiseLeve
   if (!(habits.high > habits.low)) {
     return;  // constant from begin to end: what that means is asked elsewhere
   }
+  const bool low_is_cut = piles_up(runs, habits.low, habits);
+  const bool high_is_cut = piles_up(runs, habits.high, habits);
   for (const std::vector<Stretch>& run : runs) {
     for (std::size_t at = 0; at < run.size(); ++at) {
       const Stretch& stretch = run[at];
-      const bool is_extreme = stretch.value == habits.low || stretch.value == habits.high;
-      const bool is_too_long = habits.longest_chance > 0 && stretch.samples > habits.longest_chance;
-      const bool is_cut = is_extreme && climb_stops_dead(run, at, habits);
-      if (!is_too_long && !is_cut && !ends_in_isolated_jump(run, at, habits)) {
+      const bool is_low = stretch.value == habits.low;
+      const bool is_high = stretch.value == habits.high;
+      const bool is_saturated =
+          (is_low && low_is_cut) || (is_high && high_is_cut) || ((is_low || is_high) && climb_stops_dead(run, at, habits));
+      if (!is_saturated && !ends_in_isolated_jump(run, at, habits) && !stays_still_to_the_end(run, at, habits)) {
         continue;
       }
-      LeftOut& entry = report.left_out[{channel.quantity.key, is_extreme ? LeftOutReason::saturated : LeftOutReason::frozen}];
+      LeftOut& entry = report.left_out[{channel.quantity.key, is_saturated ? LeftOutReason::saturated : LeftOutReason::frozen}];
       for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
         if (!std::isnan(channel.values[i])) {
           entry.add(recording.line[i]);
@@ -144,6 +222,20 @@ double median(std::array<double, kWindow>& values, std::size_t count) {
   return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
+/// Three of the six neighbours within the distance: then the median of the seven is within it too, and there is nothing to sort.
+bool has_near_majority(std::span<const double> values, std::span<const std::size_t> rows, std::size_t k, double distance) {
+  constexpr std::size_t kSide = kWindow / 2;
+  if (k < kSide || k + kSide >= rows.size()) {
+    return false;
+  }
+  const double value = values[rows[k]];
+  std::size_t near = 0;
+  for (std::size_t j = k - kSide; j <= k + kSide; ++j) {
+    near += std::abs(values[rows[j]] - value) <= distance ? 1 : 0;
+  }
+  return near > kSide;
+}
+
 /// Hampel's rule on the samples that are there, window 7, 6 median deviations.
 void leave_out_outliers(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
   constexpr double kDeviations = 6.0;
@@ -159,6 +251,9 @@ void leave_out_outliers(Recording& recording, Channel& channel, const NoiseLevel
       }
     }
     for (std::size_t k = 0; k < rows.size() && rows.size() >= kWindow; ++k) {
+      if (has_near_majority(channel.values, rows, k, kDeviations * least_deviation)) {
+        continue;
+      }
       const std::size_t first = k >= kWindow / 2 ? k - kWindow / 2 : 0;
       const std::size_t last = std::min(rows.size(), k + kWindow / 2 + 1);
       std::array<double, kWindow> window{};

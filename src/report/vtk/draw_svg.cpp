@@ -94,6 +94,12 @@ void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Col
     low_px.push_back(point.low_px);
     high_px.push_back(point.high_px);
   }
+  if (points.size() == 2) {
+    // vtkPlotArea draws nothing out of two points.
+    x_px.insert(x_px.begin() + 1, 0.5 * (x_px.front() + x_px.back()));
+    low_px.insert(low_px.begin() + 1, 0.5 * (low_px.front() + low_px.back()));
+    high_px.insert(high_px.begin() + 1, 0.5 * (high_px.front() + high_px.back()));
+  }
   vtkNew<vtkTable> table;
   add_column(table, "x", x_px);
   add_column(table, "low", low_px);

@@ -1,0 +1,247 @@
+// What is told about a log before anything is fitted. All logs here are synthetic.
+#include "identify/measurement/quality.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <sstream>
+
+#include "base/diagnostic.h"
+#include "identify/measurement/noise.h"
+#include "identify/measurement/read_recording.h"
+#include "log_files.h"
+#include "synthetic_log.h"
+
+namespace heatsoak {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+struct Read {
+  Recording recording;
+  RecordingReport report;
+  DataQuality quality;
+};
+
+Read read(const std::string& text) {
+  const LogFile file("log.csv", text);
+  Read result;
+  result.recording = read_recording(file.path(), {}, result.report);
+  result.quality = assess(result.recording, result.report);
+  return result;
+}
+
+/// Every row of a synthetic log through `change`, which sees time, winding, stator, ambient, current.
+std::string changed(const SyntheticLog& log, const std::function<void(int, std::vector<double>&)>& change) {
+  std::istringstream lines(log.csv());
+  std::string line;
+  std::getline(lines, line);
+  std::string text = line + "\n";
+  for (int row = 0; std::getline(lines, line); ++row) {
+    std::vector<double> cells;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) {
+      cells.push_back(std::stod(cell));
+    }
+    change(row, cells);
+    text += fmt::format("{:.6g}", cells[0]);
+    for (std::size_t i = 1; i < cells.size(); ++i) {
+      text += fmt::format(",{:.6g}", cells[i]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+enum Column { time, winding, stator, ambient, current };
+
+std::vector<int> lines_of(const LeftOut* entry) {
+  std::vector<int> lines;
+  for (const LineRange& range : entry != nullptr ? entry->lines : std::vector<LineRange>{}) {
+    for (int line = range.first; line <= range.last; ++line) {
+      lines.push_back(line);
+    }
+  }
+  return lines;
+}
+
+class Resolution : public testing::TestWithParam<double> {};
+
+TEST_P(Resolution, SoundLogKeepsItsSamplesAndRaisesNoSuspicion) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SyntheticLog log;
+    log.seed = seed;
+    log.step_K = GetParam();
+    const Read result = read(log.csv());
+    std::size_t left_out = 0;
+    for (const auto& [what, entry] : result.report.left_out) {
+      left_out += entry.count;
+    }
+    EXPECT_LE(left_out, 4U) << "of 3600 samples, seed " << seed;
+    EXPECT_THAT(result.quality.suspicions, IsEmpty());
+    EXPECT_TRUE(result.quality.thermal.is_good());
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Synthetic, Resolution, testing::Values(0.0, 0.1, 0.25, 1.0));
+
+/// Second differences of white noise have six times its variance; a slope has none.
+TEST(Noise, WhiteNoiseOnASlope) {
+  Random random(3, 0);
+  std::vector<double> values;
+  for (int i = 0; i < 20000; ++i) {
+    double normal = -6.0;
+    for (int k = 0; k < 12; ++k) {
+      normal += random.uniform();
+    }
+    values.push_back(20.0 + 0.01 * i + 0.2 * normal);
+  }
+  const std::vector<std::pair<std::size_t, std::size_t>> runs{{0, values.size()}};
+  EXPECT_NEAR(noise_level(values, runs).noise, 0.2, 0.006);
+  for (double& value : values) {
+    value = 0.5 * std::round(value / 0.5);
+  }
+  EXPECT_NEAR(noise_level(values, runs).step, 0.5, 1e-9);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = 0.5 * std::floor(1e-3 * static_cast<double>(i));
+  }
+  EXPECT_NEAR(noise_level(values, runs).noise, 0.5 / std::sqrt(12.0), 1e-9) << "no noise is seen below the resolution";
+}
+
+TEST(Screening, PlantedOutliersAreFoundByLine) {
+  const Read result = read(changed({}, [](int row, std::vector<double>& cells) {
+    cells[winding] += row == 400 ? 5.0 : row == 880 || row == 881 ? -6.0 : 0.0;
+  }));
+  const std::vector<int> lines = lines_of(result.report.find("winding_C", LeftOutReason::outlier));
+  EXPECT_THAT(lines, testing::IsSupersetOf({402, 882, 883}));
+  EXPECT_LE(lines.size(), 5U);
+  EXPECT_TRUE(std::isnan(result.recording.find("winding_C")->values[400]));
+}
+
+TEST(Screening, FrozenSensorIsLeftOutByLine) {
+  double held = 0.0;
+  const Read result = read(changed({}, [&held](int row, std::vector<double>& cells) {
+    held = row == 320 ? cells[winding] : held;
+    cells[winding] = row >= 320 && row < 380 ? held : cells[winding];
+  }));
+  const std::vector<int> lines = lines_of(result.report.find("winding_C", LeftOutReason::frozen));
+  ASSERT_EQ(lines.size(), 60U);
+  EXPECT_EQ(lines.front(), 322);
+  EXPECT_EQ(result.report.find("stator_C", LeftOutReason::frozen), nullptr);
+}
+
+TEST(Screening, FrozenToTheEnd) {
+  double held = 0.0;
+  const Read result = read(changed({}, [&held](int row, std::vector<double>& cells) {
+    held = row == 1550 ? cells[winding] : held;
+    cells[winding] = row >= 1550 ? held : cells[winding];
+  }));
+  EXPECT_EQ(lines_of(result.report.find("winding_C", LeftOutReason::frozen)).size(), 250U);
+}
+
+TEST(Screening, SaturatedSensorIsLeftOut) {
+  int cut = 0;
+  const Read result = read(changed({}, [&cut](int, std::vector<double>& cells) {
+    cut += cells[winding] >= 85.0 ? 1 : 0;
+    cells[winding] = std::min(cells[winding], 85.0);
+  }));
+  ASSERT_GT(cut, 50);
+  EXPECT_EQ(lines_of(result.report.find("winding_C", LeftOutReason::saturated)).size(), static_cast<std::size_t>(cut));
+}
+
+TEST(ClockOffsets, DelayOfTheTemperaturesIsFound) {
+  for (const double delay_s : {0.0, 2.5, 6.0}) {
+    SyntheticLog log;
+    log.delay_s = delay_s;
+    const Read result = read(log.csv());
+    ASSERT_EQ(result.quality.clock_offsets.size(), 2U);
+    const ClockOffset& offset = result.quality.clock_offsets[0];
+    ASSERT_TRUE(offset.delay_s) << offset.why_not;
+    EXPECT_NEAR(*offset.delay_s, delay_s, 3.0 * offset.delay_uncertainty_s);
+    EXPECT_LT(offset.delay_uncertainty_s, 1.0);
+  }
+}
+
+TEST(ClockOffsets, SteadyHeatTellsNothing) {
+  SyntheticLog log;
+  log.current_A = [](double t) { return 5.0 + 1e-3 * std::sin(t / 400.0); };
+  const Read result = read(log.csv());
+  EXPECT_FALSE(result.quality.clock_offsets[0].delay_s);
+  EXPECT_NE(result.quality.clock_offsets[0].why_not, "");
+}
+
+struct Fault {
+  const char* name;
+  std::function<void(int, std::vector<double>&)> change;
+  const char* said;
+};
+class Suspicion : public testing::TestWithParam<Fault> {};
+
+TEST_P(Suspicion, IsSaidAndNothingIsChanged) {
+  const Read sound = read(SyntheticLog{}.csv());
+  const Read faulty = read(changed({}, GetParam().change));
+  EXPECT_THAT(faulty.quality.suspicions, testing::Contains(HasSubstr(GetParam().said)));
+  EXPECT_EQ(faulty.recording.rows(), sound.recording.rows());
+}
+INSTANTIATE_TEST_SUITE_P(
+    Synthetic, Suspicion,
+    testing::Values(
+        Fault{"fahrenheit_winding", [](int, auto& cells) { cells[winding] = 32.0 + 1.8 * cells[winding]; }, "winding_C starts at"},
+        Fault{"fahrenheit_ambient", [](int, auto& cells) { cells[ambient] = 32.0 + 1.8 * cells[ambient]; },
+              "ambient_C starts at 71.6 °C: is it in degrees Fahrenheit (22 °C)?"},
+        Fault{"fahrenheit_all",
+              [](int, auto& cells) {
+                for (const Column each : {winding, stator, ambient}) {
+                  cells[each] = 32.0 + 1.8 * cells[each];
+                }
+              },
+              "stator_C starts at"},
+        Fault{"kelvin", [](int, auto& cells) { cells[stator] += 273.15; }, "is it in kelvin"},
+        Fault{"milliampere", [](int, auto& cells) { cells[current] *= 1000.0; }, "is it in milliamperes?"},
+        Fault{"milliseconds", [](int, auto& cells) { cells[time] *= 1000.0; }, "is the time in milliseconds?"},
+        Fault{"swapped", [](int, auto& cells) { std::swap(cells[winding], cells[stator]); }, "are the two swapped?"},
+        Fault{"hot_ambient", [](int, auto& cells) { cells[ambient] += 60.0; }, "ambient_C is hotter than"},
+        Fault{"upside_down", [](int, auto& cells) { cells[winding] = 120.0 - cells[winding]; }, "is the sign of the sensor wrong?"}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(Suspicions, PowerThatCannotBe) {
+  std::string text = "time_s,winding_C,torque_Nm,speed_rad_per_s,power_in_W,bus_V,bus_A\n";
+  for (int i = 0; i < 200; ++i) {
+    const double power_W = 20.0 + i % 50;
+    // 80 % of the power arrives at the shaft, the speed is written in rpm, the supply's current in mA.
+    text += fmt::format("{},{},{:.4f},{:.3f},{},24,{:.2f}\n", i, 25.0 + 0.1 * i, 0.8 * power_W / 300.0, 300.0 * 9.5493, power_W,
+                        1000.0 * power_W / 24.0);
+  }
+  const Read result = read(text);
+  EXPECT_THAT(result.quality.suspicions, testing::Contains(HasSubstr("is 7.64 times power_in_W")));
+  EXPECT_THAT(result.quality.suspicions, testing::Contains(HasSubstr("power_in_W is 0.001 times bus_V × bus_A")));
+}
+
+std::vector<std::string> lacks_of(const std::string& text) {
+  const Read result = read(text);
+  if (!result.quality.thermal.is_good()) {
+    try {
+      require_thermal(result.recording, result.quality);
+      ADD_FAILURE() << "did not refuse";
+    } catch (const Failure& failure) {
+      EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
+    }
+  }
+  return result.quality.thermal.lacks;
+}
+
+TEST(Fitness, LogsThatTellNothingAboutHeat) {
+  EXPECT_THAT(lacks_of(changed({}, [](int, auto& cells) { cells[winding] = cells[stator] = 25.0; })),
+              ElementsAre(HasSubstr("winding_C is constant, 25 °C")));
+  SyntheticLog off;
+  off.current_A = [](double) { return 0.0; };
+  EXPECT_THAT(lacks_of(off.csv()), testing::Contains(HasSubstr("no heat goes in: current_A is 0 throughout")));
+  SyntheticLog shortened;
+  shortened.rows = 12;
+  EXPECT_THAT(lacks_of(shortened.csv()), testing::Contains(HasSubstr("12 rows; at least 20")));
+  EXPECT_THAT(lacks_of("time_s,ambient_C,bus_V\n0,20,24\n1,20,24.1\n"), testing::Contains(HasSubstr("no temperature of the motor")));
+}
+
+}  // namespace
+}  // namespace heatsoak
