@@ -156,7 +156,7 @@ void read_effects(Reader& top, Motor& motor) {
           name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
       continue;
     }
-    MotorEffect effect{name, type, {}, {}};
+    MotorEffect effect{name, type, {}, {}, {}};
     for (const NodeRole& role : type->nodes) {
       effect.nodes.push_back(reader.text(role.role, Need::optional).value_or(std::string(role.default_node)));
       constexpr std::array<std::string_view, 3> kNodes{"winding", "stator", "ambient"};
@@ -166,6 +166,11 @@ void read_effects(Reader& top, Motor& motor) {
     }
     for (const ParameterSpec& spec : type->parameters) {
       effect.parameters.push_back(reader.figure(spec, Need::required).value_or(Figure{}));
+    }
+    if (std::optional<Reader> condition = reader.table("condition", Need::optional)) {
+      for (const std::string& key : condition->keys()) {
+        effect.condition.emplace(key, condition->text(key, Need::required).value_or(""));
+      }
     }
     reader.finish();
     motor.effects.push_back(std::move(effect));

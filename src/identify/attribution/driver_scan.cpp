@@ -291,6 +291,20 @@ std::string_view unit_of(Multiplier multiplier) {
   return "";
 }
 
+std::string_view to_string(Multiplier multiplier) {
+  switch (multiplier) {
+    case Multiplier::source:
+      return "heat";
+    case Multiplier::excess:
+      return "excess over ambient";
+    case Multiplier::copper:
+      return "copper loss";
+    case Multiplier::difference:
+      return "difference to the other node";
+  }
+  return "";
+}
+
 Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run) {
   const int node = model.network.find_node(term.node);
   Eigen::VectorXd along = Eigen::VectorXd::Ones(run.samples() - 1);

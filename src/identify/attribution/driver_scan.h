@@ -19,6 +19,7 @@ enum class Multiplier {
   difference,  ///< T_node − T_other: g in W/K, positive carries heat from the node to the other
 };
 std::string_view unit_of(Multiplier multiplier);
+std::string_view to_string(Multiplier multiplier);
 
 /// One family of curves.
 struct ScanTerm {
