@@ -18,6 +18,8 @@ struct Subject {
   std::vector<std::string_view> same;
   /// `size` 1 is typical for a motor of some 50 W.
   Missing (*make)(double size);
+  /// What the tool's size parameter must be at size 1, where both laws have one form; 0 where they differ on purpose.
+  double true_value = 0.0;
 };
 const std::vector<Subject>& subjects();
 

@@ -9,7 +9,7 @@
 #include "cli/command.h"
 #include "cli/diagnosis_answer.h"
 #include "cli/quantity_option.h"
-#include "identify/attribution/motor_model.h"
+#include "identify/attribution/model_file.h"
 #include "identify/measurement/read_recording.h"
 
 namespace heatsoak::commands {
@@ -111,7 +111,7 @@ ExitCode run(const Options& options, Session& session) {
   for (const std::string& text : options.holdout) {
     logs.holdout.push_back(read_part(text, options, notes));
   }
-  MotorModel model = motor_model(motor, logs.train);
+  ModelOfLogs model = model_of_logs(motor, logs.train);
   notes.insert(notes.end(), model.notes.begin(), model.notes.end());
   MeasuredRunOptions how;
   how.needed = model.needed;

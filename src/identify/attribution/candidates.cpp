@@ -122,7 +122,6 @@ Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
 /// All of them in one network at a size of 0: they do not change what it does, but it has their derivatives.
 struct Extended {
   Network network;
-  std::vector<double> parameters;
   std::vector<int> sizes;
   std::vector<double> start_C;
 };
@@ -165,9 +164,9 @@ CandidateList candidates_for(const Network& network, const std::vector<MeasuredR
   return list;
 }
 
-Columns candidate_columns(const std::vector<Candidate>& candidates, const Model& model, const LinearisedRun& fitted,
-                          const MeasuredRun& run) {
-  Extended extended{model.network, model.values, {}, {}};
+Columns candidate_columns(const std::vector<Candidate>& candidates, const Network& network, std::span<const double> parameters,
+                          const LinearisedRun& fitted, const MeasuredRun& run) {
+  Extended extended{network, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
   extended.start_C.assign(start_C.begin(), start_C.end());
   for (const Candidate& candidate : candidates) {
@@ -176,7 +175,7 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Model&
     }
   }
   std::vector<double> values = extended.network.values();
-  std::ranges::copy(model.values, values.begin());
+  std::ranges::copy(parameters, values.begin());
   const LinearisedRun wide = linearise(extended.network, values, extended.sizes, {}, extended.start_C, run);
   Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
   Eigen::Index of_network = 0;

@@ -34,7 +34,8 @@ struct CandidateList {
 /// What the runs can speak about: signals are there, sensors are there, and the network does not have the effect already.
 CandidateList candidates_for(const Network& network, const std::vector<MeasuredRun>& runs);
 
-/// One column per candidate, per typical size, at the model's present values; n·s rows.
-Columns candidate_columns(const std::vector<Candidate>& candidates, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run);
+/// One column per candidate, per typical size, at the network's present parameters; n·s rows.
+Columns candidate_columns(const std::vector<Candidate>& candidates, const Network& network, std::span<const double> parameters,
+                          const LinearisedRun& fitted, const MeasuredRun& run);
 
 }  // namespace heatsoak

@@ -176,31 +176,60 @@ class Scanner {
     for (const int candidate : base_.candidates) {
       chosen.push_back(table_.free_count() + candidate);
     }
-    std::vector<std::vector<RunEvidence>> evidence(families.size(), std::vector<RunEvidence>(input_.runs->size()));
+    std::vector<std::vector<RunEvidence>> evidence(input_.runs->size());
     in_parallel(input_.runs->size(), 0, [&](std::size_t r) {
       const DesignRun& design = table_.runs()[r];
       const Columns shown = response(*design.run, heats_W(families, r), into, other);
-      const Whitening whitening(*design.run, flux, design.noise);
-      Columns all(shown.rows(), inner + shown.cols());
-      all << design.columns(Eigen::all, chosen), shown;
-      const RunEvidence wide = run_evidence(*design.run, all, whitening, design.start);
-      Eigen::Index at = inner;
-      for (std::size_t f = 0; f < families.size(); ++f) {
-        const auto size = static_cast<Eigen::Index>(families[f].knots.size());
-        Eigen::MatrixXd tall(wide.triangle.rows(), inner + size + 1);
-        tall << wide.triangle.leftCols(inner), wide.triangle.middleCols(at, size), wide.triangle.rightCols(1);
-        const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(tall);
-        evidence[f][r] = {decomposition.matrixQR().topRows(tall.cols()).triangularView<Eigen::Upper>(), wide.log_determinant, wide.count};
-        at += size;
-      }
+      evidence[r] = evidence_of(design, design.columns(Eigen::all, chosen), shown, families, flux);
     });
     std::vector<Scored> scored(families.size());
     const double base_nats = table_.score(base_.candidates, place).evidence_nats;
     for (std::size_t f = 0; f < families.size(); ++f) {
-      scored[f] = solve(evidence[f], families[f], inner);
+      std::vector<RunEvidence> of_family;
+      for (const std::vector<RunEvidence>& of_run : evidence) {
+        of_family.push_back(of_run[f]);
+      }
+      scored[f] = solve(of_family, families[f], inner);
       scored[f].gain_nats -= base_nats;
     }
     return scored;
+  }
+
+  /// One per family, of [inner, hats, residual]. All families share the whitening and what does not concern their hats; a wide
+  /// QR would spend its time on products of families with each other, so triangles come from normal matrices here.
+  static std::vector<RunEvidence> evidence_of(const DesignRun& design, const Columns& inner, const Columns& shown,
+                                              const std::vector<Family>& families, const LatentFlux& flux) {
+    const Eigen::Index starts = design.run->states;
+    const Eigen::Index shared = starts + inner.cols() + 1;
+    Columns all(shown.rows(), shared + shown.cols());
+    all << design.run->by_start, inner, design.run->residual_K, shown;
+    const Whitening whitening(*design.run, flux, design.noise);
+    whitening.apply(all);
+    Eigen::MatrixXd of_shared = all.leftCols(shared).transpose() * all.leftCols(shared);
+    of_shared.topLeftCorner(starts, starts).diagonal() += design.start.sd_K.cwiseAbs2().cwiseInverse();
+    const Eigen::MatrixXd across = all.leftCols(shared).transpose() * all.rightCols(shown.cols());
+    std::vector<RunEvidence> evidence;
+    Eigen::Index at = 0;
+    for (const Family& family : families) {
+      const auto size = static_cast<Eigen::Index>(family.knots.size());
+      const auto hats = all.middleCols(shared + at, size);
+      const Eigen::Index before = shared - 1;
+      Eigen::MatrixXd normal(shared + size, shared + size);
+      normal.topLeftCorner(before, before) = of_shared.topLeftCorner(before, before);
+      normal.block(0, before, before, size) = across.block(0, at, before, size);
+      normal.block(before, before, size, size) = hats.transpose() * hats;
+      normal.block(0, before + size, before, 1) = of_shared.block(0, before, before, 1);
+      normal.block(before, before + size, size, 1) = across.block(before, at, 1, size).transpose();
+      normal(before + size, before + size) = of_shared(before, before);
+      // A hat that no sample reaches has an empty column.
+      normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
+      const Eigen::MatrixXd triangle = normal.selfadjointView<Eigen::Upper>().llt().matrixU();
+      const Eigen::Index rest = inner.cols() + size + 1;
+      const double start_logs = triangle.topLeftCorner(starts, starts).diagonal().array().log().sum() + design.start.sd_K.array().log().sum();
+      evidence.push_back({triangle.bottomRightCorner(rest, rest), whitening.log_determinant() + 2.0 * start_logs, whitening.count()});
+      at += size;
+    }
+    return evidence;
   }
 
   [[nodiscard]] Scored solve(const std::vector<RunEvidence>& evidence, const Family& family, Eigen::Index inner) const {
@@ -277,6 +306,10 @@ class Scanner {
 };
 
 }  // namespace
+
+std::vector<ScanResult> scan_drivers(const ScanInput& input, EvidenceTable& table, const SetScore& base, int most) {
+  return Scanner(input, table, base).run(most);
+}
 
 std::string_view unit_of(Multiplier multiplier) {
   switch (multiplier) {

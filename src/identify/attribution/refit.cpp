@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
@@ -86,6 +87,9 @@ class Fitter {
         break;
       }
     }
+    if (options_.averages_flux) {
+      average(table);
+    }
     return std::move(now_);
   }
 
@@ -102,6 +106,43 @@ class Fitter {
   [[nodiscard]] LinearFit bounded_step(EvidenceTable& table) const {
     const Eigen::VectorXd theta = now_.model.theta();
     return bounded_fit(table.all_runs(now_.place), table.prior_of({}), low_ - theta, high_ - theta);
+  }
+
+  /// Covariance over the places around the best: Σ w·(covariance + step·stepᵀ), w by evidence.
+  void average(EvidenceTable& table) {
+    const Eigen::VectorXd theta = now_.model.theta();
+    const ThetaPrior prior = table.prior_of({});
+    std::vector<FluxGrid::Place> places{now_.place};
+    for (std::size_t axis = 0; axis < now_.place.size(); ++axis) {
+      const auto count = static_cast<int>(axis + 1 < now_.place.size() ? options_.grid.rms_W.size() : options_.grid.time_scale_s.size());
+      const std::size_t known = places.size();
+      for (std::size_t i = 0; i < known; ++i) {
+        for (const int step : {-1, 1}) {
+          FluxGrid::Place place = places[i];
+          place[axis] += step;
+          if (place[axis] >= 0 && place[axis] < count) {
+            places.push_back(place);
+          }
+        }
+      }
+    }
+    std::vector<LinearFit> fits;
+    double best_nats = -std::numeric_limits<double>::infinity();
+    for (const FluxGrid::Place& place : places) {
+      fits.push_back(bounded_fit(table.all_runs(place), prior, low_ - theta, high_ - theta));
+      best_nats = std::max(best_nats, fits.back().log_evidence);
+    }
+    double total_weight = 0.0;
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(theta.size());
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+    for (const LinearFit& fit : fits) {
+      const double weight = std::exp(fit.log_evidence - best_nats);
+      total_weight += weight;
+      mean += weight * fit.coefficients;
+      square += weight * (fit.covariance + fit.coefficients * fit.coefficients.transpose());
+    }
+    mean /= total_weight;
+    now_.covariance = square / total_weight - mean * mean.transpose();
   }
 
   /// The longest of the halved steps that lowers the squares; false where none does.

@@ -23,6 +23,9 @@ struct RefitOptions {
   FluxGrid::Place place;                           ///< to begin with
   std::vector<Eigen::VectorXd> weights;            ///< per run and sample; empty: all count
   int most_steps = 8;
+  /// Average the result over how probable neighbouring suppositions about the unknown heat are: intervals that hold what they
+  /// promise. Otherwise the most probable one alone counts.
+  bool averages_flux = false;
 };
 
 /// `start_C` per run, as linearise() takes it. Throws Failure (numerics_failed) where no step can be made at all.

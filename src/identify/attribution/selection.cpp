@@ -83,6 +83,11 @@ class Selector {
     while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
     }
     check_backwards();
+    if (!out_.terms.empty()) {
+      options_.place = out_.after.place;
+      options_.averages_flux = true;
+      out_.after = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
+    }
     return std::move(out_);
   }
 
@@ -107,7 +112,8 @@ class Selector {
     }
     std::vector<Columns> columns(input_.runs.size());
     in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
-      columns[r] = candidate_columns(candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]);
+      columns[r] = candidate_columns(candidates, out_.after.model.model.network, out_.after.model.values_in(input_.runs[r]), out_.after.fitted[r],
+                                     input_.runs[r]);
     });
     EvidenceTable table(design(out_.after.fitted, input_.runs, options_.weights, columns), options_.grid, prior_here(out_.after.model),
                         column_rules(candidates));
@@ -201,7 +207,8 @@ class Selector {
       if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats) {
         continue;
       }
-      if (each.visibility_ratio < rules_.least_visibility_ratio || each.left_out_gain_nats <= 0.0) {
+      const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
+      if (each.visibility_ratio < rules_.least_visibility_ratio || fails_elsewhere) {
         if (each.gain_nats >= least) {
           out_.refused.push_back(fmt::format("{}: {:.0f} nats, but {}", each.candidate.id, each.gain_nats,
                                              each.visibility_ratio < rules_.least_visibility_ratio

@@ -1,4 +1,4 @@
-#include "identify/attribution/motor_model.h"
+#include "identify/attribution/model_file.h"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ bool has_signal(const Recording& recording, Signal signal) {
   return std::ranges::find(signals, signal) != signals.end();
 }
 
-void set_needed(MotorModel& out, const Motor& motor, const std::vector<Recording>& recordings) {
+void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recording>& recordings) {
   std::set<Signal> wanted;
   for (const EffectInPlace& effect : out.model.model.network.effects()) {
     wanted.insert(effect.type->needs.begin(), effect.type->needs.end());
@@ -124,10 +124,15 @@ std::map<std::string, FittedParameter> thermal_figures(const RefitResult& fit) {
 
 }  // namespace
 
-MotorModel motor_model(const Motor& motor, const std::vector<Recording>& recordings) {
-  MotorModel out;
+ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings) {
+  ModelOfLogs out;
   Model& model = out.model.model;
   model.network = datasheet_network(motor, nominal_sample(motor));
+  const auto have = [&](Signal signal) { return std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, signal); }); };
+  if (!have(Signal::current) && have(Signal::input_power)) {
+    model.network.add_effect("input_power", *find_effect("input_power_loss"), std::vector<std::string>{"winding"}, std::vector<double>{1.0});
+    out.notes.emplace_back("no current in the logs: all electric power that goes in is taken as heat of the winding, the driver's share included");
+  }
   model.values = model.network.values();
   model.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
   for (int node = 0; node < model.network.state_count(); ++node) {

@@ -9,15 +9,16 @@
 
 namespace heatsoak {
 
-struct MotorModel {
+struct ModelOfLogs {
   ExtendedModel model;
   std::vector<Signal> needed;      ///< heat inputs that runs must have for it
   std::vector<std::string> notes;  ///< what is taken for granted because no log has it
 };
 
-/// The motor's network with its heat capacities and thermal resistances free. Heat inputs that no recording has count as 0.
+/// The motor's network with its heat capacities and thermal resistances free. Where no recording has a current, all measured input
+/// power heats the winding. Heat inputs that no recording has count as 0.
 /// Throws Failure (bad_input) where the recordings have no heat input that the motor's effects turn into heat.
-MotorModel motor_model(const Motor& motor, const std::vector<Recording>& recordings);
+ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings);
 
 /// The rows of a recording between two shares of its duration, 0 … 1; its name and conditions stay.
 Recording part_of(const Recording& recording, double from_share, double to_share);
