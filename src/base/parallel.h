@@ -13,5 +13,9 @@ using Progress = std::function<void(std::size_t done, std::size_t total)>;
 /// For the progress, which is called from one thread at a time, they are the ones after `done` of `total`.
 void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress,
                  const std::function<void(std::size_t)>& job);
+/// The same without a word about progress.
+inline void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& job) {
+  in_parallel(count, threads, 0, count, {}, job);
+}
 
 }  // namespace heatsoak

@@ -142,9 +142,14 @@ std::vector<MotorEffect> read_effects(Reader& top) {
   std::vector<MotorEffect> effects;
   bool sound = true;
   for (Entry& entry : entries) {
-    MotorEffect effect{entry.name, entry.type, {}, {}};
+    MotorEffect effect{entry.name, entry.type, {}, {}, {}};
     read_nodes(entry, known, effect);
     read_parameters(entry.reader, *entry.type, effect);
+    if (std::optional<Reader> condition = entry.reader.table("condition", Need::optional)) {
+      for (const std::string& key : condition->keys()) {
+        effect.condition.emplace(key, condition->text(key, Need::required).value_or(""));
+      }
+    }
     entry.reader.finish();
     sound =
         sound && std::ranges::all_of(effect.nodes, [&](const std::string& node) { return std::ranges::find(known, node) != known.end(); });

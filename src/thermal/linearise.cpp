@@ -17,16 +17,29 @@ struct CopperGradient {
   std::array<double, kMostParameters> by_parameter{};
 };
 
+/// Numbers with derivatives are large, and clearing those that no law asks for costs more than the laws: they are kept.
+struct Workspace {
+  std::array<Tangent, kMostRoles> temperature_C;
+  std::array<Tangent, kMostParameters> parameter;
+  std::array<Tangent, kMostRoles> heat_W;
+  OperatingPoint<Tangent> seen;
+};
+
 /// One effect with its temperatures, its parameters and the copper loss as numbers that carry derivatives, eight at a time.
 class LocalLaw {
  public:
-  LocalLaw(const EffectInPlace& effect, std::span<const double> parameters, const double* temperature_C)
-      : effect_(effect), roles_(static_cast<int>(effect.node_index.size())), count_(static_cast<int>(effect.parameter_index.size())) {
+  LocalLaw(const EffectInPlace& effect, std::span<const double> parameters, const double* temperature_C, Workspace& workspace)
+      : temperature_C_(workspace.temperature_C),
+        parameter_(workspace.parameter),
+        heat_W_(workspace.heat_W),
+        effect_(effect),
+        roles_(static_cast<int>(effect.node_index.size())),
+        count_(static_cast<int>(effect.parameter_index.size())) {
     for (int role = 0; role < roles_; ++role) {
-      temperature_C_[role] = Tangent(temperature_C[effect.node_index[role]]);
+      temperature_C_[role].a = temperature_C[effect.node_index[role]];
     }
     for (int i = 0; i < count_; ++i) {
-      parameter_[i] = Tangent(parameters[effect.parameter_index[i]]);
+      parameter_[i].a = parameters[effect.parameter_index[i]];
     }
   }
 
@@ -58,25 +71,25 @@ class LocalLaw {
     }
   }
 
+  std::array<Tangent, kMostRoles>& temperature_C_;
+  std::array<Tangent, kMostParameters>& parameter_;
+  std::array<Tangent, kMostRoles>& heat_W_;
   const EffectInPlace& effect_;
   int roles_;
   int count_;
-  std::array<Tangent, kMostRoles> temperature_C_;
-  std::array<Tangent, kMostParameters> parameter_;
-  std::array<Tangent, kMostRoles> heat_W_;
 };
 
 class Linearisation {
  public:
-  Linearisation(std::span<const double> parameters, const double* temperature_C, int states, Linearised& out)
-      : parameters_(parameters), temperature_C_(temperature_C), states_(states), out_(out) {
+  Linearisation(std::span<const double> parameters, const double* temperature_C, int states, Workspace& workspace, Linearised& out)
+      : workspace_(workspace), parameters_(parameters), temperature_C_(temperature_C), states_(states), out_(out) {
     out.rate_K_per_s.setZero(states);
     out.by_state.setZero(states, states);
     out.by_parameter.setZero(states, static_cast<Eigen::Index>(parameters.size()));
   }
 
   void add(const EffectInPlace& effect, OperatingPoint<Tangent>& at, CopperGradient* noted) {
-    LocalLaw law(effect, parameters_, temperature_C_);
+    LocalLaw law(effect, parameters_, temperature_C_, workspace_);
     const int roles = static_cast<int>(effect.node_index.size());
     for (int first = 0; first < law.direction_count(); first += kDirections) {
       law.book(at, first);
@@ -148,6 +161,7 @@ class Linearisation {
     }
   }
 
+  Workspace& workspace_;
   std::span<const double> parameters_;
   const double* temperature_C_;
   int states_;
@@ -162,9 +176,12 @@ void Network::linearise(const OperatingPoint<double>& at, std::span<const double
   std::array<double, kMostNodes> temperature_C{};
   std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
   temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
-  OperatingPoint<Tangent> seen;
-  for_each_quantity([](Tangent& to, const double& from) { to = Tangent(from); }, seen, at);
-  Linearisation linearisation(parameters, temperature_C.data(), state_count(), out);
+  static thread_local Workspace workspace;
+  OperatingPoint<Tangent>& seen = workspace.seen;
+  // Only the copper loss ever has derivatives, and those are seeded anew for every law.
+  for_each_quantity([](Tangent& to, const double& from) { to.a = from; }, seen, at);
+  seen.copper_loss_W.v.setZero();
+  Linearisation linearisation(parameters, temperature_C.data(), state_count(), workspace, out);
   for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
     const bool is_copper = turn == 0 && copper_effect_ >= 0;
     CopperGradient copper;

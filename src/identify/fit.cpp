@@ -1,0 +1,436 @@
+#include "identify/fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/diagnostic.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "identify/flux_search.h"
+#include "identify/least_squares.h"
+
+namespace heatsoak {
+namespace {
+
+/// Innovations beyond this many standard deviations count less, beyond the next not at all.
+constexpr double kSuspect = 2.5;
+constexpr double kHopeless = 6.0;
+/// More than this cannot all be outliers: then the model or the flux is wrong, and every sample keeps a say.
+constexpr double kMostRejected_share = 0.1;
+/// Mean square of a standard normal number that is known to lie within ±3.
+constexpr double kInside = 3.0;
+constexpr double kInsideSquare = 0.9733;
+
+std::vector<std::string> nodes_of(std::span<const MeasuredRun> runs) {
+  std::vector<std::string> nodes;
+  for (const MeasuredRun& run : runs) {
+    for (const Sensor& sensor : run.sensors) {
+      if (std::ranges::find(nodes, sensor.node) == nodes.end()) {
+        nodes.push_back(sensor.node);
+      }
+    }
+  }
+  return nodes;
+}
+
+std::size_t place_of(const std::vector<std::string>& nodes, const std::string& node) {
+  return static_cast<std::size_t>(std::ranges::find(nodes, node) - nodes.begin());
+}
+
+SensorNoise noise_with(const MeasuredRun& run, const std::vector<std::string>& nodes, std::span<const double> ratio,
+                       const Eigen::VectorXd& weight) {
+  SensorNoise noise;
+  for (const Sensor& sensor : run.sensors) {
+    noise.noise_K.push_back(sensor.noise_K * ratio[place_of(nodes, sensor.node)]);
+  }
+  noise.weight = weight;
+  return noise;
+}
+
+/// Mean over time of the heat that the model makes or leads away, whichever is more: what unknown heat is measured by.
+double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const std::vector<RunStart>& starts) {
+  const Network& network = model.network;
+  const auto nodes = static_cast<std::size_t>(network.node_count());
+  std::vector<double> heat_W(network.effects().size() * nodes);
+  double made_J = 0.0;
+  double led_away_J = 0.0;
+  double duration_s = 0.0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::vector<double> state_C(starts[r].state_C.begin(), starts[r].state_C.end());
+    for (std::size_t k = 0; k < runs[r].at.size(); ++k) {
+      const double step_s = runs[r].time_s[k + 1] - runs[r].time_s[k];
+      for (const Sensor& sensor : runs[r].sensors) {
+        const double shown_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
+        double& node_C = state_C[static_cast<std::size_t>(network.find_node(sensor.node))];
+        node_C = std::isnan(shown_C) ? node_C : shown_C;
+      }
+      network.balance_W(runs[r].at[k], model.values, state_C, heat_W);
+      double away_W = 0.0;
+      for (std::size_t e = 0; e < network.effects().size(); ++e) {
+        away_W += heat_W[e * nodes + nodes - 1];
+      }
+      made_J += step_s * std::accumulate(heat_W.begin(), heat_W.end(), 0.0);
+      led_away_J += step_s * std::abs(away_W);
+      duration_s += step_s;
+    }
+  }
+  constexpr double kLeast_W = 1e-3;
+  return std::max({kLeast_W, made_J / duration_s, led_away_J / duration_s});
+}
+
+class Fitting {
+ public:
+  Fitting(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options)
+      : model_(model), runs_(runs), options_(options), theta_(model.theta()) {
+    fit_.sensor_nodes = nodes_of(runs);
+    fit_.noise_ratio.assign(fit_.sensor_nodes.size(), 1.0);
+    double longest_s = 0.0;
+    double usual_step_s = 0.0;
+    for (const MeasuredRun& run : runs) {
+      starts_.push_back(start_of(model.network, run));
+      fit_.weights.push_back(Eigen::VectorXd::Ones(run.measured_C.size()));
+      longest_s = std::max(longest_s, run.time_s.back() - run.time_s.front());
+      usual_step_s = std::max(usual_step_s, (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size()));
+    }
+    range_.count = model.flux_nodes.size();
+    range_.shortest_s = std::max(20.0, 4.0 * usual_step_s);
+    range_.longest_s = std::max(4.0 * range_.shortest_s, longest_s);
+    for (const FreeParameter& parameter : model.free) {
+      wanted_.push_back(parameter.place);
+    }
+  }
+
+  Fit run() {
+    find_start();
+    range_.unit_W = usual_heat_W(model_, runs_, starts_);
+    linearise_all();
+    constexpr int kMostRounds = 10;
+    // The level of the noise first, under a flux that is not absurd: what is taken for flux hangs on it.
+    flux_ = {std::vector<double>(range_.count, options_.with_flux ? 0.02 * range_.unit_W : 0.0), std::max(range_.shortest_s, 160.0)};
+    look_at_innovations();
+    look_at_innovations();
+    flux_ = {};
+    for (fit_.iterations = 1; fit_.iterations <= kMostRounds && !fit_.has_converged; ++fit_.iterations) {
+      seek_flux();
+      constexpr int kLooks = 2;
+      for (int look = 0; look < kLooks; ++look) {
+        look_at_innovations();
+      }
+      move();
+    }
+    conclude();
+    return std::move(fit_);
+  }
+
+ private:
+  /// The least squares of a few points of a Latin hypercube, on merged rows and with white noise; the best one goes on.
+  void find_start() {
+    std::vector<MeasuredRun> rough;
+    for (const MeasuredRun& run : runs_) {
+      const double step_s = (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size());
+      constexpr double kRoughStep_s = 15.0;
+      constexpr int kLeastRows = 60;
+      const int merged = std::min(static_cast<int>(kRoughStep_s / step_s), static_cast<int>(run.at.size()) / kLeastRows);
+      rough.push_back(merged > 1 ? thinned(run, merged) : run);
+    }
+    // Misfit of a model that lacks something is some kelvins: with the sensors' own noise every start would look hopeless.
+    LeastSquaresProblem problem{.model = &model_, .runs = rough, .whitening = {}, .white_noise_K = 1.0, .threads = options_.threads};
+    struct Candidate {
+      Eigen::VectorXd theta;
+      std::vector<RunStart> starts;
+      double cost = 0.0;
+    };
+    std::vector<Candidate> candidates;
+    for (const Eigen::VectorXd& point : points(theta_)) {
+      candidates.push_back({point, starts_});
+    }
+    // All of them a few steps, the two best to the end.
+    for (const auto& [steps, kept] : {std::pair(3, 2), std::pair(30, 1)}) {
+      problem.most_iterations = steps;
+      for (Candidate& each : candidates) {
+        each.cost = minimise(problem, each.theta, each.starts).cost;
+      }
+      std::ranges::stable_sort(candidates, {}, &Candidate::cost);
+      candidates.resize(std::min<std::size_t>(candidates.size(), static_cast<std::size_t>(kept)));
+    }
+    if (!std::isfinite(candidates.front().cost)) {
+      throw Failure(ExitCode::numerics_failed,
+                    "no start of the fit leads to a model whose temperatures stay within reason; are the units of the heat inputs right?");
+    }
+    theta_ = candidates.front().theta;
+    starts_ = candidates.front().starts;
+  }
+
+  /// The model's own values, and a Latin hypercube around them.
+  [[nodiscard]] std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& centre) const {
+    std::vector<Eigen::VectorXd> all(static_cast<std::size_t>(options_.starts) + 1, centre);
+    Random random(options_.seed, 0);
+    for (Eigen::Index i = 0; i < centre.size(); ++i) {
+      const FreeParameter& parameter = model_.free[static_cast<std::size_t>(i)];
+      std::vector<int> cell(static_cast<std::size_t>(options_.starts));
+      std::iota(cell.begin(), cell.end(), 0);
+      for (std::size_t k = cell.size(); k > 1; --k) {
+        std::swap(cell[k - 1], cell[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
+      }
+      // No further than what was known before allows.
+      const double prior_sd = 1.0 / std::sqrt(std::max(model_.prior.precision(i, i), 1e-6));
+      const double reach = std::min(options_.start_spread, 2.0 * prior_sd);
+      for (std::size_t k = 0; k < cell.size(); ++k) {
+        const double share = (cell[k] + random.uniform()) / static_cast<double>(cell.size());
+        all[k + 1][i] =
+            std::clamp(centre[i] + reach * (2.0 * share - 1.0), model_.theta_of(i, parameter.low), model_.theta_of(i, parameter.high));
+      }
+    }
+    return all;
+  }
+
+  void linearise_all() {
+    linearised_.resize(runs_.size());
+    columns_.resize(runs_.size());
+    const std::vector<double> values = model_.values_at(theta_);
+    in_parallel(runs_.size(), options_.threads, [&](std::size_t r) {
+      const Eigen::VectorXd& start_C = starts_[r].state_C;
+      linearised_[r] = linearise(model_.network, values, wanted_, model_.flux_nodes,
+                                 {start_C.data(), static_cast<std::size_t>(start_C.size())}, runs_[r]);
+      columns_[r] = by_theta(model_, theta_, linearised_[r].by_parameter);
+    });
+  }
+
+  [[nodiscard]] SensorNoise noise(std::size_t r) const {
+    return noise_with(runs_[r], fit_.sensor_nodes, fit_.noise_ratio, fit_.weights[r]);
+  }
+  [[nodiscard]] StartPrior start_prior(std::size_t r) const { return {starts_[r].prior_C - starts_[r].state_C, starts_[r].prior_sd_K}; }
+
+  /// Every flux with every run is a job of its own.
+  std::vector<LinearFit> fits(const std::vector<LatentFlux>& fluxes) const {
+    std::vector<RunEvidence> all(fluxes.size() * runs_.size());
+    in_parallel(all.size(), options_.threads, [&](std::size_t job) {
+      const std::size_t r = job % runs_.size();
+      const Whitening whitening(linearised_[r], fluxes[job / runs_.size()], noise(r));
+      all[job] = run_evidence(linearised_[r], columns_[r], whitening, start_prior(r));
+    });
+    std::vector<LinearFit> results;
+    for (std::size_t f = 0; f < fluxes.size(); ++f) {
+      results.push_back(
+          linear_fit(std::span(all).subspan(f * runs_.size(), runs_.size()), model_.prior.mean - theta_, model_.prior.precision));
+    }
+    return results;
+  }
+  std::vector<double> evidences(const std::vector<LatentFlux>& fluxes) const {
+    std::vector<double> all;
+    for (const LinearFit& each : fits(fluxes)) {
+      all.push_back(each.log_evidence);
+    }
+    return all;
+  }
+
+  [[nodiscard]] std::vector<Whitening> whitenings() const {
+    std::vector<Whitening> all;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      all.emplace_back(linearised_[r], flux_, noise(r));
+    }
+    return all;
+  }
+
+  void seek_flux() {
+    if (options_.with_flux) {
+      flux_ = most_probable_flux([&](const auto& fluxes) { return evidences(fluxes); }, range_, flux_);
+    } else {
+      flux_ = {std::vector<double>(range_.count, 0.0), range_.longest_s};
+    }
+  }
+
+  /// The noise level of each kind of sensor, and which samples are outliers, from the innovations of the best linear correction.
+  void look_at_innovations() {
+    const Eigen::VectorXd coefficients = fits({flux_}).front().coefficients;
+    std::vector<double> weight_sum(fit_.sensor_nodes.size(), 0.0);
+    std::vector<double> square_sum(fit_.sensor_nodes.size(), 0.0);
+    std::size_t rejected = 0;
+    std::size_t counted = 0;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const LinearisedRun& run = linearised_[r];
+      const Whitening whitening(run, flux_, noise(r));
+      const Eigen::VectorXd start_K = start_correction_K(run, columns_[r], coefficients, whitening, start_prior(r));
+      const Eigen::VectorXd residual_K = run.residual_K - columns_[r] * coefficients - run.by_start * start_K;
+      const Innovations found = whitening.innovations(residual_K);
+      std::size_t hopeless = 0;
+      for (Eigen::Index row = 0; row < residual_K.size(); ++row) {
+        const double size = std::abs(found.standardised[row]);
+        if (std::isnan(size)) {
+          continue;
+        }
+        ++counted;
+        hopeless += size > kHopeless ? 1 : 0;
+        fit_.weights[r][row] = options_.is_robust && size > kSuspect ? kSuspect / size : 1.0;
+        if (size < kInside) {
+          const std::size_t kind = place_of(fit_.sensor_nodes, runs_[r].sensors[static_cast<std::size_t>(row % run.sensors())].node);
+          weight_sum[kind] += found.noise_share[row];
+          square_sum[kind] += found.noise_share[row] * size * size / kInsideSquare;
+        }
+      }
+      if (options_.is_robust && static_cast<double>(hopeless) < kMostRejected_share * static_cast<double>(whitening.count())) {
+        for (Eigen::Index row = 0; row < residual_K.size(); ++row) {
+          if (std::abs(found.standardised[row]) > kHopeless) {
+            fit_.weights[r][row] = 0.0;
+            ++rejected;
+          }
+        }
+      }
+    }
+    for (std::size_t kind = 0; kind < weight_sum.size(); ++kind) {
+      const double change = weight_sum[kind] > 0.0 ? std::sqrt(square_sum[kind] / weight_sum[kind]) : 1.0;
+      fit_.noise_ratio[kind] = std::clamp(fit_.noise_ratio[kind] * std::clamp(change, 0.5, 2.0), 0.2, 20.0);
+    }
+    fit_.rejected_share = counted > 0 ? static_cast<double>(rejected) / static_cast<double>(counted) : 0.0;
+  }
+
+  /// To the minimum under the present whitening: by Ceres first, with the linear steps that are known anyway once they are small.
+  void move() {
+    const LinearFit linear = fits({flux_}).front();
+    const double size = linear.coefficients.cwiseQuotient(linear.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
+    const std::vector<Whitening> all = whitenings();
+    constexpr double kFar = 3.0;
+    constexpr double kFar_theta = 0.1;
+    if (size > kFar && linear.coefficients.cwiseAbs().maxCoeff() > kFar_theta) {
+      minimise({.model = &model_, .runs = runs_, .whitening = all, .threads = options_.threads, .most_iterations = 6}, theta_, starts_);
+    } else {
+      for (std::size_t r = 0; r < runs_.size(); ++r) {
+        starts_[r].state_C += start_correction_K(linearised_[r], columns_[r], linear.coefficients, all[r], start_prior(r));
+      }
+      theta_ += linear.coefficients;
+      for (Eigen::Index i = 0; i < theta_.size(); ++i) {
+        const FreeParameter& parameter = model_.free[static_cast<std::size_t>(i)];
+        theta_[i] = std::clamp(theta_[i], model_.theta_of(i, parameter.low), model_.theta_of(i, parameter.high));
+      }
+    }
+    linearise_all();
+    constexpr double kSmall = 0.1;
+    fit_.has_converged = fit_.iterations >= 2 && size < kSmall;
+  }
+
+  void conclude() {
+    std::vector<WeightedFlux> around{{flux_, 1.0}};
+    if (options_.with_flux) {
+      around = hypotheses_around([&](const auto& fluxes) { return evidences(fluxes); }, range_, flux_);
+    }
+    std::vector<LatentFlux> fluxes;
+    for (const WeightedFlux& each : around) {
+      fluxes.push_back(each.flux);
+    }
+    const std::vector<LinearFit> all = fits(fluxes);
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(theta_.size());
+    for (std::size_t h = 0; h < all.size(); ++h) {
+      mean += around[h].weight * all[h].coefficients;
+    }
+    fit_.covariance.setZero(theta_.size(), theta_.size());
+    for (std::size_t h = 0; h < all.size(); ++h) {
+      const Eigen::VectorXd off = all[h].coefficients - mean;
+      fit_.covariance += around[h].weight * (all[h].covariance + off * off.transpose());
+      fit_.hypotheses.push_back({fluxes[h], around[h].weight, theta_ + all[h].coefficients, all[h].covariance});
+    }
+    fit_.theta = theta_;
+    fit_.flux = flux_;
+    fit_.starts = starts_;
+    fit_.log_evidence = fits({flux_}).front().log_evidence;
+    std::vector<RunEvidence> data;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      data.push_back(run_evidence(linearised_[r], columns_[r], Whitening(linearised_[r], flux_, noise(r)), start_prior(r)));
+    }
+    fit_.data_triangle = stacked(data);
+  }
+
+  const Model& model_;
+  std::span<const MeasuredRun> runs_;
+  const FitOptions& options_;
+  Fit fit_;
+  Eigen::VectorXd theta_;
+  std::vector<RunStart> starts_;
+  std::vector<int> wanted_;
+  FluxRange range_;
+  LatentFlux flux_;
+  std::vector<LinearisedRun> linearised_;
+  std::vector<Columns> columns_;
+};
+
+}  // namespace
+
+RunStart start_of(const Network& network, const MeasuredRun& run) {
+  const Eigen::Index states = network.state_count();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kSensed_K = 5.0;
+  const double ambient_C = run.at.front().ambient_C;
+  RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
+  double hottest_C = nan;
+  for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+    const auto shown_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
+    const auto* const first = std::find_if(shown_C.begin(), shown_C.end(), [](double value) { return !std::isnan(value); }).operator->();
+    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != shown_C.end().operator->()) {
+      start.state_C[node] = *first;
+      hottest_C = std::fmax(hottest_C, *first);
+    }
+  }
+  for (Eigen::Index node = 0; node < states; ++node) {
+    if (std::isnan(start.state_C[node])) {
+      // Unseen and perhaps just used: it may be as far from what is seen as that is from the surroundings.
+      start.state_C[node] = std::isnan(hottest_C) ? ambient_C : hottest_C;
+      start.prior_sd_K[node] = kSensed_K + std::abs(start.state_C[node] - ambient_C);
+    }
+  }
+  start.prior_C = start.state_C;
+  return start;
+}
+
+Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options) { return Fitting(model, runs, options).run(); }
+
+SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index) {
+  return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.weights[run_index]);
+}
+
+std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {
+  std::vector<SignalError> errors;
+  const std::vector<int> none;
+  for (const MeasuredRun& run : runs) {
+    RunStart start = start_of(network, run);
+    LinearisedRun free_run;
+    for (int pass = 0; pass < 2; ++pass) {
+      free_run = linearise(network, parameters, none, none, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
+      // The first samples decide where the run starts, not its whole length: a model that lacks heat must not hide it there.
+      Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
+      Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
+      const Eigen::Index rows = std::min<Eigen::Index>(5 * free_run.sensors(), free_run.residual_K.size());
+      for (Eigen::Index row = 0; row < rows; ++row) {
+        if (!std::isnan(free_run.residual_K[row])) {
+          const double noise_K = run.sensors[static_cast<std::size_t>(row % free_run.sensors())].noise_K;
+          normal += free_run.by_start.row(row).transpose() * free_run.by_start.row(row) / (noise_K * noise_K);
+          right += free_run.by_start.row(row).transpose() * free_run.residual_K[row] / (noise_K * noise_K);
+        }
+      }
+      if (pass == 0) {
+        start.state_C += normal.ldlt().solve(right);
+      }
+    }
+    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+      auto found = std::ranges::find(errors, run.sensors[sensor].signal, &SignalError::signal);
+      if (found == errors.end()) {
+        found = errors.insert(errors.end(), {run.sensors[sensor].signal});
+      }
+      for (Eigen::Index k = 0; k < free_run.samples(); ++k) {
+        const double off_K = free_run.residual_K[k * free_run.sensors() + static_cast<Eigen::Index>(sensor)];
+        if (!std::isnan(off_K)) {
+          found->rmse_K += off_K * off_K;
+          found->max_abs_K = std::max(found->max_abs_K, std::abs(off_K));
+          ++found->samples;
+        }
+      }
+    }
+  }
+  for (SignalError& each : errors) {
+    each.rmse_K = each.samples > 0 ? std::sqrt(each.rmse_K / static_cast<double>(each.samples)) : 0.0;
+  }
+  return errors;
+}
+
+}  // namespace heatsoak

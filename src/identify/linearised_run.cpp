@@ -1,0 +1,125 @@
+#include "identify/linearised_run.h"
+
+#include <fmt/format.h>
+
+#include "base/diagnostic.h"
+#include "thermal/tangent_run.h"
+
+namespace heatsoak {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct UnknownHeat {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    heat.source(0, x.parameter(0));
+  }
+};
+
+const EffectType& unknown_heat() {
+  static const EffectType kType = [] {
+    EffectType type;
+    type.name = "unknown heat";
+    type.nodes = {{"node", "stator"}};
+    type.parameters = {{"heat", "W", Range::any(), "held over an interval"}};
+    type.laws = laws<UnknownHeat>();
+    return type;
+  }();
+  return kType;
+}
+
+/// The network with a source of 0 W at every node that unknown heat may reach: its derivative is the response to such heat.
+struct WithSources {
+  Network network;
+  std::vector<double> parameters;
+  std::vector<int> wanted;
+};
+
+WithSources with_sources(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+                         std::span<const int> flux_nodes) {
+  WithSources all{network, {parameters.begin(), parameters.end()}, {wanted.begin(), wanted.end()}};
+  for (const int node : flux_nodes) {
+    const std::vector<std::string> at{std::string(network.node_name(node))};
+    all.wanted.push_back(static_cast<int>(all.parameters.size()));
+    all.network.add_effect(fmt::format("unknown heat of {}", at.front()), unknown_heat(), at, std::vector<double>{0.0});
+    all.parameters.push_back(0.0);
+  }
+  return all;
+}
+
+class Recorder {
+ public:
+  Recorder(LinearisedRun& out, const MeasuredRun& run, Eigen::Index wanted) : out_(out), run_(run) {
+    const Eigen::Index samples = run.samples();
+    const Eigen::Index rows = samples * out.sensors();
+    out.state_C.resize(out.states, samples);
+    out.residual_K.resize(rows);
+    out.by_start.resize(rows, out.states);
+    out.by_parameter.resize(rows, wanted);
+    out.transition.resize(static_cast<std::size_t>((samples - 1) * out.states * out.states));
+    out.injection.resize(static_cast<std::size_t>((samples - 1) * out.states * out.fluxes));
+    out.duration_s.resize(static_cast<std::size_t>(samples - 1));
+    by_start_.setIdentity(out.states, out.states);
+    by_parameter_.setZero(out.states, wanted);
+    next_by_start_ = by_start_;
+    next_by_parameter_ = by_parameter_;
+  }
+
+  void note(Eigen::Index sample) {
+    for (Eigen::Index sensor = 0; sensor < out_.sensors(); ++sensor) {
+      const Eigen::Index row = sample * out_.sensors() + sensor;
+      const int node = out_.sensor_node[static_cast<std::size_t>(sensor)];
+      out_.residual_K[row] = run_.measured_C(sample, sensor) - out_.state_C(node, sample);
+      out_.by_start.row(row) = by_start_.row(node);
+      out_.by_parameter.row(row) = by_parameter_.row(node);
+    }
+  }
+
+  void advance(Eigen::Index interval, const NetworkStep& step) {
+    const auto place = static_cast<std::size_t>(interval);
+    const Eigen::Index x = out_.states;
+    const Eigen::Index wanted = by_parameter_.cols();
+    Eigen::Map<RowMajor>(out_.transition.data() + interval * x * x, x, x) = step.by_start;
+    Eigen::Map<RowMajor>(out_.injection.data() + interval * x * out_.fluxes, x, out_.fluxes) = step.by_parameter.rightCols(out_.fluxes);
+    out_.duration_s[place] = run_.time_s[place + 1] - run_.time_s[place];
+    out_.state_C.col(interval + 1) = step.state_C;
+    next_by_start_.noalias() = step.by_start * by_start_;
+    by_start_.swap(next_by_start_);
+    next_by_parameter_.noalias() = step.by_start * by_parameter_;
+    next_by_parameter_ += step.by_parameter.leftCols(wanted);
+    by_parameter_.swap(next_by_parameter_);
+  }
+
+ private:
+  LinearisedRun& out_;
+  const MeasuredRun& run_;
+  Eigen::MatrixXd by_start_, next_by_start_;
+  Eigen::MatrixXd by_parameter_, next_by_parameter_;
+};
+
+}  // namespace
+
+LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+                        std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
+  const WithSources model = with_sources(network, parameters, wanted, flux_nodes);
+  LinearisedRun out;
+  out.states = network.state_count();
+  out.fluxes = static_cast<Eigen::Index>(flux_nodes.size());
+  for (const Sensor& sensor : run.sensors) {
+    out.sensor_node.push_back(network.find_node(sensor.node));
+  }
+  Recorder recorder(out, run, static_cast<Eigen::Index>(wanted.size()));
+  out.state_C.col(0) = Eigen::Map<const Eigen::VectorXd>(start_C.data(), out.states);
+  recorder.note(0);
+  TangentRun tangent(model.network, model.parameters, model.wanted);
+  for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    const std::span<const double> start(out.state_C.col(k).data(), static_cast<std::size_t>(out.states));
+    recorder.advance(k, tangent.over(start, run.time_s[place + 1] - run.time_s[place], run.at[place]));
+    recorder.note(k + 1);
+  }
+  return out;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,388 @@
+#include "identify/measured_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "base/diagnostic.h"
+#include "identify/measurement/noise.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// A stretch with fewer samples has nothing to say about thermal time constants.
+constexpr std::size_t kLeastSamples = 10;
+
+struct SignalChannel {
+  Signal signal;
+  std::string_view key;
+};
+constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A"},
+                                     SignalChannel{Signal::speed, "speed_rad_per_s"},
+                                     SignalChannel{Signal::shaft_power, "torque_Nm"},
+                                     SignalChannel{Signal::input_power, "power_in_W"},
+                                     SignalChannel{Signal::modulation, "duty_ratio"},
+                                     SignalChannel{Signal::bus_voltage, "bus_V"},
+                                     SignalChannel{Signal::vehicle_speed, "vehicle_speed_m_per_s"},
+                                     SignalChannel{Signal::neighbour_temperature, "neighbour_C"},
+                                     SignalChannel{Signal::age, "age_h"}};
+
+/// Where temperatures of a recording sit in the network; of two for one node the first that the recording has counts.
+struct SensorPlace {
+  std::string_view key;
+  std::string_view node;
+};
+constexpr std::array kSensorPlaces{SensorPlace{"winding_C", "winding"}, SensorPlace{"stator_C", "stator"},
+                                   SensorPlace{"housing_C", "stator"}};
+
+bool has_values(const Channel* channel) {
+  return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
+}
+
+bool is_there(const Recording& recording, Signal signal) {
+  const auto* const found = std::ranges::find(kSignalChannels, signal, &SignalChannel::signal);
+  const bool is_recorded = has_values(recording.find(found->key));
+  return signal == Signal::shaft_power ? is_recorded && has_values(recording.find("speed_rad_per_s")) : is_recorded;
+}
+
+/// Operating points of single rows; NaN where a quantity is not known there.
+class Rows {
+ public:
+  Rows(const Recording& recording, const MeasuredRunOptions& options)
+      : current_A_(values("current_A", recording)),
+        speed_rad_per_s_(values("speed_rad_per_s", recording)),
+        torque_Nm_(values("torque_Nm", recording)),
+        input_power_W_(values("power_in_W", recording)),
+        bus_V_(values("bus_V", recording)),
+        modulation_(values("duty_ratio", recording)),
+        vehicle_speed_m_per_s_(values("vehicle_speed_m_per_s", recording)),
+        neighbour_C_(values("neighbour_C", recording)),
+        age_h_(values("age_h", recording)),
+        surroundings_C_(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording)),
+        time_s_(recording.time_s),
+        options_(options) {}
+
+  [[nodiscard]] OperatingPoint<double> at(std::size_t row) const {
+    const double speed_rad_per_s = of(speed_rad_per_s_, row);
+    OperatingPoint<double> at;
+    at.current_rms_A = std::abs(of(current_A_, row));
+    at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
+    at.velocity_rad_per_s = speed_rad_per_s;
+    if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
+      at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
+    }
+    at.ambient_C = surroundings_C_ ? (*surroundings_C_)[row] : options_.ambient_C;
+    at.shaft_power_W = of(torque_Nm_, row) * speed_rad_per_s;
+    at.input_power_W = of(input_power_W_, row);
+    at.bus_V = of(bus_V_, row);
+    at.modulation_ratio = std::abs(of(modulation_, row));
+    at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
+    at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
+    at.neighbour_C = at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
+    at.age_h = of(age_h_, row);
+    return at;
+  }
+  [[nodiscard]] bool has_surroundings() const { return surroundings_C_ != nullptr; }
+
+ private:
+  static const std::vector<double>* values(std::string_view key, const Recording& recording) {
+    const Channel* const channel = recording.find(key);
+    return has_values(channel) ? &channel->values : nullptr;
+  }
+  /// 0 where there is no such channel: what the model needs is checked beforehand.
+  static double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
+
+  const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
+      *neighbour_C_, *age_h_, *surroundings_C_;
+  const std::vector<double>& time_s_;
+  const MeasuredRunOptions& options_;
+};
+
+double quantity_of(const OperatingPoint<double>& at, Signal signal) {
+  switch (signal) {
+    case Signal::current:
+      return at.current_rms_A;
+    case Signal::speed:
+      return at.speed_mean_rad_per_s;
+    case Signal::shaft_power:
+      return at.shaft_power_W;
+    case Signal::input_power:
+      return at.input_power_W;
+    case Signal::modulation:
+      return at.modulation_ratio;
+    case Signal::bus_voltage:
+      return at.bus_V;
+    case Signal::vehicle_speed:
+      return at.vehicle_speed_m_per_s;
+    case Signal::neighbour_temperature:
+      return at.neighbour_C;
+    case Signal::age:
+      return at.age_h;
+  }
+  return kUnknown;
+}
+
+/// Means over what was merged, so that heat stays: squares for currents and the rms speed.
+class Mean {
+ public:
+  void add(const OperatingPoint<double>& at, double duration_s) {
+    duration_s_ += duration_s;
+    const OperatingPoint<double> squares = squared(at);
+    for_each_quantity([&](double& sum, const double& value) { sum += duration_s * value; }, sum_, squares);
+  }
+  [[nodiscard]] double duration_s() const { return duration_s_; }
+  [[nodiscard]] OperatingPoint<double> take() {
+    OperatingPoint<double> mean = sum_;
+    for_each_quantity([&](double& value) { value /= duration_s_; }, mean);
+    mean.current_rms_A = std::sqrt(mean.current_rms_A);
+    mean.speed_rms_rad_per_s = std::sqrt(mean.speed_rms_rad_per_s);
+    mean.resistive_headroom_V = OperatingPoint<double>{}.resistive_headroom_V;
+    *this = {};
+    return mean;
+  }
+
+ private:
+  static OperatingPoint<double> zero() {
+    OperatingPoint<double> at;
+    for_each_quantity([](double& value) { value = 0.0; }, at);
+    return at;
+  }
+  static OperatingPoint<double> squared(OperatingPoint<double> at) {
+    at.current_rms_A *= at.current_rms_A;
+    at.speed_rms_rad_per_s *= at.speed_rms_rad_per_s;
+    at.resistive_headroom_V = 0.0;
+    return at;
+  }
+
+  double duration_s_ = 0.0;
+  OperatingPoint<double> sum_ = zero();
+};
+
+/// The mean of the samples within `reach_s` of the row, moved along their own slope to the row's time.
+double sample_at(const std::vector<double>& time_s, const std::vector<double>& value_C, std::size_t begin, std::size_t end, std::size_t row,
+                 double reach_s) {
+  if (std::isnan(value_C[row])) {
+    return kUnknown;
+  }
+  double sum_C = value_C[row];
+  double count = 1.0;
+  // Pairs on both sides only, so that a slope cancels.
+  for (std::size_t away = 1; row >= begin + away && row + away < end; ++away) {
+    if (time_s[row] - time_s[row - away] > reach_s || time_s[row + away] - time_s[row] > reach_s) {
+      break;
+    }
+    const double pair_C = value_C[row - away] + value_C[row + away];
+    if (!std::isnan(pair_C)) {
+      sum_C += pair_C;
+      count += 2.0;
+    }
+  }
+  return sum_C / count;
+}
+
+class Builder {
+ public:
+  Builder(const Recording& recording, const MeasuredRunOptions& options)
+      : recording_(recording), options_(options), rows_(recording, options) {
+    for (const SignalChannel& each : kSignalChannels) {
+      if (is_there(recording, each.signal)) {
+        signals_.push_back(each.signal);
+      }
+    }
+    for (const SensorPlace& place : kSensorPlaces) {
+      const Channel* const channel = recording.find(place.key);
+      const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();
+      if (has_values(channel) && !is_taken) {
+        sensors_.push_back({std::string(place.key), std::string(place.node)});
+        sensor_values_.push_back(&channel->values);
+      }
+    }
+  }
+
+  MeasuredRuns build() {
+    check();
+    for (const auto& [begin, end] : recording_.runs()) {
+      for (std::size_t first = begin; first < end;) {
+        std::size_t last = first;
+        while (last + 1 < end && is_known(last)) {
+          ++last;
+        }
+        take(first, last);
+        first = last + 1;
+      }
+    }
+    if (all_.runs.empty()) {
+      throw Failure(
+          ExitCode::cannot_answer,
+          fmt::format("{}: no stretch of {} rows or more has temperatures and all of the heat inputs; see `heatsoak log inspect {}`",
+                      recording_.name, kLeastSamples, recording_.file.string()));
+    }
+    if (all_.runs.size() > 1) {
+      all_.notes.push_back(
+          fmt::format("{} is taken as {} runs: in between, heat or surroundings are not known", recording_.name, all_.runs.size()));
+    }
+    set_noise();
+    return std::move(all_);
+  }
+
+ private:
+  void check() const {
+    std::vector<Diagnostic> lacking;
+    for (const Signal signal : options_.needed) {
+      if (std::ranges::find(signals_, signal) == signals_.end()) {
+        const auto* const channel = std::ranges::find(kSignalChannels, signal, &SignalChannel::signal);
+        lacking.push_back({{recording_.file.string()}, std::string(channel->key), "the model needs it, and the log has no such column"});
+      }
+    }
+    if (!rows_.has_surroundings() && std::isnan(options_.ambient_C)) {
+      lacking.push_back(
+          {{recording_.file.string()}, "ambient_C", "the log has no temperature of the surroundings; state it with --ambient 25degC"});
+    }
+    if (sensors_.empty()) {
+      lacking.push_back({{recording_.file.string()}, "winding_C", "the log has no temperature of winding, stator or housing"});
+    }
+    if (!lacking.empty()) {
+      throw Failure(ExitCode::bad_input, fmt::format("{} cannot be used for a fit", recording_.name), std::move(lacking));
+    }
+  }
+
+  /// Whether what happens from this row to the next is known.
+  [[nodiscard]] bool is_known(std::size_t row) const {
+    const OperatingPoint<double> at = rows_.at(row);
+    return !std::isnan(at.ambient_C) &&
+           std::ranges::none_of(options_.needed, [&](Signal signal) { return std::isnan(quantity_of(at, signal)); });
+  }
+
+  [[nodiscard]] bool is_sampled(std::size_t row) const {
+    return std::ranges::any_of(sensor_values_, [&](const auto* values) { return !std::isnan((*values)[row]); });
+  }
+
+  /// Rows first … last, between which everything is known.
+  void take(std::size_t first, std::size_t last) {
+    while (first < last && !is_sampled(first)) {
+      ++first;
+    }
+    if (last < first + kLeastSamples - 1) {
+      return;
+    }
+    MeasuredRun run;
+    run.sensors = sensors_;
+    run.signals = signals_;
+    run.conditions = recording_.conditions;
+    run.conditions.emplace("run", recording_.name);
+    const std::vector<double>& time_s = recording_.time_s;
+    const double usual_s = (time_s[last] - time_s[first]) / static_cast<double>(last - first);
+    const bool is_merged = usual_s < 0.5 * options_.longest_step_s;
+    std::vector<std::size_t> kept{first};
+    Mean mean;
+    for (std::size_t row = first; row < last; ++row) {
+      mean.add(filled(row), time_s[row + 1] - time_s[row]);
+      const bool would_be_long = row + 1 < last && mean.duration_s() + 0.5 * (time_s[row + 2] - time_s[row + 1]) > options_.longest_step_s;
+      if (!is_merged || would_be_long || row + 1 == last) {
+        run.at.push_back(mean.take());
+        kept.push_back(row + 1);
+      }
+    }
+    for (const std::size_t row : kept) {
+      run.time_s.push_back(time_s[row]);
+    }
+    run.measured_C.resize(static_cast<Eigen::Index>(kept.size()), static_cast<Eigen::Index>(sensors_.size()));
+    const double reach_s = is_merged ? 0.1 * options_.longest_step_s : 0.0;
+    for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
+      for (std::size_t k = 0; k < kept.size(); ++k) {
+        run.measured_C(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(sensor)) =
+            sample_at(time_s, *sensor_values_[sensor], first, last + 1, kept[k], reach_s);
+      }
+    }
+    if (kept.size() >= kLeastSamples) {
+      run.name = all_.runs.empty() ? recording_.name : fmt::format("{}#{}", recording_.name, all_.runs.size() + 1);
+      all_.runs.push_back(std::move(run));
+    }
+  }
+
+  /// A quantity that is not needed and not known becomes 0, so that means stay numbers.
+  [[nodiscard]] OperatingPoint<double> filled(std::size_t row) const {
+    OperatingPoint<double> at = rows_.at(row);
+    for_each_quantity([](double& value) { value = std::isnan(value) ? 0.0 : value; }, at);
+    return at;
+  }
+
+  /// One level per sensor, from all runs of the recording as they were merged.
+  void set_noise() {
+    for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
+      std::vector<double> all_C;
+      std::vector<std::pair<std::size_t, std::size_t>> runs;
+      for (const MeasuredRun& run : all_.runs) {
+        const std::size_t begin = all_C.size();
+        const auto column = run.measured_C.col(static_cast<Eigen::Index>(sensor));
+        all_C.insert(all_C.end(), column.begin(), column.end());
+        runs.emplace_back(begin, all_C.size());
+      }
+      // Far below any contact resistance's doing: a sensor that claims less repeats itself.
+      constexpr double kLeastNoise_K = 0.01;
+      const NoiseLevel level = noise_level(all_C, runs);
+      for (MeasuredRun& run : all_.runs) {
+        run.sensors[sensor].noise_K = std::max(kLeastNoise_K, level.noise);
+        run.sensors[sensor].step_K = level.step;
+      }
+    }
+  }
+
+  const Recording& recording_;
+  const MeasuredRunOptions& options_;
+  Rows rows_;
+  std::vector<Signal> signals_;
+  std::vector<Sensor> sensors_;
+  std::vector<const std::vector<double>*> sensor_values_;
+  MeasuredRuns all_;
+};
+
+}  // namespace
+
+bool MeasuredRun::has(Signal signal) const { return std::ranges::find(signals, signal) != signals.end(); }
+
+Eigen::Index MeasuredRun::sensor_at(std::string_view node) const {
+  const auto found = std::ranges::find(sensors, node, &Sensor::node);
+  return found == sensors.end() ? -1 : found - sensors.begin();
+}
+
+std::vector<Signal> signals_of(const Recording& recording) {
+  std::vector<Signal> signals;
+  for (const SignalChannel& each : kSignalChannels) {
+    if (is_there(recording, each.signal)) {
+      signals.push_back(each.signal);
+    }
+  }
+  return signals;
+}
+
+MeasuredRuns measured_runs(const Recording& recording, const MeasuredRunOptions& options) { return Builder(recording, options).build(); }
+
+MeasuredRun thinned(const MeasuredRun& run, int merged) {
+  MeasuredRun thin;
+  thin.name = run.name;
+  thin.sensors = run.sensors;
+  thin.signals = run.signals;
+  thin.conditions = run.conditions;
+  std::vector<Eigen::Index> kept{0};
+  Mean mean;
+  for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k) {
+    mean.add(run.at[k], run.time_s[k + 1] - run.time_s[k]);
+    if ((k + 1) % static_cast<std::size_t>(merged) == 0 || k + 2 == run.time_s.size()) {
+      thin.at.push_back(mean.take());
+      kept.push_back(static_cast<Eigen::Index>(k) + 1);
+    }
+  }
+  thin.measured_C.resize(static_cast<Eigen::Index>(kept.size()), run.measured_C.cols());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    thin.time_s.push_back(run.time_s[static_cast<std::size_t>(kept[k])]);
+    thin.measured_C.row(static_cast<Eigen::Index>(k)) = run.measured_C.row(kept[k]);
+  }
+  return thin;
+}
+
+}  // namespace heatsoak

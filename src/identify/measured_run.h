@@ -1,0 +1,65 @@
+// A stretch of a recording as fits and filters take it: intervals with held inputs, and sensors at their ends.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identify/measurement/recording.h"
+#include "thermal/network.h"
+
+namespace heatsoak {
+
+struct Sensor {
+  std::string signal;    ///< key of the recording, "winding_C"
+  std::string node;      ///< of the network
+  double noise_K = 0.0;  ///< standard deviation of one sample, model-free, the share of the quantisation included
+  double step_K = 0.0;   ///< resolution; 0 where none is seen
+};
+
+/// n samples; between sample k and k+1 the inputs are at[k].
+struct MeasuredRun {
+  std::string name;  ///< of the recording, with #2, #3 … where it was split
+  std::vector<double> time_s;
+  std::vector<OperatingPoint<double>> at;  ///< n − 1
+  std::vector<Sensor> sensors;
+  Eigen::MatrixXd measured_C;   ///< n × sensors; NaN: not known
+  std::vector<Signal> signals;  ///< what of the operating points was measured
+  /// What is said of the run: the recording's conditions, and "run" -> the recording's name.
+  std::map<std::string, std::string> conditions;
+
+  [[nodiscard]] Eigen::Index samples() const { return static_cast<Eigen::Index>(time_s.size()); }
+  [[nodiscard]] bool has(Signal signal) const;
+  /// -1 where no sensor sits at the node.
+  [[nodiscard]] Eigen::Index sensor_at(std::string_view node) const;
+};
+
+struct MeasuredRunOptions {
+  /// Rows closer than this are merged; inputs become means that conserve heat. Rows further apart than half of it stay.
+  double longest_step_s = 2.0;
+  /// Heat inputs that the model reacts to; where one of them is not known the run is split.
+  std::vector<Signal> needed;
+  double ambient_C = kNotStated_C;  ///< where the recording has neither coolant nor ambient; NaN: it must have one
+  static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct MeasuredRuns {
+  std::vector<MeasuredRun> runs;
+  std::vector<std::string> notes;  ///< what was left out or taken for granted, in sentences
+};
+
+/// Signals that a recording has.
+std::vector<Signal> signals_of(const Recording& recording);
+
+/// Throws Failure: bad_input where a needed signal or the surroundings' temperature is no column, cannot_answer where
+/// no stretch is left with all of them. Temperatures become means over the tenth of a step around the sample's time, where there are such
+/// rows.
+MeasuredRuns measured_runs(const Recording& recording, const MeasuredRunOptions& options);
+
+/// Every `merged` intervals become one, with the same heat; for a rough look.
+MeasuredRun thinned(const MeasuredRun& run, int merged);
+
+}  // namespace heatsoak

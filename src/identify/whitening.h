@@ -1,0 +1,69 @@
+// Turns what a run leaves unexplained into independent numbers of variance 1, under the supposition that an unknown smooth heat
+// flux reaches the nodes besides what the model knows.
+//
+// The flux is an Ornstein-Uhlenbeck process inside the differential equation, one per node. One sequence of Kalman gains serves
+// the residual, the sensitivities and the responses to effects that the model may lack (de Jong 1991, the augmented Kalman
+// filter): the whitening is a linear operator, and everything after it is least squares.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "identify/linearised_run.h"
+
+namespace heatsoak {
+
+/// Of the unknown heat: stationary standard deviation per node that it may reach, and the time over which it forgets.
+struct LatentFlux {
+  std::vector<double> rms_W;
+  double time_scale_s = 300.0;
+};
+
+/// Per sensor and sample: standard deviation of the noise in K is noise_K[sensor] / √weight.
+struct SensorNoise {
+  std::vector<double> noise_K;
+  Eigen::VectorXd weight;  ///< n·s, 0 … 1; empty: all 1. 0 leaves the sample out
+};
+
+/// What each sample says that those before it did not; NaN where nothing was measured. Samples that were left out for their weight of 0
+/// are judged too, by the noise that they would have.
+struct Innovations {
+  Eigen::VectorXd standardised;  ///< n·s, at weight 1
+  Eigen::VectorXd noise_share;   ///< n·s: of the variance, what is the sensor's noise
+};
+
+/// The linear operator W with Wᵀ·W = V⁻¹, V the covariance of noise and flux as the sensors see them, for one run; the start temperatures
+/// are taken as known. Masked samples become rows of zeros.
+class Whitening {
+ public:
+  /// `run` outlives the whitening.
+  Whitening(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise);
+
+  /// Any number of columns at once; rows as in LinearisedRun, NaN allowed where the sample is masked.
+  void apply(Eigen::Ref<Columns> columns) const;
+  /// ln|V|.
+  [[nodiscard]] double log_determinant() const { return log_determinant_; }
+  /// Samples that count.
+  [[nodiscard]] Eigen::Index count() const { return count_; }
+  [[nodiscard]] Innovations innovations(const Eigen::VectorXd& residual_K) const;
+  /// Best estimate of the unknown heat in W (fluxes × n), given all samples of a residual from which everything known is removed
+  /// (n·s, in K): the smoother of Bryson and Frazier.
+  [[nodiscard]] Eigen::MatrixXd smoothed_flux_W(const Eigen::VectorXd& residual_K) const;
+
+ private:
+  template <int Size>
+  void build(const SensorNoise& noise);
+
+  const LinearisedRun* run_;
+  LatentFlux flux_;
+  Eigen::Index size_ = 0;                 ///< of the filter's state: temperatures, then fluxes
+  std::vector<double> forget_ratio_;      ///< per interval: what is left of a flux
+  std::vector<double> gain_;              ///< per row: size_ numbers
+  std::vector<double> inverse_sd_per_K_;  ///< per row; 0 where masked
+  std::vector<double> expected_K2_;       ///< per row: variance of the prediction, without noise
+  std::vector<double> noise_K_;           ///< per sensor, at weight 1
+  double log_determinant_ = 0.0;
+  Eigen::Index count_ = 0;
+};
+
+}  // namespace heatsoak

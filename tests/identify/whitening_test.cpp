@@ -1,0 +1,229 @@
+#include "identify/whitening.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "identify/evidence.h"
+#include "runs_for_tests.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Any numbers will do: linear algebra does not ask where they come from.
+MeasuredRun random_run(std::uint64_t seed, int samples) {
+  Random random(seed, 0);
+  MeasuredRun run;
+  run.name = "random";
+  run.sensors = {{"winding_C", "winding", 0.15, 0.0}, {"stator_C", "stator", 0.1, 0.0}};
+  run.signals = {Signal::current};
+  run.measured_C.resize(samples, 2);
+  double time_s = 0.0;
+  for (int k = 0; k < samples; ++k) {
+    run.time_s.push_back(time_s);
+    time_s += 0.5 + 1.5 * random.uniform();
+    if (k + 1 < samples) {
+      OperatingPoint<double> at;
+      at.current_rms_A = (k / 20) % 3 * 4.0 * random.uniform();
+      run.at.push_back(at);
+    }
+    for (int sensor = 0; sensor < 2; ++sensor) {
+      run.measured_C(k, sensor) = random.uniform() < 0.1 ? kNan : 25.0 + 5.0 * random.uniform();
+    }
+  }
+  return run;
+}
+
+LinearisedRun linearised(const Model& model, const MeasuredRun& run) {
+  std::vector<int> wanted;
+  for (const FreeParameter& parameter : model.free) {
+    wanted.push_back(parameter.place);
+  }
+  return linearise(model.network, model.values, wanted, model.flux_nodes, std::vector<double>{25.0, 25.0}, run);
+}
+
+/// The covariance of the sensors' samples, written out: noise on the diagonal, and the response to every moment of the flux.
+Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Index samples = run.samples();
+  const Eigen::Index rows = samples * run.sensors();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
+  for (Eigen::Index f = 0; f < run.fluxes; ++f) {
+    Eigen::MatrixXd response = Eigen::MatrixXd::Zero(rows, samples - 1);
+    Eigen::MatrixXd memory(samples - 1, samples - 1);
+    double moment_s = 0.0;
+    std::vector<double> begin_s;
+    for (Eigen::Index j = 0; j + 1 < samples; ++j) {
+      begin_s.push_back(moment_s);
+      moment_s += run.duration_s[static_cast<std::size_t>(j)];
+      Eigen::VectorXd state = Eigen::Map<const RowMajor>(run.injection.data() + j * run.states * run.fluxes, run.states, run.fluxes).col(f);
+      for (Eigen::Index k = j + 1; k < samples; ++k) {
+        for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
+          response(k * run.sensors() + sensor, j) = state[run.sensor_node[static_cast<std::size_t>(sensor)]];
+        }
+        if (k + 1 < samples) {
+          state = Eigen::Map<const RowMajor>(run.transition.data() + k * run.states * run.states, run.states, run.states) * state.eval();
+        }
+      }
+    }
+    for (Eigen::Index i = 0; i + 1 < samples; ++i) {
+      for (Eigen::Index j = 0; j + 1 < samples; ++j) {
+        memory(i, j) = std::pow(flux.rms_W[static_cast<std::size_t>(f)], 2) *
+                       std::exp(-std::abs(begin_s[static_cast<std::size_t>(i)] - begin_s[static_cast<std::size_t>(j)]) / flux.time_scale_s);
+      }
+    }
+    covariance += response * memory * response.transpose();
+  }
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    covariance(row, row) += std::pow(noise.noise_K[static_cast<std::size_t>(row % run.sensors())], 2);
+  }
+  return covariance;
+}
+
+struct Dense {
+  Eigen::MatrixXd covariance;  ///< of the rows that count
+  Columns columns;             ///< their rows of [start, parameters, residual]
+};
+
+Dense dense(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
+  Columns all(run.by_parameter.rows(), run.states + run.by_parameter.cols() + 1);
+  all << run.by_start, run.by_parameter, run.residual_K;
+  const Eigen::MatrixXd covariance = dense_covariance(run, flux, noise);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index row = 0; row < all.rows(); ++row) {
+    if (!std::isnan(run.residual_K[row])) {
+      kept.push_back(row);
+    }
+  }
+  return {covariance(kept, kept), all(kept, Eigen::all)};
+}
+
+TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_the_covariance_written_out) {
+  for (const LatentFlux& flux : {LatentFlux{{0.3, 0.7}, 90.0}, LatentFlux{{0.0, 0.0}, 90.0}, LatentFlux{{2.0, 0.0}, 20.0}}) {
+    const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(3, 100));
+    const SensorNoise noise{{0.15, 0.1}, {}};
+    const Dense reference = dense(run, flux, noise);
+    const Eigen::LDLT<Eigen::MatrixXd> decomposed(reference.covariance);
+    const Eigen::MatrixXd expected = reference.columns.transpose() * decomposed.solve(Eigen::MatrixXd(reference.columns));
+    const Whitening whitening(run, flux, noise);
+    Columns all(run.by_parameter.rows(), run.states + run.by_parameter.cols() + 1);
+    all << run.by_start, run.by_parameter, run.residual_K;
+    whitening.apply(all);
+    const Eigen::MatrixXd gram = all.transpose() * all;
+    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
+      for (Eigen::Index j = 0; j < gram.cols(); ++j) {
+        EXPECT_NEAR(gram(i, j), expected(i, j), 1e-9 * std::sqrt(expected(i, i) * expected(j, j))) << i << ' ' << j;
+      }
+    }
+    EXPECT_NEAR(whitening.log_determinant(), decomposed.vectorD().array().log().sum(), 1e-9 * static_cast<double>(whitening.count()));
+    EXPECT_EQ(whitening.count(), reference.columns.rows());
+  }
+}
+
+TEST(Whitening, smoothed_flux_is_the_conditional_mean) {
+  const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 60));
+  const LatentFlux flux{{0.3, 0.7}, 90.0};
+  const SensorNoise noise{{0.15, 0.1}, {}};
+  const Dense reference = dense(run, flux, noise);
+  // The response to the conditional mean of the flux is what V does not call noise: (V − σ²)·V⁻¹·y.
+  const Eigen::VectorXd residual = reference.columns.rightCols(1);
+  const Eigen::VectorXd weighted = reference.covariance.ldlt().solve(residual);
+  const Eigen::VectorXd explained = reference.covariance * weighted;
+  const Eigen::MatrixXd flux_W = Whitening(run, flux, noise).smoothed_flux_W(run.residual_K);
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(2);
+  Eigen::Index kept = 0;
+  for (Eigen::Index k = 0; k < run.samples(); ++k) {
+    for (Eigen::Index sensor = 0; sensor < 2; ++sensor) {
+      if (!std::isnan(run.residual_K[k * 2 + sensor])) {
+        const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
+        EXPECT_NEAR(state[sensor], explained[kept] - noise_K * noise_K * weighted[kept], 1e-8) << k;
+        ++kept;
+      }
+    }
+    if (k + 1 < run.samples()) {
+      const double* const transition = run.transition.data() + k * 4;
+      const double* const injection = run.injection.data() + k * 4;
+      const Eigen::Vector2d before = state;
+      for (int i = 0; i < 2; ++i) {
+        state[i] = transition[2 * i] * before[0] + transition[2 * i + 1] * before[1] + injection[2 * i] * flux_W(0, k) +
+                   injection[2 * i + 1] * flux_W(1, k);
+      }
+    }
+  }
+}
+
+TEST(Whitening, a_common_factor_of_heat_capacities_conductances_and_sources_changes_no_temperature) {
+  const MeasuredRun run = random_run(7, 200);
+  TwoNodeTruth scaled;
+  const TwoNodeTruth plain;
+  constexpr double kFactor = 1.7;
+  scaled.winding_J_per_K *= kFactor;
+  scaled.stator_J_per_K *= kFactor;
+  scaled.winding_stator_K_per_W /= kFactor;
+  scaled.stator_ambient_K_per_W /= kFactor;
+  scaled.resistance_25C_ohm *= kFactor;
+  const LinearisedRun a = linearised(two_node_model(plain, 1.0), run);
+  const LinearisedRun b = linearised(two_node_model(scaled, 1.0), run);
+  EXPECT_LT((a.state_C - b.state_C).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST(Evidence, one_more_column_gains_what_the_projected_score_says) {
+  // Frisch, Waugh, Lovell: the gain of a candidate after the base is ½·s²/v of the parts orthogonal to the base.
+  const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(11, 150));
+  const Whitening whitening(run, {{0.2, 0.3}, 100.0}, {{0.15, 0.1}, {}});
+  const StartPrior start{Eigen::VectorXd::Zero(2), Eigen::VectorXd::Constant(2, 5.0)};
+  const auto misfit = [&](Eigen::Index columns) {
+    const std::vector<RunEvidence> one{run_evidence(run, run.by_parameter.leftCols(columns), whitening, start)};
+    const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(columns, columns);
+    return linear_fit(one, Eigen::VectorXd::Zero(columns), none).misfit;
+  };
+  const RunEvidence all = run_evidence(run, run.by_parameter, whitening, start);
+  // Of the last column the triangle's diagonal is what is left after the others, and beside it stands its score over that.
+  const double gain = all.triangle(3, 4) * all.triangle(3, 4);
+  EXPECT_NEAR(misfit(3) - misfit(4), gain, 1e-8 * misfit(3));
+}
+
+TEST(Evidence, many_runs_say_what_one_long_least_squares_says) {
+  const Model model = two_node_model({}, 1.0);
+  const StartPrior start{Eigen::VectorXd::Constant(2, 0.3), Eigen::VectorXd::Constant(2, 5.0)};
+  const LatentFlux flux{{0.2, 0.3}, 100.0};
+  const SensorNoise noise{{0.15, 0.1}, {}};
+  std::vector<RunEvidence> runs;
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(4, 4) * 3.0;
+  precision(0, 1) = precision(1, 0) = 1.0;
+  const Eigen::VectorXd mean = Eigen::VectorXd::Constant(4, 0.2);
+  Eigen::MatrixXd normal = precision;
+  Eigen::VectorXd right = precision * mean;
+  double log_determinant = 0.0;
+  double squares = mean.dot(precision * mean);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const LinearisedRun run = linearised(model, random_run(seed, 80));
+    runs.push_back(run_evidence(run, run.by_parameter, Whitening(run, flux, noise), start));
+    // The start's prior moved into the covariance of the samples.
+    Dense reference = dense(run, flux, noise);
+    const Eigen::MatrixXd by_start = reference.columns.leftCols(2);
+    reference.covariance += 25.0 * by_start * by_start.transpose();
+    const Eigen::LDLT<Eigen::MatrixXd> decomposed(reference.covariance);
+    const Eigen::MatrixXd columns = reference.columns.middleCols(2, 4);
+    const Eigen::VectorXd residual = reference.columns.rightCols(1) - 0.3 * by_start.rowwise().sum();
+    normal += columns.transpose() * decomposed.solve(columns);
+    right += columns.transpose() * decomposed.solve(residual);
+    squares += residual.dot(decomposed.solve(residual));
+    log_determinant += decomposed.vectorD().array().log().sum();
+  }
+  const LinearFit fit = linear_fit(runs, mean, precision);
+  const Eigen::LDLT<Eigen::MatrixXd> solved(normal);
+  const Eigen::VectorXd expected = solved.solve(right);
+  EXPECT_LT((fit.coefficients - expected).norm(), 1e-8 * expected.norm());
+  EXPECT_LT((fit.covariance - solved.solve(Eigen::MatrixXd::Identity(4, 4))).norm(), 1e-8 * fit.covariance.norm());
+  const double misfit = squares - right.dot(expected);
+  EXPECT_NEAR(fit.misfit, misfit, 1e-8 * squares);
+  const double evidence = -0.5 * (misfit + log_determinant + solved.vectorD().array().log().sum() - std::log(precision.determinant()));
+  EXPECT_NEAR(fit.log_evidence, evidence, 1e-8 * std::abs(evidence));
+}
+
+}  // namespace
+}  // namespace heatsoak
