@@ -63,6 +63,7 @@ class Rows {
         neighbour_C_(values("neighbour_C", recording)),
         age_h_(values("age_h", recording)),
         surroundings_C_(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording)),
+        time_s_(recording.time_s),
         options_(options) {}
 
   [[nodiscard]] OperatingPoint<double> at(std::size_t row) const {
@@ -70,6 +71,10 @@ class Rows {
     OperatingPoint<double> at;
     at.current_rms_A = std::abs(of(current_A_, row));
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
+    at.velocity_rad_per_s = speed_rad_per_s;
+    if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
+      at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
+    }
     at.ambient_C = surroundings_C_ ? (*surroundings_C_)[row] : options_.ambient_C;
     at.shaft_power_W = of(torque_Nm_, row) * speed_rad_per_s;
     at.input_power_W = of(input_power_W_, row);
@@ -93,6 +98,7 @@ class Rows {
 
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
       *neighbour_C_, *age_h_, *surroundings_C_;
+  const std::vector<double>& time_s_;
   const MeasuredRunOptions& options_;
 };
 
@@ -182,11 +188,7 @@ class Builder {
  public:
   Builder(const Recording& recording, const MeasuredRunOptions& options)
       : recording_(recording), options_(options), rows_(recording, options) {
-    for (const SignalChannel& each : kSignalChannels) {
-      if (is_there(recording, each.signal)) {
-        signals_.push_back(each.signal);
-      }
-    }
+    signals_ = signals_of(recording);
     for (const SensorPlace& place : kSensorPlaces) {
       const Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();

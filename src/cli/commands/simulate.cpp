@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +18,7 @@ namespace {
 
 struct Options {
   std::string motor;
+  std::string model;
   std::string robot;
   std::string duty;
   std::string out;
@@ -46,7 +48,11 @@ ExitCode run(const Options& options, Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
-  const Motor motor = read_motor(file_of(folders.motors, "motor", options.motor));
+  if (options.motor.empty() == options.model.empty()) {
+    throw Failure(ExitCode::bad_input, "expected one of --motor M and --model FILE");
+  }
+  const Motor motor =
+      read_motor(options.model.empty() ? file_of(folders.motors, "motor", options.motor) : std::filesystem::path(options.model));
   constexpr double kMostRows = 5e6;  // some 1 GB
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
   const double duration_s = wheels.front().duration_s();
@@ -102,7 +108,9 @@ Command simulate() {
               "--plot trace.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
-            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
+            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
+            app.add_option("--model", options->model, "a calibrated motor (`heatsoak calibrate --out FILE`) in its place")
+                ->type_name("FILE.toml");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
             app.add_option("--out", options->out, "every signal; names end in units, a row's inputs hold until the next row")
