@@ -268,6 +268,8 @@ class Builder {
     MeasuredRun run;
     run.sensors = sensors_;
     run.signals = signals_;
+    run.conditions = recording_.conditions;
+    run.conditions.emplace("run", recording_.name);
     const std::vector<double>& time_s = recording_.time_s;
     const double usual_s = (time_s[last] - time_s[first]) / static_cast<double>(last - first);
     const bool is_merged = usual_s < 0.5 * options_.longest_step_s;
@@ -361,6 +363,7 @@ MeasuredRun thinned(const MeasuredRun& run, int merged) {
   thin.name = run.name;
   thin.sensors = run.sensors;
   thin.signals = run.signals;
+  thin.conditions = run.conditions;
   std::vector<Eigen::Index> kept{0};
   Mean mean;
   for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +28,8 @@ struct MeasuredRun {
   std::vector<Sensor> sensors;
   Eigen::MatrixXd measured_C;   ///< n × sensors; NaN: not known
   std::vector<Signal> signals;  ///< what of the operating points was measured
+  /// What is said of the run: the recording's conditions, and "run" -> the recording's name.
+  std::map<std::string, std::string> conditions;
 
   [[nodiscard]] Eigen::Index samples() const { return static_cast<Eigen::Index>(time_s.size()); }
   [[nodiscard]] bool has(Signal signal) const;

@@ -20,6 +20,9 @@ Network datasheet_network(const Motor& motor, const MotorSample& sample) {
   network.limit_current_by(copper);
   for (std::size_t i = 0; i < motor.effects.size(); ++i) {
     const MotorEffect& effect = motor.effects[i];
+    if (!effect.condition.empty()) {
+      continue;
+    }
     network.add_effect(effect.name, *effect.type, effect.nodes, sample.effect_parameters[i]);
   }
   return network;

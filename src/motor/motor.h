@@ -66,6 +66,8 @@ struct MotorFigureSpec {
   bool is_thermal = false;  ///< the temperature calculation rests on it
 };
 std::span<const MotorFigureSpec> motor_figure_specs();
+/// Agreed, not built, such as a limit or the nominal voltage: no part has another one, so it needs no tolerance.
+bool is_agreed(std::string_view key);
 
 /// An effect that the file adds to the datasheet network.
 struct MotorEffect {
@@ -73,6 +75,9 @@ struct MotorEffect {
   const EffectType* type = nullptr;
   std::vector<std::string> nodes;
   std::vector<Figure> parameters;  ///< in the type's declared order
+  /// Where it acts: "cooling" -> "fan" as logs name their conditions. Empty: everywhere. An effect with a condition was seen in
+  /// some runs only, so predictions leave it out.
+  std::map<std::string, std::string> condition;
 };
 
 struct Motor {

@@ -72,11 +72,24 @@ std::string effect_text(const MotorEffect& effect) {
     text += fmt::format("type = {}\n", toml_text(effect.type->name));
   }
   for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
-    text += fmt::format("{} = {}\n", effect.type->nodes[role].role, toml_text(effect.nodes[role]));
+    // A node of the effect's own is named after it.
+    if (effect.type->nodes[role].own_capacity < 0) {
+      text += fmt::format("{} = {}\n", effect.type->nodes[role].role, toml_text(effect.nodes[role]));
+    }
   }
+  std::vector<double> values;
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     const ParameterSpec& spec = effect.type->parameters[i];
-    text += fmt::format("{} = {}\n", spec.key, figure_text(effect.parameters[i], std::string(spec.unit)));
+    const std::string unit(unit_of(effect.type->parameters, i, values));
+    values.push_back(effect.parameters[i].value);
+    text += fmt::format("{} = {}\n", spec.key,
+                        spec.choices.empty() ? figure_text(effect.parameters[i], unit) : toml_text(effect.parameters[i].printed));
+  }
+  if (!effect.condition.empty()) {
+    text += fmt::format("[effects.{}.condition]\n", effect.name);
+    for (const auto& [key, value] : effect.condition) {
+      text += fmt::format("{} = {}\n", key, toml_text(value));
+    }
   }
   return text;
 }

@@ -36,32 +36,20 @@ int place_of(const Network& network, std::string_view parameter) {
   return found == all.end() ? -1 : static_cast<int>(found - all.begin());
 }
 
-/// The two nodes and resistances of every motor, heated by all the power that goes in and does not come out.
-Network power_network(const Motor& motor) {
-  const MotorValues& values = motor.nominal;
-  Network network;
-  network.add_node("winding", values.thermal_time_constant_winding_s / values.thermal_resistance_winding_stator_K_per_W);
-  network.add_node("stator", values.thermal_time_constant_stator_s / values.thermal_resistance_stator_ambient_K_per_W);
-  const auto add = [&](std::string_view name, std::string_view type, std::vector<std::string> nodes, std::vector<double> parameters) {
-    network.add_effect(std::string(name), *find_effect(type), nodes, parameters);
-  };
-  add("input_power_loss", "input_power_loss", {"winding"}, {1.0});
-  add("winding_stator", "conduction", {"winding", "stator"}, {values.thermal_resistance_winding_stator_K_per_W});
-  add("stator_ambient", "conduction", {"stator", "ambient"}, {values.thermal_resistance_stator_ambient_K_per_W});
-  const MotorSample nominal = nominal_sample(motor);
-  for (std::size_t i = 0; i < motor.effects.size(); ++i) {
-    const MotorEffect& effect = motor.effects[i];
-    network.add_effect(effect.name, *effect.type, effect.nodes, nominal.effect_parameters[i]);
-  }
-  return network;
-}
-
 class Builder {
  public:
   Builder(const Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
     all_.heat = heat;
-    all_.model.network = heat == HeatInput::current ? datasheet_network(motor, nominal_sample(motor)) : power_network(motor);
+    all_.model.network = datasheet_network(motor, nominal_sample(motor));
+    if (heat == HeatInput::input_power) {
+      // Beside it the copper loss is 0, for no log has a current, and the no-load loss is asked to stay silent.
+      all_.model.network.add_effect("input_power_loss", *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
+                                    std::vector<double>{1.0});
+    }
     all_.model.values = all_.model.network.values();
+    if (heat == HeatInput::input_power) {
+      all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
+    }
     all_.model.flux_nodes = {all_.model.network.find_node("winding"), all_.model.network.find_node("stator")};
     all_.needed = {heat == HeatInput::current ? Signal::current : Signal::input_power};
   }

@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/command.h"
+#include "cli/diagnosis_answer.h"
+#include "cli/quantity_option.h"
+#include "identify/attribution/model_file.h"
+#include "identify/measurement/read_recording.h"
+
+namespace heatsoak::commands {
+namespace {
+
+struct Options {
+  std::string model;
+  std::vector<std::string> train;
+  std::vector<std::string> holdout;
+  std::string map;
+  std::string out;
+  double ambient_C = MeasuredRunOptions::kNotStated_C;
+};
+
+struct LogPart {
+  std::string file;
+  double from_share = 0.0;
+  double to_share = 1.0;
+};
+
+/// "run4.csv@0-60%" is the first 60 % of the time of run4.csv.
+LogPart log_part(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos || !text.ends_with('%')) {
+    return {text};
+  }
+  const std::size_t dash = text.find('-', at);
+  LogPart part{text.substr(0, at)};
+  const auto number = [&](std::size_t begin, std::size_t end, double& share) {
+    const auto result = std::from_chars(text.data() + begin, text.data() + end, share);
+    share /= 100.0;
+    return result.ec == std::errc() && result.ptr == text.data() + end;
+  };
+  const bool is_sound = dash != std::string::npos && number(at + 1, dash, part.from_share) && number(dash + 1, text.size() - 1, part.to_share) &&
+                        part.from_share >= 0.0 && part.from_share < part.to_share && part.to_share <= 1.0;
+  if (!is_sound) {
+    throw Failure(ExitCode::bad_input, fmt::format("'{}': expected LOG@FROM-TO%, such as run4.csv@0-60%", text));
+  }
+  return part;
+}
+
+struct Logs {
+  std::vector<Recording> train;
+  std::vector<Recording> holdout;
+};
+
+Recording read_part(const std::string& text, const Options& options, std::vector<std::string>& notes) {
+  const LogPart part = log_part(text);
+  RecordingReport report;
+  Recording recording = read_recording(part.file, mapping_for(part.file, options.map), report);
+  for (const std::string& note : report.notes) {
+    notes.push_back(fmt::format("{}: {}", recording.name, note));
+  }
+  return part.from_share > 0.0 || part.to_share < 1.0 ? part_of(recording, part.from_share, part.to_share) : recording;
+}
+
+std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options, std::vector<FreeSignals>* free,
+                                 std::vector<std::string>& notes) {
+  std::vector<MeasuredRun> all;
+  for (const Recording& recording : recordings) {
+    MeasuredRuns runs = measured_runs(recording, options);
+    notes.insert(notes.end(), runs.notes.begin(), runs.notes.end());
+    for (MeasuredRun& run : runs.runs) {
+      if (free) {
+        free->push_back(free_signals(recording, run));
+      }
+      all.push_back(std::move(run));
+    }
+  }
+  return all;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+void hand_out(const Options& options, const Motor& motor, const Diagnosis& diagnosis, const DiagnosisInput& input, Session& session) {
+  const std::filesystem::path folder(options.out);
+  std::vector<std::pair<std::string, std::string>> svg;
+  for (const DiagnosisPicture& picture : diagnosis_pictures(diagnosis, input)) {
+    svg.emplace_back(picture.name, draw_svg(picture.chart));
+    session.write(folder / (picture.name + ".svg"), svg.back().second);
+  }
+  session.write(folder / (motor.id + ".toml"), extended_motor_file(text_of(motor.file), motor, diagnosis));
+  session.write(folder / "diagnosis.json", diagnosis_json(diagnosis, input).dump(2) + "\n");
+  session.write(folder / "diagnosis.html", diagnosis_page(diagnosis, input, svg));
+}
+
+ExitCode run(const Options& options, Session& session) {
+  const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.model));
+  Logs logs;
+  std::vector<std::string> notes;
+  for (const std::string& text : options.train) {
+    logs.train.push_back(read_part(text, options, notes));
+  }
+  for (const std::string& text : options.holdout) {
+    logs.holdout.push_back(read_part(text, options, notes));
+  }
+  ModelOfLogs model = model_of_logs(motor, logs.train);
+  notes.insert(notes.end(), model.notes.begin(), model.notes.end());
+  MeasuredRunOptions how;
+  how.needed = model.needed;
+  how.ambient_C = options.ambient_C;
+  DiagnosisInput input;
+  input.model = std::move(model.model);
+  input.train = runs_of(logs.train, how, &input.free, notes);
+  input.holdout = runs_of(logs.holdout, how, nullptr, notes);
+  Diagnosis diagnosis = heatsoak::diagnose(input, {});
+  diagnosis.notes = notes;
+  session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), diagnosis.description));
+  if (!options.out.empty()) {
+    hand_out(options, motor, diagnosis, input, session);
+    session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
+  }
+  session.answer(diagnosis_json(diagnosis, input));
+  return diagnosis.verdict == Verdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
+}
+
+}  // namespace
+
+Command diagnose_command() {
+  return {.name = {},
+          .summary = "Finds what a model cannot explain in measured runs, names the missing effect, adds it, and shows the error before and after",
+          .example = "heatsoak diagnose --model maxon_ec45_flat_70w_24v --train examples/soak/match_1.csv examples/soak/match_2.csv "
+                     "examples/soak/bench.csv --holdout examples/soak/match_3.csv --out diagnosis",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id")->required()->type_name("MODEL.toml");
+            app.add_option("--train", options->train, "logs that the model is extended by; LOG@0-60% takes the first 60 % of its time")
+                ->required()
+                ->type_name("LOG...");
+            app.add_option("--holdout", options->holdout, "logs that the fit never sees; for the error before and after")->type_name("LOG...");
+            app.add_option("--map", options->map, "mapping of columns to quantities; LOG.map.toml beside a log is found by itself")
+                ->type_name("FILE.toml");
+            app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
+            add_quantity(app, "--ambient", options->ambient_C,
+                         {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air where a log has none"});
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

@@ -1,0 +1,140 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/diagnosis_answer.h"
+
+namespace heatsoak {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON knows no infinity and no NaN.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json errors_json(const Errors& errors) {
+  Json json = Json::object();
+  for (const auto& [signal, error] : errors) {
+    json[signal] = {{"rmse_K", rounded(error.rmse_K, 4)}, {"max_abs_K", rounded(error.max_abs_K, 4)}};
+  }
+  return json;
+}
+
+Json effect_json(const FoundEffect& effect) {
+  Json parameters = Json::array();
+  for (const FittedParameter& parameter : effect.parameters) {
+    const bool is_fitted = parameter.low < parameter.high;
+    parameters.push_back({{"name", parameter.name},
+                          {"value", number(parameter.value)},
+                          {"unit", parameter.unit},
+                          {"ci95", is_fitted ? Json::array({number(parameter.low), number(parameter.high)}) : Json()}});
+  }
+  return {{"id", effect.id},
+          {"name", effect.name},
+          {"node", effect.node},
+          {"parameters", parameters},
+          {"condition", effect.condition},
+          {"drivers", effect.drivers},
+          {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
+          {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
+          {"visibility", rounded(effect.visibility_ratio, 4)},
+          {"confusable_with", effect.confusable_with}};
+}
+
+Json tests_json(const std::vector<InnovationTests>& tests) {
+  Json json = Json::object();
+  for (const InnovationTests& test : tests) {
+    Json correlated = Json::object();
+    for (const auto& [name, correlation] : test.correlated_with) {
+      correlated[name] = rounded(correlation, 4);
+    }
+    json[test.signal] = {{"samples", test.count},
+                         {"variance_ratio", rounded(test.variance_ratio, 4)},
+                         {"ljung_box_p", number(test.ljung_box_probability)},
+                         {"cumulated_periodogram_over_band", rounded(test.periodogram_ratio, 3)},
+                         {"kurtosis_over_normal", rounded(test.kurtosis_ratio, 3)},
+                         {"correlated_with", correlated}};
+  }
+  return json;
+}
+
+Json unexplained_json(const Unexplained& heat) {
+  Json json{{"node", heat.node},
+            {"drivers", heat.drivers},
+            {"heat_W", {{"mean", rounded(heat.mean_W, 4)}, {"max", rounded(heat.peak_W, 4)}, {"rms", rounded(heat.rms_W, 4)}}},
+            {"time_scale_s", rounded(heat.time_scale_s, 1)},
+            {"nats", rounded(heat.gain_nats, 2)}};
+  if (!heat.knots.empty()) {
+    json["curve"] = {{"driver", heat.knots}, {"driver_unit", heat.driver_unit}, {"value", heat.curve}, {"sd", heat.curve_sd}, {"unit", heat.curve_unit}};
+  }
+  return json;
+}
+
+Json ladder_json(const Selection& selection) {
+  Json rounds = Json::array();
+  for (const Round& round : selection.rounds) {
+    Json candidates = Json::array();
+    for (const JudgedCandidate& each : round.ladder) {
+      candidates.push_back({{"id", each.candidate.id},
+                            {"variant", each.candidate.variant},
+                            {"nats", rounded(each.gain_nats, 2)},
+                            {"visibility", rounded(each.visibility_ratio, 4)},
+                            {"left_out_nats", rounded(each.left_out_gain_nats, 2)}});
+    }
+    Json curves = Json::array();
+    for (const ScanResult& each : round.scan) {
+      curves.push_back({{"node", each.term.node},
+                        {"other", each.term.other},
+                        {"driver", selection.drivers[static_cast<std::size_t>(each.term.driver)].name},
+                        {"per", to_string(each.term.multiplier)},
+                        {"nats", rounded(each.gain_nats, 2)}});
+    }
+    rounds.push_back({{"effects", candidates}, {"curves", curves}});
+  }
+  return rounds;
+}
+
+}  // namespace
+
+Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
+  Json json{{"schema", "heatsoak.diagnosis/1"}, {"verdict", to_string(diagnosis.verdict)}, {"effects", Json::array()}};
+  for (const FoundEffect& effect : diagnosis.effects) {
+    json["effects"].push_back(effect_json(effect));
+  }
+  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(diagnosis.before_holdout)}};
+  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(diagnosis.after_holdout)}};
+  json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
+  json["description"] = diagnosis.description;
+  if (!diagnosis.unexplained.empty()) {
+    json["unexplained"] = unexplained_json(diagnosis.unexplained.front());
+    json["unexplained_all"] = Json::array();
+    for (const Unexplained& heat : diagnosis.unexplained) {
+      json["unexplained_all"].push_back(unexplained_json(heat));
+    }
+  }
+  json["runs"] = {{"train", Json::array()}, {"holdout", Json::array()}};
+  for (const MeasuredRun& run : input.train) {
+    json["runs"]["train"].push_back({{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
+  }
+  for (const MeasuredRun& run : input.holdout) {
+    json["runs"]["holdout"].push_back({{"name", run.name},
+                                       {"before", errors_json(open_loop_errors(input.model, {run}, input.train))},
+                                       {"after", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, input.train))}});
+  }
+  json["ladder"] = ladder_json(diagnosis.selection);
+  json["refused"] = diagnosis.selection.refused;
+  json["not_judged"] = diagnosis.selection.not_judged;
+  json["unknown_heat_rms_W"] = {{"before", diagnosis.flux_rms_before_W}, {"after", diagnosis.flux_rms_after_W}};
+  json["power_balance_W"] = Json::object();
+  for (const BalanceRow& row : diagnosis.balance) {
+    json["power_balance_W"][row.effect] = row.heat_W;
+  }
+  json["next_experiments"] = Json::array();
+  for (const Experiment& each : diagnosis.experiments) {
+    json["next_experiments"].push_back({{"tells", each.rivals}, {"what", each.what}, {"expected_nats", rounded(each.expected_nats, 1)}});
+  }
+  json["notes"] = diagnosis.notes;
+  return json;
+}
+
+}  // namespace heatsoak

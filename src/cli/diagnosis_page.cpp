@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/diagnosis_answer.h"
+
+namespace heatsoak {
+namespace {
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  }
+  return out;
+}
+
+std::string row(const std::vector<std::string>& cells, std::string_view tag = "td") {
+  std::string text = "<tr>";
+  for (const std::string& cell : cells) {
+    text += fmt::format("<{0}>{1}</{0}>", tag, escaped(cell));
+  }
+  return text + "</tr>\n";
+}
+
+std::string error_table(const Diagnosis& diagnosis) {
+  std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "after: rms / K", "before: worst / K", "after: worst / K"}, "th");
+  const auto add = [&](const Errors& before, const Errors& after, const char* where) {
+    for (const auto& [signal, error] : before) {
+      const auto found = after.find(signal);
+      if (found != after.end()) {
+        text += row({signal, where, fmt::format("{:.2f}", error.rmse_K), fmt::format("{:.2f}", found->second.rmse_K),
+                     fmt::format("{:.1f}", error.max_abs_K), fmt::format("{:.1f}", found->second.max_abs_K)});
+      }
+    }
+  };
+  add(diagnosis.before_train, diagnosis.after_train, "training");
+  add(diagnosis.before_holdout, diagnosis.after_holdout, "never seen");
+  return text + "</table>\n";
+}
+
+std::string effect_table(const Diagnosis& diagnosis) {
+  std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence", "visibility", "look-alikes here"}, "th");
+  for (const FoundEffect& effect : diagnosis.effects) {
+    std::string where = effect.condition.empty() ? "always" : "";
+    for (const auto& [key, value] : effect.condition) {
+      where += key + " = " + value + " ";
+    }
+    bool is_first = true;
+    for (const FittedParameter& parameter : effect.parameters) {
+      const bool is_fitted = parameter.low < parameter.high;
+      text += row({is_first ? effect.id : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
+                   fmt::format("{:.4g} {}", parameter.value, parameter.unit),
+                   is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high) : "not fitted",
+                   is_first ? fmt::format("{:.2g} / {:.2g} W", effect.mean_W, effect.peak_W) : "",
+                   is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "", is_first ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
+                   is_first ? fmt::format("{}", fmt::join(effect.confusable_with, ", ")) : ""});
+      is_first = false;
+    }
+  }
+  return text + "</table>\n";
+}
+
+std::string ladder_table(const Diagnosis& diagnosis) {
+  std::string text;
+  int number = 1;
+  for (const Round& round : diagnosis.selection.rounds) {
+    text += fmt::format("<h3>Round {}</h3><table>", number++) +
+            row({"candidate", "evidence / nats", "size in typical sizes", "visibility", "gain on runs left out / nats"}, "th");
+    for (const JudgedCandidate& each : round.ladder) {
+      text += row({each.candidate.id, fmt::format("{:.1f}", each.gain_nats), fmt::format("{:.2f}", each.size_share),
+                   fmt::format("{:.3f}", each.visibility_ratio), fmt::format("{:.1f}", each.left_out_gain_nats)});
+    }
+    for (const ScanResult& each : round.scan) {
+      const std::string& driver = diagnosis.selection.drivers[static_cast<std::size_t>(each.term.driver)].name;
+      text += row({fmt::format("curve over {} × {} at {}{}", driver, to_string(each.term.multiplier), each.term.node,
+                               each.term.other.empty() ? "" : "→" + each.term.other),
+                   fmt::format("{:.1f}", each.gain_nats), fmt::format("{:.2g} W mean", each.mean_W), "", ""});
+    }
+    text += "</table>\n";
+  }
+  return text;
+}
+
+std::string balance_table(const Diagnosis& diagnosis) {
+  std::string text = "<table>" + row({"effect", "mean heat into nodes / W (training runs)"}, "th");
+  for (const BalanceRow& each : diagnosis.balance) {
+    std::string heats;
+    for (const auto& [node, heat_W] : each.heat_W) {
+      heats += fmt::format("{}{} {:+.3g}", heats.empty() ? "" : ", ", node, heat_W);
+    }
+    text += row({each.effect, heats});
+  }
+  return text + "</table>\n";
+}
+
+std::string test_table(const Diagnosis& diagnosis) {
+  std::string text = "<table>" + row({"innovations of", "model", "variance (1 is right)", "Ljung-Box p (40 lags)", "cumulated periodogram / band (below 1 is white)", "kurtosis / normal", "correlated with"}, "th");
+  const auto add = [&](const std::vector<InnovationTests>& tests, const char* model) {
+    for (const InnovationTests& test : tests) {
+      std::string inputs;
+      for (const auto& [name, correlation] : test.correlated_with) {
+        inputs += fmt::format("{}{} ({:+.3f})", inputs.empty() ? "" : ", ", name, correlation);
+      }
+      text += row({test.signal, model, fmt::format("{:.2f}", test.variance_ratio), fmt::format("{:.2g}", test.ljung_box_probability),
+                   fmt::format("{:.2f}", test.periodogram_ratio), fmt::format("{:.2f}", test.kurtosis_ratio), inputs.empty() ? "none" : inputs});
+    }
+  };
+  add(diagnosis.tests_before, "before");
+  add(diagnosis.tests_after, "after");
+  return text + "</table>\n";
+}
+
+constexpr std::string_view kStyle =
+    "body{font:15px/1.5 system-ui,sans-serif;max-width:1080px;margin:2em auto;padding:0 1em;color:#222}"
+    "table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left}"
+    "th{background:#f2f2f2}svg{max-width:100%;height:auto}p.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid #c8102e}";
+
+}  // namespace
+
+std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const std::vector<std::pair<std::string, std::string>>& svg) {
+  std::string text = fmt::format("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
+  text += fmt::format("<h1>Diagnosis: {}</h1>\n<p class=\"words\">{}</p>\n", to_string(diagnosis.verdict), escaped(diagnosis.description));
+  std::vector<std::string> train, holdout;
+  for (const MeasuredRun& run : input.train) {
+    train.push_back(run.name);
+  }
+  for (const MeasuredRun& run : input.holdout) {
+    holdout.push_back(run.name);
+  }
+  text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", escaped(fmt::format("{}", fmt::join(train, ", "))),
+                      holdout.empty() ? "none" : escaped(fmt::format("{}", fmt::join(holdout, ", "))));
+  text += "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis);
+  if (!diagnosis.effects.empty()) {
+    text += "<h2>Effects added</h2>" + effect_table(diagnosis);
+  }
+  for (const auto& [name, picture] : svg) {
+    const std::size_t begin = picture.find("<svg");
+    text += fmt::format("<h2>{}</h2>\n{}\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
+  }
+  text += "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown heat; "
+          "7 nats are asked for.</p>" + ladder_table(diagnosis);
+  text += "<h2>Power balance</h2>" + balance_table(diagnosis);
+  text += "<h2>Residual tests</h2>" + test_table(diagnosis);
+  if (!diagnosis.experiments.empty()) {
+    text += "<h2>Next experiment</h2><ul>";
+    for (const Experiment& each : diagnosis.experiments) {
+      text += fmt::format("<li>To tell {}: {}{}</li>", escaped(each.rivals), escaped(each.what),
+                          each.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats)", each.expected_nats) : "");
+    }
+    text += "</ul>\n";
+  }
+  std::vector<std::string> remarks = diagnosis.notes;
+  remarks.insert(remarks.end(), diagnosis.selection.refused.begin(), diagnosis.selection.refused.end());
+  remarks.insert(remarks.end(), diagnosis.selection.not_judged.begin(), diagnosis.selection.not_judged.end());
+  text += "<h2>What was not judged, and what is taken for granted</h2><ul>";
+  for (const std::string& remark : remarks) {
+    text += "<li>" + escaped(remark) + "</li>";
+  }
+  return text + "</ul></body></html>\n";
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,141 @@
+#include "identify/attribution/advisor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace heatsoak {
+namespace {
+
+constexpr int kSeconds = 600;
+
+/// The most that the runs reached.
+struct Levels {
+  double current_A = 0.0;
+  double speed_rad_per_s = 0.0;
+  double bus_V = 0.0;
+  double input_power_W = 0.0;
+  double vehicle_speed_m_per_s = 0.0;
+  double volts_per_rad_per_s_ratio = 0.0;  ///< modulation per speed
+  double ambient_C = 25.0;
+};
+
+Levels levels_of(const std::vector<MeasuredRun>& runs) {
+  Levels most;
+  for (const MeasuredRun& run : runs) {
+    for (const OperatingPoint<double>& at : run.at) {
+      most.current_A = std::max(most.current_A, at.current_rms_A);
+      most.speed_rad_per_s = std::max(most.speed_rad_per_s, at.speed_mean_rad_per_s);
+      most.bus_V = std::max(most.bus_V, at.bus_V);
+      most.input_power_W = std::max(most.input_power_W, at.input_power_W);
+      most.vehicle_speed_m_per_s = std::max(most.vehicle_speed_m_per_s, at.vehicle_speed_m_per_s);
+    }
+  }
+  most.ambient_C = runs.front().at.front().ambient_C;
+  return most;
+}
+
+struct Primitive {
+  std::string_view what;
+  /// Shares of the highest speed and current at a second of the experiment.
+  std::function<std::pair<double, double>(int)> shares;
+};
+
+const std::vector<Primitive>& menu() {
+  static const std::vector<Primitive> all{
+      {"ten minutes of a no-load staircase of speed", [](int s) { return std::pair(0.2 * (1 + s / 120), 0.05); }},
+      {"ten minutes of current pulses at standstill", [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * (s / 120) : 0.0); }},
+      {"heat at standstill for five minutes, then spin without load while hot",
+       [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.9, 0.05); }},
+      {"spin without load while cold for five minutes, then rest", [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
+      {"one current at four speeds", [](int s) { return std::pair(0.25 * (1 + s / 150), 0.5); }},
+      {"one speed at four currents", [](int s) { return std::pair(0.6, 0.2 * (1 + s / 150)); }},
+      {"heat at standstill for five minutes, then rest", [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.0, 0.0); }},
+  };
+  return all;
+}
+
+MeasuredRun planned(const Primitive& primitive, const Levels& levels, const MeasuredRun& like) {
+  MeasuredRun run;
+  run.name = "planned";
+  run.sensors = like.sensors;
+  run.signals = like.signals;
+  for (int s = 0; s <= kSeconds; ++s) {
+    run.time_s.push_back(s);
+    if (s < kSeconds) {
+      const auto [speed_share, current_share] = primitive.shares(s);
+      OperatingPoint<double> at;
+      at.current_rms_A = current_share * levels.current_A;
+      at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = at.velocity_rad_per_s = speed_share * levels.speed_rad_per_s;
+      at.input_power_W = current_share * current_share * levels.input_power_W;
+      at.bus_V = levels.bus_V;
+      at.modulation_ratio = std::min(1.0, 0.9 * speed_share);
+      at.ambient_C = levels.ambient_C;
+      run.at.push_back(at);
+    }
+  }
+  // Measured as predicted: only the columns count.
+  run.measured_C = Eigen::MatrixXd::Constant(run.samples(), static_cast<Eigen::Index>(run.sensors.size()), levels.ambient_C);
+  return run;
+}
+
+/// Of ½‖φ·(column − its part along θ and the rival)‖².
+double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share, const MeasuredRun& run) {
+  const std::vector<MeasuredRun> runs{run};
+  const std::vector<double> start_C(static_cast<std::size_t>(fit.model.model.network.state_count()), run.at.front().ambient_C);
+  const std::vector<LinearisedRun> path{linearise(fit.model, start_C, run)};
+  const std::vector<DesignRun> designs = design(path, runs, {}, {candidate_columns(pair, fit.model.model.network, fit.model.values_in(run), path.front(), run)});
+  const Whitening whitening(path.front(), flux, designs.front().noise);
+  const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
+  const Eigen::Index own = fit.model.free_count();
+  std::vector<Eigen::Index> absorbing;
+  for (Eigen::Index i = 0; i < own; ++i) {
+    absorbing.push_back(i);
+  }
+  absorbing.push_back(own + 1);
+  const Eigen::MatrixXd others = triangle(Eigen::all, absorbing);
+  const Eigen::VectorXd column = size_share * triangle.col(own);
+  return 0.5 * (column - others * others.colPivHouseholderQr().solve(column)).squaredNorm();
+}
+
+}  // namespace
+
+std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs) {
+  std::vector<Experiment> experiments;
+  const Levels levels = levels_of(runs);
+  for (std::size_t t = 0; t < selection.terms.size(); ++t) {
+    const AcceptedTerm& term = selection.terms[t];
+    for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
+      const auto& ladder = selection.rounds[std::min(t, selection.rounds.size() - 1)].ladder;
+      const auto found = std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.confusable_with[rival]; });
+      if (found == ladder.end()) {
+        continue;
+      }
+      const auto own = std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.candidate->id; });
+      const std::vector<Candidate> pair{*term.candidate, found->candidate};
+      Experiment best;
+      best.rivals = fmt::format("{} or {}", term.candidate->id, found->candidate.id);
+      best.what = term.experiments[rival];
+      for (const Primitive& primitive : menu()) {
+        const double nats = separation_nats(selection.before, selection.grid.at(selection.before.place), pair,
+                                            own == ladder.end() ? 1.0 : own->size_share, planned(primitive, levels, runs.front()));
+        if (nats > best.expected_nats) {
+          best.expected_nats = nats;
+          best.what = primitive.what;
+        }
+      }
+      // What ten minutes cannot tell needs another set-up: that stands with the effect.
+      if (best.expected_nats < 1.0) {
+        best.what = term.experiments[rival];
+        best.expected_nats = 0.0;
+      }
+      experiments.push_back(std::move(best));
+    }
+  }
+  std::ranges::stable_sort(experiments, [](const Experiment& a, const Experiment& b) { return a.expected_nats > b.expected_nats; });
+  return experiments;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,16 @@
+// What to measure next: how much a short experiment would add to the evidence between two effects that the runs confuse.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "identify/attribution/diagnosis.h"
+
+namespace heatsoak {
+
+/// For every accepted effect with look-alikes: the experiment of the menu that separates it best from each of them (T-optimal:
+/// D = min over the rival's size and θ of ½‖G·φ − G_rival·φ_rival‖² in whitened space, in nats), best first.
+/// The menu's experiments take ten minutes each; levels are those that the runs reached.
+std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs);
+
+}  // namespace heatsoak

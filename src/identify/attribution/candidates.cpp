@@ -1,0 +1,199 @@
+#include "identify/attribution/candidates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace heatsoak {
+namespace {
+
+struct SignalName {
+  Signal signal;
+  std::string_view name;
+};
+constexpr std::array kSignalNames{SignalName{Signal::current, "current"},
+                                  SignalName{Signal::speed, "speed"},
+                                  SignalName{Signal::shaft_power, "torque and speed"},
+                                  SignalName{Signal::input_power, "input power"},
+                                  SignalName{Signal::modulation, "duty ratio"},
+                                  SignalName{Signal::bus_voltage, "supply voltage"},
+                                  SignalName{Signal::vehicle_speed, "vehicle speed"},
+                                  SignalName{Signal::neighbour_temperature, "temperature of the neighbour"},
+                                  SignalName{Signal::age, "hours of running"}};
+
+/// Names of the signals that some run lacks.
+std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const std::vector<MeasuredRun>& runs) {
+  std::vector<std::string_view> names;
+  for (const Signal signal : needs) {
+    if (std::ranges::any_of(runs, [&](const MeasuredRun& run) { return !run.has(signal); })) {
+      names.push_back(std::ranges::find(kSignalNames, signal, &SignalName::signal)->name);
+    }
+  }
+  return names;
+}
+
+bool is_in(const Network& network, const EffectType& type, const std::vector<std::string>& nodes) {
+  return std::ranges::any_of(network.effects(), [&](const EffectInPlace& effect) {
+    if (effect.type->name != type.name) {
+      return false;
+    }
+    for (std::size_t role = 0; role < nodes.size(); ++role) {
+      if (type.nodes[role].own_capacity < 0 && network.node_name(effect.node_index[role]) != nodes[role]) {
+        return false;
+      }
+    }
+    return true;
+  });
+}
+
+/// The roles' usual nodes; a node of the effect's own gets a name that the network does not have. Empty where a node is missing.
+std::vector<std::string> usual_nodes(const Network& network, const EffectType& type) {
+  std::vector<std::string> nodes;
+  for (const NodeRole& role : type.nodes) {
+    std::string node(role.default_node);
+    if (role.own_capacity >= 0) {
+      for (int number = 2; network.find_node(node) >= 0; ++number) {
+        node = fmt::format("{}_{}", role.default_node, number);
+      }
+    } else if (network.find_node(node) < 0) {
+      return {};
+    }
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
+}
+
+/// Effects of one node act at every node that stores heat; the rest where their roles say.
+std::vector<std::vector<std::string>> placements(const Network& network, const EffectType& type) {
+  std::vector<std::vector<std::string>> all;
+  if (std::vector<std::string> usual = usual_nodes(network, type); !usual.empty()) {
+    all.push_back(std::move(usual));
+  }
+  const bool moves = type.nodes.size() == 1 && type.nodes.front().own_capacity < 0 && network.state_count() > 2;
+  for (int node = 0; moves && node < network.state_count(); ++node) {
+    if (network.node_name(node) != type.nodes.front().default_node) {
+      all.push_back({std::string(network.node_name(node))});
+    }
+  }
+  return all;
+}
+
+std::string id_of(const EffectType& type, const std::vector<std::string>& nodes) {
+  for (std::size_t role = 0; role < nodes.size(); ++role) {
+    if (type.nodes[role].own_capacity < 0 && nodes[role] != type.nodes[role].default_node) {
+      return fmt::format("{}@{}", type.name, nodes[role]);
+    }
+  }
+  return std::string(type.name);
+}
+
+void add_network_candidates(const Network& network, const std::vector<MeasuredRun>& runs, CandidateList& list) {
+  for (const EffectType& type : all_effects()) {
+    if (type.candidacy.size_parameter < 0) {
+      continue;
+    }
+    if (const std::vector<std::string_view> names = lacking(type.needs, runs); !names.empty()) {
+      list.not_judged.push_back(fmt::format("{}: not every log has {}", type.name, fmt::join(names, " and ")));
+      continue;
+    }
+    for (std::vector<std::string>& nodes : placements(network, type)) {
+      if (is_in(network, type, nodes)) {
+        continue;
+      }
+      int variant = 0;
+      for (const std::vector<double>& parameters : type.candidacy.variants) {
+        list.candidates.push_back({&type, nullptr, id_of(type, nodes), nodes, parameters, variant++});
+      }
+    }
+  }
+}
+
+bool is_measured(const std::vector<MeasuredRun>& runs, std::string_view signal) {
+  return std::ranges::all_of(runs, [&](const MeasuredRun& run) {
+    return std::ranges::any_of(run.sensors, [&](const Sensor& sensor) { return sensor.signal == signal; });
+  });
+}
+
+Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
+  return std::ranges::find(run.sensors, signal, &Sensor::signal) - run.sensors.begin();
+}
+
+/// All of them in one network at a size of 0: they do not change what it does, but it has their derivatives.
+struct Extended {
+  Network network;
+  std::vector<int> sizes;
+  std::vector<double> start_C;
+};
+
+void extend(Extended& extended, const Candidate& candidate, double ambient_C) {
+  std::vector<double> parameters = candidate.parameters;
+  const auto size = static_cast<std::size_t>(candidate.size_parameter());
+  parameters[size] = 0.0;
+  std::vector<std::string> nodes = candidate.nodes;
+  for (std::size_t role = 0; role < nodes.size(); ++role) {
+    if (candidate.type->nodes[role].own_capacity >= 0) {
+      nodes[role] += fmt::format(" {}", extended.sizes.size());
+      extended.start_C.push_back(ambient_C);
+    }
+  }
+  extended.network.add_effect(fmt::format("candidate {}", extended.sizes.size()), *candidate.type, nodes, parameters);
+  extended.sizes.push_back(extended.network.effects().back().parameter_index[size]);
+}
+
+}  // namespace
+
+int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter : 0; }
+
+const ParameterSpec& Candidate::size_spec() const {
+  return type ? type->parameters[static_cast<std::size_t>(size_parameter())] : sensor_type->size;
+}
+
+std::string_view Candidate::family() const { return type ? type->candidacy.family : std::string_view("error of a sensor"); }
+
+std::string_view Candidate::experiment() const { return type ? type->candidacy.experiment : sensor_type->experiment; }
+
+CandidateList candidates_for(const Network& network, const std::vector<MeasuredRun>& runs) {
+  CandidateList list;
+  add_network_candidates(network, runs, list);
+  for (const SensorEffectType& type : all_sensor_effects()) {
+    if (is_measured(runs, type.signal)) {
+      list.candidates.push_back({nullptr, &type, std::string(type.name), {}, {type.typical_size}, 0});
+    }
+  }
+  return list;
+}
+
+Columns candidate_columns(const std::vector<Candidate>& candidates, const Network& network, std::span<const double> parameters,
+                          const LinearisedRun& fitted, const MeasuredRun& run) {
+  Extended extended{network, {}, {}};
+  const Eigen::VectorXd start_C = fitted.state_C.col(0);
+  extended.start_C.assign(start_C.begin(), start_C.end());
+  for (const Candidate& candidate : candidates) {
+    if (candidate.type) {
+      extend(extended, candidate, run.at.front().ambient_C);
+    }
+  }
+  std::vector<double> values = extended.network.values();
+  std::ranges::copy(parameters, values.begin());
+  const LinearisedRun wide = linearise(extended.network, values, extended.sizes, {}, extended.start_C, run);
+  Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
+  Eigen::Index of_network = 0;
+  for (std::size_t j = 0; j < candidates.size(); ++j) {
+    const Candidate& candidate = candidates[j];
+    const auto column = static_cast<Eigen::Index>(j);
+    if (candidate.type) {
+      columns.col(column) = candidate.typical_size() * wide.by_parameter.col(of_network++);
+      continue;
+    }
+    const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
+    const Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
+    const Eigen::VectorXd by_size = candidate.sensor_type->law.by_size(run.time_s, 0.0, true_C);
+    for (Eigen::Index k = 0; k < by_size.size(); ++k) {
+      columns(k * fitted.sensors() + sensor, column) = candidate.typical_size() * by_size[k];
+    }
+  }
+  return columns;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,95 @@
+// A diagnosis in words: what was looked for, what was found, how sure, what it does to the error, what to do next.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/attribution/diagnosis.h"
+
+namespace heatsoak {
+namespace {
+
+std::string errors_in_words(const Errors& before, const Errors& after, std::string_view where) {
+  std::string text;
+  for (const auto& [signal, error] : before) {
+    const auto found = after.find(signal);
+    if (found != after.end()) {
+      text += fmt::format(" {} of the {}: {:.2g} K rms before, {:.2g} K after.", text.empty() ? fmt::format("On {}, error", where) : "Error",
+                          signal.substr(0, signal.rfind('_')), error.rmse_K, found->second.rmse_K);
+    }
+  }
+  return text;
+}
+
+std::string condition_in_words(const std::map<std::string, std::string>& condition) {
+  std::string text;
+  for (const auto& [key, value] : condition) {
+    text += text.empty() ? "" : " and ";
+    text += key == "run" ? fmt::format("only in {}", value) : fmt::format("only where {} is {}", key, value);
+  }
+  return text.empty() ? "" : ", " + text;
+}
+
+std::string effect_in_words(const FoundEffect& effect) {
+  std::string text = fmt::format(" Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
+  for (const FittedParameter& parameter : effect.parameters) {
+    if (parameter.low < parameter.high) {
+      text += fmt::format("; {} {:.3g} {} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit, parameter.low, parameter.high);
+      break;
+    }
+  }
+  if (effect.mean_W > 0.0) {
+    text += fmt::format("; {:.2g} W on average, up to {:.2g} W", effect.mean_W, effect.peak_W);
+  }
+  text += fmt::format(". Without it the model would be e^{:.0f} times less probable.", effect.gain_nats);
+  if (!effect.confusable_with.empty()) {
+    text += fmt::format(" These runs cannot tell it from {}.", fmt::join(effect.confusable_with, " or "));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string describe(const Diagnosis& diagnosis) {
+  std::string text;
+  switch (diagnosis.verdict) {
+    case Verdict::effect_found:
+      text = "The runs show heat that the model does not have, and it follows a known law.";
+      break;
+    case Verdict::nothing_missing:
+      text = "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
+             "smooth heat of the size that every model leaves.";
+      break;
+    case Verdict::unexplained:
+      text = "The runs show heat that the model does not have, and no law of the catalogue explains it.";
+      break;
+    case Verdict::not_identifiable:
+      text = "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no name is given.";
+      break;
+  }
+  for (const FoundEffect& effect : diagnosis.effects) {
+    text += effect_in_words(effect);
+  }
+  for (const Unexplained& heat : diagnosis.unexplained) {
+    text += heat.drivers.empty()
+                ? fmt::format(" Unexplained: {:.2g} W rms into the {} that come and go within {:.0f} s; no measured signal follows them.",
+                              heat.rms_W, heat.node, heat.time_scale_s)
+                : fmt::format(" Unnamed: heat at the {} that follows {}, {:.2g} W on average, up to {:.2g} W.", heat.node,
+                              fmt::join(heat.drivers, " or "), heat.mean_W, heat.peak_W) +
+                      (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "");
+  }
+  text += errors_in_words(diagnosis.before_holdout.empty() ? diagnosis.before_train : diagnosis.before_holdout,
+                          diagnosis.before_holdout.empty() ? diagnosis.after_train : diagnosis.after_holdout,
+                          diagnosis.before_holdout.empty() ? "the training runs" : "runs the fit never saw");
+  for (const std::string& refused : diagnosis.selection.refused) {
+    text += fmt::format(" Not named: {}.", refused);
+  }
+  if (!diagnosis.experiments.empty()) {
+    const Experiment& next = diagnosis.experiments.front();
+    text += fmt::format(" Next, to tell {}: {}", next.rivals, next.what);
+    text += next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".");
+  }
+  return text;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,64 @@
+// What is it, if it is not in the catalogue? Heat = g(driver) × multiplier at a node, with a curve g that nobody declared:
+// seven hat functions with a prior that likes smooth curves, judged by evidence as every other term is.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "identify/attribution/drivers.h"
+#include "identify/attribution/evidence_table.h"
+
+namespace heatsoak {
+
+/// What the curve stands before.
+enum class Multiplier {
+  source,      ///< 1: g in W
+  excess,      ///< T_node − T_ambient: g in W/K, positive takes heat out of the node
+  copper,      ///< the copper loss: g is a share of it
+  difference,  ///< T_node − T_other: g in W/K, positive carries heat from the node to the other
+};
+std::string_view unit_of(Multiplier multiplier);
+std::string_view to_string(Multiplier multiplier);
+
+/// One family of curves.
+struct ScanTerm {
+  std::string node;
+  std::string other;  ///< of `difference`; else empty
+  Multiplier multiplier = Multiplier::source;
+  int driver = 0;  ///< place in the list of drivers
+};
+
+struct ScanResult {
+  ScanTerm term;
+  double usual = 1.0;           ///< size of curves that the prior takes for usual, in the curve's unit
+  double gain_nats = 0.0;       ///< evidence above the base's, both at their best unknown heat
+  std::vector<double> knots;    ///< of the driver, in its unit; one for a run
+  Eigen::VectorXd curve;        ///< g at the knots, in unit_of(multiplier)
+  Eigen::MatrixXd covariance;   ///< of the curve
+  double mean_W = 0.0;          ///< of the heat's magnitude over the time it acts
+  double peak_W = 0.0;          ///< 99 % of its magnitude
+  FluxGrid::Place place;
+};
+
+struct ScanInput {
+  const Model* model = nullptr;
+  const std::vector<MeasuredRun>* runs = nullptr;
+  const std::vector<LinearisedRun>* fitted = nullptr;
+  const std::vector<Driver>* drivers = nullptr;
+  double mean_heat_W = 1.0;  ///< sets the scale that the prior expects
+};
+
+/// Best first; at most `most`. The table's base is what the curves are added to.
+std::vector<ScanResult> scan_drivers(const ScanInput& input, EvidenceTable& table, const SetScore& base, int most);
+
+/// The multiplier along a run's intervals, from the fitted temperatures at their beginnings.
+Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run);
+
+/// Precision of a curve before anything is measured, in units of its usual size: 0.1 · I + 2 · DᵀD; of a single number 1.
+Eigen::MatrixXd curve_precision(Eigen::Index knots);
+
+/// Values of the hat functions at `value`, clamped to the outer knots.
+Eigen::VectorXd hats(const std::vector<double>& knots, double value);
+
+}  // namespace heatsoak

@@ -1,0 +1,38 @@
+// Signals that an unknown heat might follow, along the intervals of every run.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "identify/linearised_run.h"
+#include "identify/model.h"
+
+namespace heatsoak {
+
+/// What a driver is to the rest of the tool: what every operating point has, what only logs have, or which log it is.
+enum class DriverKind { operating_point, node_temperature, log_only, run };
+
+struct Driver {
+  std::string name;  ///< "speed", "stator_excess", "time", "thrust_N", "run4"
+  std::string unit;  ///< UDUNITS text, "" for pure numbers and for runs
+  DriverKind kind = DriverKind::operating_point;
+  std::vector<Eigen::VectorXd> values;  ///< per run one per interval, in the driver's unit; NaN: not known there
+  double low = 0.0;                     ///< 1 % of the time is below
+  double high = 0.0;                    ///< 1 % of the time is above
+  std::map<std::string, std::string> condition;  ///< of kind run: what the runs have in common that others lack
+  std::string choice;     ///< what the effect `tabulated` calls it; empty where it cannot follow it
+  std::string watched;    ///< node that a temperature is of
+  std::string reference;  ///< node that it is above
+};
+
+/// Quantities of a log that are no operating point, brought to the intervals of a run: by name.
+using FreeSignals = std::map<std::string, Eigen::VectorXd>;
+FreeSignals free_signals(const Recording& recording, const MeasuredRun& run);
+
+/// What varies enough to be told from a constant, without copies of each other. `free` may be empty or has one entry per run.
+std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
+                               const std::vector<FreeSignals>& free);
+
+}  // namespace heatsoak

@@ -1,0 +1,139 @@
+#include "identify/attribution/extended_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace heatsoak {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using RowStride = Eigen::InnerStride<Eigen::Dynamic>;
+
+/// One sensor's rows of a column.
+template <class Column>
+Eigen::VectorXd rows_of(const Column& column, Eigen::Index sensor, Eigen::Index sensors) {
+  return column(Eigen::seq(sensor, column.size() - 1, sensors));
+}
+
+/// The fault upon prediction and derivatives; returns its own derivative per typical size.
+Eigen::VectorXd apply(const SensorTerm& term, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out) {
+  const Eigen::Index sensors = out.sensors();
+  const Eigen::VectorXd true_C = run.measured_C.col(sensor) - rows_of(out.residual_K, sensor, sensors);
+  // Where nothing was measured the prediction is not kept in the residual: take it from the node.
+  Eigen::VectorXd shown_C = out.state_C.row(out.sensor_node[static_cast<std::size_t>(sensor)]);
+  for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
+    shown_C[k] = std::isnan(true_C[k]) ? shown_C[k] : true_C[k];
+  }
+  const Eigen::VectorXd by_size = term.type->typical_size * term.type->law.by_size(run.time_s, term.value, shown_C);
+  term.type->law.apply(run.time_s, term.value, false, shown_C);
+  const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, sensors);
+  out.residual_K(rows) = run.measured_C.col(sensor) - shown_C;
+  for (Columns* const columns : {&out.by_start, &out.by_parameter}) {
+    for (Eigen::Index column = 0; column < columns->cols(); ++column) {
+      Eigen::VectorXd change = (*columns)(rows, column);
+      term.type->law.apply(run.time_s, term.value, true, change);
+      (*columns)(rows, column) = change;
+    }
+  }
+  return by_size;
+}
+
+}  // namespace
+
+Eigen::VectorXd ExtendedModel::theta() const {
+  Eigen::VectorXd all(free_count());
+  all.head(model.free_count()) = model.theta();
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    all[model.free_count() + static_cast<Eigen::Index>(i)] = sensors[i].value / sensors[i].type->typical_size;
+  }
+  return all;
+}
+
+void ExtendedModel::set_theta(const Eigen::VectorXd& theta) {
+  model.values = model.values_at(theta.head(model.free_count()));
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    sensors[i].value = sensors[i].type->typical_size * theta[model.free_count() + static_cast<Eigen::Index>(i)];
+  }
+}
+
+Prior ExtendedModel::prior() const {
+  Prior all{Eigen::VectorXd::Zero(free_count()), Eigen::MatrixXd::Zero(free_count(), free_count())};
+  const Eigen::Index inner = model.free_count();
+  all.mean.head(inner) = model.prior.mean;
+  all.precision.topLeftCorner(inner, inner) = model.prior.precision;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const double sd_share = sensors[i].spread_sd / sensors[i].type->typical_size;
+    all.precision(inner + static_cast<Eigen::Index>(i), inner + static_cast<Eigen::Index>(i)) = 1.0 / (sd_share * sd_share);
+  }
+  return all;
+}
+
+double ExtendedModel::low(Eigen::Index coordinate) const {
+  if (coordinate < model.free_count()) {
+    const FreeParameter& free = model.free[static_cast<std::size_t>(coordinate)];
+    return free.by_log && free.low <= 0.0 ? -kInfinity : model.theta_of(coordinate, free.low);
+  }
+  const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
+  return term.type->size.range.low / term.type->typical_size;
+}
+
+double ExtendedModel::high(Eigen::Index coordinate) const {
+  if (coordinate < model.free_count()) {
+    return model.theta_of(coordinate, model.free[static_cast<std::size_t>(coordinate)].high);
+  }
+  const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
+  return term.type->size.range.high / term.type->typical_size;
+}
+
+std::vector<double> ExtendedModel::values_in(const MeasuredRun& run) const {
+  std::vector<double> values = model.values;
+  for (const ConditionalTerm& term : conditional) {
+    if (!has_condition(run, term.condition)) {
+      values[static_cast<std::size_t>(term.place)] = term.off_value;
+    }
+  }
+  return values;
+}
+
+bool has_condition(const MeasuredRun& run, const std::map<std::string, std::string>& condition) {
+  return std::ranges::all_of(condition, [&](const auto& part) {
+    const auto found = run.conditions.find(part.first);
+    return found != run.conditions.end() && found->second == part.second;
+  });
+}
+
+LinearisedRun linearise(const ExtendedModel& model, std::span<const double> start_C, const MeasuredRun& run) {
+  const Network& network = model.model.network;
+  std::vector<double> start(start_C.begin(), start_C.end());
+  start.resize(static_cast<std::size_t>(network.state_count()), run.at.front().ambient_C);
+  std::vector<int> wanted;
+  for (const FreeParameter& free : model.model.free) {
+    wanted.push_back(free.place);
+  }
+  LinearisedRun out = linearise(network, model.values_in(run), wanted, model.model.flux_nodes, start, run);
+  Columns by_theta(out.by_parameter.rows(), model.free_count());
+  by_theta.leftCols(model.model.free_count()) = heatsoak::by_theta(model.model, model.model.theta(), out.by_parameter);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    for (const ConditionalTerm& term : model.conditional) {
+      if (term.place == wanted[i] && !has_condition(run, term.condition)) {
+        by_theta.col(static_cast<Eigen::Index>(i)).setZero();
+      }
+    }
+  }
+  by_theta.rightCols(static_cast<Eigen::Index>(model.sensors.size())).setZero();
+  out.by_parameter = std::move(by_theta);
+  for (std::size_t i = 0; i < model.sensors.size(); ++i) {
+    for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
+      if (run.sensors[static_cast<std::size_t>(sensor)].signal == model.sensors[i].type->signal) {
+        const Eigen::VectorXd by_size = apply(model.sensors[i], sensor, run, out);
+        const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
+        out.by_parameter(rows, model.model.free_count() + static_cast<Eigen::Index>(i)) = by_size;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,51 @@
+// A model with what a diagnosis adds to it: effects that act in some runs only, and faults of sensors.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "identify/attribution/candidates.h"
+#include "identify/evidence.h"
+
+namespace heatsoak {
+
+/// An effect of the network that acts only where a run has the condition.
+struct ConditionalTerm {
+  std::string effect_name;
+  int place = 0;               ///< of the parameter that switches it
+  double off_value = 0.0;      ///< with which the effect does nothing
+  std::map<std::string, std::string> condition;
+};
+
+struct SensorTerm {
+  const SensorEffectType* type = nullptr;
+  double value = 0.0;      ///< in the unit of the type's size
+  double spread_sd = 1.0;  ///< known before, around 0, in the same unit
+};
+
+/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes.
+struct ExtendedModel {
+  Model model;
+  std::vector<ConditionalTerm> conditional;
+  std::vector<SensorTerm> sensors;
+
+  [[nodiscard]] Eigen::Index free_count() const { return model.free_count() + static_cast<Eigen::Index>(sensors.size()); }
+  [[nodiscard]] Eigen::VectorXd theta() const;
+  void set_theta(const Eigen::VectorXd& theta);
+  /// Prior of all coordinates; the mean is absolute.
+  [[nodiscard]] Prior prior() const;
+  /// Bounds of a coordinate.
+  [[nodiscard]] double low(Eigen::Index coordinate) const;
+  [[nodiscard]] double high(Eigen::Index coordinate) const;
+  /// The network's parameters in that run.
+  [[nodiscard]] std::vector<double> values_in(const MeasuredRun& run) const;
+};
+
+bool has_condition(const MeasuredRun& run, const std::map<std::string, std::string>& condition);
+
+/// As linearise(), with the sensors as they are; columns by coordinate (per unit of θ). `start_C` may be shorter than the
+/// network has nodes: the rest begin at the ambient temperature.
+LinearisedRun linearise(const ExtendedModel& model, std::span<const double> start_C, const MeasuredRun& run);
+
+}  // namespace heatsoak

@@ -1,0 +1,73 @@
+// Predictions of a model that runs freely: errors and the power balance.
+#include <algorithm>
+#include <cmath>
+
+#include "identify/attribution/diagnosis.h"
+
+namespace heatsoak {
+namespace {
+
+/// A run that goes on within this time after another of the same recording continues it.
+constexpr double kContinues_s = 30.0;
+
+std::string recording_of(const MeasuredRun& run) {
+  const auto found = run.conditions.find("run");
+  return found == run.conditions.end() ? run.name : found->second;
+}
+
+std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
+  const Network& network = model.model.network;
+  std::vector<double> start = measured_start_C(network, run);
+  for (const MeasuredRun& before : before_it) {
+    const double gap_s = run.time_s.front() - before.time_s.back();
+    if (recording_of(before) != recording_of(run) || gap_s < -1e-9 || gap_s > kContinues_s) {
+      continue;
+    }
+    const LinearisedRun path = linearise(network, model.values_in(before), {}, {}, measured_start_C(network, before), before);
+    for (int node = 0; node < network.state_count(); ++node) {
+      const bool is_measured = run.sensor_at(network.node_name(node)) >= 0;
+      start[static_cast<std::size_t>(node)] = is_measured ? start[static_cast<std::size_t>(node)] : path.state_C(node, path.samples() - 1);
+    }
+  }
+  return start;
+}
+
+}  // namespace
+
+Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
+  const LinearisedRun path = linearise(model, start_C(model, run, before_it), run);
+  Eigen::MatrixXd predicted_C(run.samples(), static_cast<Eigen::Index>(run.sensors.size()));
+  for (Eigen::Index k = 0; k < run.samples(); ++k) {
+    for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
+      const double residual_K = path.residual_K[k * path.sensors() + sensor];
+      const int node = path.sensor_node[static_cast<std::size_t>(sensor)];
+      predicted_C(k, sensor) = std::isnan(residual_K) ? path.state_C(node, k) : run.measured_C(k, sensor) - residual_K;
+    }
+  }
+  return predicted_C;
+}
+
+Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
+  Errors errors;
+  std::map<std::string, double> counts;
+  for (const MeasuredRun& run : runs) {
+    const Eigen::MatrixXd predicted_C = open_loop_C(model, run, before_them);
+    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+      ErrorOfSignal& error = errors[run.sensors[sensor].signal];
+      for (Eigen::Index k = 0; k < run.samples(); ++k) {
+        const double off_K = run.measured_C(k, static_cast<Eigen::Index>(sensor)) - predicted_C(k, static_cast<Eigen::Index>(sensor));
+        if (!std::isnan(off_K)) {
+          error.rmse_K += off_K * off_K;
+          error.max_abs_K = std::max(error.max_abs_K, std::abs(off_K));
+          counts[run.sensors[sensor].signal] += 1.0;
+        }
+      }
+    }
+  }
+  for (auto& [signal, error] : errors) {
+    error.rmse_K = std::sqrt(error.rmse_K / std::max(1.0, counts[signal]));
+  }
+  return errors;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,247 @@
+#include "identify/attribution/refit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/diagnostic.h"
+#include "base/parallel.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kStartSd_K = 5.0;
+
+/// The step of all coordinates that decreases the squares most while none leaves its bounds: those that would are held there.
+LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
+  const Eigen::Index count = prior.mean.size();
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    moving.push_back(i);
+  }
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(count);
+  LinearFit fit;
+  while (true) {
+    const auto inner = static_cast<Eigen::Index>(moving.size());
+    Eigen::VectorXd held = step;
+    held(moving).setZero();
+    Eigen::MatrixXd tall(all.triangle.rows(), inner + 1);
+    tall << all.triangle(Eigen::all, moving), all.triangle.rightCols<1>() - all.triangle.leftCols(count) * held;
+    const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(tall);
+    const RunEvidence reduced{decomposition.matrixQR().topRows(inner + 1).triangularView<Eigen::Upper>(), all.log_determinant, all.count};
+    // The prior's mean for the moving ones, given the held ones: precisions here are diagonal blocks or nearly so.
+    fit = linear_fit({&reduced, 1}, prior.mean(moving), prior.precision(moving, moving));
+    step(moving) = fit.coefficients;
+    std::vector<Eigen::Index> inside;
+    for (const Eigen::Index i : moving) {
+      if (step[i] < low[i] - 1e-12 || step[i] > high[i] + 1e-12) {
+        step[i] = std::clamp(step[i], low[i], high[i]);
+      } else {
+        inside.push_back(i);
+      }
+    }
+    if (inside.size() == moving.size()) {
+      break;
+    }
+    moving = std::move(inside);
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
+  covariance(moving, moving) = fit.covariance;
+  fit.covariance = std::move(covariance);
+  fit.coefficients = std::move(step);
+  return fit;
+}
+
+class Fitter {
+ public:
+  Fitter(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C, const RefitOptions& options)
+      : runs_(runs), options_(options) {
+    now_.model = std::move(model);
+    now_.start_C = std::move(start_C);
+    now_.place = options.place;
+    const Eigen::Index count = now_.model.free_count();
+    low_.resize(count);
+    high_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      low_[i] = now_.model.low(i);
+      high_[i] = now_.model.high(i);
+    }
+  }
+
+  RefitResult run() {
+    linearise_all(now_);
+    EvidenceTable table = table_of(now_);
+    for (int step = 0; step < options_.most_steps; ++step) {
+      now_.place = table.best({}, now_.place).place;
+      const double misfit = table.misfit_now(now_.place);
+      const LinearFit fit = bounded_step(table);
+      const double promised = misfit - fit.misfit;
+      now_.evidence_nats = fit.log_evidence;
+      now_.covariance = fit.covariance;
+      now_.converged = promised < 0.02;
+      if (now_.converged && step > 0) {
+        break;
+      }
+      if (!take(fit, misfit, table)) {
+        break;
+      }
+    }
+    if (options_.averages_flux) {
+      average(table);
+    }
+    return std::move(now_);
+  }
+
+ private:
+  void linearise_all(RefitResult& at) const {
+    at.fitted.resize(runs_.size());
+    in_parallel(runs_.size(), 0, [&](std::size_t r) { at.fitted[r] = linearise(at.model, at.start_C[r], runs_[r]); });
+  }
+
+  [[nodiscard]] EvidenceTable table_of(const RefitResult& at) const {
+    return {design(at.fitted, runs_, options_.weights, {}), options_.grid, prior_here(at.model), {}};
+  }
+
+  [[nodiscard]] LinearFit bounded_step(EvidenceTable& table) const {
+    const Eigen::VectorXd theta = now_.model.theta();
+    return bounded_fit(table.all_runs(now_.place), table.prior_of({}), low_ - theta, high_ - theta);
+  }
+
+  /// Covariance over the places around the best: Σ w·(covariance + step·stepᵀ), w by evidence.
+  void average(EvidenceTable& table) {
+    const Eigen::VectorXd theta = now_.model.theta();
+    const ThetaPrior prior = table.prior_of({});
+    std::vector<FluxGrid::Place> places{now_.place};
+    for (std::size_t axis = 0; axis < now_.place.size(); ++axis) {
+      const auto count = static_cast<int>(axis + 1 < now_.place.size() ? options_.grid.rms_W.size() : options_.grid.time_scale_s.size());
+      const std::size_t known = places.size();
+      for (std::size_t i = 0; i < known; ++i) {
+        for (const int step : {-1, 1}) {
+          FluxGrid::Place place = places[i];
+          place[axis] += step;
+          if (place[axis] >= 0 && place[axis] < count) {
+            places.push_back(place);
+          }
+        }
+      }
+    }
+    std::vector<LinearFit> fits;
+    double best_nats = -std::numeric_limits<double>::infinity();
+    for (const FluxGrid::Place& place : places) {
+      fits.push_back(bounded_fit(table.all_runs(place), prior, low_ - theta, high_ - theta));
+      best_nats = std::max(best_nats, fits.back().log_evidence);
+    }
+    double total_weight = 0.0;
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(theta.size());
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+    for (const LinearFit& fit : fits) {
+      const double weight = std::exp(fit.log_evidence - best_nats);
+      total_weight += weight;
+      mean += weight * fit.coefficients;
+      square += weight * (fit.covariance + fit.coefficients * fit.coefficients.transpose());
+    }
+    mean /= total_weight;
+    now_.covariance = square / total_weight - mean * mean.transpose();
+  }
+
+  /// The longest of the halved steps that lowers the squares; false where none does.
+  bool take(const LinearFit& fit, double misfit, EvidenceTable& table) {
+    const Eigen::VectorXd theta = now_.model.theta();
+    const LatentFlux flux = options_.grid.at(now_.place);
+    std::vector<Eigen::VectorXd> start_step_K;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const DesignRun& design = table.runs()[r];
+      start_step_K.push_back(start_correction_K(*design.run, design.columns, fit.coefficients, Whitening(*design.run, flux, design.noise), design.start));
+    }
+    for (double share = 1.0; share > 0.05; share *= 0.5) {
+      RefitResult next;
+      next.model = now_.model;
+      next.model.set_theta((theta + share * fit.coefficients).cwiseMax(low_).cwiseMin(high_));
+      next.place = now_.place;
+      next.start_C = now_.start_C;
+      for (std::size_t r = 0; r < runs_.size(); ++r) {
+        next.start_C[r].resize(static_cast<std::size_t>(start_step_K[r].size()), runs_[r].at.front().ambient_C);
+        for (Eigen::Index i = 0; i < start_step_K[r].size(); ++i) {
+          next.start_C[r][static_cast<std::size_t>(i)] += share * start_step_K[r][i];
+        }
+      }
+      try {
+        linearise_all(next);
+      } catch (const Failure&) {
+        continue;
+      }
+      EvidenceTable next_table = table_of(next);
+      if (next_table.misfit_now(now_.place) < misfit + 1e-9) {
+        next.evidence_nats = now_.evidence_nats;
+        next.covariance = now_.covariance;
+        next.converged = now_.converged;
+        now_ = std::move(next);
+        table = table_of(now_);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const std::vector<MeasuredRun>& runs_;
+  const RefitOptions& options_;
+  RefitResult now_;
+  Eigen::VectorXd low_, high_;
+};
+
+}  // namespace
+
+RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                  const RefitOptions& options) {
+  return Fitter(std::move(model), runs, std::move(start_C), options).run();
+}
+
+std::vector<DesignRun> design(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
+                              const std::vector<Eigen::VectorXd>& weights, const std::vector<Columns>& extra) {
+  std::vector<DesignRun> all;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    DesignRun one;
+    one.run = &fitted[r];
+    for (const Sensor& sensor : runs[r].sensors) {
+      one.noise.noise_K.push_back(sensor.noise_K);
+    }
+    if (!weights.empty()) {
+      one.noise.weight = weights[r];
+    }
+    one.start = {Eigen::VectorXd::Zero(fitted[r].states), Eigen::VectorXd::Constant(fitted[r].states, kStartSd_K)};
+    const Eigen::Index inner = fitted[r].by_parameter.cols();
+    one.columns.resize(fitted[r].by_parameter.rows(), inner + (extra.empty() ? 0 : extra[r].cols()));
+    one.columns.leftCols(inner) = fitted[r].by_parameter;
+    if (!extra.empty()) {
+      one.columns.rightCols(extra[r].cols()) = extra[r];
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+ThetaPrior prior_here(const ExtendedModel& model) {
+  const Prior prior = model.prior();
+  return {prior.precision, prior.mean - model.theta()};
+}
+
+std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run) {
+  std::vector<double> start_C(static_cast<std::size_t>(network.state_count()), std::nan(""));
+  double sum_C = 0.0;
+  double count = 0.0;
+  for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+    const auto shown = run.measured_C.col(static_cast<Eigen::Index>(sensor));
+    const auto first = std::ranges::find_if(shown, [](double shown_C) { return !std::isnan(shown_C); });
+    if (first != shown.end()) {
+      start_C[static_cast<std::size_t>(network.find_node(run.sensors[sensor].node))] = *first;
+      sum_C += *first;
+      count += 1.0;
+    }
+  }
+  const double between_C = count > 0.0 ? sum_C / count : run.at.front().ambient_C;
+  std::ranges::replace_if(start_C, [](double known_C) { return std::isnan(known_C); }, between_C);
+  return start_C;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,330 @@
+#include "identify/attribution/selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "identify/attribution/terms.h"
+
+namespace heatsoak {
+namespace {
+
+double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
+  const auto nodes = static_cast<std::size_t>(model.network.node_count());
+  std::vector<double> heat_W(model.network.effects().size() * nodes);
+  double energy_J = 0.0;
+  double time_s = 0.0;
+  for (const MeasuredRun& run : runs) {
+    const std::vector<double> state_C = measured_start_C(model.network, run);
+    for (std::size_t k = 0; k < run.at.size(); ++k) {
+      const double duration_s = run.time_s[k + 1] - run.time_s[k];
+      model.network.balance_W(run.at[k], model.values, state_C, heat_W);
+      time_s += duration_s;
+      for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
+        const auto row = std::span(heat_W).subspan(e * nodes, nodes);
+        // What a flow takes out of one node it brings into another: only sources have a sum.
+        energy_J += duration_s * std::abs(std::accumulate(row.begin(), row.end(), 0.0));
+      }
+    }
+  }
+  return time_s > 0.0 ? energy_J / time_s : 0.0;
+}
+
+double longest_s(const std::vector<MeasuredRun>& runs) {
+  double longest = 0.0;
+  for (const MeasuredRun& run : runs) {
+    longest = std::max(longest, run.time_s.back() - run.time_s.front());
+  }
+  return longest;
+}
+
+/// Samples that no smooth heat explains are outliers; a run where these are many has a model problem instead and keeps them.
+std::vector<Eigen::VectorXd> weights_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid) {
+  constexpr double kOutlier_sd = 4.5;
+  std::vector<Eigen::VectorXd> weights(runs.size());
+  const std::vector<DesignRun> designs = design(fit.fitted, runs, {}, {});
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    Columns residual = fit.fitted[r].residual_K;
+    Whitening(fit.fitted[r], grid.at(fit.place), designs[r].noise).apply(residual);
+    weights[r].setOnes(residual.rows());
+    for (Eigen::Index i = 0; i < residual.rows(); ++i) {
+      weights[r][i] = std::abs(residual(i, 0)) > kOutlier_sd ? 0.0 : 1.0;
+    }
+    if (weights[r].sum() < 0.98 * static_cast<double>(weights[r].size())) {
+      weights[r].setOnes();
+    }
+  }
+  return weights;
+}
+
+class Selector {
+ public:
+  Selector(const SelectionInput& input, const SelectionRules& rules) : input_(input), rules_(rules) {}
+
+  Selection run() {
+    out_.mean_heat_W = mean_heat_W(input_.model.model, input_.runs);
+    options_.grid = flux_grid(std::max(0.05, out_.mean_heat_W), longest_s(input_.runs) / 2.0);
+    options_.place.assign(input_.model.model.flux_nodes.size(), 3);
+    options_.place.push_back(static_cast<int>(options_.grid.time_scale_s.size()) / 2);
+    std::vector<std::vector<double>> start_C;
+    for (const MeasuredRun& run : input_.runs) {
+      start_C.push_back(measured_start_C(input_.model.model.network, run));
+    }
+    out_.before = refit(input_.model, input_.runs, start_C, options_);
+    options_.weights = weights_of(out_.before, input_.runs, options_.grid);
+    options_.place = out_.before.place;
+    out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
+    out_.after = out_.before;
+    out_.grid = options_.grid;
+    out_.weights = options_.weights;
+    while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
+    }
+    check_backwards();
+    if (!out_.terms.empty()) {
+      options_.place = out_.after.place;
+      options_.averages_flux = true;
+      out_.after = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) const {
+    std::vector<CandidateColumn> rules;
+    for (const Candidate& each : candidates) {
+      rules.push_back({each.size_spec().range.low < 0.0, 2.0});
+    }
+    return rules;
+  }
+
+  /// True where a term was taken in.
+  bool one_round() {
+    const CandidateList list = candidates_for(out_.after.model.model.network, input_.runs);
+    out_.not_judged = list.not_judged;
+    std::vector<Candidate> candidates;
+    for (const Candidate& each : list.candidates) {
+      if (!has_sensor_term(each)) {
+        candidates.push_back(each);
+      }
+    }
+    std::vector<Columns> columns(input_.runs.size());
+    in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
+      columns[r] = candidate_columns(candidates, out_.after.model.model.network, out_.after.model.values_in(input_.runs[r]), out_.after.fitted[r],
+                                     input_.runs[r]);
+    });
+    EvidenceTable table(design(out_.after.fitted, input_.runs, options_.weights, columns), options_.grid, prior_here(out_.after.model),
+                        column_rules(candidates));
+    const SetScore base = table.best({}, out_.after.place);
+    Round round;
+    round.evidence_nats = base.evidence_nats;
+    round.ladder = judge(candidates, table, base);
+    if (input_.scans_drivers) {
+      out_.drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs, input_.free);
+      round.scan = scan_drivers({&out_.after.model.model, &input_.runs, &out_.after.fitted, &out_.drivers, std::max(0.05, out_.mean_heat_W)},
+                                table, base, 8);
+    }
+    const bool taken = take_best(round, candidates, table, base);
+    out_.rounds.push_back(std::move(round));
+    return taken;
+  }
+
+  [[nodiscard]] bool has_sensor_term(const Candidate& candidate) const {
+    return candidate.sensor_type && std::ranges::any_of(out_.after.model.sensors, [&](const SensorTerm& term) { return term.type == candidate.sensor_type; });
+  }
+
+  /// The best few candidates with their unknown heat re-maximised.
+  std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
+    const std::vector<double> gain_nats = table.single_gains_nats(base);
+    std::vector<int> order(candidates.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, [&](int a, int b) { return gain_nats[static_cast<std::size_t>(a)] > gain_nats[static_cast<std::size_t>(b)]; });
+    std::vector<JudgedCandidate> ladder;
+    for (const int j : order) {
+      if (static_cast<int>(ladder.size()) >= rules_.refitted + 2 || gain_nats[static_cast<std::size_t>(j)] <= 0.0) {
+        break;
+      }
+      const std::vector<int> set{j};
+      const SetScore best = table.best(set, base.place);
+      JudgedCandidate judged{candidates[static_cast<std::size_t>(j)], best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0};
+      judged.visibility_ratio = table.visibility_ratio(base, j);
+      judged.size_share = best.coefficient[table.free_count()];
+      const std::vector<double> left_out = table.left_out_gains_nats(base, best);
+      const std::vector<SizeInRun> sizes = table.size_by_run(best, j);
+      for (std::size_t r = 0; r < left_out.size(); ++r) {
+        const bool acts = sizes[r].sd_share > 0.0;
+        judged.left_out_gain_nats += left_out[r];
+        judged.runs_acting += acts ? 1 : 0;
+        judged.runs_gained += acts && left_out[r] > 0.0 ? 1 : 0;
+      }
+      ladder.push_back(std::move(judged));
+    }
+    std::ranges::stable_sort(ladder, [](const JudgedCandidate& a, const JudgedCandidate& b) { return a.gain_nats > b.gain_nats; });
+    return ladder;
+  }
+
+  /// Evidence that effects of the catalogue reach together, one after the other, at the present fit.
+  double catalogue_gain_nats(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) const {
+    std::vector<int> pool;
+    for (const JudgedCandidate& each : round.ladder) {
+      const auto found = std::ranges::find_if(candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
+      pool.push_back(static_cast<int>(found - candidates.begin()));
+    }
+    SetScore best = base;
+    for (int term = 0; term < rules_.most_terms; ++term) {
+      SetScore next = best;
+      for (const int j : pool) {
+        std::vector<int> set = best.candidates;
+        if (std::ranges::find(set, j) != set.end()) {
+          continue;
+        }
+        set.push_back(j);
+        SetScore with = table.best(set, best.place);
+        if (with.is_allowed && with.evidence_nats > next.evidence_nats) {
+          next = std::move(with);
+        }
+      }
+      if (next.evidence_nats < best.evidence_nats + rules_.least_gain_nats) {
+        break;
+      }
+      best = std::move(next);
+    }
+    return best.evidence_nats - base.evidence_nats;
+  }
+
+  bool take_best(Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
+    struct Tried {
+      const JudgedCandidate* judged;
+      RefitResult fit;
+      double gain_nats;
+    };
+    std::vector<Tried> tried;
+    const double least = rules_.least_gain_nats;
+    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.6 * round.ladder.front().gain_nats - 20.0);
+    for (JudgedCandidate& each : round.ladder) {
+      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats) {
+        continue;
+      }
+      const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
+      if (each.visibility_ratio < rules_.least_visibility_ratio || fails_elsewhere) {
+        if (each.gain_nats >= least) {
+          out_.refused.push_back(fmt::format("{}: {:.0f} nats, but {}", each.candidate.id, each.gain_nats,
+                                             each.visibility_ratio < rules_.least_visibility_ratio
+                                                 ? fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * each.visibility_ratio)
+                                                 : std::string("runs left out of the fit get no better")));
+        }
+        continue;
+      }
+      RefitResult fit = try_term(each.candidate, each.size_share);
+      each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
+      tried.push_back({&each, std::move(fit), each.gain_nats});
+    }
+    std::ranges::stable_sort(tried, [](const Tried& a, const Tried& b) { return a.gain_nats > b.gain_nats; });
+    const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
+    const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
+    if (best_scan_nats >= least && best_scan_nats > best_nats + rules_.outside_beyond_nats &&
+        best_scan_nats > catalogue_gain_nats(round, candidates, table, base) + rules_.outside_beyond_nats) {
+      if (take_curve(round)) {
+        return true;
+      }
+      out_.open_curve = round.scan.front();
+    }
+    if (best_nats < least) {
+      return false;
+    }
+    AcceptedTerm term;
+    term.candidate = tried.front().judged->candidate;
+    term.gain_nats = best_nats;
+    term.visibility_ratio = tried.front().judged->visibility_ratio;
+    for (const Tried& each : tried) {
+      if (each.judged->candidate.id != term.candidate->id && each.gain_nats > best_nats - rules_.ambiguous_within_nats &&
+          std::ranges::find(term.confusable_with, each.judged->candidate.id) == term.confusable_with.end()) {
+        term.confusable_with.push_back(each.judged->candidate.id);
+        term.experiments.emplace_back(each.judged->candidate.experiment());
+      }
+    }
+    term.effect_name = term.candidate->type ? std::string(tried.front().fit.model.model.network.effects().back().name) : std::string();
+    out_.after = std::move(tried.front().fit);
+    out_.terms.push_back(std::move(term));
+    return true;
+  }
+
+  RefitResult try_term(const Candidate& candidate, double size_share) const {
+    RefitOptions options = options_;
+    options.place = out_.after.place;
+    return refit(with_candidate(out_.after.model, candidate, size_share), input_.runs, out_.after.start_C, options);
+  }
+
+  /// The first curve that physics and the whole tool allow, refitted in the equations.
+  bool take_curve(const Round& round) {
+    for (const ScanResult& each : round.scan) {
+      if (each.gain_nats < round.scan.front().gain_nats - rules_.ambiguous_within_nats) {
+        break;
+      }
+      const std::optional<ExtendedModel> with = with_curve(out_.after.model, each, out_.drivers[static_cast<std::size_t>(each.term.driver)]);
+      if (!with) {
+        continue;
+      }
+      RefitOptions options = options_;
+      options.place = each.place;
+      RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options);
+      AcceptedTerm term;
+      term.curve = each;
+      term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
+      if (term.gain_nats < rules_.least_gain_nats) {
+        continue;
+      }
+      term.effect_name = std::string(fit.model.model.network.effects().back().name);
+      for (const ScanResult& other : round.scan) {
+        const std::string& name = out_.drivers[static_cast<std::size_t>(other.term.driver)].name;
+        if (&other != &each && other.gain_nats > each.gain_nats - rules_.ambiguous_within_nats) {
+          term.confusable_with.push_back(name);
+        }
+      }
+      out_.after = std::move(fit);
+      out_.terms.push_back(std::move(term));
+      return true;
+    }
+    return false;
+  }
+
+  /// Drops what the later terms have made superfluous.
+  void check_backwards() {
+    for (std::size_t i = out_.terms.size(); i-- > 0;) {
+      RefitOptions options = options_;
+      options.place = out_.after.place;
+      RefitResult without = refit(with_values_of(with_terms_except(i), out_.after.model), input_.runs, out_.before.start_C, options);
+      out_.terms[i].loss_without_nats = out_.after.evidence_nats - without.evidence_nats;
+      if (out_.terms[i].loss_without_nats < rules_.least_gain_nats) {
+        out_.after = std::move(without);
+        out_.terms.erase(out_.terms.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+  }
+
+  [[nodiscard]] ExtendedModel with_terms_except(std::size_t left_out) const {
+    ExtendedModel model = out_.before.model;
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      if (i == left_out) {
+        continue;
+      }
+      const AcceptedTerm& term = out_.terms[i];
+      model = term.candidate ? with_candidate(model, *term.candidate, 1.0)
+                             : *with_curve(model, *term.curve, out_.drivers[static_cast<std::size_t>(term.curve->term.driver)]);
+    }
+    return model;
+  }
+
+  const SelectionInput& input_;
+  const SelectionRules& rules_;
+  RefitOptions options_;
+  Selection out_;
+};
+
+}  // namespace
+
+Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
+
+}  // namespace heatsoak

@@ -1,0 +1,76 @@
+// Which effects a model lacks: forward selection by evidence with a nonlinear refit of the best, backward check, driver scan.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identify/attribution/driver_scan.h"
+#include "identify/attribution/refit.h"
+
+namespace heatsoak {
+
+struct SelectionInput {
+  ExtendedModel model;              ///< near its fit
+  std::vector<MeasuredRun> runs;    ///< at least one
+  std::vector<FreeSignals> free;    ///< per run, or empty
+  bool scans_drivers = true;
+};
+
+/// Thresholds in nats. An effect is named where the evidence for it is e^7 ≈ 1100 : 1 against the model without it.
+struct SelectionRules {
+  double least_gain_nats = 7.0;
+  double ambiguous_within_nats = 5.0;
+  double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue
+  double least_visibility_ratio = 0.02;
+  int refitted = 6;
+  int most_terms = 4;
+};
+
+/// One effect that explains something, as it was judged in its round.
+struct JudgedCandidate {
+  Candidate candidate;
+  double gain_nats = 0.0;
+  double visibility_ratio = 0.0;
+  double left_out_gain_nats = 0.0;  ///< on runs left out of the fit, all together
+  int runs_gained = 0;              ///< of the runs in which it acts at all
+  int runs_acting = 0;
+  double size_share = 0.0;          ///< in typical sizes
+};
+
+/// A round of the selection: what was in question and what came of it.
+struct Round {
+  std::vector<JudgedCandidate> ladder;  ///< best first
+  std::vector<ScanResult> scan;         ///< best first
+  double evidence_nats = 0.0;           ///< of the model at the beginning of the round
+};
+
+/// A term that the selection took in.
+struct AcceptedTerm {
+  std::optional<Candidate> candidate;  ///< of the catalogue, or else:
+  std::optional<ScanResult> curve;     ///< found by the driver scan
+  std::string effect_name;             ///< of the instance in the network; empty for sensors
+  double gain_nats = 0.0;              ///< when it was taken in
+  double loss_without_nats = 0.0;      ///< of the final model, were it dropped
+  double visibility_ratio = 0.0;
+  std::vector<std::string> confusable_with;  ///< ids within the ambiguity
+  std::vector<std::string> experiments;      ///< that would tell them apart
+};
+
+struct Selection {
+  RefitResult before;
+  RefitResult after;
+  std::vector<AcceptedTerm> terms;
+  std::vector<Round> rounds;
+  std::vector<Driver> drivers;  ///< that the scans looked at
+  std::vector<std::string> not_judged;
+  double mean_heat_W = 0.0;     ///< that the model knows of, over all runs
+  std::optional<ScanResult> open_curve;  ///< that nothing in the network can follow, or physics forbids as it stands
+  FluxGrid grid;
+  std::vector<Eigen::VectorXd> weights;  ///< of the samples, per run
+  std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
+};
+
+Selection select_effects(const SelectionInput& input, const SelectionRules& rules);
+
+}  // namespace heatsoak

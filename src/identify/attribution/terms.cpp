@@ -1,0 +1,164 @@
+#include "identify/attribution/terms.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace heatsoak {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// What a candidate's size may be before anything is measured: within some two typical sizes of nothing.
+constexpr double kSizeSpread_share = 2.0;
+/// A conductance that is not there, as a resistance.
+constexpr double kNoContact_K_per_W = 1e9;
+
+std::string unused_name(const Network& network, const std::string& wanted) {
+  std::string name = wanted;
+  const auto is_used = [&] { return std::ranges::any_of(network.effects(), [&](const EffectInPlace& e) { return e.name == name; }); };
+  for (int number = 2; is_used(); ++number) {
+    name = fmt::format("{}_{}", wanted, number);
+  }
+  return name;
+}
+
+/// Adds the effect; `values` of the model stay what they are.
+const EffectInPlace& add(Model& model, const std::string& name, const EffectType& type, const std::vector<std::string>& nodes,
+                         const std::vector<double>& parameters) {
+  model.network.add_effect(unused_name(model.network, name), type, nodes, parameters);
+  const std::vector<double> all = model.network.values();
+  model.values.insert(model.values.end(), all.begin() + static_cast<std::ptrdiff_t>(model.values.size()), all.end());
+  return model.network.effects().back();
+}
+
+/// Free around nothing.
+void set_free_around_zero(Model& model, int place, double scale, const Range& range, double spread) {
+  const double low = range.low > -kInfinity ? range.low : -kInfinity;
+  model.set_free({.place = place, .by_log = false, .scale = scale, .low = low, .high = range.high}, spread);
+  model.prior.mean[model.free_count() - 1] = 0.0;
+}
+
+/// A contact to `cold` in certain runs only.
+ExtendedModel with_contact(ExtendedModel model, const ScanResult& curve, const Driver& driver) {
+  const std::string cold = curve.term.other.empty() ? std::string(Network::kAmbient) : curve.term.other;
+  const double resistance_K_per_W = 1.0 / std::max(curve.curve[0], 1e-6);
+  const EffectInPlace& effect = add(model.model, fmt::format("contact_{}_{}", curve.term.node, cold), *find_effect("conduction"),
+                                    {curve.term.node, cold}, {resistance_K_per_W});
+  const int place = effect.parameter_index.front();
+  model.conditional.push_back({effect.name, place, kNoContact_K_per_W, driver.condition});
+  model.model.set_free({.place = place, .by_log = true, .scale = 1.0, .low = 1e-3, .high = kNoContact_K_per_W}, 3.0);
+  return model;
+}
+
+ExtendedModel with_source(ExtendedModel model, const ScanResult& curve, const Driver& driver) {
+  const EffectType& type = *find_effect("constant_heat");
+  const EffectInPlace& effect = add(model.model, fmt::format("heat_{}", curve.term.node), type, {curve.term.node}, {curve.curve[0]});
+  const int place = effect.parameter_index.front();
+  model.conditional.push_back({effect.name, place, 0.0, driver.condition});
+  set_free_around_zero(model.model, place, curve.usual, type.parameters.front().range, 1.0);
+  return model;
+}
+
+std::optional<double> choice_value(const ParameterSpec& spec, std::string_view name) {
+  const auto found = std::ranges::find(spec.choices, name, &Choice::name);
+  return found == spec.choices.end() ? std::nullopt : std::optional(static_cast<double>(found - spec.choices.begin()));
+}
+
+std::string_view form_of(Multiplier multiplier) {
+  switch (multiplier) {
+    case Multiplier::source:
+      return "heat";
+    case Multiplier::copper:
+      return "per_copper_loss";
+    case Multiplier::excess:
+    case Multiplier::difference:
+      return "per_difference";
+  }
+  return "";
+}
+
+/// The curve with what passivity asks: nowhere negative. The constant part of a conductance is the base network's own.
+/// Nothing where a source were negative beyond its uncertainty.
+std::optional<Eigen::VectorXd> passive(const ScanResult& curve) {
+  if (curve.term.multiplier == Multiplier::excess || curve.term.multiplier == Multiplier::difference) {
+    return curve.curve.array() - curve.curve.minCoeff();
+  }
+  for (Eigen::Index i = 0; i < curve.curve.size(); ++i) {
+    if (curve.curve[i] < -3.0 * std::sqrt(curve.covariance(i, i)) && -curve.curve[i] > 0.1 * curve.curve.maxCoeff()) {
+      return std::nullopt;
+    }
+  }
+  return curve.curve.cwiseMax(0.0);
+}
+
+std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Driver& driver) {
+  const EffectType& type = *find_effect("tabulated");
+  const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
+  const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
+  const std::optional<Eigen::VectorXd> values = passive(curve);
+  if (!choice || !form || !values) {
+    return std::nullopt;
+  }
+  const std::string ambient(Network::kAmbient);
+  const std::string cold = curve.term.other.empty() ? ambient : curve.term.other;
+  const std::string watched = driver.watched.empty() ? curve.term.node : driver.watched;
+  const std::string reference = driver.reference.empty() ? ambient : driver.reference;
+  std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
+  parameters.insert(parameters.end(), values->begin(), values->end());
+  ExtendedModel out = model;
+  const EffectInPlace effect =
+      add(out.model, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name), type, {curve.term.node, cold, watched, reference}, parameters);
+  for (Eigen::Index knot = 0; knot < values->size(); ++knot) {
+    set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
+  }
+  out.model.prior.precision.bottomRightCorner(values->size(), values->size()) = curve_precision(values->size());
+  return out;
+}
+
+}  // namespace
+
+ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share) {
+  ExtendedModel out = model;
+  if (candidate.sensor_type) {
+    out.sensors.push_back({candidate.sensor_type, size_share * candidate.typical_size(), kSizeSpread_share * candidate.typical_size()});
+    return out;
+  }
+  std::vector<double> parameters = candidate.parameters;
+  const Range& range = candidate.size_spec().range;
+  double& size = parameters[static_cast<std::size_t>(candidate.size_parameter())];
+  size = std::clamp(size_share * size, range.low, range.high);
+  const EffectInPlace effect = add(out.model, std::string(candidate.type->name), *candidate.type, candidate.nodes, parameters);
+  set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(), range,
+                       kSizeSpread_share);
+  return out;
+}
+
+std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver) {
+  if (driver.kind == DriverKind::run) {
+    // In certain runs only: more contact or more heat there, never less than nothing.
+    if (curve.curve[0] <= 0.0 || curve.term.multiplier == Multiplier::copper) {
+      return std::nullopt;
+    }
+    return curve.term.multiplier == Multiplier::source ? with_source(model, curve, driver) : with_contact(model, curve, driver);
+  }
+  return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver);
+}
+
+ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
+  const std::span<const NetworkParameter> names = model.model.network.parameters();
+  const std::span<const NetworkParameter> others = other.model.network.parameters();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = std::ranges::find(others, names[i].name, &NetworkParameter::name);
+    if (found != others.end()) {
+      model.model.values[i] = other.model.values[static_cast<std::size_t>(found - others.begin())];
+    }
+  }
+  for (SensorTerm& term : model.sensors) {
+    const auto found = std::ranges::find(other.sensors, term.type, &SensorTerm::type);
+    term.value = found != other.sensors.end() ? found->value : term.value;
+  }
+  return model;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,21 @@
+// A model with one term more, or one less.
+#pragma once
+
+#include <optional>
+
+#include "identify/attribution/driver_scan.h"
+#include "identify/attribution/extended_model.h"
+
+namespace heatsoak {
+
+/// The candidate in place with its size free, beginning at `size_share` typical sizes.
+ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share);
+
+/// The curve as an effect of the network, its values free: a table over the driver, or a conductance or source in certain runs only.
+/// Nothing where physics forbids it (a loss below zero) or no operating point has the driver.
+std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver);
+
+/// `model` with the values that parameters and sensors of the same name have in `other`.
+ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other);
+
+}  // namespace heatsoak

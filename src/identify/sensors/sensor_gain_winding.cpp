@@ -1,0 +1,23 @@
+#include "identify/sensor_effect.h"
+
+namespace heatsoak::sensors {
+
+SensorEffectType sensor_gain_winding() {
+  return {
+      .name = {},
+      .summary = "The sensor at the winding shows too much or too little of every rise above 25 °C.",
+      .equation = "shown = T_winding + ε·(T_winding − 25 °C)",
+      .reference = "JCGM 100 (GUM), systematic error of an instrument; wrong beta of a thermistor",
+      .signal = "winding_C",
+      .size = {"relative_error", "", Range::between(-0.5, 0.5), "of the rise above 25 °C"},
+      .typical_size = 0.03,
+      .typical = "0.01 to 0.05 for a thermistor with a nominal beta",
+      .look_alike = "A different thermal resistance between winding and stator: where heat comes from speed alone, only the gain remains.",
+      .experiment = "warm the motor by speed alone: winding and stator then differ by little, and a gain shows",
+      // 25 + 1.1·(75 − 25) = 80 °C; 25 °C stays
+      .example = {.size = 0.1, .time_s = {0.0, 10.0}, .true_C = {25.0, 75.0}, .shown_C = {25.0, 80.0}},
+      .law = sensor_gain_law(),
+  };
+}
+
+}  // namespace heatsoak::sensors

@@ -1,0 +1,137 @@
+#include "examination.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "drive_rows.h"
+#include "identify/measured_run.h"
+
+namespace heatsoak::truth {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// As reading a log does: a sample that stands out of its neighbours by six of their deviations is no measurement.
+void leave_out_outliers(std::vector<double>& values) {
+  const std::vector<double> all = values;
+  for (std::size_t k = 3; k + 3 < all.size(); ++k) {
+    std::vector<double> near;
+    for (std::size_t i = k - 3; i <= k + 3; ++i) {
+      if (!std::isnan(all[i])) {
+        near.push_back(all[i]);
+      }
+    }
+    if (near.size() < 5 || std::isnan(all[k])) {
+      continue;
+    }
+    std::ranges::sort(near);
+    const double middle = near[near.size() / 2];
+    std::vector<double> off;
+    for (const double value : near) {
+      off.push_back(std::abs(value - middle));
+    }
+    std::ranges::sort(off);
+    if (std::abs(all[k] - middle) > 6.0 * 1.4826 * std::max(0.1, off[off.size() / 2])) {
+      values[k] = kUnknown;
+    }
+  }
+}
+
+}  // namespace
+
+Runs record(const Case& sealed) {
+  Dice dice(sealed.seed * 7919 + 17);
+  Runs runs;
+  for (double* const value : {&runs.make.copper_capacity_J_per_K, &runs.make.iron_capacity_J_per_K, &runs.make.copper_to_iron_K_per_W,
+                              &runs.make.iron_to_air_K_per_W}) {
+    *value *= dice.uniform(0.8, 1.25);
+  }
+  double age_h = dice.uniform(0.0, 2.0);
+  for (int r = 0; r < sealed.training_runs + 2; ++r) {
+    const std::uint64_t seed = sealed.seed * 131 + static_cast<std::uint64_t>(r);
+    const bool on_bench = r == sealed.training_runs - 1;
+    const std::vector<RowInputs> rows = on_bench ? bench_rows(sealed.rows, seed) : robot_rows(sealed.rows, seed);
+    TrueRun run = run_motor(runs.make, sealed.missing, sealed.surprise, rows, age_h, seed ^ 0xabcdef, "run" + std::to_string(r + 1));
+    for (const std::size_t channel : {0, 1}) {
+      leave_out_outliers(run.log.channels[channel].values);
+    }
+    age_h += sealed.rows / 3600.0;
+    (r < sealed.training_runs ? runs.training : runs.unseen).push_back(std::move(run));
+  }
+  return runs;
+}
+
+ExtendedModel model_before(const MotorMake& make, std::uint64_t seed) {
+  Dice dice(seed * 104729 + 5);
+  const auto off = [&dice](double value) { return value * dice.uniform(0.8, 1.25); };
+  ExtendedModel out;
+  Network& network = out.model.network;
+  network.add_node("winding", off(make.copper_capacity_J_per_K));
+  network.add_node("stator", off(make.iron_capacity_J_per_K));
+  const auto add = [&](const char* name, const char* type, std::vector<std::string> nodes, std::vector<double> parameters) {
+    network.add_effect(name, *find_effect(type), nodes, parameters);
+  };
+  add("copper_loss", "copper_loss", {"winding"}, {make.resistance_25C_ohm, make.copper_per_K});
+  add("winding_stator", "conduction", {"winding", "stator"}, {off(make.copper_to_iron_K_per_W)});
+  add("stator_ambient", "conduction", {"stator", "ambient"}, {off(make.iron_to_air_K_per_W)});
+  network.limit_current_by("copper_loss");
+  out.model.values = network.values();
+  out.model.flux_nodes = {0, 1};
+  out.model.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+  for (std::size_t place = 0; place < network.parameters().size(); ++place) {
+    const std::string& name = network.parameters()[place].name;
+    if (name.find("heat_capacity") != std::string::npos || name.find("thermal_resistance") != std::string::npos) {
+      const double value = out.model.values[place];
+      out.model.set_free({static_cast<int>(place), true, 1.0, value / 20.0, value * 20.0}, 1.1);
+    }
+  }
+  return out;
+}
+
+MeasuredRun measured(const TrueRun& run) {
+  MeasuredRunOptions options;
+  options.needed = {Signal::current};
+  return measured_runs(run.log, options).runs.front();
+}
+
+double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs) {
+  double squares_K2 = 0.0;
+  double count = 0.0;
+  for (const TrueRun& run : runs) {
+    const MeasuredRun as_run = measured(run);
+    std::vector<double> start_C(static_cast<std::size_t>(model.model.network.state_count()), as_run.at.front().ambient_C);
+    start_C[0] = run.winding_C.front();
+    start_C[1] = run.stator_C.front();
+    const LinearisedRun path = linearise(model.model.network, model.values_in(as_run), {}, {}, start_C, as_run);
+    for (Eigen::Index k = 0; k < path.samples(); ++k) {
+      const auto row = static_cast<std::size_t>(std::llround(as_run.time_s[static_cast<std::size_t>(k)]));
+      squares_K2 += std::pow(path.state_C(0, k) - run.winding_C[row], 2) + std::pow(path.state_C(1, k) - run.stator_C[row], 2);
+      count += 2.0;
+    }
+  }
+  return std::sqrt(squares_K2 / count);
+}
+
+Answer examine(const Case& sealed, bool scans_drivers) {
+  const Runs runs = record(sealed);
+  SelectionInput input;
+  input.model = model_before(runs.make, sealed.seed);
+  input.scans_drivers = scans_drivers;
+  for (const TrueRun& run : runs.training) {
+    input.runs.push_back(measured(run));
+    input.free.push_back(free_signals(run.log, input.runs.back()));
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  Answer answer;
+  answer.selection = select_effects(input, {});
+  answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (const AcceptedTerm& term : answer.selection.terms) {
+    const std::string curve = term.curve ? term.curve->term.node + "~" + answer.selection.drivers[static_cast<std::size_t>(term.curve->term.driver)].name : "";
+    answer.named.push_back(term.candidate ? term.candidate->id : curve);
+  }
+  answer.before_K = rms_error_K(answer.selection.before.model, runs.unseen);
+  answer.after_K = rms_error_K(answer.selection.after.model, runs.unseen);
+  return answer;
+}
+
+}  // namespace heatsoak::truth

@@ -1,0 +1,161 @@
+#include "missing_effects.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace heatsoak::truth {
+namespace {
+
+constexpr double kFull_rad_per_s = 500.0;
+
+double full(const Moment& m) { return std::abs(m.in.speed_rad_per_s) / kFull_rad_per_s; }
+double smooth_step(double x) { return 0.5 * (1.0 + std::tanh(x)); }
+
+Missing heat(Heat one) {
+  Missing missing;
+  missing.heat.push_back(std::move(one));
+  return missing;
+}
+
+void into_iron(PerPart& q, double heat_W) {
+  q[tooth] += 0.5 * heat_W;
+  q[yoke] += 0.5 * heat_W;
+}
+void into_copper(PerPart& q, double heat_W) {
+  q[slot] += 0.66 * heat_W;
+  q[overhang_front] += 0.17 * heat_W;
+  q[overhang_back] += 0.17 * heat_W;
+}
+void to_air(const Moment& m, PerPart& q, double conductance_W_per_K) {
+  q[sleeve] -= 0.7 * conductance_W_per_K * (m.part_C[sleeve] - m.in.ambient_C);
+  q[shield_front] -= 0.15 * conductance_W_per_K * (m.part_C[shield_front] - m.in.ambient_C);
+  q[shield_back] -= 0.15 * conductance_W_per_K * (m.part_C[shield_back] - m.in.ambient_C);
+}
+/// Across the gap between copper and iron.
+void across(const Moment& m, PerPart& q, double conductance_W_per_K) {
+  const double flow_W = conductance_W_per_K * (m.copper_C - m.iron_C);
+  into_copper(q, -flow_W);
+  q[tooth] += 0.7 * flow_W;
+  q[yoke] += 0.3 * flow_W;
+}
+
+Missing third_node(double size) {
+  Missing missing = heat([size](const Moment& m, PerPart& q) {
+    const double in_W = 0.15 * size * (m.part_C[shield_front] - m.part_C[lump_a]);
+    q[shield_front] -= in_W;
+    q[lump_a] += in_W - 0.06 * size * (m.part_C[lump_a] - m.in.ambient_C);
+  });
+  missing.lump_capacity_J_per_K[lump_a] = 140.0;
+  return missing;
+}
+
+Missing enclosure(double size) {
+  // The air that the motor stands in gets warmer by what the motor gives off; the log has the room outside.
+  Missing missing = heat([size](const Moment& m, PerPart& q) {
+    const double air_rise_K = m.part_C[lump_b] - m.in.ambient_C;
+    const double taken_W = 0.18 * air_rise_K;
+    q[sleeve] += 0.6 * taken_W;
+    q[shield_front] += 0.2 * taken_W;
+    q[shield_back] += 0.2 * taken_W;
+    q[lump_b] += 0.18 * (m.iron_C - m.in.ambient_C) - air_rise_K / (1.6 * size);
+  });
+  missing.lump_capacity_J_per_K[lump_b] = 260.0 / size;
+  return missing;
+}
+
+Missing sensor(SensorFault fault) {
+  Missing missing;
+  missing.sensors = fault;
+  return missing;
+}
+
+const std::vector<Subject> kSubjects{
+    {"iron_loss_hysteresis", Visibility::visible, {"bearing_friction", "no_load_loss"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 2.0 * s * std::pow(full(m), 1.04)); }); }},
+    {"iron_loss_eddy", Visibility::visible, {"bearing_friction"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 2.0 * s * std::pow(full(m), 1.96)); }); }},
+    {"windage", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[sleeve] += 0.8 * s * std::pow(full(m), 2.9); }); }},
+    {"ac_copper_loss", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.35 * s * m.copper_loss_W * std::pow(full(m), 1.95)); }); }},
+    {"pwm_ripple_loss", Visibility::visible, {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         const double d = m.in.duty_ratio;
+         into_copper(q, 1.0 * s * 4.0 * d * (1.0 - d) * m.in.bus_V * m.in.bus_V / 576.0);
+       });
+     }},
+    {"driver_heat", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_back] += s * 1.5 * std::abs(m.in.current_A) / 8.0; }); }, 0.9375},
+    {"connection_resistance", Visibility::visible, {"driver_heat"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_back] += s * 0.02 * m.in.current_A * m.in.current_A; }); }, 0.02},
+    {"speed_dependent_convection", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.1 * s * std::pow(full(m), 0.75)); }); }},
+    {"vehicle_airflow", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.08 * s * std::pow(m.in.vehicle_speed_m_per_s / 3.0, 0.58)); }); }},
+    {"third_node", Visibility::visible, {}, third_node},
+    {"neighbour_coupling", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_front] += 0.05 * s * (m.in.neighbour_C - m.part_C[shield_front]); }); }, 0.05},
+    {"enclosure_warm_up", Visibility::visible, {"third_node"}, enclosure},
+    {"contact_temperature_dependence", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, 0.0040 * s * (0.5 * (m.copper_C + m.iron_C) - 25.0) / 1.6); }); }},
+    {"air_gap_stirring", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, 0.16 * s * full(m)); }); }, 0.16},
+    {"winding_through_flow", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, -0.05 * s * full(m) * (m.copper_C - m.in.ambient_C)); }); }, 0.05},
+    {"stall_phase_imbalance", Visibility::visible, {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.4 * s * m.copper_loss_W * (std::abs(m.in.speed_rad_per_s) < 6.0 ? 1.0 : 0.0)); });
+     }},
+    {"load_friction", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_front] += 0.05 * s * 0.034 * std::abs(m.in.current_A * m.in.speed_rad_per_s); }); }},
+    {"armature_iron_loss", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 1.5 * s * std::abs(m.in.current_A) / 5.0 * std::pow(full(m), 1.95)); }); }},
+    {"saturation", Visibility::visible, {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.35 * s * m.copper_loss_W * smooth_step((std::abs(m.in.current_A) - 5.0) / 0.3)); }); }},
+    {"constant_heat", Visibility::visible, {"sensor_offset_stator"},
+     [](double s) { return heat([s](const Moment&, PerPart& q) { into_iron(q, 1.0 * s); }); }, 1.0},
+    {"sensor_offset_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_offset_K = 1.2 * s}); }, 1.2},
+    {"sensor_offset_stator", Visibility::visible, {"constant_heat"}, [](double s) { return sensor({.stator_offset_K = 1.2 * s}); }, 1.2},
+    {"sensor_lag_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_lag_s = 6.0 * s}); }, 6.0},
+    {"sensor_lag_stator", Visibility::visible, {}, [](double s) { return sensor({.stator_lag_s = 10.0 * s}); }, 10.0},
+    {"sensor_gain_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_gain_ratio = 1.0 + 0.05 * s}); }, 0.05},
+    // h ∝ ΔT^0.25 against a fitted constant: 0.6 % of the response is left.
+    {"natural_convection", Visibility::faint, {"radiation"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.03 * s * std::pow(std::abs(m.iron_C - m.in.ambient_C), 0.27)); }); }},
+    // 4 ε σ A T³ against a fitted constant: 0.1 % is left.
+    {"radiation", Visibility::faint, {"natural_convection"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         const auto fourth = [](double temperature_C) { return std::pow(temperature_C + 273.15, 4); };
+         q[sleeve] -= s * 0.8 * 5.67e-8 * 0.009 * (fourth(m.part_C[sleeve]) - fourth(m.in.ambient_C));
+       });
+     }},
+};
+
+const std::vector<Outsider> kOutsiders{
+    {"a resonance at 300 rad/s", "stator", {"speed", "back_emf", "duty"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         const double off = (std::abs(m.in.speed_rad_per_s) - 300.0) / 40.0;
+         into_iron(q, 3.0 * s * std::exp(-0.5 * off * off));
+       });
+     }},
+    {"drag in one direction only", "stator", {"signed_speed"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, m.in.speed_rad_per_s < 0 ? 3.0 * s * full(m) : 0.0); }); }},
+    {"extra copper loss under braking", "winding", {"signed_power", "power"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, m.in.current_A * m.in.speed_rad_per_s < -5.0 ? 4.0 * s : 0.0); }); }},
+    {"a fan that starts at 45 °C of the stator", "stator", {"stator_C", "stator_excess"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.15 * s * smooth_step((m.part_C[sleeve] - 45.0) / 1.0)); }); }},
+    {"heat that stops above 250 rad/s", "stator", {"speed", "duty"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 2.5 * s * smooth_step((250.0 - std::abs(m.in.speed_rad_per_s)) / 20.0)); }); }},
+    {"a fan that runs in the middle of a run", "stator", {"time"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, m.time_s > 700.0 && m.time_s < 1200.0 ? 0.12 * s : 0.0); }); }},
+};
+
+}  // namespace
+
+const std::vector<Subject>& subjects() { return kSubjects; }
+const std::vector<Outsider>& outsiders() { return kOutsiders; }
+
+}  // namespace heatsoak::truth

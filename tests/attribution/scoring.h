@@ -1,0 +1,28 @@
+// Marks an answer against the sealed label.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "examination.h"
+
+namespace heatsoak::truth {
+
+struct Share {
+  int right = 0;
+  int of = 0;
+  void add(bool is_right) { right += is_right ? 1 : 0, ++of; }
+};
+/// "93.3 % (28/30; 95 %: 78.7 to 98.2)", Wilson's interval.
+std::string in_words(const Share& share);
+
+/// One of the names is the subject's or a name for the same heat.
+bool names(const std::vector<std::string>& named, const Subject& subject);
+/// The first name is right, and there is no other.
+bool names_only(const std::vector<std::string>& named, const std::vector<const Subject*>& subjects);
+/// A curve at the right node over one of the right drivers.
+bool names_outsider(const Answer& answer, const Outsider& outsider);
+/// "[iron_loss_eddy 41 nats or windage] …" and the first of the ladder and the scan.
+std::string account(const Answer& answer);
+
+}  // namespace heatsoak::truth

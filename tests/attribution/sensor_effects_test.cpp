@@ -1,0 +1,100 @@
+// Faults of sensors: the numbers beside each equation, and the derivatives that fits take from them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "identify/sensor_effect.h"
+
+namespace heatsoak {
+namespace {
+
+Eigen::VectorXd vector(const std::vector<double>& values) { return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())); }
+
+class SensorEffects : public testing::TestWithParam<std::string_view> {};
+
+TEST_P(SensorEffects, WorkedExampleComesOut) {
+  const SensorEffectType& type = *find_sensor_effect(GetParam());
+  Eigen::VectorXd shown = vector(type.example.true_C);
+  type.law.apply(type.example.time_s, type.example.size, false, shown);
+  for (Eigen::Index i = 0; i < shown.size(); ++i) {
+    EXPECT_NEAR(shown[i], type.example.shown_C[static_cast<std::size_t>(i)], 1e-9);
+  }
+  EXPECT_TRUE(type.size.range.contains(type.example.size));
+  EXPECT_TRUE(type.size.range.contains(0.0)) << "a size of 0 is a faultless sensor";
+}
+
+std::vector<double> seconds() {
+  std::vector<double> time_s;
+  for (int k = 0; k < 200; ++k) {
+    time_s.push_back(k + 0.3 * std::sin(k));
+  }
+  return time_s;
+}
+
+TEST_P(SensorEffects, NothingChangesAtSizeZero) {
+  const SensorEffectType& type = *find_sensor_effect(GetParam());
+  const std::vector<double> time_s = seconds();
+  const Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t); });
+  Eigen::VectorXd shown = true_C;
+  type.law.apply(time_s, 0.0, false, shown);
+  EXPECT_LT((shown - true_C).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_P(SensorEffects, DerivativeBySizeIsTheReadingsOwn) {
+  const SensorEffectType& type = *find_sensor_effect(GetParam());
+  const std::vector<double> time_s = seconds();
+  const Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t) + 0.02 * t; });
+  const double size = type.typical_size;
+  const double h = 1e-5 * size;
+  Eigen::VectorXd above = true_C, below = true_C;
+  type.law.apply(time_s, size + h, false, above);
+  type.law.apply(time_s, size - h, false, below);
+  const Eigen::VectorXd expected = (above - below) / (2.0 * h);
+  EXPECT_LT((type.law.by_size(time_s, size, true_C) - expected).cwiseAbs().maxCoeff(), 1e-6 * (1.0 + expected.cwiseAbs().maxCoeff()));
+}
+
+TEST_P(SensorEffects, ReadingIsLinearInTheTemperature) {
+  const SensorEffectType& type = *find_sensor_effect(GetParam());
+  const std::vector<double> time_s = seconds();
+  const Eigen::VectorXd one_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t); });
+  const Eigen::VectorXd change_K = vector(time_s).array().unaryExpr([](double t) { return std::cos(0.2 * t); });
+  Eigen::VectorXd shown = one_C, moved = one_C + change_K, shown_change = change_K;
+  type.law.apply(time_s, type.typical_size, false, shown);
+  type.law.apply(time_s, type.typical_size, false, moved);
+  type.law.apply(time_s, type.typical_size, true, shown_change);
+  EXPECT_LT((moved - shown - shown_change).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+std::vector<std::string_view> all_names() {
+  std::vector<std::string_view> names;
+  for (const SensorEffectType& type : all_sensor_effects()) {
+    names.push_back(type.name);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SensorEffects, testing::ValuesIn(all_names()), [](const auto& info) { return std::string(info.param); });
+
+/// The lag's reading against a fine Euler integration of its differential equation.
+TEST(SensorLag, FollowsItsDifferentialEquation) {
+  const SensorEffectType& type = *find_sensor_effect("sensor_lag_winding");
+  std::vector<double> time_s, true_C;
+  for (int k = 0; k <= 60; ++k) {
+    time_s.push_back(k);
+    true_C.push_back(20.0 + (k > 10 ? 0.8 * (k - 10) : 0.0));
+  }
+  Eigen::VectorXd shown = vector(true_C);
+  type.law.apply(time_s, 7.0, false, shown);
+  double reading_C = 20.0;
+  constexpr int kSteps = 20000;
+  for (int k = 0; k < 60; ++k) {
+    for (int i = 0; i < kSteps; ++i) {
+      const double now_C = true_C[static_cast<std::size_t>(k)] + (true_C[static_cast<std::size_t>(k) + 1] - true_C[static_cast<std::size_t>(k)]) * (i + 0.5) / kSteps;
+      reading_C += (now_C - reading_C) / 7.0 / kSteps;
+    }
+    EXPECT_NEAR(shown[k + 1], reading_C, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
