@@ -159,7 +159,61 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   }
 }
 
+/// In the order in which they are drawn.
+std::vector<std::string> figure_keys(const Motor& motor) {
+  std::vector<std::string> keys;
+  for (const MotorFigureSpec& each : kSpecs) {
+    if (motor.figures.contains(each.spec.key)) {
+      keys.emplace_back(each.spec.key);
+    }
+  }
+  for (const MotorEffect& effect : motor.effects) {
+    for (const ParameterSpec& spec : effect.type->parameters) {
+      keys.push_back(fmt::format("effects.{}.{}", effect.name, spec.key));
+    }
+  }
+  return keys;
+}
+
+/// Where the numbers of a draw go, in the order of figure_keys().
+std::vector<std::pair<const Figure*, double*>> places(const Motor& motor, MotorSample& sample) {
+  std::vector<std::pair<const Figure*, double*>> all;
+  for (const MotorFigureSpec& each : kSpecs) {
+    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+      all.emplace_back(&found->second, &(sample.values.*each.value));
+    }
+  }
+  for (std::size_t e = 0; e < motor.effects.size(); ++e) {
+    for (std::size_t p = 0; p < motor.effects[e].parameters.size(); ++p) {
+      all.emplace_back(&motor.effects[e].parameters[p], &sample.effect_parameters[e][p]);
+    }
+  }
+  return all;
+}
+
 }  // namespace
+
+Figure* find_figure(Motor& motor, std::string_view key) {
+  if (const auto found = motor.figures.find(key); found != motor.figures.end()) {
+    return &found->second;
+  }
+  for (MotorEffect& effect : motor.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (key == fmt::format("effects.{}.{}", effect.name, effect.type->parameters[i].key)) {
+        return &effect.parameters[i];
+      }
+    }
+  }
+  return nullptr;
+}
+
+void refresh_values(Motor& motor) {
+  for (const MotorFigureSpec& each : kSpecs) {
+    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+      motor.nominal.*each.value = found->second.value;
+    }
+  }
+}
 
 std::span<const MotorFigureSpec> motor_figure_specs() { return kSpecs; }
 bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
@@ -175,7 +229,7 @@ Motor read_motor(const std::filesystem::path& path) {
   motor.name = top.text("name", Need::required).value_or("");
   motor.part_number = top.text("part_number", Need::optional).value_or("");
   constexpr std::array<std::string_view, 2> kTypes{"brushless", "brushed"};
-  top.choice("type", kTypes, Need::required);
+  motor.type = top.choice("type", kTypes, Need::required).value_or("");
   motor.notes = top.texts("notes", Need::optional);
   if (std::optional<Reader> sources = top.table("sources", Need::required)) {
     for (const std::string& id : sources->keys()) {
@@ -193,6 +247,9 @@ Motor read_motor(const std::filesystem::path& path) {
   motor.nominal.temperature_coefficient_per_K = kCopper_per_K;
   read_figures(top, motor, resistance_factor, torque_factor);
   motor.effects = read_effects(top);
+  if (std::optional<Reader> table = top.table("fit", Need::optional)) {
+    motor.fit = read_fit(*table, figure_keys(motor));
+  }
   top.finish();
   check_sources(motor, diagnostics);
   diagnostics.throw_if_any();
@@ -212,17 +269,28 @@ MotorSample nominal_sample(const Motor& motor) {
 
 MotorSample draw_sample(const Motor& motor, Random& random) {
   MotorSample sample = nominal_sample(motor);
-  for (const MotorFigureSpec& each : kSpecs) {
-    const auto found = motor.figures.find(each.spec.key);
-    if (found != motor.figures.end() && found->second.spread) {
-      sample.values.*each.value = found->second.quantile(random.uniform());
+  const std::vector<std::pair<const Figure*, double*>> all = places(motor, sample);
+  std::vector<double> uniforms(all.size(), 0.5);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].first->spread) {
+      uniforms[i] = random.uniform();
     }
   }
-  for (std::size_t e = 0; e < motor.effects.size(); ++e) {
-    for (std::size_t p = 0; p < motor.effects[e].parameters.size(); ++p) {
-      if (motor.effects[e].parameters[p].spread) {
-        sample.effect_parameters[e][p] = motor.effects[e].parameters[p].quantile(random.uniform());
-      }
+  if (motor.fit) {
+    const std::vector<std::string> keys = figure_keys(motor);
+    const auto place = [&](const std::string& key) { return static_cast<std::size_t>(std::ranges::find(keys, key) - keys.begin()); };
+    std::vector<double> fitted;
+    for (const std::string& key : motor.fit->figures) {
+      fitted.push_back(uniforms[place(key)]);
+    }
+    correlate(*motor.fit, fitted);
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      uniforms[place(motor.fit->figures[i])] = fitted[i];
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].first->spread) {
+      *all[i].second = all[i].first->quantile(uniforms[i]);
     }
   }
   return sample;

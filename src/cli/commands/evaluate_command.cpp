@@ -24,18 +24,24 @@ namespace {
 struct Options {
   std::string robot;
   std::string duty;
-  std::vector<std::string> motors{"all"};
+  std::vector<std::string> motors;
+  std::string model;
   std::string plot;
   EvaluateOptions evaluate;
 };
 
-std::vector<Motor> read_motors(const std::vector<std::string>& names, const DataFolders& folders) {
-  const bool all = names.size() == 1 && names.front() == "all";
+/// A model takes the place of the motor that its fit began with, or stands alone where no motors are named.
+std::vector<Motor> read_motors(const std::vector<std::string>& names, const std::string& model, const DataFolders& folders) {
+  const bool all = (names.empty() && model.empty()) || (names.size() == 1 && names.front() == "all");
   std::vector<Motor> motors;
+  if (!model.empty()) {
+    motors.push_back(read_motor(model));
+  }
   std::set<std::filesystem::path> taken;
   for (const std::string& name : all ? ids_in(folders.motors) : names) {
     const std::filesystem::path file = all ? folders.motors / (name + ".toml") : file_of(folders.motors, "motor", name);
-    if (taken.insert(file).second) {
+    const bool is_replaced = !model.empty() && motors.front().fit && motors.front().fit->motor == file.stem();
+    if (!is_replaced && taken.insert(file).second) {
       motors.push_back(read_motor(file));
     }
   }
@@ -161,7 +167,7 @@ ExitCode run(Options& options, Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
-  const std::vector<Motor> motors = read_motors(options.motors, folders);
+  const std::vector<Motor> motors = read_motors(options.motors, options.model, folders);
   options.evaluate.with_curves = !options.plot.empty();
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
   const std::vector<std::vector<WheelDemand>> draws =
@@ -210,6 +216,9 @@ Command evaluate_command() {
             ->delimiter(',')
             ->type_name("M,M")
             ->default_str("all");
+        app.add_option("--model", options->model,
+                       "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
+            ->type_name("FILE.toml");
         app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
             ->check(whole_number(1'000'000))
             ->capture_default_str();

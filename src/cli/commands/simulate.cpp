@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -19,6 +20,7 @@ namespace {
 
 struct Options {
   std::string motor;
+  std::string model;
   std::string robot;
   std::string duty;
   std::string out;
@@ -102,7 +104,11 @@ ExitCode run(const Options& options, Session& session) {
   }
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
-  const Motor motor = read_motor(file_of(folders.motors, "motor", options.motor));
+  if (options.motor.empty() == options.model.empty()) {
+    throw Failure(ExitCode::bad_input, "expected one of --motor M and --model FILE");
+  }
+  const Motor motor =
+      read_motor(options.model.empty() ? file_of(folders.motors, "motor", options.motor) : std::filesystem::path(options.model));
   if (options.jerk_sweep) {
     if (!options.out.empty()) {
       throw Failure(ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
@@ -136,7 +142,9 @@ Command simulate() {
               "  heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --jerk-sweep --plot sweep.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
-            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
+            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
+            app.add_option("--model", options->model, "a calibrated motor (`heatsoak calibrate --out FILE`) in its place")
+                ->type_name("FILE.toml");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file; a match is driven in a closed loop")
                 ->type_name("D");
