@@ -134,20 +134,20 @@ const std::vector<Subject> kSubjects{
 };
 
 const std::vector<Outsider> kOutsiders{
-    {"a resonance at 300 rad/s", "stator", {"speed", "back_emf", "duty"},
+    {"a resonance at 300 rad/s", "stator", {"speed", "modulation"},
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) {
          const double off = (std::abs(m.in.speed_rad_per_s) - 300.0) / 40.0;
          into_iron(q, 3.0 * s * std::exp(-0.5 * off * off));
        });
      }},
-    {"drag in one direction only", "stator", {"signed_speed"},
+    {"drag in one direction only", "stator", {"velocity"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, m.in.speed_rad_per_s < 0 ? 3.0 * s * full(m) : 0.0); }); }},
-    {"extra copper loss under braking", "winding", {"signed_power", "power"},
+    {"extra copper loss under braking", "winding", {"shaft_power"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, m.in.current_A * m.in.speed_rad_per_s < -5.0 ? 4.0 * s : 0.0); }); }},
-    {"a fan that starts at 45 °C of the stator", "stator", {"stator_C", "stator_excess"},
+    {"a fan that starts at 45 °C of the stator", "stator", {"stator_temperature", "stator_excess"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.15 * s * smooth_step((m.part_C[sleeve] - 45.0) / 1.0)); }); }},
-    {"heat that stops above 250 rad/s", "stator", {"speed", "duty"},
+    {"heat that stops above 250 rad/s", "stator", {"speed", "modulation"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 2.5 * s * smooth_step((250.0 - std::abs(m.in.speed_rad_per_s)) / 20.0)); }); }},
     {"a fan that runs in the middle of a run", "stator", {"time"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, m.time_s > 700.0 && m.time_s < 1200.0 ? 0.12 * s : 0.0); }); }},

@@ -8,7 +8,7 @@
 namespace heatsoak::truth {
 namespace {
 
-constexpr int kStepsPerRow = 20;  // 0.05 s: the fastest pair of parts has a time constant of 0.08 s
+constexpr int kStepsPerRow = 20;  // 0.05 s: the fastest parts settle within 0.03 s, half of what the method bears
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Shares of copper and iron: parts of one kind sit close together, so that two nodes can stand for all eight to 0.1 K.
@@ -18,8 +18,8 @@ struct Bridge {
   Part from, to;
   double conductance_W_per_K;
 };
-constexpr std::array kMetal{Bridge{slot, overhang_front, 30.0}, Bridge{slot, overhang_back, 30.0},  Bridge{tooth, yoke, 60.0},
-                            Bridge{yoke, sleeve, 45.0},         Bridge{sleeve, shield_front, 12.0}, Bridge{sleeve, shield_back, 12.0}};
+constexpr std::array kMetal{Bridge{slot, overhang_front, 60.0}, Bridge{slot, overhang_back, 60.0},  Bridge{tooth, yoke, 220.0},
+                            Bridge{yoke, sleeve, 220.0},        Bridge{sleeve, shield_front, 60.0}, Bridge{sleeve, shield_back, 60.0}};
 
 class Machine {
  public:
@@ -151,6 +151,7 @@ TrueRun run_motor(const MotorMake& make, const Missing& missing, const Surprise&
   const std::size_t winding_at = channel("winding_C"), stator_at = channel("stator_C"), ambient_at = channel("ambient_C");
   const std::size_t current_at = channel("current_A"), speed_at = channel("speed_rad_per_s"), bus_at = channel("bus_V");
   const std::size_t duty_at = channel("duty_ratio"), vehicle_at = channel("vehicle_speed_m_per_s"), neighbour_at = channel("neighbour_C");
+  const std::size_t torque_at = channel("torque_Nm");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const RowInputs& in = rows[k];
     const auto time_s = static_cast<double>(k);
@@ -168,6 +169,7 @@ TrueRun run_motor(const MotorMake& make, const Missing& missing, const Surprise&
     put(duty_at, in.duty_ratio);
     put(vehicle_at, in.vehicle_speed_m_per_s);
     put(neighbour_at, in.neighbour_C);
+    put(torque_at, 0.034 * in.current_A);
     machine.advance(in, T, time_s, age_h + time_s / 3600.0, copper_W, iron_W);
     copper_W = kept * copper_W + fresh_W * dice.normal();
     iron_W = kept * iron_W + fresh_W * dice.normal();

@@ -122,23 +122,38 @@ Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
 /// All of them in one network at a size of 0: they do not change what it does, but it has their derivatives.
 struct Extended {
   Network network;
-  std::vector<int> sizes;
+  std::vector<int> wanted;       ///< sizes; where an effect brings nodes of its own, their capacities behind the size
+  std::vector<double> slope;     ///< what each of them counts in its candidate's column
+  std::vector<std::size_t> own;  ///< which candidate it belongs to
   std::vector<double> start_C;
 };
 
-void extend(Extended& extended, const Candidate& candidate, double ambient_C) {
+/// Where a body of its own comes with the effect, its capacity goes with the size: a body of a given time constant that takes hardly
+/// any heat. With the capacity held it would never warm at a size near 0 and look like a wall at ambient temperature.
+constexpr double kHardly_share = 1e-3;
+
+void extend(Extended& extended, const Candidate& candidate, std::size_t own, double ambient_C) {
   std::vector<double> parameters = candidate.parameters;
   const auto size = static_cast<std::size_t>(candidate.size_parameter());
-  parameters[size] = 0.0;
+  std::vector<std::size_t> scaled{size};
   std::vector<std::string> nodes = candidate.nodes;
   for (std::size_t role = 0; role < nodes.size(); ++role) {
-    if (candidate.type->nodes[role].own_capacity >= 0) {
-      nodes[role] += fmt::format(" {}", extended.sizes.size());
+    if (const int capacity = candidate.type->nodes[role].own_capacity; capacity >= 0) {
+      nodes[role] += fmt::format(" {}", own);
       extended.start_C.push_back(ambient_C);
+      scaled.push_back(static_cast<std::size_t>(capacity));
     }
   }
-  extended.network.add_effect(fmt::format("candidate {}", extended.sizes.size()), *candidate.type, nodes, parameters);
-  extended.sizes.push_back(extended.network.effects().back().parameter_index[size]);
+  const double share = scaled.size() > 1 ? kHardly_share : 0.0;
+  for (const std::size_t place : scaled) {
+    parameters[place] *= share;
+  }
+  extended.network.add_effect(fmt::format("candidate {}", own), *candidate.type, nodes, parameters);
+  for (const std::size_t place : scaled) {
+    extended.wanted.push_back(extended.network.effects().back().parameter_index[place]);
+    extended.slope.push_back(candidate.parameters[place]);
+    extended.own.push_back(own);
+  }
 }
 
 }  // namespace
@@ -166,31 +181,31 @@ CandidateList candidates_for(const Network& network, const std::vector<MeasuredR
 
 Columns candidate_columns(const std::vector<Candidate>& candidates, const Network& network, std::span<const double> parameters,
                           const LinearisedRun& fitted, const MeasuredRun& run) {
-  Extended extended{network, {}, {}};
+  Extended extended{network, {}, {}, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
   extended.start_C.assign(start_C.begin(), start_C.end());
-  for (const Candidate& candidate : candidates) {
-    if (candidate.type) {
-      extend(extended, candidate, run.at.front().ambient_C);
+  for (std::size_t j = 0; j < candidates.size(); ++j) {
+    if (candidates[j].type) {
+      extend(extended, candidates[j], j, run.at.front().ambient_C);
     }
   }
   std::vector<double> values = extended.network.values();
   std::ranges::copy(parameters, values.begin());
-  const LinearisedRun wide = linearise(extended.network, values, extended.sizes, {}, extended.start_C, run);
+  const LinearisedRun wide = linearise(extended.network, values, extended.wanted, {}, extended.start_C, run);
   Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
-  Eigen::Index of_network = 0;
+  for (std::size_t i = 0; i < extended.wanted.size(); ++i) {
+    columns.col(static_cast<Eigen::Index>(extended.own[i])) += extended.slope[i] * wide.by_parameter.col(static_cast<Eigen::Index>(i));
+  }
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
-    const auto column = static_cast<Eigen::Index>(j);
     if (candidate.type) {
-      columns.col(column) = candidate.typical_size() * wide.by_parameter.col(of_network++);
       continue;
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
     const Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
     const Eigen::VectorXd by_size = candidate.sensor_type->law.by_size(run.time_s, 0.0, true_C);
     for (Eigen::Index k = 0; k < by_size.size(); ++k) {
-      columns(k * fitted.sensors() + sensor, column) = candidate.typical_size() * by_size[k];
+      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = candidate.typical_size() * by_size[k];
     }
   }
   return columns;

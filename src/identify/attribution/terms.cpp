@@ -11,6 +11,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// What a candidate's size may be before anything is measured: within some two typical sizes of nothing.
 constexpr double kSizeSpread_share = 2.0;
+/// Of a shape parameter's logarithm before anything is measured.
+constexpr double kShapeSpread = 0.3;
 /// A conductance that is not there, as a resistance.
 constexpr double kNoContact_K_per_W = 1e9;
 
@@ -128,7 +130,20 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   const Range& range = candidate.size_spec().range;
   double& size = parameters[static_cast<std::size_t>(candidate.size_parameter())];
   size = std::clamp(size_share * size, range.low, range.high);
+  for (const NodeRole& role : candidate.type->nodes) {
+    if (role.own_capacity >= 0) {
+      parameters[static_cast<std::size_t>(role.own_capacity)] *= std::max(0.05, size_share);
+    }
+  }
   const EffectInPlace effect = add(out.model, std::string(candidate.type->name), *candidate.type, candidate.nodes, parameters);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ParameterSpec& spec = candidate.type->parameters[p];
+    if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
+      // Exponents, thresholds, capacities: near what is usual, yet the runs may say otherwise.
+      out.model.set_free({.place = effect.parameter_index[p], .by_log = true, .scale = 1.0, .low = std::max(spec.range.low, parameters[p] / 20.0),
+                          .high = std::min(spec.range.high, parameters[p] * 20.0)}, kShapeSpread);
+    }
+  }
   set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(), range,
                        kSizeSpread_share);
   return out;
