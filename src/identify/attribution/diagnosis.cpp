@@ -130,7 +130,8 @@ class Teller {
       if (!spec.choices.empty()) {
         continue;
       }
-      FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p], values[p]};
+      FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p],
+                                values[p]};
       for (Eigen::Index i = 0; i < model.free_count(); ++i) {
         if (model.free[static_cast<std::size_t>(i)].place == in_place.parameter_index[p]) {
           const double sd = std::sqrt(after().covariance(i, i));
@@ -246,9 +247,8 @@ class Teller {
     const std::vector<DesignRun> designs = design(fit.fitted, input_.train, out_.selection.weights, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       const LinearisedRun& path = fit.fitted[r];
-      Columns residual = path.residual_K;
-      const Whitening whitening(path, flux_at(fit), designs[r].noise);
-      whitening.apply(residual);
+      const Eigen::VectorXd standardised = Whitening(path, flux_at(fit), designs[r].noise).innovations(path.residual_K).standardised;
+      const Eigen::VectorXd& weight = out_.selection.weights[r];
       for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
         Eigen::VectorXd& all = innovations[signal];
@@ -256,7 +256,8 @@ class Teller {
         all.conservativeResize(begin + path.samples());
         for (Eigen::Index k = 0; k < path.samples(); ++k) {
           const Eigen::Index row = k * path.sensors() + sensor;
-          all[begin + k] = std::isfinite(whitening.innovation_sd_K(row)) ? residual(row, 0) : std::nan("");
+          const bool counts = !std::isnan(path.residual_K[row]) && (weight.size() == 0 || weight[row] > 0.0);
+          all[begin + k] = counts ? standardised[row] : std::nan("");
         }
         add_inputs(input_.train[r], inputs[signal]);
       }
@@ -349,14 +350,14 @@ class Teller {
     out_.unexplained.push_back(std::move(heat));
   }
 
-  [[nodiscard]] Verdict verdict() const {
+  [[nodiscard]] DiagnosisVerdict verdict() const {
     if (std::ranges::any_of(out_.effects, &FoundEffect::is_from_catalogue)) {
-      return Verdict::effect_found;
+      return DiagnosisVerdict::effect_found;
     }
     if (!out_.unexplained.empty()) {
-      return Verdict::unexplained;
+      return DiagnosisVerdict::unexplained;
     }
-    return out_.selection.refused.empty() ? Verdict::nothing_missing : Verdict::not_identifiable;
+    return out_.selection.refused.empty() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::not_identifiable;
   }
 
   const DiagnosisInput& input_;
@@ -365,15 +366,15 @@ class Teller {
 
 }  // namespace
 
-std::string_view to_string(Verdict verdict) {
+std::string_view to_string(DiagnosisVerdict verdict) {
   switch (verdict) {
-    case Verdict::effect_found:
+    case DiagnosisVerdict::effect_found:
       return "effect_found";
-    case Verdict::nothing_missing:
+    case DiagnosisVerdict::nothing_missing:
       return "nothing_missing";
-    case Verdict::unexplained:
+    case DiagnosisVerdict::unexplained:
       return "unexplained";
-    case Verdict::not_identifiable:
+    case DiagnosisVerdict::not_identifiable:
       return "not_identifiable";
   }
   return "?";
