@@ -246,9 +246,8 @@ class Teller {
     const std::vector<DesignRun> designs = design(fit.fitted, input_.train, out_.selection.weights, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       const LinearisedRun& path = fit.fitted[r];
-      Columns residual = path.residual_K;
-      const Whitening whitening(path, flux_at(fit), designs[r].noise);
-      whitening.apply(residual);
+      const Eigen::VectorXd standardised = Whitening(path, flux_at(fit), designs[r].noise).innovations(path.residual_K).standardised;
+      const Eigen::VectorXd& weight = out_.selection.weights[r];
       for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
         Eigen::VectorXd& all = innovations[signal];
@@ -256,7 +255,8 @@ class Teller {
         all.conservativeResize(begin + path.samples());
         for (Eigen::Index k = 0; k < path.samples(); ++k) {
           const Eigen::Index row = k * path.sensors() + sensor;
-          all[begin + k] = std::isfinite(whitening.innovation_sd_K(row)) ? residual(row, 0) : std::nan("");
+          const bool counts = !std::isnan(path.residual_K[row]) && (weight.size() == 0 || weight[row] > 0.0);
+          all[begin + k] = counts ? standardised[row] : std::nan("");
         }
         add_inputs(input_.train[r], inputs[signal]);
       }
