@@ -237,8 +237,9 @@ Robot draw_sample(const Robot& robot, Random& random) {
 
 double Robot::available_V() const { return std::min(battery_V, voltage_limit_V); }
 
-Robot read_robot(const std::filesystem::path& path) {
-  const Value root = read_toml(path);
+namespace {
+
+Robot robot_of(const Value& root, const std::filesystem::path& path) {
   Diagnostics diagnostics;
   Reader top(root, "", diagnostics);
   Robot robot;
@@ -266,5 +267,11 @@ Robot read_robot(const std::filesystem::path& path) {
   diagnostics.throw_if_any();
   return robot;
 }
+
+}  // namespace
+
+Robot read_robot(const std::filesystem::path& path) { return robot_of(read_toml(path), path); }
+
+Robot parse_robot(const std::string& text, const std::filesystem::path& path) { return robot_of(parse_toml(text, path.string()), path); }
 
 }  // namespace heatsoak

@@ -106,4 +106,7 @@ Robot draw_sample(const Robot& robot, Random& random);
 /// Throws Failure (bad_input) with every problem of the file.
 Robot read_robot(const std::filesystem::path& path);
 
+/// The same of a file's text; `path` names the robot.
+Robot parse_robot(const std::string& text, const std::filesystem::path& path);
+
 }  // namespace heatsoak

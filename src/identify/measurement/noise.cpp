@@ -1,6 +1,7 @@
 #include "identify/measurement/noise.h"
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 
 namespace heatsoak {
@@ -8,15 +9,6 @@ namespace {
 
 constexpr std::size_t kMostValues = 200'000;  ///< of which a step is sought
 constexpr double kMedianToSigma = 1.4826;
-
-double median(std::vector<double>& values) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// The grid that the values lie on, or where they lie on none but come back again and again, how far apart they are.
 double step_of(std::span<const double> values) {
@@ -41,19 +33,23 @@ double step_of(std::span<const double> values) {
     return 0.0;
   }
   const double smallest = std::ranges::min(apart);
+  constexpr double kFinestGrid_share = 1e-6;  // of the range: finer ones are how the digits were stored
   constexpr double kOffGrid_share = 0.1;
   constexpr double kOnGrid_share = 0.95;
   const auto on_grid = std::ranges::count_if(apart, [smallest](double difference) {
     const double multiple = difference / smallest;
     return std::abs(multiple - std::round(multiple)) < kOffGrid_share;
   });
-  if (apart.size() >= 3 && static_cast<double>(on_grid) >= kOnGrid_share * static_cast<double>(apart.size())) {
+  if (apart.size() >= 3 && smallest > kFinestGrid_share * (sorted.back() - sorted.front()) &&
+      static_cast<double>(on_grid) >= kOnGrid_share * static_cast<double>(apart.size())) {
     return smallest;
   }
-  return distinct * 5 < count ? median(apart) : 0.0;
+  return distinct * 5 < count ? median_of(std::move(apart)) : 0.0;
 }
 
 }  // namespace
+
+double median_of(std::vector<double> values) { return values.empty() ? 0.0 : boost::math::statistics::median(values); }
 
 NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs) {
   std::vector<double> changes;
@@ -77,8 +73,8 @@ NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair
   NoiseLevel level;
   level.step = step_of(values);
   level.repeats_share = pairs > 0 ? 1.0 - static_cast<double>(changes.size()) / static_cast<double>(pairs) : 0.0;
-  level.usual = median(changes);
-  level.noise = std::max(kMedianToSigma * median(bends) / std::sqrt(6.0), level.step / std::sqrt(12.0));
+  level.usual = median_of(std::move(changes));
+  level.noise = std::max(kMedianToSigma * median_of(std::move(bends)) / std::sqrt(6.0), level.step / std::sqrt(12.0));
   return level;
 }
 

@@ -8,6 +8,9 @@
 
 namespace heatsoak {
 
+/// 0 where there is none; NaN are not allowed.
+double median_of(std::vector<double> values);
+
 struct NoiseLevel {
   double step = 0.0;   ///< smallest difference that the values have in common (resolution); 0 where none is seen
   double usual = 0.0;  ///< median change from one sample to the next, of those that change at all

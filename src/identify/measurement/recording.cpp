@@ -17,17 +17,4 @@ std::vector<std::pair<std::size_t, std::size_t>> Recording::runs() const {
   return found;
 }
 
-double usual_period_s(const Recording& recording) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < recording.rows(); ++i) {
-    steps_s.push_back(recording.time_s[i] - recording.time_s[i - 1]);
-  }
-  if (steps_s.empty()) {
-    return 0.0;
-  }
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::ranges::nth_element(steps_s, middle);
-  return *middle;
-}
-
 }  // namespace heatsoak

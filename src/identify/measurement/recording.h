@@ -37,7 +37,4 @@ struct Recording {
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> runs() const;
 };
 
-/// The median time between two rows; 0 with less than two rows.
-double usual_period_s(const Recording& recording);
-
 }  // namespace heatsoak

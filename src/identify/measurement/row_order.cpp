@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "identify/measurement/noise.h"
+
 namespace heatsoak {
 namespace {
 
@@ -11,20 +13,18 @@ namespace {
 constexpr double kLongestStep_ratio = 3.0 * (1.0 + 1e-6);
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-double median_step_s(std::span<const double> time_s) {
+bool changes(double before, double after) { return before != after && !(std::isnan(before) && std::isnan(after)); }
+
+}  // namespace
+
+double usual_period_s(std::span<const double> time_s) {
   std::vector<double> steps_s;
   steps_s.reserve(time_s.size());
   for (std::size_t i = 1; i < time_s.size(); ++i) {
     steps_s.push_back(time_s[i] - time_s[i - 1]);
   }
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::ranges::nth_element(steps_s, middle);
-  return *middle;
+  return median_of(std::move(steps_s));
 }
-
-bool changes(double before, double after) { return before != after && !(std::isnan(before) && std::isnan(after)); }
-
-}  // namespace
 
 std::vector<char> increasing_rows(std::span<const double> time_s) {
   if (std::ranges::adjacent_find(time_s, std::greater_equal<>()) == time_s.end()) {
@@ -56,7 +56,7 @@ std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<co
     return begins;
   }
   begins.push_back(0);
-  const double longest_s = longest_gap_s ? *longest_gap_s : time_s.size() > 1 ? kLongestStep_ratio * median_step_s(time_s) : 0.0;
+  const double longest_s = longest_gap_s.value_or(kLongestStep_ratio * usual_period_s(time_s));
   for (std::size_t row = 1; row < time_s.size(); ++row) {
     if (time_s[row] - time_s[row - 1] > longest_s || (!run_values.empty() && changes(run_values[row - 1], run_values[row]))) {
       begins.push_back(row);

@@ -8,6 +8,9 @@
 
 namespace heatsoak {
 
+/// The median time between two rows; 0 with less than two rows.
+double usual_period_s(std::span<const double> time_s);
+
 /// The rows to keep so that time strictly increases and as many rows as possible stay (longest increasing subsequence);
 /// of rows with one time the first stays. One char per row: 1 stays.
 std::vector<char> increasing_rows(std::span<const double> time_s);

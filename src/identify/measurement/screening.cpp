@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "identify/measurement/noise.h"
 
@@ -76,12 +78,13 @@ Habits habits_of(std::span<const double> values, std::span<const std::vector<Str
   return habits;
 }
 
-/// The change out of the stretch stands alone: what follows moves far less.
+/// The change out of the stretch stands alone: what follows moves far less. A sensor that held still while the temperature went on.
 bool ends_in_isolated_jump(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
   constexpr std::size_t kLongHold = 30;
   constexpr double kIsolated_ratio = 4.0;
   constexpr std::size_t kAfter = 5;
-  if (run[at].samples < kLongHold || at + 2 >= run.size()) {
+  const std::size_t long_hold = habits.longest_chance > 0 ? habits.longest_chance : kLongHold;
+  if (run[at].samples <= long_hold || at + 2 >= run.size()) {
     return false;
   }
   const double jump = std::abs(run[at + 1].value - run[at].value);
@@ -90,6 +93,18 @@ bool ends_in_isolated_jump(const std::vector<Stretch>& run, std::size_t at, cons
     after = std::max(after, std::abs(run[i].value - run[i - 1].value));
   }
   return jump > std::max(kIsolated_ratio * after, 6.0 * habits.noise.noise);
+}
+
+/// Noise that never stopped before has stopped for good, after a slope that would have gone on.
+bool stays_still_to_the_end(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
+  constexpr std::size_t kSlopeStretches = 10;
+  constexpr double kFarAway_ratio = 20.0;
+  if (at + 1 != run.size() || at < kSlopeStretches || habits.longest_chance == 0 || run[at].samples <= habits.longest_chance) {
+    return false;
+  }
+  const Stretch& from = run[at - kSlopeStretches];
+  const double slope = (run[at].value - from.value) / static_cast<double>(run[at].begin - from.begin);
+  return std::abs(slope) * static_cast<double>(run[at].samples) > kFarAway_ratio * std::max(habits.noise.noise, habits.noise.usual);
 }
 
 /// Three steps towards the extreme, each at least usual, and then none at all.
@@ -108,6 +123,35 @@ bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Hab
   return run[at - 1].samples == 1;
 }
 
+/// A noisy channel whose noise is cut off: far more samples at the very end of its range than at any value within,
+/// and it comes there by usual changes, not creeping.
+bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habits& habits) {
+  constexpr double kFine_share = 0.2;
+  constexpr std::size_t kPile = 10;
+  constexpr std::size_t kPile_ratio = 5;
+  if (habits.repeats_share > kFine_share) {
+    return false;
+  }
+  std::map<double, std::size_t> counts;
+  std::size_t arrivals = 0;
+  std::size_t usual_arrivals = 0;
+  for (const std::vector<Stretch>& run : runs) {
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      counts[run[i].value] += run[i].samples;
+      if (i > 0 && run[i].value == end) {
+        ++arrivals;
+        usual_arrivals += std::abs(run[i].value - run[i - 1].value) >= 0.5 * habits.noise.usual ? 1 : 0;
+      }
+    }
+  }
+  const std::size_t there = std::exchange(counts[end], 0);
+  std::size_t elsewhere = 0;
+  for (const auto& [value, count] : counts) {
+    elsewhere = std::max(elsewhere, count);
+  }
+  return there >= kPile && there > kPile_ratio * elsewhere && arrivals >= 3 && 2 * usual_arrivals >= arrivals;
+}
+
 void leave_out_stretches(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
   std::vector<std::vector<Stretch>> runs;
   for (const auto& run : recording.runs()) {
@@ -117,16 +161,19 @@ void leave_out_stretches(Recording& recording, Channel& channel, const NoiseLeve
   if (!(habits.high > habits.low)) {
     return;  // constant from begin to end: what that means is asked elsewhere
   }
+  const bool low_is_cut = piles_up(runs, habits.low, habits);
+  const bool high_is_cut = piles_up(runs, habits.high, habits);
   for (const std::vector<Stretch>& run : runs) {
     for (std::size_t at = 0; at < run.size(); ++at) {
       const Stretch& stretch = run[at];
-      const bool is_extreme = stretch.value == habits.low || stretch.value == habits.high;
-      const bool is_too_long = habits.longest_chance > 0 && stretch.samples > habits.longest_chance;
-      const bool is_cut = is_extreme && climb_stops_dead(run, at, habits);
-      if (!is_too_long && !is_cut && !ends_in_isolated_jump(run, at, habits)) {
+      const bool is_low = stretch.value == habits.low;
+      const bool is_high = stretch.value == habits.high;
+      const bool is_saturated =
+          (is_low && low_is_cut) || (is_high && high_is_cut) || ((is_low || is_high) && climb_stops_dead(run, at, habits));
+      if (!is_saturated && !ends_in_isolated_jump(run, at, habits) && !stays_still_to_the_end(run, at, habits)) {
         continue;
       }
-      LeftOut& entry = report.left_out[{channel.quantity.key, is_extreme ? LeftOutReason::saturated : LeftOutReason::frozen}];
+      LeftOut& entry = report.left_out[{channel.quantity.key, is_saturated ? LeftOutReason::saturated : LeftOutReason::frozen}];
       for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
         if (!std::isnan(channel.values[i])) {
           entry.add(recording.line[i]);

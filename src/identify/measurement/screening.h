@@ -7,8 +7,9 @@
 namespace heatsoak {
 
 /// Makes them NaN and reports them by line. Heat inputs and other signals may rightly jump and rest: they stay as they are.
-/// - frozen: exactly one value for longer than the channel's noise allows, or until an isolated jump frees it;
-/// - saturated: the same at the channel's largest or smallest value, or a climb that stops dead there;
+/// - frozen: exactly one value for longer than the channel's noise allows, until an isolated jump frees it or for good after
+///   a slope. A still sensor whose temperature is still too gives no false value and stays.
+/// - saturated: a climb that stops dead at the largest or smallest value, or noise cut off there.
 /// - outlier: further from the median of its seven neighbours than 6 median deviations (Hampel), and than 4 usual changes.
 void leave_out_bad_samples(Recording& recording, RecordingReport& report);
 

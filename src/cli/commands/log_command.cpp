@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/log_chart.h"
+#include "cli/log_text.h"
+#include "cli/quantity_option.h"
+#include "identify/measurement/quality.h"
+#include "identify/measurement/read_recording.h"
+#include "identify/measurement/write_recording.h"
+
+namespace heatsoak::commands {
+namespace {
+
+struct Options {
+  std::string action;
+  std::vector<std::string> files;
+  std::string map;
+  std::string plot;
+  std::string out;
+};
+
+void check(const Options& options) {
+  const bool converts = options.action == "convert";
+  if (converts && (options.files.size() != 1 || options.out.empty() || !options.plot.empty())) {
+    throw Failure(ExitCode::bad_input, "log convert: expected one FILE and --out FILE.csv");
+  }
+  if (!converts && !options.out.empty()) {
+    throw Failure(ExitCode::bad_input, "log inspect has no --out; `heatsoak log convert FILE --out FILE.csv` writes the canonical form");
+  }
+  if (!options.plot.empty() && options.files.size() != 1) {
+    throw Failure(ExitCode::bad_input, fmt::format("--plot draws one log; {} are given", options.files.size()));
+  }
+}
+
+ExitCode inspect(const Options& options, Session& session) {
+  ExitCode code = ExitCode::done;
+  nlohmann::ordered_json logs = nlohmann::ordered_json::array();
+  for (const std::string& file : options.files) {
+    RecordingReport report;
+    const Recording recording = read_recording(file, mapping_for(file, options.map), report);
+    const DataQuality quality = assess(recording, report);
+    session.say((logs.empty() ? "" : "\n") + log_text(recording, report, quality));
+    logs.push_back(log_json(recording, report, quality));
+    if (!quality.thermal.is_good() && !quality.drive.is_good()) {
+      code = ExitCode::cannot_answer;
+    }
+    if (!options.plot.empty()) {
+      session.write(options.plot, draw_svg(log_chart(recording, report)));
+      session.say(fmt::format("written: {}\n", options.plot));
+    }
+  }
+  session.answer({{"schema", "heatsoak.log/1"}, {"logs", logs}});
+  return code;
+}
+
+ExitCode convert(const Options& options, Session& session) {
+  const std::string& file = options.files.front();
+  RecordingReport report;
+  const Recording recording = read_recording(file, mapping_for(file, options.map), report);
+  session.write(options.out, to_canonical_csv(recording));
+  session.say(fmt::format("written: {} ({} of {} rows, {} channels)\n", options.out, report.rows_kept, report.rows_in_file,
+                          recording.channels.size()));
+  session.answer({{"schema", "heatsoak.log_convert/1"},
+                  {"file", file},
+                  {"out", options.out},
+                  {"rows_in_file", report.rows_in_file},
+                  {"rows_kept", report.rows_kept},
+                  {"channels", recording.channels.size()}});
+  return ExitCode::done;
+}
+
+ExitCode run(const Options& options, Session& session) {
+  check(options);
+  return options.action == "inspect" ? inspect(options, session) : convert(options, session);
+}
+
+}  // namespace
+
+Command log_command() {
+  return {
+      .name = {},
+      .summary = "Measured logs: what is in them, how good the data are, what is left out and why; or the canonical CSV of a foreign one",
+      .example =
+          "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
+          "heatsoak log inspect log.csv --plot log.svg",
+      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+        const auto options = std::make_shared<Options>();
+        app.add_option("action", options->action, "inspect or convert")->required()->check(CLI::IsMember({"inspect", "convert"}));
+        app.add_option("file", options->files, "logs: canonical CSV (time_s, winding_C, current_A, …), or any table with a mapping")
+            ->required()
+            ->type_name("FILE...");
+        app.add_option("--map", options->map,
+                       "mapping of columns to quantities; FILE.map.toml beside the log is found by itself (README, \"Measured logs\")")
+            ->type_name("FILE.toml");
+        add_picture(app, options->plot, "every channel over time, with what is left out");
+        app.add_option("--out", options->out, "of convert: the canonical form")->type_name("FILE.csv");
+        session.add_json_option(app);
+        return [options, &session] { return run(*options, session); };
+      }};
+}
+
+}  // namespace heatsoak::commands

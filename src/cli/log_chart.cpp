@@ -1,0 +1,184 @@
+#include "cli/log_chart.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLeftOutColor = 6;                 ///< vermilion
+constexpr std::size_t kCurveColors = 6;          ///< before it in the palette
+constexpr double kNarrowestMark_share = 0.0015;  ///< of the width, so that a single sample is seen
+
+struct TimeScale {
+  double factor = 1.0;
+  const char* label = "time / s";
+};
+
+TimeScale scale_for(double duration_s) {
+  if (duration_s > 3.0 * 3600.0) {
+    return {1.0 / 3600.0, "time / h"};
+  }
+  return duration_s > 300.0 ? TimeScale{1.0 / 60.0, "time / min"} : TimeScale{};
+}
+
+/// Channels that share axes: all temperatures, the wheels' speeds, …
+struct Group {
+  std::string title;
+  std::string y_label;
+  std::vector<const Channel*> channels;
+};
+
+std::string stem_of(const std::string& key) {
+  const std::size_t end = key.find_last_not_of("0123456789");
+  return end != std::string::npos && end + 1 < key.size() && key[end] == '_' ? key.substr(0, end) : key;
+}
+
+bool is_temperature(const Channel& channel) {
+  return channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings;
+}
+
+std::vector<Group> groups_of(const Recording& recording) {
+  std::vector<Group> groups;
+  std::vector<std::string> names;
+  for (const QuantityKind kind : {QuantityKind::temperature, QuantityKind::surroundings, QuantityKind::heat_input, QuantityKind::signal}) {
+    for (const Channel& channel : recording.channels) {
+      if (channel.quantity.kind != kind) {
+        continue;
+      }
+      const std::string stem = stem_of(channel.quantity.key);
+      const bool is_wheel = stem != channel.quantity.key;
+      const std::string name = is_temperature(channel) ? "temperature" : is_wheel ? stem : channel.quantity.unit + to_string(kind).data();
+      const auto found = std::ranges::find(names, name);
+      if (found == names.end()) {
+        names.push_back(name);
+        const std::string unit = channel.quantity.unit.empty() ? "1" : unit_for_display(channel.quantity.unit);
+        groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, {&channel}});
+      } else {
+        groups[static_cast<std::size_t>(found - names.begin())].channels.push_back(&channel);
+      }
+    }
+  }
+  for (Group& group : groups) {
+    if (group.title.empty()) {
+      std::vector<std::string> keys;
+      for (const Channel* channel : group.channels) {
+        keys.push_back(channel->quantity.key);
+      }
+      group.title = fmt::format("{}", fmt::join(keys, ", "));
+    }
+    group.y_label = (is_temperature(*group.channels.front()) ? "temperature / " : "value / ") + group.y_label;
+  }
+  return groups;
+}
+
+class LogChart {
+ public:
+  LogChart(const Recording& recording, const RecordingReport& report)
+      : recording_(recording),
+        report_(report),
+        duration_s_(recording.time_s.back() - recording.time_s.front()),
+        scale_(scale_for(duration_s_)) {}
+
+  Chart draw() const {
+    Chart chart;
+    chart.title = recording_.name + (recording_.motor.empty() ? "" : ", motor " + recording_.motor);
+    chart.subtitle = subtitle();
+    chart.x_label = scale_.label;
+    chart.panel_height_px = 260;
+    bool is_named = false;
+    for (const Group& group : groups_of(recording_)) {
+      chart.panels.push_back(panel(group, is_named));
+    }
+    return chart;
+  }
+
+ private:
+  [[nodiscard]] std::string subtitle() const {
+    std::string text;
+    for (const auto& [key, condition] : recording_.conditions) {
+      text += fmt::format("{}: {}; ", key, condition);
+    }
+    return text + fmt::format("{} of {} rows in {} run{}; shaded: left out", report_.rows_kept, report_.rows_in_file,
+                              recording_.run_begins.size(), recording_.run_begins.size() == 1 ? "" : "s");
+  }
+
+  ChartPanel panel(const Group& group, bool& is_named) const {
+    ChartPanel result{.title = group.title, .y_label = group.y_label, .curves = {}, .bands = {}, .levels = {}};
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < group.channels.size(); ++i) {
+      result.curves.push_back(curve(*group.channels[i], static_cast<int>(i % kCurveColors), i >= kCurveColors));
+      for (const double value : group.channels[i]->values) {
+        low = std::isnan(value) ? low : std::min(low, value);
+        high = std::isnan(value) ? high : std::max(high, value);
+      }
+    }
+    for (const auto& [begin, end] : marks(group)) {
+      result.bands.push_back({is_named ? "" : "left out", {begin, end}, {low, low}, {high, high}, kLeftOutColor});
+      is_named = true;
+    }
+    return result;
+  }
+
+  [[nodiscard]] ChartCurve curve(const Channel& channel, int color, bool dashed) const {
+    ChartCurve result{channel.quantity.key, {}, {}, color, dashed};
+    for (const auto& [begin, end] : recording_.runs()) {
+      for (std::size_t row = begin; row < end; ++row) {
+        result.x.push_back(recording_.time_s[row] * scale_.factor);
+        result.y.push_back(channel.values[row]);
+      }
+      result.x.push_back(recording_.time_s[end - 1] * scale_.factor);
+      result.y.push_back(kBreak);
+    }
+    return result;
+  }
+
+  /// Of whole rows and of the group's channels, merged.
+  [[nodiscard]] std::vector<std::pair<double, double>> marks(const Group& group) const {
+    std::vector<std::pair<double, double>> found;
+    for (const auto& [what, entry] : report_.left_out) {
+      const bool is_here = what.first.empty() ||
+                           std::ranges::any_of(group.channels, [&](const Channel* channel) { return channel->quantity.key == what.first; });
+      for (const LineRange& lines : is_here ? entry.lines : std::vector<LineRange>{}) {
+        const double begin_s = time_of(lines.first);
+        const double width_s = std::max(time_of(lines.last + 1) - begin_s, kNarrowestMark_share * duration_s_);
+        found.emplace_back(begin_s * scale_.factor, (begin_s + width_s) * scale_.factor);
+      }
+    }
+    std::ranges::sort(found);
+    std::vector<std::pair<double, double>> merged;
+    for (const auto& each : found) {
+      if (merged.empty() || each.first > merged.back().second) {
+        merged.push_back(each);
+      } else {
+        merged.back().second = std::max(merged.back().second, each.second);
+      }
+    }
+    return merged;
+  }
+  /// Of the first kept row at this line or after it.
+  [[nodiscard]] double time_of(int line) const {
+    const auto row = std::ranges::lower_bound(recording_.line, line);
+    return row == recording_.line.end() ? recording_.time_s.back()
+                                        : recording_.time_s[static_cast<std::size_t>(row - recording_.line.begin())];
+  }
+
+  const Recording& recording_;
+  const RecordingReport& report_;
+  double duration_s_;
+  TimeScale scale_;
+};
+
+}  // namespace
+
+Chart log_chart(const Recording& recording, const RecordingReport& report) { return LogChart(recording, report).draw(); }
+
+}  // namespace heatsoak

@@ -1,0 +1,16 @@
+// What `log inspect` tells about one log, for people and as JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "identify/measurement/quality.h"
+#include "identify/measurement/recording.h"
+#include "identify/measurement/recording_report.h"
+
+namespace heatsoak {
+
+std::string log_text(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
+nlohmann::ordered_json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
+
+}  // namespace heatsoak

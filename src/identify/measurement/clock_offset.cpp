@@ -1,0 +1,281 @@
+#include "identify/measurement/clock_offset.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/quantity.h"
+#include "identify/measurement/noise.h"
+#include "identify/measurement/row_order.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr int kDelays = 81;
+constexpr int kParts = 8;  ///< of the log, left out in turn
+constexpr std::size_t kMostWindows = 4000;
+constexpr std::size_t kFewestWindows = 40;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// The integral of a channel from the run's first row to any moment; held or, for temperatures, straight between rows.
+class Integral {
+ public:
+  Integral(std::span<const double> time_s, std::span<const double> values, bool is_held)
+      : time_s_(time_s), values_(values), is_held_(is_held) {
+    sums_.resize(time_s.size(), 0.0);
+    for (std::size_t i = 1; i < time_s.size(); ++i) {
+      const double mean = is_held ? values[i - 1] : 0.5 * (values[i - 1] + values[i]);
+      sums_[i] = sums_[i - 1] + mean * (time_s[i] - time_s[i - 1]);
+    }
+  }
+  [[nodiscard]] double between(double from_s, double to_s) const { return at(to_s) - at(from_s); }
+
+ private:
+  [[nodiscard]] double at(double moment_s) const {
+    if (moment_s < time_s_.front() || moment_s > time_s_.back()) {
+      return kUnknown;
+    }
+    const auto after = std::ranges::upper_bound(time_s_, moment_s);
+    const auto row = static_cast<std::size_t>(after - time_s_.begin()) - 1;
+    return sums_[row] + (moment_s > time_s_[row] ? values_[row] * (moment_s - time_s_[row]) : 0.0);
+  }
+
+  std::span<const double> time_s_;
+  std::span<const double> values_;
+  bool is_held_;
+  std::vector<double> sums_;  ///< NaN from the first value on that is not known
+};
+
+/// Where every channel needed is known from begin to end.
+struct Piece {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+std::vector<Piece> known_pieces(const Recording& recording, std::span<const std::span<const double>> channels) {
+  std::vector<Piece> pieces;
+  for (const auto& [begin, end] : recording.runs()) {
+    std::size_t from = begin;
+    for (std::size_t row = begin; row <= end; ++row) {
+      const bool is_known =
+          row < end && std::ranges::none_of(channels, [row](std::span<const double> values) { return std::isnan(values[row]); });
+      if (!is_known) {
+        if (row > from + 1) {
+          pieces.push_back({from, row});
+        }
+        from = row + 1;
+      }
+    }
+  }
+  return pieces;
+}
+
+/// Left-out samples inside a piece are bridged here: only the delay is sought, and a piece without any hole may not exist.
+std::vector<double> bridged(std::span<const double> time_s, std::span<const double> values, double longest_s) {
+  std::vector<double> filled(values.begin(), values.end());
+  std::size_t before = values.size();
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (std::isnan(values[row])) {
+      continue;
+    }
+    if (before < row && row > before + 1 && time_s[row] - time_s[before] <= longest_s) {
+      for (std::size_t i = before + 1; i < row; ++i) {
+        filled[i] = values[before] + (values[row] - values[before]) * (time_s[i] - time_s[before]) / (time_s[row] - time_s[before]);
+      }
+    }
+    before = row;
+  }
+  return filled;
+}
+
+struct Window {
+  std::size_t piece = 0;
+  double begin_s = 0.0;
+  double end_s = 0.0;
+  double change_K = 0.0;
+};
+
+/// All windows for all delays, as normal equations per part of the log, so that parts can be left out cheaply.
+class DelayScan {
+ public:
+  DelayScan(const Recording& recording, const Channel& temperature, const Channel& heat_input) : time_s_(recording.time_s) {
+    const double bridge_s = 10.0 * usual_period_s(time_s_);
+    heat_ = relative_heat(heat_input);
+    columns_.push_back(bridged(time_s_, temperature.values, bridge_s));
+    for (const Channel& other : recording.channels) {
+      const bool is_other = &other != &temperature && other.quantity.kind == QuantityKind::temperature;
+      if (is_other && std::ranges::count_if(other.values, [](double value) { return std::isnan(value); }) < std::ssize(other.values) / 10) {
+        columns_.push_back(bridged(time_s_, other.values, bridge_s));
+      }
+    }
+    std::vector<std::span<const double>> needed{heat_};
+    needed.insert(needed.end(), columns_.begin(), columns_.end());
+    pieces_ = known_pieces(recording, needed);
+  }
+
+  /// Windows of a length in which the temperature moves well beyond its noise, spread evenly.
+  std::size_t place_windows(double noise_K, double reach_s) {
+    const double period_s = usual_period_s(time_s_);
+    for (double length_s = 4.0 * period_s; length_s < 0.1 * (time_s_.back() - time_s_.front()); length_s *= 2.0) {
+      windows_ = windows_of(length_s, reach_s);
+      std::vector<double> changes_K;
+      for (const Window& window : windows_) {
+        changes_K.push_back(std::abs(window.change_K));
+      }
+      if (median_of(std::move(changes_K)) > 10.0 * noise_K) {
+        break;
+      }
+    }
+    return windows_.size();
+  }
+
+  /// Sum of squared errors for each delay and each part left out; the last one leaves none out.
+  std::vector<std::array<double, kParts + 1>> errors(std::span<const double> delays_s) const {
+    const auto size = static_cast<Eigen::Index>(columns_.size() + 2);
+    std::vector<Integral> heats;
+    std::vector<std::vector<Integral>> temperatures(pieces_.size());
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      const auto part_of = [&](const std::vector<double>& values) {
+        return std::span<const double>(values).subspan(pieces_[p].begin, pieces_[p].end - pieces_[p].begin);
+      };
+      heats.emplace_back(part_of(time_s_), part_of(heat_), true);
+      for (const std::vector<double>& column : columns_) {
+        temperatures[p].emplace_back(part_of(time_s_), part_of(column), false);
+      }
+    }
+    std::vector<std::array<double, kParts + 1>> found;
+    for (const double delay_s : delays_s) {
+      // One row more and one column more than unknowns: the change itself, so that one matrix holds XᵀX, Xᵀy and yᵀy.
+      std::array<Eigen::MatrixXd, kParts> products;
+      products.fill(Eigen::MatrixXd::Zero(size + 1, size + 1));
+      Eigen::VectorXd row(size + 1);
+      for (std::size_t k = 0; k < windows_.size(); ++k) {
+        const Window& window = windows_[k];
+        row[0] = heats[window.piece].between(window.begin_s - delay_s, window.end_s - delay_s);
+        row[1] = window.end_s - window.begin_s;
+        for (std::size_t c = 0; c < columns_.size(); ++c) {
+          row[static_cast<Eigen::Index>(c) + 2] = temperatures[window.piece][c].between(window.begin_s, window.end_s);
+        }
+        row[size] = window.change_K;
+        products[k * kParts / windows_.size()] += row * row.transpose();
+      }
+      found.push_back(errors_of(products, size));
+    }
+    return found;
+  }
+
+ private:
+  [[nodiscard]] std::vector<Window> windows_of(double length_s, double reach_s) const {
+    std::vector<Window> found;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      const auto& [begin, end] = pieces_[p];
+      std::size_t to = begin;
+      for (std::size_t from = begin; from < end; ++from) {
+        while (to + 1 < end && time_s_[to] - time_s_[from] < length_s) {
+          ++to;
+        }
+        // Every delay of the scan is asked of the same windows.
+        if (time_s_[to] - time_s_[from] >= length_s && time_s_[from] - reach_s >= time_s_[begin] &&
+            time_s_[to] + reach_s <= time_s_[end - 1]) {
+          found.push_back({p, time_s_[from], time_s_[to], columns_[0][to] - columns_[0][from]});
+        }
+      }
+    }
+    const std::size_t stride = found.size() / kMostWindows + 1;
+    std::vector<Window> thinned;
+    for (std::size_t i = 0; i < found.size(); i += stride) {
+      thinned.push_back(found[i]);
+    }
+    return thinned;
+  }
+
+  static std::array<double, kParts + 1> errors_of(const std::array<Eigen::MatrixXd, kParts>& products, Eigen::Index size) {
+    Eigen::MatrixXd all = products[0];
+    for (int part = 1; part < kParts; ++part) {
+      all += products[static_cast<std::size_t>(part)];
+    }
+    std::array<double, kParts + 1> found{};
+    for (int part = 0; part <= kParts; ++part) {
+      const Eigen::MatrixXd left = part < kParts ? Eigen::MatrixXd(all - products[static_cast<std::size_t>(part)]) : all;
+      const Eigen::VectorXd right = left.topRightCorner(size, 1);
+      const Eigen::VectorXd solution = left.topLeftCorner(size, size).completeOrthogonalDecomposition().solve(right);
+      found[static_cast<std::size_t>(part)] = left(size, size) - solution.dot(right);
+    }
+    return found;
+  }
+
+  const std::vector<double>& time_s_;
+  std::vector<double> heat_;
+  std::vector<std::vector<double>> columns_;  ///< temperatures, the one in question first
+  std::vector<Piece> pieces_;
+  std::vector<Window> windows_;
+};
+
+/// The bottom of the errors, between the grid's points; nothing at the ends.
+std::optional<double> bottom_of(std::span<const double> delays_s, const std::vector<std::array<double, kParts + 1>>& errors,
+                                std::size_t part) {
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    best = errors[k][part] < errors[best][part] ? k : best;
+  }
+  if (best == 0 || best + 1 == errors.size()) {
+    return std::nullopt;
+  }
+  const double left = errors[best - 1][part];
+  const double right = errors[best + 1][part];
+  const double curvature = left - 2.0 * errors[best][part] + right;
+  return delays_s[best] + (curvature > 0.0 ? 0.5 * (delays_s[1] - delays_s[0]) * (left - right) / curvature : 0.0);
+}
+
+}  // namespace
+
+ClockOffset clock_offset(const Recording& recording, const Channel& temperature, const Channel& heat_input, double noise_K) {
+  ClockOffset offset;
+  offset.temperature = temperature.quantity.key;
+  offset.heat_input = heat_input.quantity.key;
+  const double duration_s = recording.time_s.back() - recording.time_s.front();
+  const double reach_s = std::min(0.1 * duration_s, std::max(10.0, 10.0 * usual_period_s(recording.time_s)));
+  DelayScan scan(recording, temperature, heat_input);
+  if (scan.place_windows(noise_K, reach_s) < kFewestWindows) {
+    offset.why_not = "the stretches without a gap are too short";
+    return offset;
+  }
+  std::vector<double> delays_s;
+  for (int k = 0; k < kDelays; ++k) {
+    delays_s.push_back(reach_s * (2.0 * k / (kDelays - 1) - 1.0));
+  }
+  const auto errors = scan.errors(delays_s);
+  const std::optional<double> delay_s = bottom_of(delays_s, errors, kParts);
+  double sum_s = 0.0;
+  double sum_s2 = 0.0;
+  int found = 0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    if (const std::optional<double> without_s = bottom_of(delays_s, errors, part)) {
+      sum_s += *without_s;
+      sum_s2 += *without_s * *without_s;
+      ++found;
+    }
+  }
+  constexpr double kTooWide_share = 0.25;
+  if (!delay_s || found < kParts) {
+    offset.why_not = fmt::format("no delay within ± {} s explains it best", significant(reach_s, 2));
+    return offset;
+  }
+  const double mean_s = sum_s / kParts;
+  // Jackknife; a step of the heat happens somewhere between two rows.
+  const double by_parts_s = std::sqrt(std::max(0.0, (kParts - 1.0) * (sum_s2 / kParts - mean_s * mean_s)));
+  const double standard_error_s = std::hypot(by_parts_s, usual_period_s(recording.time_s) / std::sqrt(12.0));
+  if (standard_error_s > kTooWide_share * reach_s) {
+    offset.why_not = fmt::format("parts of the log disagree by {} s", significant(standard_error_s, 2));
+    return offset;
+  }
+  offset.delay_s = *delay_s;
+  offset.delay_uncertainty_s = standard_error_s;
+  return offset;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,77 @@
+// What a recording is worth, told before anything is fitted to it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identify/measurement/recording.h"
+#include "identify/measurement/recording_report.h"
+
+namespace heatsoak {
+
+struct Sampling {
+  double duration_s = 0.0;
+  double usual_period_s = 0.0;  ///< median
+  double jitter_s = 0.0;        ///< 1.4826 · median deviation of the periods
+  double longest_gap_s = 0.0;
+};
+
+/// Before a row: between it and the one before nothing is known.
+struct Gap {
+  int line = 0;
+  double begin_s = 0.0;
+  double duration_s = 0.0;
+};
+
+/// In the channel's unit where no other is named.
+struct ChannelQuality {
+  Quantity quantity;
+  std::size_t samples = 0;
+  std::size_t left_out = 0;  ///< for whatever reason
+  double low = 0.0;
+  double high = 0.0;
+  double step = 0.0;   ///< resolution; 0 where none is seen
+  double noise = 0.0;  ///< standard deviation, model-free, not below step/√12
+  [[nodiscard]] bool is_constant() const { return !(high > low); }
+};
+
+/// Whether a temperature follows the heat input at once. A clock offset and a sensor's lag look alike.
+struct ClockOffset {
+  std::string temperature;
+  std::string heat_input;
+  std::optional<double> delay_s;     ///< positive: the temperature comes late; nothing where it cannot be told
+  double delay_uncertainty_s = 0.0;  ///< standard error, by leaving out one eighth of the log after the other
+  std::string why_not;               ///< where it cannot be told
+};
+
+/// What a log is good for, or what it lacks.
+struct Fitness {
+  std::vector<std::string> lacks;  ///< in sentences; empty: good
+  [[nodiscard]] bool is_good() const { return lacks.empty(); }
+};
+
+struct DataQuality {
+  Sampling sampling;
+  std::vector<Gap> gaps;
+  std::vector<ChannelQuality> channels;
+  std::vector<ClockOffset> clock_offsets;
+  std::vector<std::string> suspicions;  ///< said, not acted on
+  Fitness thermal;                      ///< to fit a thermal network
+  Fitness drive;                        ///< to fit friction of wheels
+};
+
+DataQuality assess(const Recording& recording, const RecordingReport& report);
+
+/// Throws Failure (cannot_answer) where the recording cannot tell anything about a thermal network: too short, nothing
+/// changes, no temperature or no heat input.
+void require_thermal(const Recording& recording, const DataQuality& quality);
+
+/// The channel that tells best how much heat goes in: power, or else current, torque, voltage, speed; null where none varies.
+const Channel* heat_input_of(const Recording& recording);
+
+/// Heat per row, up to a factor: the channel itself where it is a power, else its square. NaN where it is not known.
+std::vector<double> relative_heat(const Channel& heat_input);
+
+}  // namespace heatsoak
