@@ -1,4 +1,6 @@
 // What a steady-state test teaches about friction, against drives of the forward dynamics whose friction is known.
+#include "identify/friction/friction_fit.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 #include <iomanip>
 #include <iostream>
 
-#include "identify/friction/friction_fit.h"
 #include "test_drive.h"
 
 namespace heatsoak {
@@ -26,6 +27,12 @@ struct Case {
   PlantConfig plant;
   Truth truth;
 };
+
+/// The long statistics: HEATSOAK_FRICTION_SEEDS=200 (two minutes); six drives without it.
+int seeds_wanted() {
+  const char* given = std::getenv("HEATSOAK_FRICTION_SEEDS");
+  return given ? std::atoi(given) : 6;
+}
 
 /// A robot with 0.9 Ω, 33 mN m/A and friction of its own at every wheel.
 Case any_case(std::uint64_t seed) {
@@ -55,8 +62,8 @@ Case any_case(std::uint64_t seed) {
   robot.battery_capacity_A_s = 4680.0;
   robot.heading_rotation_Nm = 0.008;
   for (std::size_t i = 0; i < 4; ++i) {
-    robot.heading_wheels.push_back({0.015 + 0.02 * any(engine), -0.008 + 0.024 * any(engine),
-                                    -robot.wheel_axis_rad[i] + 8.0 * kDegree_rad * (any(engine) - 0.5)});
+    robot.heading_wheels.push_back(
+        {0.015 + 0.02 * any(engine), -0.008 + 0.024 * any(engine), -robot.wheel_axis_rad[i] + 8.0 * kDegree_rad * (any(engine) - 0.5)});
   }
   MotorValues motor;
   motor.terminal_resistance_ohm = 0.85;
@@ -85,9 +92,6 @@ TestDrive usual_drive() {
   }
   drive.speeds_m_per_s = {0.4, 0.8, 1.2};
   drive.bad_row_share = 0.2;
-  if (std::getenv("T_BAD")) drive.bad_row_share = std::atof(std::getenv("T_BAD"));
-  if (std::getenv("T_PUSH")) drive.push_N = std::atof(std::getenv("T_PUSH"));
-  if (std::getenv("T_HOLD")) drive.hold_s = std::atof(std::getenv("T_HOLD"));
   return drive;
 }
 
@@ -103,8 +107,7 @@ struct Coverage {
 };
 
 TEST(FrictionFit, intervals_hold_the_truth_of_95_percent_of_drives) {
-  const char* given = std::getenv("HEATSOAK_FRICTION_SEEDS");
-  const int seeds = given ? std::atoi(given) : 6;
+  const int seeds = seeds_wanted();
   Coverage damping, sine, constant, phase;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Case known = any_case(static_cast<std::uint64_t>(seed));
@@ -118,42 +121,149 @@ TEST(FrictionFit, intervals_hold_the_truth_of_95_percent_of_drives) {
       constant.add(known.truth.constant_V[i], fit.wheels[i].constant_V);
       const double turns = std::remainder(known.truth.phase_rad[i] - fit.wheels[i].phase_rad.value, 2.0 * std::numbers::pi);
       phase.add(fit.wheels[i].phase_rad.value + turns, fit.wheels[i].phase_rad);
-      if (std::getenv("HEATSOAK_PRINT")) {
-        const auto print = [](const char* name, double truth, const Estimate& e) {
-          std::cout << " " << name << " " << truth << ": " << e.value << " [" << e.low << ", " << e.high << "]";
-        };
-        const WheelFriction& w = fit.wheels[i];
-        std::cout << "seed " << seed << " wheel " << i + 1 << " parts " << steady.parts.size() << " legs " << steady.legs << " returns " << steady.return_legs << " used " << w.parts_used << " standing "
-                  << w.parts_standing << " out " << w.parts_outlying << " rmse " << w.rmse_V;
-        print("d", known.truth.damping_V_s_per_rad, w.damping_V_s_per_rad);
-        print("a", known.truth.sine_V[i], w.sine_V);
-        print("b", known.truth.constant_V[i], w.constant_V);
-        print("phi", known.truth.phase_rad[i], w.phase_rad);
-        std::cout << "\n";
-      }
     }
   }
   for (const auto& [name, coverage] : {std::pair("damping", damping), {"a", sine}, {"b", constant}, {"phase", phase}}) {
     std::cout << name << ": " << coverage.inside << " of " << coverage.all << " inside, largest error " << coverage.worst << "\n";
-    EXPECT_GE(coverage.inside, 0.85 * coverage.all) << name;
+    // 95 %, less three standard errors of the share; the wheels of a drive share its pushes, so drives are counted.
+    EXPECT_GE(coverage.inside, (0.95 - 3.0 * std::sqrt(0.95 * 0.05 / seeds)) * coverage.all) << name;
   }
 }
 
-TEST(FrictionFit, DISABLED_dump) {
-  const Case known = any_case(1);
+SteadyParts parts_of(const Case& known, const TestDrive& drive, std::uint64_t seed) {
+  return find_steady_parts({log_of(DriveOnPlant(known.plant, drive, seed).rows(), 4)}, known.plant.body.kinematics);
+}
+
+TestDrive short_drive(const std::vector<double>& headings_deg, const std::vector<double>& speeds_m_per_s) {
+  TestDrive drive;
+  for (const double heading_deg : headings_deg) {
+    drive.headings_rad.push_back(heading_deg * kDegree_rad);
+  }
+  drive.speeds_m_per_s = speeds_m_per_s;
+  return drive;
+}
+
+/// Without pushes, without bad rows: what is left is the logger's noise.
+TEST(FrictionFit, an_undisturbed_drive_gives_the_friction_within_millivolts) {
+  const Case known = any_case(3);
   TestDrive drive = usual_drive();
+  drive.push_N = 0.0;
   drive.bad_row_share = 0.0;
-  const FrictionLog log = log_of(DriveOnPlant(known.plant, drive, 1).rows(), 4);
-  const SteadyParts steady = find_steady_parts({log}, known.plant.body.kinematics);
-  for (std::size_t r = 0; r < 700; r += 1) {
-    std::cout << log.time_s[r];
-    for (int i = 0; i < 4; ++i) std::cout << " " << log.wheel_speed_rad_per_s[i][r] << " " << log.voltage_V[i][r];
-    std::cout << "\n";
+  drive.rotates = true;
+  const SteadyParts steady = parts_of(known, drive, 3);
+  const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
+  for (std::size_t i = 0; i < 4; ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    EXPECT_NEAR(wheel.damping_V_s_per_rad.value, known.truth.damping_V_s_per_rad, 4e-4);
+    EXPECT_NEAR(wheel.sine_V.value, known.truth.sine_V[i], 0.015);
+    EXPECT_NEAR(wheel.constant_V.value, known.truth.constant_V[i], 0.010);
+    EXPECT_NEAR(wheel.rotation_V.value, known.truth.rotation_V, 0.010);
+    EXPECT_GT(wheel.r2_ratio, 0.999);
+    // what every heading says by itself
+    for (const HeadingLine& line : fit.lines[i]) {
+      const double s = std::sin(line.heading_rad + known.truth.phase_rad[i]);
+      EXPECT_NEAR(line.offset_V.value, known.truth.sine_V[i] * s + std::copysign(known.truth.constant_V[i], s), 0.06);
+    }
   }
-  for (const auto& part : steady.parts) {
-    std::cout << "part leg " << part.leg << " ret " << part.is_return << " rot " << part.is_rotation << " t " << log.time_s[part.first_row] << " rows " << part.row_count << " h " << part.heading_rad / kDegree_rad
-              << " v " << part.speed_m_per_s << " w " << part.wheel_speed_rad_per_s[0] << " V " << part.voltage_V[0] << " noise " << part.speed_noise_rad_per_s[0] << " kept " << part.rows_kept[0] << "\n";
+}
+
+TEST(FrictionFit, bad_rows_and_return_legs_are_left_out) {
+  const Case known = any_case(4);
+  const SteadyParts steady = parts_of(known, usual_drive(), 4);
+  int returns = 0;
+  for (const SteadyPart& part : steady.parts) {
+    // Commands are multiples of 22.5° on outward legs; the way home is 180° from them.
+    EXPECT_FALSE(part.is_rotation);
+    returns += part.is_return ? 1 : 0;
+    EXPECT_LT(part.rows_kept[0], 0.95 * static_cast<double>(part.row_count));
+    EXPECT_GT(part.rows_kept[0], 0.6 * static_cast<double>(part.row_count));
+    if (!part.is_return) {
+      const double speed_m_per_s = part.speed_m_per_s;
+      EXPECT_TRUE(std::abs(speed_m_per_s - 0.4) < 0.03 || std::abs(speed_m_per_s - 0.8) < 0.03 || std::abs(speed_m_per_s - 1.2) < 0.03)
+          << speed_m_per_s;
+    } else {
+      EXPECT_NEAR(part.speed_m_per_s, 0.8, 0.03);  // homing knows one speed
+    }
   }
+  EXPECT_GT(returns, 15);
+  const FrictionFit without = fit_friction(steady.parts, known.plant.body.kinematics, {});
+  const FrictionFit with = fit_friction(steady.parts, known.plant.body.kinematics, {.use_return_legs = true});
+  EXPECT_GT(with.wheels[0].parts_used, without.wheels[0].parts_used);
+}
+
+/// Straight ahead no wheel stands, at 60° wheel 2 (axle at 30°, rolling along 120°) turns with cos 60°, wheel 1 (rolling
+/// along 60°) fully; at −30° wheel 1 should stand.
+TEST(FrictionFit, a_wheel_that_should_stand_tells_nothing) {
+  const Case known = any_case(5);
+  const SteadyParts steady = parts_of(known, short_drive({-30.0, 0.0, 60.0, 90.0, 150.0, 180.0, 240.0, 270.0}, {0.5, 1.0}), 5);
+  const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
+  EXPECT_EQ(fit.wheels[0].parts_standing, 4);  // −30° and 150°
+  ASSERT_TRUE(fit.wheels[0].is_learned()) << fit.wheels[0].problem;
+  for (const HeadingLine& line : fit.lines[0]) {
+    EXPECT_GT(std::abs(std::sin(line.heading_rad + 30.0 * kDegree_rad)), 0.1);
+  }
+}
+
+TEST(FrictionFit, says_what_a_drive_cannot_tell) {
+  const Case known = any_case(6);
+  const FrictionFit one_heading =
+      fit_friction(parts_of(known, short_drive({20.0, 20.0, 20.0}, {0.4, 0.7, 1.0}), 6).parts, known.plant.body.kinematics, {});
+  EXPECT_FALSE(one_heading.is_learned());
+  EXPECT_THAT(one_heading.wheels[0].problem, testing::HasSubstr("headings are too few"));
+
+  std::vector<double> all_round;
+  for (int i = 0; i < 16; ++i) {
+    all_round.push_back(22.5 * i + 5.0);
+  }
+  const SteadyParts one_speed = parts_of(known, short_drive(all_round, {0.8}), 6);
+  const FrictionFit unknown = fit_friction(one_speed.parts, known.plant.body.kinematics, {});
+  EXPECT_FALSE(unknown.is_learned());
+  EXPECT_THAT(unknown.wheels[0].problem, testing::HasSubstr("one speed"));
+  // With the damping known the rest is learned, and said to rest on it.
+  const FrictionFit given =
+      fit_friction(one_speed.parts, known.plant.body.kinematics, {.known_damping_V_s_per_rad = known.truth.damping_V_s_per_rad});
+  ASSERT_TRUE(given.is_learned());
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(given.wheels[i].damping_is_given);
+    EXPECT_TRUE(std::isnan(given.wheels[i].damping_V_s_per_rad.low));
+    EXPECT_NEAR(given.wheels[i].constant_V.value, known.truth.constant_V[i], 0.2);
+  }
+}
+
+TEST(FrictionFit, a_robot_that_stands_or_swings_has_no_steady_parts) {
+  const Case known = any_case(7);
+  FrictionLog log;
+  log.run_begins = {0};
+  for (int row = 0; row < 3000; ++row) {
+    log.time_s.push_back(0.01 * row);
+    for (std::size_t i = 0; i < 4; ++i) {
+      log.wheel_speed_rad_per_s[i].push_back(0.0);
+      log.voltage_V[i].push_back(0.001 * (row % 3));
+    }
+  }
+  EXPECT_TRUE(find_steady_parts({log}, known.plant.body.kinematics).parts.empty());
+  for (int row = 0; row < 3000; ++row) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      log.wheel_speed_rad_per_s[i][static_cast<std::size_t>(row)] = 30.0 * std::sin(0.02 * row + static_cast<double>(i));
+      log.voltage_V[i][static_cast<std::size_t>(row)] = 2.0 * std::sin(0.02 * row + static_cast<double>(i));
+    }
+  }
+  EXPECT_TRUE(find_steady_parts({log}, known.plant.body.kinematics).parts.empty());
+}
+
+/// Every third heading foretold: a robot file without friction is wrong by the friction, the fit by the pushes only.
+TEST(FrictionFit, foretells_headings_that_it_has_not_seen) {
+  const Case known = any_case(8);
+  const SteadyParts steady = parts_of(known, usual_drive(), 8);
+  const auto none = [](const SteadyPart& part) {
+    PerWheel voltage_V = part.wheel_speed_rad_per_s;
+    std::ranges::for_each(voltage_V, [](double& each) { each *= 0.033; });
+    return voltage_V;
+  };
+  const HeldOutError error = error_on_held_out_headings(steady.parts, known.plant.body.kinematics, {}, none);
+  EXPECT_EQ(error.all_headings, 16);
+  EXPECT_GT(error.before_V, 0.6);
+  EXPECT_LT(error.after_V, 0.1);
 }
 
 }  // namespace

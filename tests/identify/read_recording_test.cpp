@@ -53,7 +53,8 @@ TEST(ReadRecording, GapOfMoreThanThreePeriodsSplitsTheRun) {
 }
 
 TEST(ReadRecording, WithoutTimeSaysWhatToDo) {
-  EXPECT_THAT(failure_of("tme_s,winding_C\n0,20\n"), HasSubstr("log.csv:1:1: error: time_s: there is no such column; did you mean 'tme_s'?"));
+  EXPECT_THAT(failure_of("tme_s,winding_C\n0,20\n"),
+              HasSubstr("log.csv:1:1: error: time_s: there is no such column; did you mean 'tme_s'?"));
 }
 
 }  // namespace

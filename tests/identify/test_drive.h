@@ -2,11 +2,14 @@
 // battery that sags, homing in between, pushes that make wheels slip, and a logger with noise, steps and bad rows.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "identify/friction/friction_log.h"
@@ -176,6 +179,22 @@ class DriveOnPlant {
   double time_s_ = 0.0;
   std::vector<DriveRow> rows_;
 };
+
+/// As a logger writes it; what is lost is blank.
+inline std::string csv_of(const std::vector<DriveRow>& rows, int wheel_count) {
+  std::string text = "time_s,battery_V,heading_field_rad,yaw_rad";
+  for (int i = 1; i <= wheel_count; ++i) {
+    text += fmt::format(",wheel_speed_rad_per_s_{},wheel_pwm_ratio_{}", i, i);
+  }
+  const auto cell = [](double value) { return std::isfinite(value) ? fmt::format("{:.7g}", value) : std::string(); };
+  for (const DriveRow& row : rows) {
+    text += fmt::format("\n{:.2f},{:.2f},{:.5f},{:.5f}", row.time_s, row.battery_V, row.command_heading_rad, row.yaw_rad);
+    for (int i = 0; i < wheel_count; ++i) {
+      text += "," + cell(row.wheel_speed_rad_per_s[i]) + "," + cell(row.pwm_ratio[i]);
+    }
+  }
+  return text + "\n";
+}
 
 inline FrictionLog log_of(const std::vector<DriveRow>& rows, int wheel_count) {
   FrictionLog log;

@@ -92,7 +92,7 @@ double median(std::span<double> values) {
   return count % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-RobustLocation robust_location(std::span<const double> values, double least) {
+RobustLocation robust_location(std::span<const double> values, double step) {
   RobustLocation found;
   found.kept.assign(values.size(), false);
   std::vector<double> work(values.begin(), values.end());
@@ -101,7 +101,7 @@ RobustLocation robust_location(std::span<const double> values, double least) {
     return found;
   }
   std::ranges::transform(values, work.begin(), [&](double value) { return std::abs(value - found.value); });
-  const double deviation = std::max(kNormal * median(work), std::max(least, 1e-12 * std::abs(found.value)));
+  const double deviation = std::max(kNormal * median(work), std::max(0.5 * step, 1e-12 * std::abs(found.value)));
   for (int round = 0; round < kMostRounds; ++round) {
     double sum = 0.0;
     double weight = 0.0;
@@ -117,7 +117,7 @@ RobustLocation robust_location(std::span<const double> values, double least) {
     }
     found.value += sum / weight;
   }
-  found.deviation_of_values = deviation;
+  found.noise = deviation;
   for (std::size_t i = 0; i < values.size(); ++i) {
     found.kept[i] = std::isfinite(values[i]) && std::abs(values[i] - found.value) <= kBisquare * deviation;
   }

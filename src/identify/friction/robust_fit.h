@@ -21,11 +21,11 @@ double median(std::span<double> values);
 /// Tukey's bisquare M-estimate (c = 4.685, started at the median, spread from the median absolute deviation).
 struct RobustLocation {
   double value = std::numeric_limits<double>::quiet_NaN();
-  double deviation_of_values = 0.0;  ///< robust standard deviation
-  std::vector<bool> kept;            ///< per value: finite and not an outlier
+  double noise = 0.0;      ///< robust standard deviation
+  std::vector<bool> kept;  ///< per value: finite and not an outlier
 };
-/// `least`: deviations below it are no more than the resolution of the sensor.
-RobustLocation robust_location(std::span<const double> values, double least);
+/// `step`: of the sensor; deviations of half of it are no outliers.
+RobustLocation robust_location(std::span<const double> values, double step);
 
 /// y = X·β with errors of which a fifth may be gross: least absolute deviations, then Tukey's bisquare. The covariance
 /// is the sandwich whose scores are summed over clusters (rows that share an error) with residuals scaled by leverage

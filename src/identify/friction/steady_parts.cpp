@@ -190,13 +190,13 @@ double heading_rad(const FrictionLog& log, const SteadyPart& part, const BodyVel
 SteadyPart measured_part(const FrictionLog& log, const Kinematics& kinematics, SteadyPart part, const BlockMedians& blocks) {
   for (int i = 0; i < kinematics.wheel_count; ++i) {
     const auto wheel = static_cast<std::size_t>(i);
-    const RobustLocation speed = robust_location(rows_of(log.wheel_speed_rad_per_s[wheel], part), 0.5 * blocks.resolution(i));
+    const RobustLocation speed = robust_location(rows_of(log.wheel_speed_rad_per_s[wheel], part), blocks.resolution(i));
     part.wheel_speed_rad_per_s[i] = speed.value;
-    part.speed_noise_rad_per_s[i] = speed.deviation_of_values;
+    part.speed_noise_rad_per_s[i] = speed.noise;
     const bool has_voltage = !log.voltage_V[wheel].empty();
     RobustLocation voltage;
     if (has_voltage) {
-      voltage = robust_location(rows_of(log.voltage_V[wheel], part), 0.5 * blocks.resolution(kinematics.wheel_count + i));
+      voltage = robust_location(rows_of(log.voltage_V[wheel], part), blocks.resolution(kinematics.wheel_count + i));
       part.voltage_V[i] = voltage.value;
     }
     for (std::size_t row = 0; row < part.row_count; ++row) {
