@@ -171,12 +171,13 @@ TEST(FrictionFit, bad_rows_and_return_legs_are_left_out) {
   const Case known = any_case(4);
   const SteadyParts steady = parts_of(known, usual_drive(), 4);
   int returns = 0;
+  double kept = 0.0;
+  double rows = 0.0;
   for (const SteadyPart& part : steady.parts) {
-    // Commands are multiples of 22.5° on outward legs; the way home is 180° from them.
     EXPECT_FALSE(part.is_rotation);
     returns += part.is_return ? 1 : 0;
-    EXPECT_LT(part.rows_kept[0], 0.95 * static_cast<double>(part.row_count));
-    EXPECT_GT(part.rows_kept[0], 0.6 * static_cast<double>(part.row_count));
+    kept += part.rows_kept[0];
+    rows += static_cast<double>(part.row_count);
     if (!part.is_return) {
       const double speed_m_per_s = part.speed_m_per_s;
       EXPECT_TRUE(std::abs(speed_m_per_s - 0.4) < 0.03 || std::abs(speed_m_per_s - 0.8) < 0.03 || std::abs(speed_m_per_s - 1.2) < 0.03)
@@ -186,6 +187,8 @@ TEST(FrictionFit, bad_rows_and_return_legs_are_left_out) {
     }
   }
   EXPECT_GT(returns, 15);
+  // A fifth of the rows is bad, but a quarter of those repeat a row that may have been as steady.
+  EXPECT_NEAR(kept / rows, 0.83, 0.05);
   const FrictionFit without = fit_friction(steady.parts, known.plant.body.kinematics, {});
   const FrictionFit with = fit_friction(steady.parts, known.plant.body.kinematics, {.use_return_legs = true});
   EXPECT_GT(with.wheels[0].parts_used, without.wheels[0].parts_used);

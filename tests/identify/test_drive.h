@@ -58,6 +58,7 @@ class DriveOnPlant {
         for (double time_s = 0.0; time_s < drive_.hold_s; time_s += kPeriod_s) {
           follow({0.0, 0.0, side * speed_m_per_s / plant_.body.kinematics.contact_radius_m}, 0.0);
         }
+        drive_.yaw_rad = state_.pose.yaw_rad;
         stand();
       }
     }

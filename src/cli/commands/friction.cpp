@@ -188,6 +188,24 @@ void draw(const Options& options, const Input& input, const SteadyParts& steady,
   session.say(fmt::format("written: {}\n", (chart.panels.empty() ? std::filesystem::path(options.plot) : voltage).string()));
 }
 
+void answer(const Input& input, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error, const std::string& from,
+            Session& session) {
+  session.answer({{"schema", "heatsoak.friction/1"},
+                  {"method", "steady_state"},
+                  {"robot", input.robot.id},
+                  {"motor", input.motor ? Json(input.motor_id) : Json()},
+                  {"wheels", wheels_json(fit, error, steady.rows)},
+                  {"before", {{"rmse", number(error.before_V)}, {"unit", "V"}, {"from", from}}},
+                  {"after", {{"rmse", number(error.after_V)}, {"unit", "V"}}},
+                  {"headings", fit.headings},
+                  {"headings_held_out", error.headings},
+                  {"rows", steady.rows},
+                  {"rows_steady", steady.rows_steady},
+                  {"legs", steady.legs},
+                  {"return_legs", steady.return_legs},
+                  {"findings", input.findings}});
+}
+
 ExitCode steady_state(const Options& options, Input& input, Session& session) {
   const Kinematics kinematics = make_kinematics(input.robot);
   const SteadyParts steady = find_steady_parts(input.logs, kinematics);
@@ -223,20 +241,7 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
   if (!options.plot.empty()) {
     draw(options, input, steady, fit, session);
   }
-  session.answer({{"schema", "heatsoak.friction/1"},
-                  {"method", "steady_state"},
-                  {"robot", input.robot.id},
-                  {"motor", input.motor ? Json(input.motor_id) : Json()},
-                  {"wheels", wheels_json(fit, error, steady.rows)},
-                  {"before", {{"rmse", number(error.before_V)}, {"unit", "V"}, {"from", before.from}}},
-                  {"after", {{"rmse", number(error.after_V)}, {"unit", "V"}}},
-                  {"headings", fit.headings},
-                  {"headings_held_out", error.headings},
-                  {"rows", steady.rows},
-                  {"rows_steady", steady.rows_steady},
-                  {"legs", steady.legs},
-                  {"return_legs", steady.return_legs},
-                  {"findings", input.findings}});
+  answer(input, steady, fit, error, before.from, session);
   return ExitCode::done;
 }
 

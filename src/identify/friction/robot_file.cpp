@@ -71,8 +71,8 @@ void remove_heading(Lines& lines) {
     while (end != begin + 1 && (std::prev(end)->empty() || std::prev(end)->starts_with("#"))) {
       --end;
     }
-    // and the comments that belong to it
-    while (begin != lines.begin() && std::prev(begin)->starts_with("#")) {
+    // and the comment that belongs to it
+    while (begin != lines.begin() && (std::prev(begin)->starts_with("#") || std::prev(begin)->empty())) {
       --begin;
     }
     begin = lines.erase(begin, end);
@@ -81,8 +81,8 @@ void remove_heading(Lines& lines) {
 
 /// The end of the table [friction], behind its last line with text.
 Lines::iterator end_of_friction(Lines& lines, const Robot& robot) {
-  auto header = std::ranges::find_if(
-      lines, [](const std::string& line) { return is_header_of(line, "friction") && line.find('.') == std::string::npos; });
+  static const std::regex kHeader(R"(^\s*\[\s*friction\s*\])");
+  const auto header = std::ranges::find_if(lines, [](const std::string& line) { return std::regex_search(line, kHeader); });
   if (header == lines.end()) {
     if (std::ranges::any_of(robot.figures, [](const auto& each) { return each.first.starts_with("friction."); })) {
       throw other_form(robot, "friction");
