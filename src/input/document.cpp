@@ -110,9 +110,9 @@ std::string_view to_string(Value::Kind kind) {
   return "?";
 }
 
-Value read_toml(const std::filesystem::path& path) {
-  const std::string content = read_file(path, kLargestToml_bytes);
-  const std::string file = path.string();
+Value read_toml(const std::filesystem::path& path) { return parse_toml(read_file(path, kLargestToml_bytes), path.string()); }
+
+Value parse_toml(const std::string& content, const std::string& file) {
   if (content.find('\0') != std::string::npos) {
     throw bad_input({file}, "", "cannot be read: it is a binary file; expected TOML text");
   }

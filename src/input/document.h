@@ -35,4 +35,7 @@ std::string_view to_string(Value::Kind kind);
 /// error of syntax, or why the file cannot be read.
 Value read_toml(const std::filesystem::path& path);
 
+/// The same for text that is at hand; `file` is its name in messages.
+Value parse_toml(const std::string& content, const std::string& file);
+
 }  // namespace heatsoak

@@ -2,23 +2,32 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace heatsoak {
 namespace {
 
 double given_or(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
 
-FrictionConfig make_friction(const Robot& robot) {
+FrictionConfig make_friction(const Robot& robot, const Kinematics& kinematics) {
   FrictionConfig friction;
   friction.wheel_torque_Nm = robot.wheel_friction_torque_Nm;
   friction.wheel_damping_Nm_s_per_rad = robot.wheel_damping_Nm_s_per_rad;
-  friction.by_heading = !std::isnan(robot.heading_constant_Nm);
+  friction.by_heading = !std::isnan(robot.heading_constant_Nm) || !robot.heading_wheels.empty();
   if (friction.by_heading) {
-    friction.heading.constant_Nm = robot.heading_constant_Nm;
-    friction.heading.sine_Nm = robot.heading_sine_Nm;
-    friction.heading.double_angle_Nm = robot.heading_double_angle_Nm;
-    friction.heading.rotation_Nm = robot.heading_rotation_Nm;
-    std::copy(robot.heading_phase_rad.begin(), robot.heading_phase_rad.end(), friction.heading.double_angle_phase_rad.begin());
+    friction.heading.constant_Nm.fill(robot.heading_constant_Nm);
+    friction.heading.sine_Nm.fill(robot.heading_sine_Nm);
+    for (std::size_t i = 0; i < robot.heading_wheels.size(); ++i) {
+      const HeadingWheel& wheel = robot.heading_wheels[i];
+      friction.heading.constant_Nm[i] = wheel.constant_Nm;
+      friction.heading.sine_Nm[i] = wheel.sine_Nm;
+      friction.heading.phase_offset_rad[i] =
+          std::remainder(wheel.phase_rad - rolling_phase_rad(kinematics.wheels[i]), 2.0 * std::numbers::pi);
+    }
+    friction.heading.double_angle_Nm = given_or(robot.heading_double_angle_Nm, 0.0);
+    friction.heading.rotation_Nm = given_or(robot.heading_rotation_Nm, robot.wheel_friction_torque_Nm);
+    std::copy(robot.heading_double_angle_phase_rad.begin(), robot.heading_double_angle_phase_rad.end(),
+              friction.heading.double_angle_phase_rad.begin());
   }
   return friction;
 }
@@ -35,7 +44,7 @@ BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
   body.kinematics = make_kinematics(robot);
   body.weight = make_weight(body.kinematics, robot.mass_kg, robot.center_of_gravity_height_m, given_or(robot.center_of_gravity_x_m, 0.0),
                             given_or(robot.center_of_gravity_y_m, 0.0));
-  body.friction = make_friction(robot);
+  body.friction = make_friction(robot, body.kinematics);
   body.traction.traction_ratio = robot.traction_ratio;
   body.traction.slip_speed_m_per_s = robot.slip_speed_m_per_s;
   body.traction.roller_drag_ratio = body.friction.by_heading ? 0.0 : robot.roller_drag_ratio;

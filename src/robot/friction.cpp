@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "motor/datasheet_network.h"
+#include "robot/driver.h"
 
 namespace heatsoak {
 namespace {
@@ -28,11 +28,15 @@ PerWheel heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics&
   const double y = speed_m_per_s > 0.0 ? local.y_m_per_s / speed_m_per_s : 0.0;
   PerWheel magnitude_Nm{};
   for (int i = 0; i < kinematics.wheel_count; ++i) {
-    const double s = std::abs(kinematics.wheels[i].rolling_x_share * x + kinematics.wheels[i].rolling_y_share * y);
-    // sin(2θ + φ) of the unit vector (x, y)
+    // sin and cos of θ + φ, φ the wheel's rolling direction
+    const double sine = kinematics.wheels[i].rolling_x_share * x + kinematics.wheels[i].rolling_y_share * y;
+    const double cosine = kinematics.wheels[i].rolling_y_share * x - kinematics.wheels[i].rolling_x_share * y;
+    const double offset_rad = heading.phase_offset_rad[i];
+    const double s = offset_rad == 0.0 ? std::abs(sine) : std::abs(sine * std::cos(offset_rad) + cosine * std::sin(offset_rad));
+    // sin(2θ + ψ) of the unit vector (x, y)
     const double phase_rad = heading.double_angle_phase_rad[i];
     const double twice = 2.0 * x * y * std::cos(phase_rad) + (x * x - y * y) * std::sin(phase_rad);
-    const double translation_Nm = heading.constant_Nm + heading.sine_Nm * s + heading.double_angle_Nm * twice;
+    const double translation_Nm = heading.constant_Nm[i] + heading.sine_Nm[i] * s + heading.double_angle_Nm * twice;
     magnitude_Nm[i] = (1.0 - rotation) * translation_Nm + rotation * heading.rotation_Nm;
   }
   return magnitude_Nm;
@@ -54,15 +58,31 @@ PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& k
   return torque_Nm;
 }
 
-double friction_torque_of_voltage_Nm(const MotorValues& motor, double gear_ratio, double voltage_V) {
-  const double motor_torque_Nm = voltage_V / motor.terminal_resistance_ohm * motor.torque_constant_Nm_per_A;
-  return std::max(0.0, motor_torque_Nm - drag_torque_Nm(motor)) * gear_ratio;
+double rolling_phase_rad(const WheelDirections& wheel) { return std::atan2(wheel.rolling_x_share, wheel.rolling_y_share); }
+
+DriveConstants drive_constants(const Robot& robot, const MotorValues& motor) {
+  const MotorElectrics electrics = make_electrics(robot, motor);
+  const double driver_ohm = std::isnan(robot.driver_resistance_ohm) ? 0.0 : robot.driver_resistance_ohm;
+  return {electrics.heating_factor * electrics.resistance_25C_ohm + driver_ohm, electrics.torque_constant_25C_Nm_per_A,
+          electrics.drag_torque_Nm, robot.gear_ratio, robot.gear_efficiency};
 }
 
-double damping_of_voltage_Nm_s_per_rad(const MotorValues& motor, double gear_ratio, double damping_V_s_per_rad) {
-  const double beyond_back_emf_V_s_per_rad = damping_V_s_per_rad / gear_ratio - motor.torque_constant_Nm_per_A;
-  return std::max(0.0, beyond_back_emf_V_s_per_rad) * motor.torque_constant_Nm_per_A / motor.terminal_resistance_ohm * gear_ratio *
-         gear_ratio;
+double friction_torque_of_voltage_Nm(const DriveConstants& drive, double voltage_V) {
+  const double motor_torque_Nm = voltage_V / drive.resistance_ohm * drive.torque_constant_Nm_per_A;
+  return std::max(0.0, motor_torque_Nm - drive.drag_torque_Nm) * drive.gear_ratio * drive.gear_efficiency;
+}
+
+double damping_of_voltage_Nm_s_per_rad(const DriveConstants& drive, double damping_V_s_per_rad) {
+  const double beyond_back_emf_V_s_per_rad = damping_V_s_per_rad / drive.gear_ratio - drive.torque_constant_Nm_per_A;
+  return std::max(0.0, beyond_back_emf_V_s_per_rad) * drive.torque_constant_Nm_per_A / drive.resistance_ohm * drive.gear_ratio *
+         drive.gear_ratio * drive.gear_efficiency;
+}
+
+double steady_voltage_V(const DriveConstants& drive, double wheel_torque_Nm, double wheel_speed_rad_per_s) {
+  const double drag_Nm = wheel_speed_rad_per_s == 0.0 ? 0.0 : std::copysign(drive.drag_torque_Nm, wheel_speed_rad_per_s);
+  const double motor_torque_Nm = wheel_torque_Nm / (drive.gear_ratio * drive.gear_efficiency) + drag_Nm;
+  return motor_torque_Nm * drive.resistance_ohm / drive.torque_constant_Nm_per_A +
+         drive.torque_constant_Nm_per_A * drive.gear_ratio * wheel_speed_rad_per_s;
 }
 
 }  // namespace heatsoak

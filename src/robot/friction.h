@@ -15,18 +15,23 @@ namespace heatsoak {
 //   a Festo Robotino: currents over 72 headings (tests/robot/robotino_test.cpp)
 // are one model. The other description is the curve that a team measured, taken as it is.
 
-/// The curve of one wheel over the direction of travel θ (local frame), as torque at the wheel:
-///   f(θ) = sign(s)·(b + a·|s| + A·sin(2θ + φ)),     s = sin(θ + φ_i) = t_i·v/|v|,
-/// with a and b of ETDP 2025, equation (3), whose phase φ_i is the wheel's rolling direction, and A of the firmware.
+/// The curve of wheel i over the direction of travel θ (local frame), as torque at the wheel:
+///   f(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)) + sign(ω_i)·A·sin(2θ + ψ_i),
+/// the first two terms those of ETDP 2025, equation (3), A that of the firmware. Without an offset φ_i is the wheel's
+/// rolling direction, sin(θ + φ_i) = t_i·v/|v|. Its sign is taken from the wheel's speed, so that friction never drives.
 /// In rotation it goes over to a constant c: (1 − γ)·f + γ·sign(ω)·c, γ = ½·(1 − cos(π·min(1, R·|yaw rate|/|v|))).
-/// The firmware counts θ from the left to straight ahead: its phase is −φ here.
+/// The firmware counts θ from the left to straight ahead: its phase is −ψ here.
 struct HeadingFriction {
-  double constant_Nm = 0.0;           ///< b
-  double sine_Nm = 0.0;               ///< a
+  PerWheel constant_Nm{};             ///< b
+  PerWheel sine_Nm{};                 ///< a
+  PerWheel phase_offset_rad{};        ///< φ_i less that of the rolling direction
   double double_angle_Nm = 0.0;       ///< A, at most b
-  PerWheel double_angle_phase_rad{};  ///< φ, wheel by wheel
+  PerWheel double_angle_phase_rad{};  ///< ψ
   double rotation_Nm = 0.0;           ///< c
 };
+
+/// φ of the wheel's rolling direction t: sin(θ + φ) = t·(cos θ, sin θ).
+double rolling_phase_rad(const WheelDirections& wheel);
 
 struct FrictionConfig {
   double wheel_torque_Nm = 0.0;             ///< against the turning, at each wheel
@@ -40,13 +45,27 @@ struct FrictionConfig {
 PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,
                              const PerWheel& wheel_speed_rad_per_s);
 
-/// Friction that a team states as voltage at the motor, as torque at the wheel: at standstill the voltage drives the
-/// current V/R, so (V/R·K_t − motor drag)·gear ratio. The drag K_t·I_0 of the motor is taken off because it is booked
-/// in the motor; where it is larger the result is 0.
-double friction_torque_of_voltage_Nm(const MotorValues& motor, double gear_ratio, double voltage_V);
+/// What stands between the voltage of a driver and the torque at its wheel.
+struct DriveConstants {
+  double resistance_ohm = 1.0;  ///< that the current meets, winding at 25 °C and driver
+  double torque_constant_Nm_per_A = 0.0;
+  double drag_torque_Nm = 0.0;  ///< of the motor, K_t·I_0
+  double gear_ratio = 1.0;
+  double gear_efficiency = 1.0;
+};
+/// A robot without driver_resistance has none.
+DriveConstants drive_constants(const Robot& robot, const MotorValues& motor);
 
-/// Damping that a team states as voltage per wheel speed contains the back-EMF: (d/n − K_t)·K_t/R·n² is left for
-/// the mechanics, n the gear ratio; where the back-EMF is larger, 0.
-double damping_of_voltage_Nm_s_per_rad(const MotorValues& motor, double gear_ratio, double damping_V_s_per_rad);
+/// Friction that a team states as voltage, as torque at the wheel: at standstill the voltage drives the current V/R, so
+/// (V/R·K_t − motor drag)·gear ratio·efficiency. The drag K_t·I_0 of the motor is taken off because it is booked in the
+/// motor; where it is larger the result is 0.
+double friction_torque_of_voltage_Nm(const DriveConstants& drive, double voltage_V);
+
+/// Damping that a team states as voltage per wheel speed contains the back-EMF: (d/n − K_t)·K_t/R·n²·efficiency is left
+/// for the mechanics, n the gear ratio; where the back-EMF is larger, 0.
+double damping_of_voltage_Nm_s_per_rad(const DriveConstants& drive, double damping_V_s_per_rad);
+
+/// And back: what a driver must put out to keep a wheel turning against a torque, (T/(n·efficiency) + drag·sign ω)·R/K_t + K_t·n·ω.
+double steady_voltage_V(const DriveConstants& drive, double wheel_torque_Nm, double wheel_speed_rad_per_s);
 
 }  // namespace heatsoak

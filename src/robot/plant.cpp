@@ -197,7 +197,7 @@ void accelerate_wheel(const PlantConfig& plant, int i, const PlantState& state, 
   out.friction_W[i] = friction_Nm * speed_rad_per_s;
   const double geared_constant_Nm_per_A = point.torque_constant_Nm_per_A * plant.gear_ratio;
   const double dry_Nm =
-      plant.body.friction.wheel_torque_Nm + plant.body.friction.heading.constant_Nm + plant.motor.drag_torque_Nm * plant.gear_ratio;
+      plant.body.friction.wheel_torque_Nm + plant.body.friction.heading.constant_Nm[i] + plant.motor.drag_torque_Nm * plant.gear_ratio;
   stage.contact_N_s_per_m[i] = ratios.rolling_slope_s_per_m * out.normal_force_N[i];
   stage.resistance_Nm_s_per_rad[i] = dry_Nm * smoothing * smoothing / (root_rad_per_s * root_rad_per_s * root_rad_per_s) +
                                      plant.body.friction.wheel_damping_Nm_s_per_rad +

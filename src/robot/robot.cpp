@@ -59,18 +59,80 @@ constexpr std::array<RobotFigureSpec, 28> kSpecs{{
      &Robot::yaw_acceleration_limit_rad_per_s2},
 }};
 
+constexpr std::array<WheelFigureSpec, 3> kWheelSpecs{{
+    {{"constant", "N m", Range::non_negative(), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
+    {{"sine", "N m", Range::any(), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
+    {{"phase", "rad", Range::any(), "of that part and of the sign, near the negative angle of the wheel's axle"}, &HeadingWheel::phase_rad},
+}};
+
 constexpr std::array<std::string_view, 4> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate"};
+
+void read_figure(Reader& reader, const RobotFigureSpec& each, Need need, Robot& robot) {
+  if (std::optional<Figure> figure = reader.figure(each.spec, need)) {
+    robot.*each.value = figure->value;
+    robot.figures.emplace(fmt::format("{}.{}", each.table, each.spec.key), std::move(*figure));
+  }
+}
 
 void read_figures(Reader& reader, std::string_view table, Robot& robot) {
   for (const RobotFigureSpec& each : kSpecs) {
-    if (each.table != table) {
-      continue;
-    }
-    if (std::optional<Figure> figure = reader.figure(each.spec, table == "friction.heading" ? Need::required : Need::optional)) {
-      robot.*each.value = figure->value;
-      robot.figures.emplace(fmt::format("{}.{}", table, each.spec.key), std::move(*figure));
+    if (each.table == table) {
+      read_figure(reader, each, Need::optional, robot);
     }
   }
+}
+
+std::string wheel_figure_key(std::size_t wheel, const WheelFigureSpec& figure) {
+  return fmt::format("friction.heading.wheel[{}].{}", wheel, figure.spec.key);
+}
+
+/// Where friction would drive the wheel on some direction of travel.
+void check_sign(Reader& reader, double constant_Nm, double sine_Nm, double double_angle_Nm) {
+  if (constant_Nm + std::min(0.0, sine_Nm) < double_angle_Nm) {
+    reader.problem("constant", "is smaller than what the other parts take off on some direction, so that friction would drive the wheel");
+  }
+}
+
+/// [[friction.heading.wheel]], wheel 1 first.
+void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double double_angle_Nm) {
+  for (Reader& reader : wheels) {
+    HeadingWheel& wheel = robot.heading_wheels.emplace_back();
+    for (const WheelFigureSpec& each : kWheelSpecs) {
+      if (std::optional<Figure> figure = reader.figure(each.spec, Need::required)) {
+        wheel.*each.value = figure->value;
+        robot.figures.emplace(wheel_figure_key(robot.heading_wheels.size() - 1, each), std::move(*figure));
+      }
+    }
+    check_sign(reader, wheel.constant_Nm, wheel.sine_Nm, double_angle_Nm);
+    reader.finish();
+  }
+}
+
+void read_heading(Reader& heading, Robot& robot) {
+  std::vector<Reader> wheels = heading.tables("wheel");
+  for (const RobotFigureSpec& each : kSpecs) {
+    const bool of_all_wheels = each.spec.key == "constant" || each.spec.key == "sine";
+    if (each.table == "friction.heading") {
+      read_figure(heading, each, of_all_wheels && wheels.empty() ? Need::required : Need::optional, robot);
+      if (of_all_wheels && !wheels.empty() && !std::isnan(robot.*each.value)) {
+        heading.problem(each.spec.key, "stands beside the same figure of every wheel; expected one of them");
+      }
+    }
+  }
+  const bool has_double_angle = !std::isnan(robot.heading_double_angle_Nm);
+  robot.heading_double_angle_phase_rad =
+      heading.quantities({"double_angle_phases", "rad", Range::any(), "one per wheel"}, has_double_angle ? Need::required : Need::optional);
+  if (has_double_angle && robot.heading_double_angle_phase_rad.size() != robot.wheel_axis_rad.size()) {
+    heading.problem("double_angle_phases", "expected one phase per wheel");
+  }
+  const double double_angle_Nm = has_double_angle ? robot.heading_double_angle_Nm : 0.0;
+  if (wheels.empty()) {
+    check_sign(heading, robot.heading_constant_Nm, robot.heading_sine_Nm, double_angle_Nm);
+  } else if (wheels.size() != robot.wheel_axis_rad.size()) {
+    heading.problem("wheel", fmt::format("names {} wheels, the robot has {}", wheels.size(), robot.wheel_axis_rad.size()));
+  }
+  read_heading_wheels(wheels, robot, double_angle_Nm);
+  heading.finish();
 }
 
 void read_friction(Reader& top, Robot& robot) {
@@ -80,15 +142,7 @@ void read_friction(Reader& top, Robot& robot) {
   }
   read_figures(*friction, "friction", robot);
   if (std::optional<Reader> heading = friction->table("heading", Need::optional)) {
-    read_figures(*heading, "friction.heading", robot);
-    robot.heading_phase_rad = heading->quantities({"double_angle_phases", "rad", Range::any(), "one per wheel"}, Need::required);
-    if (robot.heading_phase_rad.size() != robot.wheel_axis_rad.size()) {
-      heading->problem("double_angle_phases", "expected one phase per wheel");
-    }
-    if (robot.heading_double_angle_Nm > robot.heading_constant_Nm) {
-      heading->problem("double_angle", "is larger than the constant part, so that friction would drive the wheel");
-    }
-    heading->finish();
+    read_heading(*heading, robot);
   }
   friction->finish();
 }
@@ -134,6 +188,7 @@ void read_drive(Reader& top, Robot& robot) {
 }  // namespace
 
 std::span<const RobotFigureSpec> robot_figure_specs() { return kSpecs; }
+std::span<const WheelFigureSpec> wheel_figure_specs() { return kWheelSpecs; }
 
 void require_figures(const Robot& robot, std::span<const std::string_view> tables) {
   Diagnostics diagnostics;
@@ -150,10 +205,18 @@ void require_figures(const Robot& robot, std::span<const std::string_view> table
 
 Robot draw_sample(const Robot& robot, Random& random) {
   Robot drawn = robot;
-  for (const RobotFigureSpec& each : kSpecs) {
-    const auto found = robot.figures.find(fmt::format("{}.{}", each.table, each.spec.key));
+  const auto draw = [&](const std::string& key, double& value) {
+    const auto found = robot.figures.find(key);
     if (found != robot.figures.end() && found->second.spread) {
-      drawn.*each.value = found->second.quantile(random.uniform());
+      value = found->second.quantile(random.uniform());
+    }
+  };
+  for (const RobotFigureSpec& each : kSpecs) {
+    draw(fmt::format("{}.{}", each.table, each.spec.key), drawn.*each.value);
+  }
+  for (std::size_t i = 0; i < drawn.heading_wheels.size(); ++i) {
+    for (const WheelFigureSpec& each : kWheelSpecs) {
+      draw(wheel_figure_key(i, each), drawn.heading_wheels[i].*each.value);
     }
   }
   return drawn;
@@ -161,8 +224,9 @@ Robot draw_sample(const Robot& robot, Random& random) {
 
 double Robot::available_V() const { return std::min(battery_V, voltage_limit_V); }
 
-Robot read_robot(const std::filesystem::path& path) {
-  const Value root = read_toml(path);
+namespace {
+
+Robot robot_of(const Value& root, const std::filesystem::path& path) {
   Diagnostics diagnostics;
   Reader top(root, "", diagnostics);
   Robot robot;
@@ -190,5 +254,11 @@ Robot read_robot(const std::filesystem::path& path) {
   diagnostics.throw_if_any();
   return robot;
 }
+
+}  // namespace
+
+Robot read_robot(const std::filesystem::path& path) { return robot_of(read_toml(path), path); }
+
+Robot parse_robot(const std::string& text, const std::filesystem::path& path) { return robot_of(parse_toml(text, path.string()), path); }
 
 }  // namespace heatsoak

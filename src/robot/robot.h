@@ -22,6 +22,13 @@ namespace heatsoak {
 /// commutation: 0.75·R·Î² against R·I², with K_t per peak ampere 0.907 of the one per DC ampere.
 enum class Commutation { block, sinusoidal };
 
+/// Friction of one wheel over the direction of travel as it was measured; friction.h has the formula.
+struct HeadingWheel {
+  double constant_Nm = kAbsent;
+  double sine_Nm = kAbsent;
+  double phase_rad = kAbsent;
+};
+
 struct Robot {
   std::string id;  ///< the file's stem
   std::filesystem::path file;
@@ -64,13 +71,14 @@ struct Robot {
   double jerk_limit_m_per_s3 = kAbsent;
   double yaw_rate_limit_rad_per_s = kAbsent;
   double yaw_acceleration_limit_rad_per_s2 = kAbsent;
-  // A measured curve of friction over the direction of travel, all or none; friction.h has its formula.
-  double heading_constant_Nm = kAbsent;
+  // A measured curve of friction over the direction of travel; friction.h has its formula.
+  double heading_constant_Nm = kAbsent;  ///< of all wheels, absent where each has its own
   double heading_sine_Nm = kAbsent;
-  double heading_double_angle_Nm = kAbsent;
-  double heading_rotation_Nm = kAbsent;
-  std::vector<double> heading_phase_rad;               ///< per wheel
-  std::map<std::string, Figure, std::less<>> figures;  ///< by "table.key"
+  double heading_double_angle_Nm = kAbsent;            ///< 0 where absent
+  double heading_rotation_Nm = kAbsent;                ///< wheel_friction_torque where absent
+  std::vector<double> heading_double_angle_phase_rad;  ///< per wheel; empty without double angle
+  std::vector<HeadingWheel> heading_wheels;            ///< one per wheel, or none
+  std::map<std::string, Figure, std::less<>> figures;  ///< by "table.key", "friction.heading.wheel[0].key"
 
   [[nodiscard]] double available_V() const;
 };
@@ -83,6 +91,13 @@ struct RobotFigureSpec {
 };
 std::span<const RobotFigureSpec> robot_figure_specs();
 
+/// The same for the figures of one [[friction.heading.wheel]].
+struct WheelFigureSpec {
+  ParameterSpec spec;
+  double HeadingWheel::*value;
+};
+std::span<const WheelFigureSpec> wheel_figure_specs();
+
 /// Throws Failure (bad_input) that names every figure of `tables` that the robot lacks, optional ones apart.
 void require_figures(const Robot& robot, std::span<const std::string_view> tables);
 
@@ -91,5 +106,8 @@ Robot draw_sample(const Robot& robot, Random& random);
 
 /// Throws Failure (bad_input) with every problem of the file.
 Robot read_robot(const std::filesystem::path& path);
+
+/// The same of a file's text; `path` names the robot.
+Robot parse_robot(const std::string& text, const std::filesystem::path& path);
 
 }  // namespace heatsoak

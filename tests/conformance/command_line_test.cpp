@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "../identify/test_drive.h"
+#include "motor/motor.h"
 #include "program_run.h"
 
 namespace heatsoak {
@@ -37,8 +39,25 @@ const Words kEvaluate{"evaluate",
                       "maxon_ec45_flat_70w_24v,maxon_ecx_flat_32l_48v"};
 const Words kSimulate{"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent"};
 
-/// A folder as the examples expect it: the data folders within reach.
+/// A log of a friction test, driven by the plant.
+const std::string& friction_log_text() {
+  static const std::string text = [] {
+    const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+    TestDrive drive;
+    for (int i = 0; i < 8; ++i) {
+      drive.headings_rad.push_back(0.2 + i * std::numbers::pi / 4.0);
+    }
+    drive.speeds_m_per_s = {0.5, 1.0};
+    drive.bad_row_share = 0.1;
+    const Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+    return csv_of(DriveOnPlant(make_plant(robot, motor.nominal, 0.001), drive, 1).rows(), 4);
+  }();
+  return text;
+}
+
+/// A folder as the examples expect it: the data folders and a log within reach.
 void link_data(const fs::path& folder) {
+  write(folder / "steady_state_test.csv", friction_log_text());
   for (const char* each : {"motor_db", "duty_profiles", "robot_core"}) {
     fs::create_directory_symlink(kSource / each, folder / each);
   }
@@ -280,6 +299,59 @@ TEST(Json, of_steady_keeps_the_contract) {
   }
   EXPECT_EQ(answer.at("runaway"), false);
   EXPECT_THAT(result.err, HasSubstr("winding"));  // the text for people
+}
+
+TEST(Json, of_friction_keeps_the_contract) {
+  const TemporaryFolder folder;
+  link_data(folder.path());
+  const std::string log = (folder.path() / "steady_state_test.csv").string();
+  const std::string out = (folder.path() / "measured.toml").string();
+  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", log, "--out", out, "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json answer = result.json();
+  EXPECT_EQ(answer.at("schema"), "heatsoak.friction/1");
+  ASSERT_EQ(answer.at("wheels").size(), 4U);
+  for (const json& wheel : answer["wheels"]) {
+    EXPECT_TRUE(wheel.at("index").is_number_unsigned());
+    for (const char* key : {"damping_V_s_per_rad", "a_V", "b_V", "phase_rad"}) {
+      const json& estimate = wheel.at(key);
+      EXPECT_LE(estimate.at("ci95").at(0), estimate.at("value")) << key;
+      EXPECT_GE(estimate.at("ci95").at(1), estimate.at("value")) << key;
+    }
+    EXPECT_GT(wheel.at("r2"), 0.5);
+    EXPECT_EQ(wheel.at("rows_used").get<int>() + wheel.at("rows_left_out").get<int>(), answer.at("rows").get<int>());
+  }
+  EXPECT_TRUE(answer.at("before").at("rmse").is_number());
+  EXPECT_TRUE(answer.at("after").at("rmse").is_number());
+  // The file that was written is a robot that every other verb takes.
+  EXPECT_EQ(run({"lint", out}).exit_code, 0);
+  EXPECT_NE(
+      run({"evaluate", "--robot", out, "--duty", "paper_intermittent", "--motors", "maxon_ec45_flat_70w_24v", "--samples", "3"}).exit_code,
+      2);
+}
+
+TEST(ExitCode, of_friction_says_what_a_log_cannot_tell) {
+  const TemporaryFolder folder;
+  const std::string standing = (folder.path() / "standing.csv").string();
+  std::string text = "time_s,battery_V";
+  for (const char* wheel : {"1", "2", "3", "4"}) {
+    text += std::string(",wheel_speed_rad_per_s_") + wheel + ",wheel_pwm_ratio_" + wheel;
+  }
+  for (int row = 0; row < 500; ++row) {
+    text += "\n" + std::to_string(0.01 * row) + ",24,0,0,0,0,0,0,0,0";
+  }
+  write(standing, text + "\n");
+  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", standing});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("in no stretch do the wheels turn steadily"));
+
+  const std::string thermal = (folder.path() / "thermal.csv").string();
+  write(thermal, "time_s,winding_C,current_A\n0,25,1\n1,26,1\n2,27,1\n");
+  const ProgramRun wrong = run({"friction", "--robot", "roboteam_twente_v2024", thermal});
+  EXPECT_EQ(wrong.exit_code, 2);
+  for (const char* missing : {"wheel_speed_rad_per_s_1", "wheel_speed_rad_per_s_4"}) {
+    EXPECT_THAT(wrong.err, HasSubstr(thermal + ":1:1: error: " + missing + ": is missing"));
+  }
 }
 
 TEST(Json, of_a_runaway_has_no_temperatures) {

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "motor/datasheet_network.h"
+#include "robot/plant.h"
 #include "robots_for_tests.h"
 
 namespace heatsoak {
@@ -251,6 +253,8 @@ TEST(Friction, of_tigers_is_what_they_measured) {
 TEST(Friction, of_twente_is_their_curve) {
   const Robot robot = shipped_robot("roboteam_twente_v2024");
   const MotorValues motor = shipped_motor("maxon_ecx_flat_32l_48v").nominal;
+  // The team divides its voltages by the winding's resistance alone.
+  const DriveConstants drive{motor.terminal_resistance_ohm, motor.torque_constant_Nm_per_A, drag_torque_Nm(motor)};
   BodyConfig body = make_body(robot, motor);
   EXPECT_EQ(body.traction.roller_drag_ratio, 0.0);
   body.friction.wheel_damping_Nm_s_per_rad = 0.0;
@@ -261,18 +265,20 @@ TEST(Friction, of_twente_is_their_curve) {
     const double side = std::sin(firmware_rad + std::numbers::pi / 3.0);
     const double voltage_V = 1.23 + 0.46 * std::sin(2.0 * firmware_rad - 0.987);
     if (std::abs(side) > 0.1) {
-      EXPECT_NEAR(out.torque_Nm[0], std::copysign(friction_torque_of_voltage_Nm(motor, 1.0, voltage_V), side), 3e-4) << heading_rad;
+      EXPECT_NEAR(out.torque_Nm[0], std::copysign(friction_torque_of_voltage_Nm(drive, voltage_V), side), 3e-4) << heading_rad;
     }
   }
   const WheelDemands turning = inverse_dynamics(body, {{0.0, 0.0, 6.0}, {}, {}, 0.0});
-  EXPECT_NEAR(turning.torque_Nm[0], friction_torque_of_voltage_Nm(motor, 1.0, 0.3), 1e-4);
+  EXPECT_NEAR(turning.torque_Nm[0], friction_torque_of_voltage_Nm(drive, 0.3), 1e-4);
 }
 
 /// f(θ) = a·sin(θ + φ_i) + b·sign(sin(θ + φ_i)), ETDP 2025, equation (3): φ_i is the wheel's rolling direction.
 TEST(Friction, equation_3_of_the_paper) {
   FrictionConfig friction;
   friction.by_heading = true;
-  friction.heading = {0.02, 0.01, 0.0, {}, 0.005};
+  friction.heading.constant_Nm.fill(0.02);
+  friction.heading.sine_Nm.fill(0.01);
+  friction.heading.rotation_Nm = 0.005;
   friction.smoothing_rad_per_s = 1e-9;
   const Kinematics kinematics = make_kinematics(shipped_robot("roboteam_twente_v2024"));
   for (int i = 0; i < 36; ++i) {
@@ -298,12 +304,55 @@ TEST(Friction, roller_drag_costs_more_ahead_than_sideways) {
 }
 
 TEST(Friction, voltages_become_torques) {
-  MotorValues motor = bare_motor();  // 0.6 Ω, 35 mN m/A
-  motor.no_load_current_A = 0.2;
-  EXPECT_NEAR(friction_torque_of_voltage_Nm(motor, 2.0, 1.2), (2.0 * 0.035 - 0.007) * 2.0, 1e-15);
-  EXPECT_EQ(friction_torque_of_voltage_Nm(motor, 2.0, 0.05), 0.0);
+  const DriveConstants drive{.resistance_ohm = 0.6, .torque_constant_Nm_per_A = 0.035, .drag_torque_Nm = 0.007, .gear_ratio = 2.0};
+  EXPECT_NEAR(friction_torque_of_voltage_Nm(drive, 1.2), (2.0 * 0.035 - 0.007) * 2.0, 1e-15);
+  EXPECT_EQ(friction_torque_of_voltage_Nm(drive, 0.05), 0.0);
   // 0.09 V s/rad at the wheel: 0.07 are back-EMF, 0.02 V/(rad/s)/0.6 Ω·35 mN m/A·2
-  EXPECT_NEAR(damping_of_voltage_Nm_s_per_rad(motor, 2.0, 0.09), 0.02 / 0.6 * 0.035 * 2.0, 1e-15);
+  EXPECT_NEAR(damping_of_voltage_Nm_s_per_rad(drive, 0.09), 0.02 / 0.6 * 0.035 * 2.0, 1e-15);
+}
+
+TEST(Friction, torques_become_the_same_voltages_again) {
+  const DriveConstants drive = drive_constants(lossy_robot(), lossy_motor());
+  EXPECT_NEAR(drive.resistance_ohm, 0.61, 1e-15);  // winding and driver
+  for (const double speed_rad_per_s : {-40.0, -3.0, 5.0, 60.0}) {
+    const double side = speed_rad_per_s > 0.0 ? 1.0 : -1.0;
+    const double damping_V_s_per_rad = 0.08;
+    const double constant_V = 1.1;
+    const double torque_Nm = friction_torque_of_voltage_Nm(drive, constant_V) * side +
+                             damping_of_voltage_Nm_s_per_rad(drive, damping_V_s_per_rad) * speed_rad_per_s;
+    EXPECT_NEAR(steady_voltage_V(drive, torque_Nm, speed_rad_per_s), damping_V_s_per_rad * speed_rad_per_s + constant_V * side, 1e-12);
+  }
+}
+
+/// The plant driven at the voltage that the formula says keeps its speed: the wheels have a curve each, with an offset.
+TEST(Friction, of_each_wheel_keeps_the_plant_steady) {
+  Robot robot = lossy_robot();
+  robot.rolling_efficiency = 1.0;
+  robot.center_of_gravity_x_m = robot.center_of_gravity_y_m = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    robot.heading_wheels.push_back({0.02 + 0.002 * i, 0.01 - 0.004 * i, -robot.wheel_axis_rad[static_cast<std::size_t>(i)] + 0.05 * i});
+  }
+  PlantConfig plant = make_plant(robot, lossy_motor(), 0.001);
+  plant.body.friction.smoothing_rad_per_s = 1e-3;
+  const DriveConstants drive = drive_constants(robot, lossy_motor());
+  for (const double heading_rad : {0.3, 1.1, 2.6, 4.0}) {
+    PlantState state = plant_at_rest(plant);
+    state.velocity = {std::cos(heading_rad), std::sin(heading_rad), 0.0};
+    state.wheel_speed_rad_per_s = wheel_speeds_rad_per_s(plant.body.kinematics, state.velocity);
+    PlantInput input;
+    for (int i = 0; i < 4; ++i) {
+      const HeadingWheel& wheel = robot.heading_wheels[static_cast<std::size_t>(i)];
+      const double s = std::sin(heading_rad + wheel.phase_rad);
+      const double speed_rad_per_s = state.wheel_speed_rad_per_s[i];
+      const double torque_Nm = wheel.sine_Nm * s + std::copysign(wheel.constant_Nm, s) + robot.wheel_damping_Nm_s_per_rad * speed_rad_per_s;
+      input.command[i] = {MotorCommand::Kind::voltage, steady_voltage_V(drive, torque_Nm, speed_rad_per_s)};
+    }
+    const PlantOutput output = step(plant, state, input);
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_NEAR(output.rolling_force_N[i], 0.0, 1e-5) << heading_rad << " wheel " << i + 1;
+    }
+    EXPECT_NEAR(state.velocity.x_m_per_s, std::cos(heading_rad), 1e-5);
+  }
 }
 
 TEST(InverseDynamics, names_every_figure_that_is_missing) {

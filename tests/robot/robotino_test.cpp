@@ -148,7 +148,7 @@ Model paper_model(const BodyConfig& body) {
     for (const bool is_sine : {true, false}) {
       BodyConfig one = frictionless(body);
       one.friction.by_heading = true;
-      (is_sine ? one.friction.heading.sine_Nm : one.friction.heading.constant_Nm) = 1.0;
+      (is_sine ? one.friction.heading.sine_Nm : one.friction.heading.constant_Nm).fill(1.0);
       // The paper's θ is the commanded direction.
       const double heading_rad = run.heading_deg * std::numbers::pi / 180.0;
       const BodyVelocity commanded{0.1 * std::cos(heading_rad), 0.1 * std::sin(heading_rad), 0.0};

@@ -150,8 +150,9 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
     }
   }
   for (const ChartCurve& curve : panel.curves) {
-    for (const std::vector<CurvePoint>& piece : reduce(curve, across, up)) {
-      add_line(chart, piece, palette_color(curve.color_index), curve_width_px, curve.dashed);
+    const float width_px = curve.dots ? static_cast<float>(marker_px) : curve_width_px;
+    for (const std::vector<CurvePoint>& piece : curve.dots ? markers(curve, across, up, marker_px) : reduce(curve, across, up)) {
+      add_line(chart, piece, palette_color(curve.color_index), width_px, curve.dashed);
     }
   }
   for (const ChartLevel& level : panel.levels) {
@@ -196,6 +197,11 @@ class Lettering : public vtkContextItem {
       float corners[] = {left_px, y_px - 5, left_px, y_px + 5, right_px, y_px - 5, right_px, y_px + 5};
       painter->GetBrush()->SetColor(color[0], color[1], color[2], band_opacity);
       painter->DrawQuadStrip(corners, 4);
+    } else if (swatch.is_dots) {
+      const float middle_px = 0.5F * (left_px + right_px);
+      const float half_px = 0.5F * static_cast<float>(marker_px);
+      set_pen(painter->GetPen(), color, static_cast<float>(marker_px), false);
+      painter->DrawLine(middle_px - half_px, y_px, middle_px + half_px, y_px);
     } else {
       set_pen(painter->GetPen(), color, curve_width_px, swatch.is_dashed);
       painter->DrawLine(left_px, y_px, right_px, y_px);

@@ -37,8 +37,8 @@ std::vector<LegendEntry> legend_entries(const Chart& chart) {
   const auto add = [&](const std::string& name, const LegendSwatch& swatch) {
     const auto same = [&](const LegendEntry& each) {
       const LegendSwatch& other = each.swatch;
-      return std::tie(each.name, other.color_index, other.is_dashed, other.is_band) ==
-             std::tie(name, swatch.color_index, swatch.is_dashed, swatch.is_band);
+      return std::tie(each.name, other.color_index, other.is_dashed, other.is_band, other.is_dots) ==
+             std::tie(name, swatch.color_index, swatch.is_dashed, swatch.is_band, swatch.is_dots);
     };
     if (!name.empty() && std::ranges::none_of(entries, same)) {
       entries.push_back({name, swatch});
@@ -46,7 +46,7 @@ std::vector<LegendEntry> legend_entries(const Chart& chart) {
   };
   for (const ChartPanel& panel : chart.panels) {
     for (const ChartCurve& curve : panel.curves) {
-      add(curve.name, {.color_index = curve.color_index, .is_dashed = curve.dashed});
+      add(curve.name, {.color_index = curve.color_index, .is_dashed = curve.dashed, .is_dots = curve.dots});
     }
   }
   for (const ChartPanel& panel : chart.panels) {

@@ -30,6 +30,7 @@ struct LegendSwatch {
   int color_index = 0;
   bool is_dashed = false;
   bool is_band = false;
+  bool is_dots = false;
 };
 
 /// The plot area of one panel.
@@ -50,6 +51,7 @@ struct Page {
 };
 
 inline constexpr double swatch_width_px = 26.0;
+inline constexpr double marker_px = 5.0;
 
 inline constexpr TextStyle tick_style{.size_px = 12, .is_bold = false, .color = {0x44, 0x44, 0x44}};
 inline constexpr unsigned char limit_color[3] = {0xC8, 0x10, 0x2E};

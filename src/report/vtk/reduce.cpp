@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
+#include <utility>
 
 namespace heatsoak {
 namespace {
@@ -44,6 +46,23 @@ std::vector<PixelColumn> pixel_columns(const std::vector<double>& x, const AxisS
 }
 
 }  // namespace
+
+std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical,
+                                             double marker_px) {
+  std::vector<std::vector<CurvePoint>> pieces;
+  std::set<std::pair<double, double>> taken;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) {
+      continue;
+    }
+    const double x_px = std::round(horizontal.to_px(curve.x[i]));
+    const double y_px = std::round(vertical.to_px(curve.y[i]));
+    if (taken.emplace(x_px, y_px).second) {
+      pieces.push_back({{x_px - 0.5 * marker_px, y_px}, {x_px + 0.5 * marker_px, y_px}});
+    }
+  }
+  return pieces;
+}
 
 std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical) {
   const auto columns = pixel_columns(curve.x, horizontal, [&](std::size_t i) { return std::isfinite(curve.y[i]); });

@@ -19,6 +19,10 @@ struct BandPoint {
   double high_px = 0.0;
 };
 
+/// Every sample that can be seen as a piece of its own, a line as long as a marker is wide; of several in one pixel one.
+std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical,
+                                             double marker_px);
+
 /// The unbroken pieces of a curve, with the minimum and maximum of each pixel column and both ends.
 std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical);
 std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal, const AxisScale& vertical);

@@ -1,0 +1,356 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/quantity.h"
+#include "cli/command.h"
+#include "cli/friction_chart.h"
+#include "cli/quantity_option.h"
+#include "identify/friction/expected_voltage.h"
+#include "identify/friction/read_friction_log.h"
+#include "identify/friction/robot_file.h"
+#include "identify/friction/roll_out.h"
+#include "identify/measurement/read_recording.h"
+
+namespace heatsoak::commands {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string robot;
+  std::string motor;
+  std::vector<std::string> logs;
+  std::string map;
+  std::string method = "steady_state";
+  std::string direction = "best";
+  std::string return_legs = "leave_out";
+  bool is_lifted = false;
+  std::string out;
+  std::string plot;
+};
+
+/// What both methods work on.
+struct Input {
+  Robot robot;
+  std::optional<MotorValues> motor;
+  std::string motor_id;
+  std::vector<FrictionLog> logs;
+  Findings findings;
+};
+
+/// The robot's own motor may be in no data base: modulation teaches without it.
+void find_motor(const Options& options, const DataFolders& folders, Input& input) {
+  input.motor_id = options.motor.empty() ? input.robot.drive_motor : options.motor;
+  try {
+    input.motor = read_motor(file_of(folders.motors, "motor", input.motor_id)).nominal;
+  } catch (const Failure&) {
+    if (!options.motor.empty()) {
+      throw;
+    }
+    input.findings.push_back(fmt::format("the robot's motor '{}' is in no file; --motor names one", input.motor_id));
+  }
+}
+
+Input read_input(const Options& options, const Session& session) {
+  const DataFolders folders = session.folders();
+  Input input{
+      .robot = read_robot(file_of(folders.robots, "robot", options.robot)), .motor = {}, .motor_id = {}, .logs = {}, .findings = {}};
+  find_motor(options, folders, input);
+  FrictionLogNeeds needs;
+  needs.voltage = options.method == "steady_state";
+  if (input.motor) {
+    needs.drive = drive_constants(input.robot, *input.motor);
+  }
+  needs.direction = options.direction == "commanded"  ? TravelDirection::commanded
+                    : options.direction == "measured" ? TravelDirection::measured
+                    : options.direction == "wheels"   ? TravelDirection::wheels
+                                                      : TravelDirection::best;
+  const Progress progress = progress_bar("reading");
+  for (std::size_t i = 0; i < options.logs.size(); ++i) {
+    RecordingReport report;
+    const Recording recording = read_recording(options.logs[i], mapping_for(options.logs[i], options.map), report);
+    input.logs.push_back(friction_log(recording, input.robot, needs, input.findings));
+    if (progress) {
+      progress(i + 1, options.logs.size());
+    }
+  }
+  return input;
+}
+
+/// null where unknown.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json json(const Estimate& estimate) { return {{"value", number(estimate.value)}, {"ci95", {number(estimate.low), number(estimate.high)}}}; }
+
+std::string text(const Estimate& estimate, int decimals, double scale = 1.0) {
+  if (!std::isfinite(estimate.value)) {
+    return "–";
+  }
+  return estimate.is_known() ? fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * estimate.value, decimals, scale * estimate.low, decimals,
+                                           scale * estimate.high, decimals)
+                             : fmt::format("{:.{}f} (given)", scale * estimate.value, decimals);
+}
+
+std::string findings_text(const Findings& findings) {
+  std::string lines;
+  for (const std::string& finding : findings) {
+    lines += finding + "\n";
+  }
+  return lines;
+}
+
+std::string source_of(const Options& options) {
+  const std::string first = std::filesystem::path(options.logs.front()).filename().string();
+  return options.logs.size() == 1 ? fmt::format("friction test, {}", first)
+                                  : fmt::format("friction test, {} and {} more logs", first, options.logs.size() - 1);
+}
+
+/// The updated robot file, and what it says about itself.
+void write_robot(const Options& options, const std::string& content, const Findings& notes, Session& session) {
+  session.write(options.out, content);
+  session.say(findings_text(notes) + fmt::format("written: {}\n", options.out));
+}
+
+std::string table(const FrictionFit& fit, std::size_t rows) {
+  std::string lines = fmt::format("{:>5}  {:30} {:24} {:24} {:24} {:>6} {:>9} {:>9}\n", "wheel", "d / V s/rad", "a / V", "b / V",
+                                  "phase / °", "R²", "rows used", "left out");
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    if (!wheel.is_learned()) {
+      lines += fmt::format("{:>5}  not learned: {}\n", i + 1, wheel.problem);
+      continue;
+    }
+    lines += fmt::format("{:>5}  {:30} {:24} {:24} {:24} {:6.3f} {:9} {:9}\n", i + 1, text(wheel.damping_V_s_per_rad, 4),
+                         text(wheel.sine_V, 3), text(wheel.constant_V, 3), text(wheel.phase_rad, 0, 180.0 / std::numbers::pi),
+                         wheel.r2_ratio, wheel.rows_used, rows - wheel.rows_used);
+  }
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (std::isfinite(fit.wheels[i].rotation_V.value)) {
+      lines += fmt::format("wheel {} turning on the spot: {} V\n", i + 1, text(fit.wheels[i].rotation_V, 3));
+    }
+  }
+  return lines;
+}
+
+/// Why nothing was learned: the commonest reason of the wheels.
+Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit) {
+  if (steady.parts.empty()) {
+    return {
+        ExitCode::cannot_answer,
+        "nothing can be learned: in no stretch do the wheels turn steadily; legs of one speed and direction must last a second or more"};
+  }
+  return {ExitCode::cannot_answer, fmt::format("nothing can be learned from {} steady legs on {} headings: of wheel 1, {}",
+                                               steady.parts.size(), fit.headings, fit.wheels.front().problem)};
+}
+
+Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t rows) {
+  Json wheels = Json::array();
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    wheels.push_back({{"index", i + 1},
+                      {"damping_V_s_per_rad", json(wheel.damping_V_s_per_rad)},
+                      {"a_V", json(wheel.sine_V)},
+                      {"b_V", json(wheel.constant_V)},
+                      {"phase_rad", json(wheel.phase_rad)},
+                      {"rotation_V", json(wheel.rotation_V)},
+                      {"r2", number(wheel.r2_ratio)},
+                      {"rmse_V", number(wheel.rmse_V)},
+                      {"rows_used", wheel.rows_used},
+                      {"rows_left_out", rows - wheel.rows_used},
+                      {"legs_used", wheel.parts_used},
+                      {"legs_standing", wheel.parts_standing},
+                      {"legs_outlying", wheel.parts_outlying},
+                      {"damping_given", wheel.damping_is_given},
+                      {"phase_given", wheel.phase_is_given},
+                      {"before_rmse_V", number(error.before_of_wheel_V[i])},
+                      {"after_rmse_V", number(error.after_of_wheel_V[i])},
+                      {"problem", wheel.problem}});
+  }
+  return wheels;
+}
+
+void draw(const Options& options, const Input& input, const SteadyParts& steady, const FrictionFit& fit, Session& session) {
+  const std::string of_headings = fmt::format("{} legs on {} headings", steady.parts.size(), fit.headings);
+  std::filesystem::path voltage = options.plot;
+  voltage.replace_filename(voltage.stem().string() + "_voltage.svg");
+  const Chart chart = friction_chart(fit, input.robot.name, of_headings);
+  if (!chart.panels.empty()) {
+    session.write(options.plot, draw_svg(chart));
+    session.say(fmt::format("written: {}\n", options.plot));
+  }
+  session.write(chart.panels.empty() ? std::filesystem::path(options.plot) : voltage,
+                draw_svg(voltage_chart(steady, fit, input.robot.name, options.return_legs == "use")));
+  session.say(fmt::format("written: {}\n", (chart.panels.empty() ? std::filesystem::path(options.plot) : voltage).string()));
+}
+
+void answer(const Input& input, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error, const std::string& from,
+            Session& session) {
+  session.answer({{"schema", "heatsoak.friction/1"},
+                  {"method", "steady_state"},
+                  {"robot", input.robot.id},
+                  {"motor", input.motor ? Json(input.motor_id) : Json()},
+                  {"wheels", wheels_json(fit, error, steady.rows)},
+                  {"before", {{"rmse", number(error.before_V)}, {"unit", "V"}, {"from", from}}},
+                  {"after", {{"rmse", number(error.after_V)}, {"unit", "V"}}},
+                  {"headings", fit.headings},
+                  {"headings_held_out", error.headings},
+                  {"rows", steady.rows},
+                  {"rows_steady", steady.rows_steady},
+                  {"legs", steady.legs},
+                  {"return_legs", steady.return_legs},
+                  {"findings", input.findings}});
+}
+
+ExitCode steady_state(const Options& options, Input& input, Session& session) {
+  const Kinematics kinematics = make_kinematics(input.robot);
+  const SteadyParts steady = find_steady_parts(input.logs, kinematics);
+  FitSettings settings;
+  settings.use_return_legs = options.return_legs == "use";
+  Expectation before;
+  if (input.motor) {
+    before = expectation(input.robot, *input.motor);
+    settings.known_damping_V_s_per_rad = before.damping_V_s_per_rad;
+  }
+  const FrictionFit fit = fit_friction(steady.parts, kinematics, settings);
+  if (!fit.is_learned()) {
+    throw nothing_learned(steady, fit);
+  }
+  const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, before.voltages);
+  session.say(fmt::format("{}: {} logs, {} rows, {} of them steady in {} legs on {} headings; {} return legs {}\n{}{}", input.robot.id,
+                          input.logs.size(), steady.rows, steady.rows_steady, steady.legs, fit.headings, steady.return_legs,
+                          settings.use_return_legs ? "used too" : "left out", findings_text(input.findings), table(fit, steady.rows)));
+  if (std::isfinite(error.after_V)) {
+    session.say(fmt::format("error on {} of {} headings, left out of a fit for this: {}{:.3f} V after it\n", error.headings,
+                            error.all_headings, before.voltages ? fmt::format("{:.3f} V by {}, ", error.before_V, before.from) : "",
+                            error.after_V));
+  }
+  if (!options.out.empty()) {
+    if (!input.motor) {
+      throw Failure(ExitCode::bad_input, "--out: a robot's file has torques; --motor must name the motor that turns volts into them");
+    }
+    Findings notes;
+    const std::string content = with_measured_friction(read_file(input.robot.file, 1'000'000), input.robot,
+                                                       drive_constants(input.robot, *input.motor), fit, source_of(options), notes);
+    write_robot(options, content, notes, session);
+  }
+  if (!options.plot.empty()) {
+    draw(options, input, steady, fit, session);
+  }
+  answer(input, steady, fit, error, before.from, session);
+  return ExitCode::done;
+}
+
+std::string run_text(const RollOutRun& run) {
+  const std::string what = run.kind == RollOut::translation
+                               ? fmt::format("towards {:.0f}°, {:.2f} N", run.heading_rad * 180.0 / std::numbers::pi, run.force_N)
+                           : run.kind == RollOut::rotation ? "turning"
+                                                           : fmt::format("wheel {} lifted", run.wheel + 1);
+  return fmt::format("  {}: {:.1f} mN m and {:.3f} mN m s/rad per wheel, R² {:.3f}, {} rows\n", what, 1e3 * run.wheel_torque_Nm,
+                     1e3 * run.wheel_damping_Nm_s_per_rad, run.r2_ratio, run.rows_used);
+}
+
+ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
+  if (!input.motor) {
+    throw Failure(ExitCode::bad_input, "a roll-out needs the inertia of the motor's rotor; --motor must name the motor");
+  }
+  const BodyConfig body = make_body(input.robot, *input.motor);
+  const RollOutResult result = roll_out(input.logs, body, options.is_lifted);
+  if (result.runs.empty()) {
+    throw Failure(ExitCode::cannot_answer,
+                  "nothing can be learned: in no stretch of 15 rows do the wheels roll out with their drivers off");
+  }
+  DriveConstants drive = drive_constants(input.robot, *input.motor);
+  drive.drag_torque_Nm = 0.0;
+  Json wheels = Json::array();
+  session.say(fmt::format("{}: {} roll-outs in {} logs, motors taken as open\n{}", input.robot.id, result.runs.size(), input.logs.size(),
+                          findings_text(input.findings)));
+  for (const RollOutRun& run : result.runs) {
+    session.say(run_text(run));
+  }
+  for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
+    const auto volts = [&](double damping) { return steady_voltage_V(drive, damping, 1.0); };
+    const Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
+    const Estimate damping{volts(mechanical.value), volts(mechanical.low), volts(mechanical.high)};
+    std::size_t used = 0;
+    for (const RollOutRun& run : result.runs) {
+      used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
+    }
+    session.say(fmt::format("wheel {}: d = {} V s/rad with the back-EMF\n", i + 1, text(damping, 4)));
+    wheels.push_back({{"index", i + 1},
+                      {"damping_V_s_per_rad", json(damping)},
+                      {"a_V", json(Estimate{})},
+                      {"b_V", json(Estimate{})},
+                      {"phase_rad", json(Estimate{})},
+                      {"wheel_damping_Nm_s_per_rad", json(mechanical)},
+                      {"wheel_torque_Nm", json(result.wheel_torque_Nm[i])},
+                      {"r2", Json()},
+                      {"rows_used", used},
+                      {"rows_left_out", result.rows - used}});
+  }
+  if (!options.out.empty()) {
+    write_robot(
+        options,
+        with_measured_damping(read_file(input.robot.file, 1'000'000), input.robot, result.wheel_damping_Nm_s_per_rad, source_of(options)),
+        {}, session);
+  }
+  session.answer({{"schema", "heatsoak.friction/1"},
+                  {"method", "roll_out"},
+                  {"robot", input.robot.id},
+                  {"motor", input.motor_id},
+                  {"wheels", wheels},
+                  {"before", {{"rmse", Json()}}},
+                  {"after", {{"rmse", Json()}}},
+                  {"findings", input.findings}});
+  return ExitCode::done;
+}
+
+ExitCode run(const Options& options, Session& session) {
+  if (options.method == "roll_out" && !options.plot.empty()) {
+    throw Failure(ExitCode::bad_input, "--plot draws the steady-state test; a roll-out has no picture");
+  }
+  Input input = read_input(options, session);
+  return options.method == "steady_state" ? steady_state(options, input, session) : by_roll_out(options, input, session);
+}
+
+}  // namespace
+
+Command friction() {
+  return {.name = {},
+          .summary =
+              "Damping and friction of every wheel over the direction of travel, from logs of a steady-state test; exit 3 if nothing is "
+              "learned",
+          .example = "heatsoak friction --robot roboteam_twente_v2024 steady_state_test.csv --out my_robot.toml --plot friction.svg",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("logs", options->logs,
+                           "logs of the drives: wheel_speed_rad_per_s_1 …, wheel_pwm_ratio_1 … with battery_V (or "
+                           "wheel_current_A_1 …), heading_rad or what else tells the direction")
+                ->required()
+                ->type_name("LOG");
+            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+            app.add_option("--motor", options->motor, "that the robot drove with; the robot's own unless given")->type_name("M");
+            app.add_option("--map", options->map, "mapping of foreign logs (see `heatsoak log --help`)")->type_name("FILE.toml");
+            app.add_option("--method", options->method, "steady_state, or roll_out: damping alone, from decelerations with open motors")
+                ->check(CLI::IsMember({"steady_state", "roll_out"}))
+                ->capture_default_str();
+            app.add_option("--direction", options->direction, "whose direction of travel counts; best: the first that the logs have")
+                ->check(CLI::IsMember({"best", "commanded", "measured", "wheels"}))
+                ->capture_default_str();
+            app.add_option("--return-legs", options->return_legs, "legs that bring the robot back")
+                ->check(CLI::IsMember({"leave_out", "use"}))
+                ->capture_default_str();
+            app.add_flag("--lifted", options->is_lifted, "roll_out: the wheels were off the ground");
+            app.add_option("--out", options->out, "the robot's file with the friction found in it")->type_name("ROBOT.toml");
+            add_picture(app, options->plot, "offset and damping over the headings; voltage over speed goes beside it, FILE_voltage.svg");
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

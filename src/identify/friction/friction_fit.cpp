@@ -1,0 +1,417 @@
+#include "identify/friction/friction_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "robot/friction.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kStanding_share = 0.1;
+constexpr double kIndependent_share = 0.05;
+constexpr double kSameHeading_rad = 2.5 * std::numbers::pi / 180.0;
+constexpr double kSpeedLevels_share = 0.15;
+constexpr double kPi = std::numbers::pi;
+
+/// One steady part seen by one wheel.
+struct Point {
+  const SteadyPart* part = nullptr;
+  double sine = 0.0;    ///< of θ + φ_0; 0 in rotation
+  double cosine = 0.0;  ///< likewise
+  double side = 0.0;    ///< of the wheel's speed
+};
+
+struct WheelPoints {
+  std::vector<Point> points;
+  int standing = 0;
+};
+
+bool is_used(const SteadyPart& part, const FitSettings& settings) { return settings.use_return_legs || !part.is_return; }
+
+WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, int wheel, const FitSettings& settings) {
+  WheelPoints found;
+  const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
+  for (const SteadyPart& part : parts) {
+    if (!is_used(part, settings)) {
+      continue;
+    }
+    const double speed_rad_per_s = part.wheel_speed_rad_per_s[wheel];
+    Point point{&part, 0.0, 0.0, speed_rad_per_s > 0.0 ? 1.0 : -1.0};
+    double expected = part.yaw_rad_per_s;
+    if (!part.is_rotation) {
+      point.sine = std::sin(part.heading_rad + phase_rad);
+      point.cosine = std::cos(part.heading_rad + phase_rad);
+      expected = std::abs(point.sine) < kStanding_share ? 0.0 : point.sine;
+    }
+    // A mean that its own noise could have turned round says nothing about the side either.
+    const double doubt_rad_per_s = 3.0 * part.speed_noise_rad_per_s[wheel] / std::sqrt(std::max(1, part.rows_kept[wheel]));
+    if (expected * speed_rad_per_s <= 0.0 || std::abs(speed_rad_per_s) <= doubt_rad_per_s || !std::isfinite(part.voltage_V[wheel])) {
+      ++found.standing;
+    } else {
+      found.points.push_back(point);
+    }
+  }
+  return found;
+}
+
+enum class Term { damping, sine, cosine, constant, rotation };
+
+double regressor(const Point& point, int wheel, Term term) {
+  switch (term) {
+    case Term::damping:
+      return point.part->wheel_speed_rad_per_s[wheel];
+    case Term::sine:
+      return point.sine;
+    case Term::cosine:
+      return point.cosine;
+    case Term::constant:
+      return point.part->is_rotation ? 0.0 : point.side;
+    case Term::rotation:
+      return point.part->is_rotation ? point.side : 0.0;
+  }
+  return 0.0;
+}
+
+Eigen::MatrixXd design(const std::vector<Point>& points, int wheel, const std::vector<Term>& terms) {
+  Eigen::MatrixXd X(points.size(), terms.size());
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    for (std::size_t column = 0; column < terms.size(); ++column) {
+      X(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) = regressor(points[row], wheel, terms[column]);
+    }
+  }
+  return X;
+}
+
+bool is_told(const Eigen::MatrixXd& X, const std::vector<Term>& terms, Term term) {
+  const auto place = std::ranges::find(terms, term);
+  return place != terms.end() && independent_share(X, place - terms.begin()) >= kIndependent_share;
+}
+
+/// Terms that these points can tell apart, or why not.
+struct Chosen {
+  std::vector<Term> terms;
+  bool damping_is_given = false;
+  bool phase_is_given = false;
+  std::string problem;
+};
+
+Chosen chosen_terms(const std::vector<Point>& points, int wheel, const FitSettings& settings) {
+  Chosen chosen;
+  const auto turns = std::ranges::count_if(points, [](const Point& point) { return point.part->is_rotation; });
+  const bool travels = turns < std::ssize(points);
+  std::vector<Term>& terms = chosen.terms;
+  terms = {Term::damping};
+  if (travels) {
+    terms.insert(terms.end(), {Term::sine, Term::constant, Term::cosine});
+  }
+  if (turns > 0) {
+    terms.push_back(Term::rotation);
+  }
+  if (travels && !is_told(design(points, wheel, terms), terms, Term::cosine)) {
+    std::erase(terms, Term::cosine);
+    chosen.phase_is_given = true;
+  }
+  if (!is_told(design(points, wheel, terms), terms, Term::damping)) {
+    if (!travels || std::isnan(settings.known_damping_V_s_per_rad)) {
+      chosen.problem = "all its legs have one speed, so that damping and friction cannot be told apart; drive at two speeds or more";
+      return chosen;
+    }
+    std::erase(terms, Term::damping);
+    chosen.damping_is_given = true;
+  }
+  const Eigen::MatrixXd X = design(points, wheel, terms);
+  if (travels && !(is_told(X, terms, Term::sine) && is_told(X, terms, Term::constant))) {
+    chosen.problem = "its headings are too few to tell how friction depends on the direction; drive at least six directions all around";
+  } else if (points.size() < terms.size() + 3) {
+    chosen.problem = "it has too few steady legs";
+  }
+  return chosen;
+}
+
+/// How far φ may lie below and above φ_0 before a wheel seen turning one way would have to turn the other.
+std::pair<double, double> phase_bounds_rad(const std::vector<Point>& points, const Eigen::VectorXd& weights) {
+  double below_rad = kPi / 2.0;
+  double above_rad = kPi / 2.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].part->is_rotation || weights(static_cast<Eigen::Index>(i)) <= 0.0) {
+      continue;
+    }
+    const double past_rad = std::atan2(points[i].sine * points[i].side, points[i].cosine * points[i].side);  // 0 … π
+    below_rad = std::min(below_rad, past_rad);
+    above_rad = std::min(above_rad, kPi - past_rad);
+  }
+  return {-below_rad, above_rad};
+}
+
+/// Fieller: the m = tan δ for which B − A·m is not significantly different from 0; nothing where no m is refused.
+std::optional<std::pair<double, double>> fieller_rad(double A, double B, const Eigen::Matrix2d& covariance, double t) {
+  const double square = t * t;
+  const double second = A * A - square * covariance(0, 0);
+  const double first = A * B - square * covariance(0, 1);
+  const double zeroth = B * B - square * covariance(1, 1);
+  const double root = first * first - second * zeroth;
+  if (second <= 0.0 || root < 0.0) {
+    return std::nullopt;
+  }
+  return std::pair(std::atan((first - std::sqrt(root)) / second), std::atan((first + std::sqrt(root)) / second));
+}
+
+struct SineAndPhase {
+  Estimate sine_V;
+  Estimate offset_rad;  ///< φ − φ_0
+};
+
+SineAndPhase sine_and_phase(const RobustFit& fit, Eigen::Index sine, Eigen::Index cosine, std::pair<double, double> bounds_rad) {
+  const double A = fit.coefficients(sine);
+  const double B = fit.coefficients(cosine);
+  Eigen::Matrix2d covariance;
+  covariance << fit.covariance(sine, sine), fit.covariance(sine, cosine), fit.covariance(cosine, sine), fit.covariance(cosine, cosine);
+  const double t = fit.quantile_factor();
+  SineAndPhase found;
+  // On the bounds: the best a at that φ, its covariance with B taken into account.
+  double offset_rad = std::atan2(B, A);
+  if (std::abs(offset_rad) > kPi / 2.0) {
+    offset_rad -= std::copysign(kPi, offset_rad);  // a < 0
+  }
+  offset_rad = std::clamp(offset_rad, bounds_rad.first, bounds_rad.second);
+  const Eigen::Vector2d along(std::cos(offset_rad), std::sin(offset_rad));
+  const Eigen::Vector2d across(-std::sin(offset_rad), std::cos(offset_rad));
+  const double across_V = across.dot(Eigen::Vector2d(A, B));
+  const double across_variance = across.dot(covariance * across);
+  const double shared = across_variance > 0.0 ? along.dot(covariance * across) / across_variance : 0.0;
+  const double sine_V = along.dot(Eigen::Vector2d(A, B)) - shared * across_V;
+  const double half_V = t * std::sqrt(along.dot(covariance * along));
+  found.sine_V = {sine_V, sine_V - half_V, sine_V + half_V};
+  const auto interval_rad = fieller_rad(A, B, covariance, t).value_or(bounds_rad);
+  found.offset_rad = {offset_rad, std::clamp(interval_rad.first, bounds_rad.first, offset_rad),
+                      std::clamp(interval_rad.second, offset_rad, bounds_rad.second)};
+  return found;
+}
+
+double wrapped_rad(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
+
+void judge(const std::vector<Point>& points, const Eigen::VectorXd& weights, int wheel, WheelFriction& found) {
+  double mean_V = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    mean_V += weights(static_cast<Eigen::Index>(i)) * points[i].part->voltage_V[wheel] / weights.sum();
+  }
+  double error_V2 = 0.0;
+  double variance_V2 = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double weight = weights(static_cast<Eigen::Index>(i));
+    const SteadyPart& part = *points[i].part;
+    const double speed_rad_per_s = part.wheel_speed_rad_per_s[wheel];
+    const double expected_V = part.is_rotation ? found.damping_V_s_per_rad.value * speed_rad_per_s + found.rotation_V.value * points[i].side
+                                               : found.voltage_V(part.heading_rad, speed_rad_per_s);
+    error_V2 += weight * (part.voltage_V[wheel] - expected_V) * (part.voltage_V[wheel] - expected_V);
+    variance_V2 += weight * (part.voltage_V[wheel] - mean_V) * (part.voltage_V[wheel] - mean_V);
+    const bool outlies = weight <= 0.0;
+    found.parts_outlying += outlies ? 1 : 0;
+    found.parts_used += outlies ? 0 : 1;
+    found.rows_used += outlies ? 0U : static_cast<std::size_t>(part.rows_kept[wheel]);
+  }
+  found.rmse_V = std::sqrt(error_V2 / weights.sum());
+  found.r2_ratio = 1.0 - error_V2 / variance_V2;
+}
+
+WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinematics, int wheel, const FitSettings& settings,
+                        Eigen::VectorXd& weights) {
+  const std::vector<Point>& points = wheel_points.points;
+  WheelFriction found;
+  found.parts_standing = wheel_points.standing;
+  if (points.size() < 4) {
+    found.problem = "it hardly turns in any steady leg";
+    return found;
+  }
+  const Chosen chosen = chosen_terms(points, wheel, settings);
+  found.problem = chosen.problem;
+  if (!found.is_learned()) {
+    return found;
+  }
+  found.damping_is_given = chosen.damping_is_given;
+  found.phase_is_given = chosen.phase_is_given;
+  const Eigen::MatrixXd X = design(points, wheel, chosen.terms);
+  Eigen::VectorXd voltage_V(points.size());
+  std::vector<int> legs;
+  const double given = chosen.damping_is_given ? settings.known_damping_V_s_per_rad : 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SteadyPart& part = *points[i].part;
+    voltage_V(static_cast<Eigen::Index>(i)) = part.voltage_V[wheel] - given * part.wheel_speed_rad_per_s[wheel];
+    legs.push_back(part.leg);
+  }
+  const RobustFit fit = robust_fit(X, voltage_V, legs);
+  weights = fit.weights;
+  const auto place = [&](Term term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
+  const auto has = [&](Term term) { return place(term) < std::ssize(chosen.terms); };
+  found.damping_V_s_per_rad = has(Term::damping) ? fit.estimate(place(Term::damping)) : Estimate{.value = given};
+  if (has(Term::rotation)) {
+    found.rotation_V = fit.estimate(place(Term::rotation));
+  }
+  if (has(Term::sine)) {
+    found.constant_V = fit.estimate(place(Term::constant));
+    const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
+    if (has(Term::cosine)) {
+      const SineAndPhase both = sine_and_phase(fit, place(Term::sine), place(Term::cosine), phase_bounds_rad(points, fit.weights));
+      found.sine_V = both.sine_V;
+      const double value_rad = wrapped_rad(phase_rad + both.offset_rad.value);
+      found.phase_rad = {value_rad, value_rad + both.offset_rad.low - both.offset_rad.value,
+                         value_rad + both.offset_rad.high - both.offset_rad.value};
+    } else {
+      found.sine_V = fit.estimate(place(Term::sine));
+      found.phase_rad.value = wrapped_rad(phase_rad);
+    }
+  }
+  judge(points, fit.weights, wheel, found);
+  return found;
+}
+
+/// A line through the parts of one heading; its offset alone where they have one speed.
+HeadingLine line_of(const std::vector<const SteadyPart*>& parts, int wheel, const WheelFriction& found) {
+  HeadingLine line;
+  double x = 0.0;
+  double y = 0.0;
+  std::vector<double> speeds_rad_per_s;
+  for (const SteadyPart* part : parts) {
+    x += std::cos(part->heading_rad);
+    y += std::sin(part->heading_rad);
+    speeds_rad_per_s.push_back(part->wheel_speed_rad_per_s[wheel]);
+  }
+  line.heading_rad = std::atan2(y, x);
+  const auto [slowest, fastest] = std::ranges::minmax(speeds_rad_per_s, {}, [](double speed) { return std::abs(speed); });
+  const bool is_line = parts.size() >= 3 && std::abs(fastest) - std::abs(slowest) > kSpeedLevels_share * std::abs(fastest);
+  Eigen::MatrixXd X = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(parts.size()), is_line ? 2 : 1);
+  Eigen::VectorXd voltage_V(X.rows());
+  for (Eigen::Index i = 0; i < X.rows(); ++i) {
+    const SteadyPart& part = *parts[static_cast<std::size_t>(i)];
+    voltage_V(i) = part.voltage_V[wheel] - (is_line ? 0.0 : found.damping_V_s_per_rad.value * part.wheel_speed_rad_per_s[wheel]);
+    if (is_line) {
+      X(i, 1) = part.wheel_speed_rad_per_s[wheel];
+    }
+  }
+  // Few points of one heading: plain least squares; what is gross has been left out by the fit over all headings.
+  RobustFit fit;
+  const Eigen::MatrixXd spread = (X.transpose() * X).inverse();
+  fit.coefficients = spread * X.transpose() * voltage_V;
+  fit.freedom_count = static_cast<double>(X.rows() - X.cols());
+  if (fit.freedom_count > 0.0) {
+    fit.covariance = spread * (voltage_V - X * fit.coefficients).squaredNorm() / fit.freedom_count;
+    line.offset_V = fit.estimate(0);
+    line.damping_V_s_per_rad = is_line ? fit.estimate(1) : Estimate{};
+  } else {
+    line.offset_V.value = fit.coefficients(0);
+  }
+  return line;
+}
+
+std::vector<HeadingLine> lines_of(const std::vector<Point>& points, const Eigen::VectorXd& weights, const std::vector<SteadyPart>& parts,
+                                  const std::vector<int>& numbers, int wheel, const WheelFriction& found) {
+  std::map<int, std::vector<const SteadyPart*>> by_heading;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const int number = numbers[static_cast<std::size_t>(points[i].part - parts.data())];
+    if (number >= 0 && weights(static_cast<Eigen::Index>(i)) > 0.0) {
+      by_heading[number].push_back(points[i].part);
+    }
+  }
+  std::vector<HeadingLine> lines;
+  for (const auto& [number, members] : by_heading) {
+    lines.push_back(line_of(members, wheel, found));
+  }
+  std::ranges::sort(lines, {}, [](const HeadingLine& line) { return line.heading_rad; });
+  return lines;
+}
+
+}  // namespace
+
+double WheelFriction::friction_V(double heading_rad) const {
+  const double s = std::sin(heading_rad + phase_rad.value);
+  return sine_V.value * s + (s >= 0.0 ? constant_V.value : -constant_V.value);
+}
+
+double WheelFriction::voltage_V(double heading_rad, double wheel_speed_rad_per_s) const {
+  return damping_V_s_per_rad.value * wheel_speed_rad_per_s + friction_V(heading_rad);
+}
+
+bool FrictionFit::is_learned() const {
+  return std::ranges::any_of(wheels, [](const WheelFriction& wheel) { return wheel.is_learned(); });
+}
+
+std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts) {
+  std::vector<std::size_t> order(parts.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::erase_if(order, [&](std::size_t i) { return parts[i].is_rotation; });
+  const auto turn_rad = [&](std::size_t i) { return wrapped_rad(parts[i].heading_rad + kSameHeading_rad / 2.0); };  // 0° and −0° stay one
+  std::ranges::stable_sort(order, {}, turn_rad);
+  std::vector<int> numbers(parts.size(), -1);
+  int number = -1;
+  double first_rad = 0.0;
+  for (const std::size_t i : order) {
+    if (number < 0 || turn_rad(i) - first_rad > kSameHeading_rad) {
+      ++number;
+      first_rad = turn_rad(i);
+    }
+    numbers[i] = number;
+  }
+  return numbers;
+}
+
+FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings) {
+  FrictionFit found;
+  const std::vector<int> numbers = heading_numbers(parts);
+  found.headings = parts.empty() ? 0 : *std::ranges::max_element(numbers) + 1;
+  for (int wheel = 0; wheel < kinematics.wheel_count; ++wheel) {
+    const WheelPoints points = points_of(parts, kinematics, wheel, settings);
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(points.points.size()));
+    found.wheels.push_back(fit_wheel(points, kinematics, wheel, settings, weights));
+    found.lines.push_back(lines_of(points.points, weights, parts, numbers, wheel, found.wheels.back()));
+  }
+  return found;
+}
+
+HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings,
+                                        const ExpectedVoltages& before) {
+  HeldOutError error;
+  const std::vector<int> numbers = heading_numbers(parts);
+  std::vector<SteadyPart> taught;
+  std::vector<SteadyPart> held_out;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    (numbers[i] >= 0 && numbers[i] % 3 == 2 ? held_out : taught).push_back(parts[i]);
+    error.all_headings = std::max(error.all_headings, numbers[i] + 1);
+  }
+  error.headings = error.all_headings / 3;
+  const FrictionFit fit = fit_friction(taught, kinematics, settings);
+  double before_V2 = 0.0;
+  double after_V2 = 0.0;
+  double all = 0.0;
+  for (int wheel = 0; wheel < kinematics.wheel_count; ++wheel) {
+    const WheelFriction& learned = fit.wheels[static_cast<std::size_t>(wheel)];
+    double before_of_wheel_V2 = 0.0;
+    double after_of_wheel_V2 = 0.0;
+    double count = 0.0;
+    for (const Point& point : points_of(held_out, kinematics, wheel, settings).points) {
+      const SteadyPart& part = *point.part;
+      const double measured_V = part.voltage_V[wheel];
+      const double after_V = measured_V - learned.voltage_V(part.heading_rad, part.wheel_speed_rad_per_s[wheel]);
+      const double before_V = before ? measured_V - before(part)[wheel] : std::numeric_limits<double>::quiet_NaN();
+      before_of_wheel_V2 += before_V * before_V;
+      after_of_wheel_V2 += after_V * after_V;
+      count += 1.0;
+    }
+    error.before_of_wheel_V.push_back(std::sqrt(before_of_wheel_V2 / count));
+    error.after_of_wheel_V.push_back(std::sqrt(after_of_wheel_V2 / count));
+    if (learned.is_learned()) {
+      before_V2 += before_of_wheel_V2;
+      after_V2 += after_of_wheel_V2;
+      all += count;
+    }
+  }
+  error.before_V = std::sqrt(before_V2 / all);
+  error.after_V = std::sqrt(after_V2 / all);
+  return error;
+}
+
+}  // namespace heatsoak
