@@ -38,12 +38,15 @@ function(add_layer name)
   set_property(GLOBAL PROPERTY heatsoak_layer_${name}_uses "${below}")
 endfunction()
 
-# A library of the embedded core: freestanding, no exceptions, no run-time types, the same arithmetic everywhere.
+# A library of the embedded core: freestanding, no exceptions, no run-time types, the same arithmetic everywhere; a
+# square root is an instruction, not a call that may set errno.
+set(HEATSOAK_CORE_OPTIONS -ffreestanding -fno-exceptions -fno-rtti -fno-math-errno -Wdouble-promotion)
+
 function(add_core name)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${name}/*.cpp" "${PROJECT_SOURCE_DIR}/${name}/*.h")
   add_library(heatsoak_${name} STATIC ${sources})
   target_include_directories(heatsoak_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
-  target_compile_options(heatsoak_${name} PRIVATE -ffreestanding -fno-exceptions -fno-rtti -Wdouble-promotion)
+  target_compile_options(heatsoak_${name} PRIVATE ${HEATSOAK_CORE_OPTIONS})
   target_link_libraries(heatsoak_${name} PRIVATE heatsoak_settings)
   set_property(GLOBAL APPEND PROPERTY heatsoak_layers ${name})
 endfunction()
@@ -88,6 +91,7 @@ function(add_messages name file)
   add_library(${name} STATIC "${out}/${stem}.pb.cc" "${out}/${stem}.pb.h")
   target_include_directories(${name} SYSTEM PUBLIC "${out}")
   target_link_libraries(${name} PUBLIC protobuf::libprotobuf-lite)
+  set_target_properties(${name} PROPERTIES CXX_CLANG_TIDY "")
 endfunction()
 
 function(add_program name)

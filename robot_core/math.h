@@ -33,47 +33,10 @@ constexpr bool is_finite(Real x) {
 
 namespace detail {
 
-// Every target's square root is one correctly rounded instruction. The builtin alone would also call the C library
-// for negative arguments, to set errno, unless the whole program is compiled with -fno-math-errno.
-inline double sqrt_instruction(double x) {
-#if defined(__NO_MATH_ERRNO__)
-  return __builtin_sqrt(x);
-#elif defined(__x86_64__)
-  double y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
-  __asm__("sqrtsd %1, %0" : "=x"(y) : "x"(x));
-  return y;
-#elif defined(__aarch64__)
-  double y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
-  __asm__("fsqrt %d0, %d1" : "=w"(y) : "w"(x));
-  return y;
-#elif defined(__ARM_FP) && (__ARM_FP & 8)
-  double y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
-  __asm__("vsqrt.f64 %P0, %P1" : "=w"(y) : "w"(x));
-  return y;
-#else
-  return __builtin_sqrt(x);
-#endif
-}
-
-inline float sqrt_instruction(float x) {
-#if defined(__NO_MATH_ERRNO__)
-  return __builtin_sqrtf(x);
-#elif defined(__x86_64__)
-  float y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
-  __asm__("sqrtss %1, %0" : "=x"(y) : "x"(x));
-  return y;
-#elif defined(__aarch64__)
-  float y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
-  __asm__("fsqrt %s0, %s1" : "=w"(y) : "w"(x));
-  return y;
-#elif defined(__ARM_FP) && (__ARM_FP & 4)
-  float y;  // NOLINT(cppcoreguidelines-init-variables): written by the instruction
-  __asm__("vsqrt.f32 %0, %1" : "=t"(y) : "t"(x));
-  return y;
-#else
-  return __builtin_sqrtf(x);
-#endif
-}
+// One correctly rounded instruction where the target has it: the core is compiled with -fno-math-errno, without which
+// the builtin would also call the C library.
+inline double sqrt_instruction(double x) { return __builtin_sqrt(x); }
+inline float sqrt_instruction(float x) { return __builtin_sqrtf(x); }
 
 }  // namespace detail
 

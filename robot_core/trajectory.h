@@ -50,7 +50,7 @@ enum class PlanResult : unsigned char {
 
 /// A stretch of constant jerk, with the state at its start.
 template <typename Real>
-struct TrajectorySegment {
+struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): of sixteen in a Trajectory most hold no values
   Real start_s;
   Real duration_s;
   Real jerk;  ///< m/s3 or rad/s3
@@ -131,6 +131,13 @@ template <typename Real>
 PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,
                              Trajectory<Real>* trajectories, Target how = Target::at_position, int* failed_axis = nullptr);
 
+/// Several axes that reach the velocities and accelerations of their targets together, as early as that is possible,
+/// wherever that leads. With symmetric limits and no acceleration at both ends, each keeps the shape of its fastest change:
+/// axes with equal limits go straight from one velocity to the other.
+template <typename Real>
+PlanResult plan_velocity_synchronised(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target,
+                                      const AxisLimits<Real>* limits, Trajectory<Real>* trajectories, int* failed_axis = nullptr);
+
 /// Limits of motion in the plane that hold in every direction: of the lengths of the vectors.
 template <typename Real>
 struct PlaneLimits {
@@ -142,11 +149,23 @@ struct PlaneLimits {
 /// x, y and yaw of a robot, arriving together. A circle bounds speed, acceleration and jerk in the plane: x gets the
 /// share cos(split) of each, y the share sin(split), and the split is chosen so that both are equally slow, within what
 /// the target needs. A target may have all but 1e-6 of a limit; if no split leaves room for its velocity (or, with that,
-/// its acceleration), the result says so. The lengths keep their limits if the start fits the chosen split, as one from
-/// rest or from the last plan to the same target does. A start that does not (a turn at full speed) is braked first,
-/// and meanwhile the lengths may exceed their limits, by less than a factor of sqrt(2). axes: 0 x, 1 y, 2 yaw.
+/// its acceleration), the result says so. Where the start does not fit that split (a turn at full speed), the split turns
+/// towards the start's own direction until speed and acceleration stay inside of the circle, or of what the start has if
+/// that is more; to 0.2 %. Only a start that is about to leave the circle by its acceleration may do so. A plan of the next
+/// tick then finds more room for the new direction. axes: 0 x, 1 y, 2 yaw.
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);
+
+/// x, y and yaw, reaching the velocities of their targets together: a stand, for one. Acceleration and jerk are shared by x
+/// and y as plan_plane shares them; positions and speeds play no part.
+template <typename Real>
+PlanResult plan_plane_velocity(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
+                               const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3]);
+
+/// For comparison: plan_bang_bang in the plane. x and y share the circle so that both are equally slow; yaw is on its own.
+template <typename Real>
+PlanResult plan_plane_bang_bang(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
+                                const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);
 
 }  // namespace robot_core

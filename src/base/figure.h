@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/diagnostic.h"
 
@@ -27,6 +28,13 @@ struct Spread {
   bool by_ratio = true;
 };
 
+/// What an independent source says of the same figure; `heatsoak lint` compares.
+struct Confirmation {
+  std::string source;  ///< an id of the file's [sources]
+  double value = 0.0;  ///< in the figure's unit
+  std::string printed;
+};
+
 struct Figure {
   double value = 0.0;  ///< in the unit that the declaration of its key names
   Origin origin = Origin::estimated;
@@ -34,6 +42,7 @@ struct Figure {
   std::string source;      ///< ids of the file's [sources], comma separated; may be empty for estimates
   std::string derivation;  ///< how a derived or estimated figure was found
   std::optional<Spread> spread;
+  std::vector<Confirmation> confirmed_by;
   Location at;
 
   /// The value at `uniform` in (0, 1): the inverse of the spread's distribution function; 0.5 is the figure itself.

@@ -72,10 +72,9 @@ class UnfinishedFile {
   UnfinishedFile(std::filesystem::path target, bool in_place)
       : target_(std::move(target)),
         temporary_(in_place ? target_.string() : fmt::format("{}.{}.partial", target_.string(), ::getpid())),
+        descriptor_(::open(temporary_.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
         published_(in_place) {
-    descriptor_ = ::open(temporary_.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor_ < 0) {
-      published_ = true;
       cannot_write(target_, errno);
     }
   }

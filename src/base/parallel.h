@@ -1,52 +1,21 @@
-// Many independent jobs on all cores. Each writes to a place of its own, so that the result does not depend on their number.
+// Independent jobs on all cores.
 #pragma once
 
-#include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <exception>
-#include <mutex>
-#include <thread>
-#include <vector>
+#include <functional>
 
 namespace heatsoak {
 
-/// Calls job(i) for every i < count, on `threads` threads (0: all cores); `done` is called after each of them, one at a time.
-/// The first exception ends the rest and is thrown here.
-template <class Job, class Done>
-void in_parallel(std::size_t count, int threads, const Job& job, const Done& done) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        job(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        error = error ? error : std::current_exception();
-        next = count;
-      }
-      const std::lock_guard lock(mutex);
-      done();
-    }
-  };
-  const std::size_t all = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < std::min(all, count); ++i) {
-      helpers.emplace_back(work);
-    }
-    work();
-  }
-  if (error) {
-    std::rethrow_exception(error);
-  }
-}
+/// `done` of `total` units of work are finished.
+using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-template <class Job>
-void in_parallel(std::size_t count, int threads, const Job& job) {
-  in_parallel(count, threads, job, [] {});
+/// Runs job(0) … job(count − 1) on `threads` threads, 0: all cores. The first exception ends the rest and is thrown here.
+/// For the progress, which is called from one thread at a time, they are the ones after `done` of `total`.
+void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress,
+                 const std::function<void(std::size_t)>& job);
+/// The same without a word about progress.
+inline void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& job) {
+  in_parallel(count, threads, 0, count, {}, job);
 }
 
 }  // namespace heatsoak

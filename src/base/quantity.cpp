@@ -68,12 +68,8 @@ std::string as_udunits(std::string_view unit) {
 Unit parse_unit(std::string_view unit) { return Unit(ut_parse(unit_system(), as_udunits(unit).c_str(), UT_UTF8)); }
 
 bool names_an_angle(std::string_view unit) {
-  for (const std::string_view angle : {"rad", "rpm", "deg", "rev", "V s"}) {
-    if (unit.find(angle) != std::string_view::npos) {
-      return true;
-    }
-  }
-  return false;
+  constexpr std::array<std::string_view, 5> kAngles{"rad", "rpm", "deg", "rev", "V s"};
+  return std::ranges::any_of(kAngles, [&](std::string_view angle) { return unit.find(angle) != std::string_view::npos; });
 }
 
 std::string_view trimmed(std::string_view text) {

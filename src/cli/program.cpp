@@ -198,8 +198,7 @@ int run_program(int argc, const char* const* argv) {
   Session session;
   try {
     const int code = parse_and_run(argc, argv, session);
-    std::fflush(stdout);
-    if (std::ferror(stdout) != 0) {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       put(stderr, "stdout cannot be written: is the disk full?\n");
       return static_cast<int>(ExitCode::bad_input);
     }

@@ -1,6 +1,7 @@
 #include "duty/demand.h"
 
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -20,7 +21,8 @@ LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s
           .speed_rms_rad_per_s = std::abs(speed_rad_per_s),
           .torque_mean_Nm = torque_Nm,
           .velocity_mean_rad_per_s = speed_rad_per_s,
-          .current_rms_A = std::abs(current_A)};
+          .current_rms_A = std::abs(current_A),
+          .power_mean_W = torque_Nm * speed_rad_per_s};
 }
 
 DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid) : bin_s_(bin_s), grid_(grid) {
@@ -37,10 +39,13 @@ void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_p
                                                std::abs(sign),
                                                speed_rad_per_s,
                                                magnitude_rad_per_s,
-                                               speed_rad_per_s * speed_rad_per_s};
+                                               speed_rad_per_s * speed_rad_per_s,
+                                               torque_Nm * speed_rad_per_s};
   for (std::size_t i = 0; i < now.size(); ++i) {
     integrals_[i] += duration_s * now[i];
   }
+  travelled_rad_per_s_ += std::abs(speed_rad_per_s - last_speed_rad_per_s_.value_or(speed_rad_per_s));
+  last_speed_rad_per_s_ = speed_rad_per_s;
   const double torque_with_motion_Nm = sign < 0.0 ? -torque_Nm : sign > 0.0 ? torque_Nm : std::abs(torque_Nm);
   // Away from zero, so that a cell asks at least as much as anything in it.
   const int torque_cell =
@@ -72,8 +77,11 @@ void DemandGatherer::close_bin() {
                           .speed_mean_rad_per_s = mean(speed),
                           .speed_rms_rad_per_s = std::sqrt(mean(speed_squared)),
                           .torque_mean_Nm = mean(torque),
-                          .velocity_mean_rad_per_s = mean(velocity)});
+                          .velocity_mean_rad_per_s = mean(velocity),
+                          .power_mean_W = mean(power),
+                          .acceleration_rad_per_s2 = travelled_rad_per_s_ / time_s});
   integrals_ = {};
+  travelled_rad_per_s_ = 0.0;
 }
 
 WheelDemand DemandGatherer::finish() {
@@ -81,7 +89,8 @@ WheelDemand DemandGatherer::finish() {
     close_bin();
   }
   close_stay();
-  for (const auto& [cell, time_s] : time_at_s_) {
+  // In order, so that the same load gives the same points.
+  for (const auto& [cell, time_s] : std::map<std::pair<int, int>, double>(time_at_s_.begin(), time_at_s_.end())) {
     demand_.points.push_back({cell.first * grid_.torque_step_Nm, cell.second * grid_.speed_step_rad_per_s, 0.0, time_s});
   }
   return std::move(demand_);

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
-#include <map>
+#include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct LoadBin {
   double torque_mean_Nm = 0.0;           ///< signed
   double velocity_mean_rad_per_s = 0.0;  ///< signed mean of ω
   double current_rms_A = 0.0;            ///< only of duties that are given as current
+  double power_mean_W = 0.0;             ///< mean of M·ω
+  double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between stretches of constant speed are not in it
 };
 
 /// A stretch with one torque and speed.
@@ -60,7 +63,7 @@ class DemandGatherer {
 
  private:
   /// Time integrals over the open bin.
-  enum Integral { time, torque, torque_squared, torque_along_motion, moving, velocity, speed, speed_squared, integral_count };
+  enum Integral { time, torque, torque_squared, torque_along_motion, moving, velocity, speed, speed_squared, power, integral_count };
   void close_bin();
   void close_stay();
 
@@ -68,7 +71,14 @@ class DemandGatherer {
   double bin_s_;
   Grid grid_;
   std::array<double, integral_count> integrals_{};
-  std::map<std::pair<int, int>, double> time_at_s_;
+  struct CellHash {
+    std::size_t operator()(const std::pair<int, int>& cell) const {
+      return static_cast<std::size_t>(cell.first) * 0x9e3779b97f4a7c15U + static_cast<std::size_t>(cell.second);
+    }
+  };
+  std::unordered_map<std::pair<int, int>, double, CellHash> time_at_s_;
+  double travelled_rad_per_s_ = 0.0;  ///< Σ|Δω| over the open bin
+  std::optional<double> last_speed_rad_per_s_;
   std::pair<int, int> cell_{0, 0};  ///< where the load is now; it seldom leaves a cell within milliseconds
   double stay_s_ = 0.0;
 };

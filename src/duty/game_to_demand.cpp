@@ -55,6 +55,7 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   no_rotor.rotor_inertia_kg_m2 = 0.0;
   const BodyConfig body = make_body(robot, no_rotor);
   std::vector<DemandGatherer> gatherers;
+  gatherers.reserve(static_cast<std::size_t>(body.kinematics.wheel_count));
   for (int wheel = 0; wheel < body.kinematics.wheel_count; ++wheel) {
     gatherers.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s,
                            DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});

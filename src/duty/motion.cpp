@@ -16,6 +16,8 @@ constexpr double kHuber = 2.5;            // in robust standard deviations: beyo
 constexpr double kOutlier = 6.0;          // beyond, it has no say
 constexpr int kReweightings = 3;
 constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution in median absolute deviations
+// With more than that the acceleration says more of the camera than of the robot.
+constexpr double kMostlyNoise_share = 0.5;
 // Below this a point is never suspect: without noise, the smoother's own error at a hard start would be.
 constexpr double kNoSuspicion_m = 2e-3;
 constexpr double kNoSuspicion_rad = 1e-2;
@@ -341,13 +343,12 @@ std::optional<Motion> MotionTrack::at(double time_s) const {
 void MotionTrack::for_each(double rate_Hz, const std::function<void(const Motion&, std::size_t segment)>& visit) const {
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     const Segment& segment = segments_[s];
-    const double begin_s = segment.front().time_s;
+    const auto time_of = [&](std::size_t step) { return segment.front().time_s + static_cast<double>(step) / rate_Hz; };
     std::size_t step = 0;
     for (std::size_t i = 0; i + 1 < segment.size(); ++i) {
       const Piece piece(segment[i], segment[i + 1]);
-      for (double time_s = begin_s + static_cast<double>(step) / rate_Hz; time_s < segment[i + 1].time_s;
-           time_s = begin_s + static_cast<double>(++step) / rate_Hz) {
-        visit(piece.at(time_s), s);
+      for (; time_of(step) < segment[i + 1].time_s; ++step) {
+        visit(piece.at(time_of(step)), s);
       }
     }
   }
@@ -355,10 +356,16 @@ void MotionTrack::for_each(double rate_Hz, const std::function<void(const Motion
 
 std::string to_string(const SmoothingReport& r) {
   const auto channel = [](const ChannelReport& c, std::string_view name, std::string_view unit) {
+    // A share says little where there is hardly anything to take a share of.
+    const std::string trust =
+        c.noise_share < kMostlyNoise_share
+            ? fmt::format("about {:.1f} % of the squared acceleration is noise", 100.0 * c.noise_share)
+            : fmt::format("the acceleration is too small to stand out from the noise, which makes at most {:.2g} {}/s² rms of it",
+                          c.acceleration_noise_m_or_rad_per_s2, unit);
     return fmt::format(
         "{}: bandwidth {:.1f} Hz (-3 dB; {:.1f} Hz during the {:.0f} % of the time in which nothing but noise is seen), noise {:.1f} m{}, "
-        "about {:.1f} % of the squared acceleration is noise, {} outliers had no say",
-        name, c.bandwidth_Hz, c.quiet_bandwidth_Hz, 100.0 * c.quiet_share, 1e3 * c.noise_m_or_rad, unit, 100.0 * c.noise_share, c.outliers);
+        "{}, {} outliers had no say",
+        name, c.bandwidth_Hz, c.quiet_bandwidth_Hz, 100.0 * c.quiet_share, 1e3 * c.noise_m_or_rad, unit, trust, c.outliers);
   };
   return fmt::format("{} points at {:.1f} Hz; {}; {}", r.points, r.frame_rate_Hz, channel(r.place, "place", "m"),
                      channel(r.turn, "turn", "rad"));

@@ -20,6 +20,7 @@ std::string_view to_string(Team team);
 struct RobotName {
   Team team = Team::yellow;
   int id = 0;
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes its zero for a pointer
   friend auto operator<=>(const RobotName&, const RobotName&) = default;
 };
 /// "yellow 3".

@@ -48,7 +48,7 @@ double weight(const Detection& sight) {
 
 }  // namespace
 
-bool TrackBuilder::is_plausible(const Detection& d) const {
+bool TrackBuilder::is_plausible(const Detection& d) {
   return std::isfinite(d.time_s) && std::isfinite(d.x_m) && std::isfinite(d.y_m) && std::isfinite(d.yaw_rad) &&
          std::isfinite(d.confidence) && std::isfinite(d.camera_distance_m) && std::abs(d.x_m) <= kFarthest_m &&
          std::abs(d.y_m) <= kFarthest_m && std::abs(d.yaw_rad) < 1e4 && d.robot.id >= 0 && d.robot.id <= kLargestRobotId;
@@ -141,7 +141,8 @@ TrackBuilder::CameraOffset& TrackBuilder::offset_of(Robot& robot, const Detectio
   if (!robot.last || std::hypot(step.x_m, step.y_m) > kSameRobot_m || std::abs(step.yaw_rad) > kNoise_rad) {
     step = {};
   }
-  return robot.offsets.emplace_back(sight.camera, step, robot.offsets.empty() ? 1.0 : 0.0, sight.time_s);
+  robot.offsets.push_back({sight.camera, step, robot.offsets.empty() ? 1.0 : 0.0, sight.time_s});
+  return robot.offsets.back();
 }
 
 /// Time is averaged with the same weights as place: exact for a robot that keeps its velocity.

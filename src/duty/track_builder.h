@@ -61,7 +61,7 @@ class TrackBuilder final : public LogEvents {
     double segment_begin_s = 0.0;
   };
 
-  [[nodiscard]] bool is_plausible(const Detection& detection) const;
+  [[nodiscard]] static bool is_plausible(const Detection& detection);
   [[nodiscard]] bool keeps(const Robot& robot) const;
   [[nodiscard]] static Pose expected(const Robot& robot, double time_s);
   void close_frame(Robot& robot);

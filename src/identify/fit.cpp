@@ -389,39 +389,46 @@ SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_ind
   return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.weights[run_index]);
 }
 
-std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {
-  std::vector<SignalError> errors;
+Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
+  constexpr Eigen::Index kDeciding = 5;
   const std::vector<int> none;
-  for (const MeasuredRun& run : runs) {
-    RunStart start = start_of(network, run);
-    LinearisedRun free_run;
-    for (int pass = 0; pass < 2; ++pass) {
-      free_run = linearise(network, parameters, none, none, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
-      // The first samples decide where the run starts, not its whole length: a model that lacks heat must not hide it there.
-      Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
-      Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
-      const Eigen::Index rows = std::min<Eigen::Index>(5 * free_run.sensors(), free_run.residual_K.size());
-      for (Eigen::Index row = 0; row < rows; ++row) {
-        if (!std::isnan(free_run.residual_K[row])) {
-          const double noise_K = run.sensors[static_cast<std::size_t>(row % free_run.sensors())].noise_K;
-          normal += free_run.by_start.row(row).transpose() * free_run.by_start.row(row) / (noise_K * noise_K);
-          right += free_run.by_start.row(row).transpose() * free_run.residual_K[row] / (noise_K * noise_K);
-        }
-      }
-      if (pass == 0) {
-        start.state_C += normal.ldlt().solve(right);
+  RunStart start = start_of(network, run);
+  LinearisedRun free_run;
+  for (int pass = 0; pass < 2; ++pass) {
+    free_run = linearise(network, parameters, none, none, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
+    Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
+    Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
+    for (Eigen::Index row = 0; row < std::min(kDeciding * free_run.sensors(), free_run.residual_K.size()); ++row) {
+      if (!std::isnan(free_run.residual_K[row])) {
+        const double noise_K = run.sensors[static_cast<std::size_t>(row % free_run.sensors())].noise_K;
+        normal += free_run.by_start.row(row).transpose() * free_run.by_start.row(row) / (noise_K * noise_K);
+        right += free_run.by_start.row(row).transpose() * free_run.residual_K[row] / (noise_K * noise_K);
       }
     }
+    if (pass == 0) {
+      start.state_C += normal.ldlt().solve(right);
+    }
+  }
+  Eigen::MatrixXd shown_C(run.samples(), free_run.sensors());
+  for (Eigen::Index sensor = 0; sensor < free_run.sensors(); ++sensor) {
+    shown_C.col(sensor) = free_run.state_C.row(free_run.sensor_node[static_cast<std::size_t>(sensor)]).transpose();
+  }
+  return shown_C;
+}
+
+std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {
+  std::vector<SignalError> errors;
+  for (const MeasuredRun& run : runs) {
+    const Eigen::MatrixXd off_K = run.measured_C - open_loop_C(network, parameters, run);
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
       auto found = std::ranges::find(errors, run.sensors[sensor].signal, &SignalError::signal);
       if (found == errors.end()) {
         found = errors.insert(errors.end(), {run.sensors[sensor].signal});
       }
-      for (Eigen::Index k = 0; k < free_run.samples(); ++k) {
-        const double off_K = free_run.residual_K[k * free_run.sensors() + static_cast<Eigen::Index>(sensor)];
-        if (!std::isnan(off_K)) {
-          found->rmse_K += off_K * off_K;
-          found->max_abs_K = std::max(found->max_abs_K, std::abs(off_K));
+      for (const double each_K : off_K.col(static_cast<Eigen::Index>(sensor))) {
+        if (!std::isnan(each_K)) {
+          found->rmse_K += each_K * each_K;
+          found->max_abs_K = std::max(found->max_abs_K, std::abs(each_K));
           ++found->samples;
         }
       }

@@ -73,8 +73,11 @@ struct SignalError {
 /// Temperatures at the start that serve best without any fit: first samples, and where a node has no sensor, what its neighbour shows.
 RunStart start_of(const Network& network, const MeasuredRun& run);
 
-/// Errors of the free-running model over all runs, by signal. The start temperatures are corrected by least squares
-/// (they are nuisance) with everything else held.
+/// What the sensors would show (n × sensors) if the model ran free from the run's start. The start is decided by the first five samples
+/// only: a model that lacks heat must not hide it there.
+Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run);
+
+/// Errors of the free-running model over all runs, by signal.
 std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs);
 
 }  // namespace heatsoak

@@ -188,11 +188,7 @@ class Builder {
  public:
   Builder(const Recording& recording, const MeasuredRunOptions& options)
       : recording_(recording), options_(options), rows_(recording, options) {
-    for (const SignalChannel& each : kSignalChannels) {
-      if (is_there(recording, each.signal)) {
-        signals_.push_back(each.signal);
-      }
-    }
+    signals_ = signals_of(recording);
     for (const SensorPlace& place : kSensorPlaces) {
       const Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();

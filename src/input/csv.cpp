@@ -32,14 +32,8 @@ std::string_view first_line(std::string_view cell) { return cell.substr(0, std::
 
 class Table {
  public:
-  Table(std::string file, std::span<const std::string> required, std::span<const std::string> optional, std::span<const CsvWords> words,
-        const std::function<void(const CsvRow&)>& row)
-      : file_(std::move(file)),
-        required_(required),
-        optional_(optional),
-        words_(words),
-        row_(row),
-        values_(required.size() + optional.size(), kNothing) {}
+  Table(std::string file, const ChooseCsvColumns& choose, std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row)
+      : file_(std::move(file)), choose_(choose), words_(words), row_(row) {}
 
   void cell(std::string_view text) {
     line_breaks_in_row_ += static_cast<int>(std::ranges::count(text, '\n'));
@@ -129,6 +123,8 @@ class Table {
     if (header_.size() == 1 && header_[0].find_first_of(";\t") != std::string::npos) {
       stop("the header has no comma; expected columns separated by commas, and points in numbers");
     }
+    const CsvColumns wanted = choose_(header_);
+    values_.assign(wanted.required.size() + wanted.optional.size(), kNothing);
     place_of_.assign(header_.size(), -1);
     words_of_.assign(header_.size(), nullptr);
     columns_.assign(values_.size(), 0);
@@ -137,8 +133,8 @@ class Table {
       words_of_[i] = found != words_.end() ? &*found : nullptr;
     }
     for (std::size_t i = 0; i < values_.size(); ++i) {
-      const bool is_required = i < required_.size();
-      const std::string& name = is_required ? required_[i] : optional_[i - required_.size()];
+      const bool is_required = i < wanted.required.size();
+      const std::string& name = is_required ? wanted.required[i] : wanted.optional[i - wanted.required.size()];
       const auto found = std::ranges::find(header_, name);
       if (found == header_.end()) {
         if (is_required) {
@@ -155,8 +151,7 @@ class Table {
   }
 
   std::string file_;
-  std::span<const std::string> required_;
-  std::span<const std::string> optional_;
+  const ChooseCsvColumns& choose_;
   std::span<const CsvWords> words_;
   const std::function<void(const CsvRow&)>& row_;
   std::vector<std::string> header_;
@@ -216,9 +211,17 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
 
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row) {
+  const auto always = [&](std::span<const std::string> /*header*/) {
+    return CsvColumns{{required.begin(), required.end()}, {optional.begin(), optional.end()}};
+  };
+  read_csv(path, always, words, row);
+}
+
+void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose, std::span<const CsvWords> words,
+              const std::function<void(const CsvRow&)>& row) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file = opened(path);
-  Table table(path.string(), required, optional, words, row);
-  csv_parser parser;
+  Table table(path.string(), choose, words, row);
+  csv_parser parser{};
   csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT | CSV_STRICT_FINI);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);
   Guarded guard{table, nullptr};

@@ -22,6 +22,14 @@ struct CsvWords {
   std::vector<std::string> words;
 };
 
+/// Which columns are wanted of a file.
+struct CsvColumns {
+  std::vector<std::string> required;  ///< must be in the header
+  std::vector<std::string> optional;  ///< give NaN where the header has none
+};
+/// Called once, with the header as it stands in the file.
+using ChooseCsvColumns = std::function<CsvColumns(std::span<const std::string> header)>;
+
 /// Reads a file with one header row and gives every row to `row`. `required` names must be in the header;
 /// `optional` ones give NaN where the header has none. Memory does not grow with the file. A UTF-8 byte order mark and CR LF are fine.
 /// Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
@@ -30,5 +38,8 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
               const std::function<void(const CsvRow&)>& row);
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row);
+/// The same for files that come in several forms.
+void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose, std::span<const CsvWords> words,
+              const std::function<void(const CsvRow&)>& row);
 
 }  // namespace heatsoak

@@ -24,16 +24,16 @@ bool complete(const DataFolders& folders) { return is_folder(folders.motors) && 
 
 DataFolders beside_the_program() {
   const fs::path program = fs::read_symlink("/proc/self/exe");
-  if (const DataFolders found = installed(program.parent_path().parent_path() / "share" / "heatsoak"); complete(found)) {
+  if (DataFolders found = installed(program.parent_path().parent_path() / "share" / "heatsoak"); complete(found)) {
     return found;
   }
   for (fs::path folder = program.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (const DataFolders found = source_tree(folder); complete(found)) {
+    if (DataFolders found = source_tree(folder); complete(found)) {
       return found;
     }
   }
   // A build folder elsewhere: the sources that this file was compiled from.
-  if (const DataFolders found = source_tree(fs::path(__FILE__).parent_path().parent_path().parent_path()); complete(found)) {
+  if (DataFolders found = source_tree(fs::path(__FILE__).parent_path().parent_path().parent_path()); complete(found)) {
     return found;
   }
   return {};
@@ -78,7 +78,7 @@ std::vector<std::string> ids_in(const fs::path& folder) {
 
 fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view name) {
   if (name.find('/') != std::string_view::npos || name.ends_with(".toml")) {
-    return fs::path(name);
+    return name;
   }
   const std::vector<std::string> ids = ids_in(folder);
   if (std::ranges::find(ids, name) == ids.end()) {

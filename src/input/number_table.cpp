@@ -116,9 +116,9 @@ class LineReader {
   }
 
   void fill() {
-    buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
     end_ -= std::exchange(begin_, 0);
-    buffer_.resize(end_ + kChunk_bytes);
+    buffer_.resize(std::max(buffer_.size(), end_ + kChunk_bytes));  // zeroed once, not for every chunk
     const ssize_t got = ::read(descriptor_, buffer_.data() + end_, kChunk_bytes);
     if (got < 0) {
       fail(std::strerror(errno));

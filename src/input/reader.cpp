@@ -9,6 +9,14 @@
 
 namespace heatsoak {
 
+namespace {
+
+std::string out_of_range(std::string_view text, const ParameterSpec& spec) {
+  return fmt::format(R"("{}" is out of range; expected {} ({}))", text, to_string(spec.range, spec.unit), spec.meaning);
+}
+
+}  // namespace
+
 Reader::Reader(const Value& table, std::string path, Diagnostics& diagnostics)
     : table_(&table), path_(std::move(path)), diagnostics_(&diagnostics) {}
 
@@ -117,10 +125,26 @@ std::optional<double> Reader::quantity(const ParameterSpec& spec, Need need) {
   }
   const std::optional<double> parsed = parse(*value, spec.key, spec.unit);
   if (parsed && !spec.range.contains(*parsed)) {
-    problem(spec.key, fmt::format("\"{}\" is out of range; expected {} ({})", value->text, to_string(spec.range, spec.unit), spec.meaning));
+    problem(spec.key, out_of_range(value->text, spec));
     return std::nullopt;
   }
   return parsed;
+}
+
+std::vector<double> Reader::quantities(const ParameterSpec& spec, Need need) {
+  std::vector<double> result;
+  const Value* list = get(spec.key, Value::Kind::array, need);
+  for (std::size_t i = 0; list && i < list->items.size(); ++i) {
+    const Value& item = list->items[i];
+    const std::string key = fmt::format("{}[{}]", spec.key, i);
+    const std::optional<double> parsed = parse(item, key, spec.unit);
+    const bool is_good = parsed && spec.range.contains(*parsed);
+    if (parsed && !is_good) {
+      diagnostics_->add(item.at, full(key), out_of_range(item.text, spec));
+    }
+    result.push_back(is_good ? *parsed : 0.0);
+  }
+  return result;
 }
 
 std::optional<Reader> Reader::table(std::string_view key, Need need) {
@@ -197,8 +221,21 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
   } else {
     inner.asked_.insert({"tolerance", "range"});
   }
+  inner.read_confirmations(spec, figure);
   inner.finish();
   return parsed && origin ? std::optional(figure) : std::nullopt;
+}
+
+void Reader::read_confirmations(const ParameterSpec& spec, Figure& figure) {
+  std::optional<Reader> others = table("confirmed_by", Need::optional);
+  if (!others) {
+    return;
+  }
+  for (const std::string& source : others->keys()) {
+    if (const std::optional<double> value = others->quantity({source, spec.unit, spec.range, spec.meaning}, Need::required)) {
+      figure.confirmed_by.push_back({source, *value, others->table_->find(source)->text});
+    }
+  }
 }
 
 void Reader::read_spread(const ParameterSpec& spec, Figure& figure) {

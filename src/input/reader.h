@@ -31,6 +31,9 @@ class Reader {
   std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> choices, Need need);
   /// A quantity written as text with a unit, in the unit and range of `spec`.
   std::optional<double> quantity(const ParameterSpec& spec, Need need);
+  /// A list of such texts. What is wrong with an element is reported at its place, as key[index];
+  /// it counts as 0, so that the length is that of the list.
+  std::vector<double> quantities(const ParameterSpec& spec, Need need);
   /// `{ value = "…", origin = "…", source = "…", tolerance = "…" }`; see motor_db/README.md.
   std::optional<Figure> figure(const ParameterSpec& spec, Need need);
   std::optional<Reader> table(std::string_view key, Need need);
@@ -38,6 +41,8 @@ class Reader {
   /// Every member of this table as a table of its own, for folders of named things.
   std::vector<std::pair<std::string, Reader>> named_tables();
 
+  /// Knows the key without looking at it: where another problem hides what it should hold.
+  void pass_over(std::string_view key) { asked_.insert(std::string(key)); }
   void finish();
 
   /// A problem of the value of `key`, or of the whole table where it has no such key.
@@ -53,6 +58,7 @@ class Reader {
   [[nodiscard]] std::string full(std::string_view key) const;
   std::optional<double> parse(const Value& value, std::string_view key, std::string_view unit);
   void read_spread(const ParameterSpec& spec, Figure& figure);
+  void read_confirmations(const ParameterSpec& spec, Figure& figure);
 
   const Value* table_;
   std::string path_;

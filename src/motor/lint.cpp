@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "base/quantity.h"
@@ -16,9 +17,12 @@ void Findings::add(LintFinding::Level level, std::string_view key, std::string m
   list_.push_back({level, std::string(check_), std::move(message), std::move(at)});
 }
 
-bool is_estimate(const Motor& motor, std::string_view key) {
-  const auto figure = motor.figures.find(key);
-  return figure != motor.figures.end() && figure->second.origin == Origin::estimated;
+LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys) {
+  const bool rests_on_estimate = std::ranges::any_of(keys, [&](std::string_view key) {
+    const auto figure = motor.figures.find(key);
+    return figure != motor.figures.end() && figure->second.origin == Origin::estimated;
+  });
+  return rests_on_estimate ? LintFinding::Level::warning : LintFinding::Level::error;
 }
 
 double resistance_ohm(const MotorValues& values, double temperature_C) {
@@ -66,11 +70,25 @@ constexpr std::array kChecks = {
     NamedCheck{"density", lint_checks::density},
     NamedCheck{"rotor_inertia", lint_checks::rotor_inertia},
     NamedCheck{"limits", lint_checks::limits},
+    NamedCheck{"sources", lint_checks::sources},
+    NamedCheck{"confirmations", lint_checks::confirmations},
     NamedCheck{"estimates", lint_checks::estimates},
     NamedCheck{"spreads", lint_checks::spreads},
 };
 
 }  // namespace
+
+std::string_view to_string(LintFinding::Level level) {
+  switch (level) {
+    case LintFinding::Level::error:
+      return "error";
+    case LintFinding::Level::warning:
+      return "warning";
+    case LintFinding::Level::note:
+      break;
+  }
+  return "note";
+}
 
 std::vector<LintFinding> lint(const Motor& motor) {
   std::vector<LintFinding> list;

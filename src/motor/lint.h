@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "motor/motor.h"
@@ -11,14 +12,17 @@ namespace heatsoak {
 
 struct LintFinding {
   enum class Level {
-    error,  ///< two figures contradict each other or nature: one of them is wrong
-    note    ///< nothing is wrong, but who relies on the motor should know
+    error,    ///< two figures contradict each other or nature: one of them is wrong
+    warning,  ///< hardly possible, or contradicted by an estimate: look it up again
+    note      ///< nothing is wrong, but who relies on the motor should know
   };
   Level level = Level::note;
   std::string check;    ///< name of the check, "constants"
   std::string message;  ///< what was found, what was expected, what to do
   Location at;
 };
+
+std::string_view to_string(LintFinding::Level level);
 
 /// Every finding of every check whose figures the file gives. A motor that passes has no errors.
 std::vector<LintFinding> lint(const Motor& motor);

@@ -2,6 +2,7 @@
 // it compares are in the file: absent ones are NaN in MotorValues.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,7 +18,11 @@ class Findings {
   Findings(const Motor& motor, std::string_view check, std::vector<LintFinding>& list) : motor_(motor), check_(check), list_(list) {}
 
   void error(std::string_view key, std::string message) { add(LintFinding::Level::error, key, std::move(message)); }
+  void warning(std::string_view key, std::string message) { add(LintFinding::Level::warning, key, std::move(message)); }
   void note(std::string_view key, std::string message) { add(LintFinding::Level::note, key, std::move(message)); }
+  void error_at(Location at, std::string message) {
+    list_.push_back({LintFinding::Level::error, std::string(check_), std::move(message), std::move(at)});
+  }
   /// `key` is the figure that the finding is about; its place in the file is reported.
   void add(LintFinding::Level level, std::string_view key, std::string message);
 
@@ -37,7 +42,8 @@ struct Bounds {
   [[nodiscard]] bool excludes(double value) const { return value < low || value > high; }
 };
 
-bool is_estimate(const Motor& motor, std::string_view key);
+/// A contradiction is an error, but only a warning where one of the figures is somebody's estimate.
+LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys);
 /// Of the copper at `temperature_C`.
 double resistance_ohm(const MotorValues& values, double temperature_C);
 
@@ -68,12 +74,16 @@ void nominal_speed(const Motor& motor, Findings& findings);
 void nominal_point_heat_check(const Motor& motor, Findings& findings);
 void copper_limit(const Motor& motor, Findings& findings);
 
-// Orders of magnitude, and what the figures rest on: lint_magnitude.cpp
+// Orders of magnitude: lint_magnitude.cpp
 void heat_capacities(const Motor& motor, Findings& findings);
 void electrical_time_constant(const Motor& motor, Findings& findings);
 void density(const Motor& motor, Findings& findings);
 void rotor_inertia(const Motor& motor, Findings& findings);
 void limits(const Motor& motor, Findings& findings);
+
+// What the figures rest on: lint_provenance.cpp
+void sources(const Motor& motor, Findings& findings);
+void confirmations(const Motor& motor, Findings& findings);
 void estimates(const Motor& motor, Findings& findings);
 void spreads(const Motor& motor, Findings& findings);
 

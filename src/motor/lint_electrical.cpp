@@ -80,7 +80,7 @@ std::string verdict_on_constants(const MotorValues& v) {
   const double no_load_rad_per_s = v.no_load_speed_rad_per_s;
   const bool speed_fits = !kNoLoadSpeed.excludes(v.speed_constant_rad_per_s_per_V * emf_V / no_load_rad_per_s);
   const bool torque_fits = !kNoLoadSpeed.excludes(emf_V / v.torque_constant_Nm_per_A / no_load_rad_per_s);
-  const std::string torque_verdict = explanation(v.torque_constant_Nm_per_A * v.speed_constant_rad_per_s_per_V);
+  std::string torque_verdict = explanation(v.torque_constant_Nm_per_A * v.speed_constant_rad_per_s_per_V);
   if (std::isnan(no_load_rad_per_s) || speed_fits == torque_fits) {
     return torque_verdict;
   }

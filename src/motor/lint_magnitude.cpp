@@ -1,4 +1,4 @@
-// What no motor of this world can have, and what a motor's figures rest on.
+// What no motor of this world can have.
 #include <fmt/format.h>
 
 #include <numbers>
@@ -21,6 +21,7 @@ constexpr Bounds kElectrical_s{20e-6, 5e-3};
 /// Steel is 7850, magnets 7500, aluminium 2700, resin 1200 kg/m³, and gaps weigh nothing: a body is less dense
 /// than a solid one of magnet and steel. motor_db has 3860 … 5330 kg/m³.
 constexpr Bounds kDensity_kg_per_m3{1500.0, 7500.0};
+constexpr Bounds kUsualDensity_kg_per_m3{3000.0, 6500.0};
 /// J/(m·r²): all mass in a thin ring would be 1, half the mass in a ring is 0.5; motor_db has 0.05 … 0.28.
 constexpr double kMostInertia = 0.5;
 /// A flat motor carries its magnets outside: a bell of 8 % of the mass with a radius of gyration of 0.6 r has 0.03.
@@ -76,12 +77,14 @@ void electrical_time_constant(const Motor& motor, Findings& findings) {
 void density(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double density_kg_per_m3 = v.mass_kg / (body_area_m2(v) * v.length_m);
+  const std::string found = fmt::format("{} in a body of {} diameter and {} length are {} kg/m3", shown(1e3 * v.mass_kg, "g"),
+                                        shown(1e3 * v.diameter_m, "mm"), shown(1e3 * v.length_m, "mm"), significant(density_kg_per_m3, 3));
   if (kDensity_kg_per_m3.excludes(density_kg_per_m3)) {
-    findings.error(
-        "mass", fmt::format("{} in a body of {} diameter and {} length are {} kg/m3, expected 1500 to 7500 kg/m3 (solid steel has 7850); "
-                            "check mass and dimensions of the body without shaft",
-                            shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"), shown(1e3 * v.length_m, "mm"),
-                            significant(density_kg_per_m3, 3)));
+    findings.error("mass",
+                   found + ", expected 1500 to 7500 kg/m3 (solid steel has 7850); check mass and dimensions of the body without shaft");
+  } else if (kUsualDensity_kg_per_m3.excludes(density_kg_per_m3)) {
+    findings.warning(density_kg_per_m3 < kUsualDensity_kg_per_m3.low ? "length" : "mass",
+                     found + ", motors have 3000 to 6500 kg/m3; check the mass, and whether the length is that of the body without shaft");
   }
 }
 
@@ -96,11 +99,11 @@ void rotor_inertia(const Motor& motor, Findings& findings) {
                                shown(500.0 * v.diameter_m, "mm")));
   }
   if (v.length_m < kFlat * v.diameter_m && ratio < kLeastFlatInertia) {
-    findings.note("rotor_inertia",
-                  fmt::format("{} is very little for a flat motor of {} and {} diameter, expected at least {} with the magnets outside; "
-                              "check it unless the rotor is inside",
-                              shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
-                              shown_inertia(kLeastFlatInertia * ring_kg_m2)));
+    findings.warning("rotor_inertia",
+                     fmt::format("{} is very little for a flat motor of {} and {} diameter, expected at least {} with the magnets outside; "
+                                 "check it unless the rotor is inside",
+                                 shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
+                                 shown_inertia(kLeastFlatInertia * ring_kg_m2)));
   }
 }
 
@@ -127,37 +130,6 @@ void limits(const Motor& motor, Findings& findings) {
     findings.note("max_speed",
                   fmt::format("no-load speed {} at nominal voltage is above the highest permissible speed {}: limit the voltage",
                               shown_speed(v.no_load_speed_rad_per_s), shown_speed(v.max_speed_rad_per_s)));
-  }
-}
-
-void estimates(const Motor& motor, Findings& findings) {
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
-    const auto figure = motor.figures.find(each.spec.key);
-    if (figure == motor.figures.end() || figure->second.origin != Origin::estimated) {
-      continue;
-    }
-    const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(figure->second.value, each.spec.unit));
-    if (each.is_thermal) {
-      findings.note(each.spec.key,
-                    found + ": the temperature rests on it, expected a figure of the sheet; measure it or calibrate before you rely on it");
-    } else if (each.spec.key.starts_with("nominal_")) {
-      findings.note(each.spec.key, found + ": the nominal point rests on it, expected a figure of the sheet; take it from there");
-    }
-  }
-}
-
-void spreads(const Motor& motor, Findings& findings) {
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
-    const auto figure = motor.figures.find(each.spec.key);
-    // A limit is what the manufacturer permits; no part has another one.
-    const bool is_limit = each.spec.unit == "degC";
-    if (each.is_thermal && !is_limit && figure != motor.figures.end() && !figure->second.spread) {
-      findings.note(
-          each.spec.key,
-          fmt::format("{} of {} has neither tolerance nor range, so the spread of the temperature leaves it out; expected one of both, "
-                      "add it to the figure",
-                      each.spec.key, shown(figure->second.value, each.spec.unit)));
-    }
   }
 }
 

@@ -20,8 +20,9 @@ constexpr Bounds kNominalTorque{0.85, 1.2};
 constexpr Bounds kPeakTorque{0.2, 1.2};
 /// Energy: copper at 25 °C is the least loss there can be, so only rounding of four figures is left.
 constexpr double kPowerTolerance = 0.03;
-/// Shaft, hot copper and drag make 0.93 … 1.03 of the input on known sheets; less than this is power gone nowhere.
-constexpr double kPowerExplained = 0.85;
+/// Shaft, hot copper and drag make 0.93 … 1.03 of the input on known sheets. Less is power gone nowhere; more is a
+/// resistance too high, for a sheet whose nominal point leaves the winding cooler than its limit 4 % more at most.
+constexpr Bounds kPowerExplained{0.85, 1.08};
 /// Rounding of the nominal speed and of the line; the found speeds lie between the two lines of the check.
 constexpr double kSpeedTolerance = 0.03;
 /// A resistance derived from the slowest nominal speed is uncertain by the commutation: ±30 % around two.
@@ -51,20 +52,10 @@ double limit_current_A(const Motor& motor, double speed_rad_per_s) {
   return boost::math::tools::bisect(excess_K, 0.0, too_much_A, boost::math::tools::eps_tolerance<double>(kBits)).first;
 }
 
-/// Does the temperature of the nominal point rest on somebody's estimate?
-bool rests_on_estimate(const Motor& motor) {
-  for (const std::string_view key :
-       {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_limit", "terminal_resistance", "torque_constant",
-        "no_load_current", "nominal_torque", "nominal_speed", "nominal_current"}) {
-    if (is_estimate(motor, key)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 LintFinding::Level level_of_heat(const Motor& motor) {
-  return rests_on_estimate(motor) ? LintFinding::Level::note : LintFinding::Level::error;
+  return level_of_contradiction(
+      motor, {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_limit", "terminal_resistance",
+              "torque_constant", "no_load_current", "nominal_torque", "nominal_speed", "nominal_current"});
 }
 
 /// Volts per ampere that commutation costs beyond the copper at most: the overlap of a six-pulse bridge,
@@ -126,7 +117,15 @@ void power_balance(const Motor& motor, Findings& findings) {
                                found, shown(copper_W, "W"), shown(shaft_W + copper_W, "W")));
   }
   const double most_loss_W = current_squared_A2 * resistance_ohm(v, v.winding_limit_C) + drag_torque_Nm(v) * v.nominal_speed_rad_per_s;
-  if (shaft_W + most_loss_W < kPowerExplained * input_W) {
+  const double explained = (shaft_W + most_loss_W) / input_W;
+  if (explained > kPowerExplained.high) {
+    findings.add(
+        level_of_contradiction(motor, {"nominal_current", "nominal_torque", "nominal_speed", "terminal_resistance"}), "terminal_resistance",
+        fmt::format("{}; with {} lost in a winding at its limit and by drag it takes {} times the input, expected at most 1.08 times; "
+                    "check resistance, nominal current, speed and torque",
+                    found, shown(most_loss_W, "W"), significant(explained, 3)));
+  }
+  if (explained < kPowerExplained.low) {
     findings.error("nominal_current",
                    fmt::format("{}; hot copper and drag lose {}, which leaves {} unexplained, expected at most 15 % of the input; "
                                "check nominal current, speed and torque",

@@ -8,43 +8,56 @@
 #include <numbers>
 
 #include "input/document.h"
-#include "motor/datasheet_network.h"
+#include "motor/motor_effects.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr Range kPositive = Range::positive();
-/// From a drop of copper to a locomotive: what lies outside is a slip of the unit.
+/// From the motor of a watch to that of a locomotive: what lies outside is a slip of the unit.
+constexpr Range kVoltage = Range::between(0.1, 1e4);
+constexpr Range kCurrent = Range::between(1e-4, 1e5);
+constexpr Range kResistance = Range::between(1e-5, 1e5);
+constexpr Range kInductance = Range::between(1e-8, 1e2);
+constexpr Range kTorqueConstant = Range::between(1e-6, 1e3);
+constexpr Range kSpeedConstant = Range::between(1e-3, 1e6);
+constexpr Range kGradient = Range::between(1e-6, 1e12);
+constexpr Range kMechanicalTime = Range::between(1e-5, 1e3);
+constexpr Range kInertia = Range::between(1e-13, 1e4);
+constexpr Range kSpeed = Range::between(0.1, 1e5);
+constexpr Range kTorque = Range::between(1e-8, 1e6);
+constexpr Range kPower = Range::between(1e-5, 1e8);
+constexpr Range kMass = Range::between(1e-5, 1e5);
+constexpr Range kSize = Range::between(1e-3, 10.0);
 constexpr Range kThermalResistance = Range::between(1e-3, 1e3);
 constexpr Range kThermalTime = Range::between(0.1, 1e6);
 constexpr Range kTemperature = Range::between(-60.0, 400.0);
 
 // clang-format off
 constexpr std::array kSpecs = {
-    MotorFigureSpec{{"nominal_voltage", "V", kPositive, "supply voltage the nominal figures hold for"}, &MotorValues::nominal_voltage_V, Need::required},
-    MotorFigureSpec{{"terminal_resistance", "ohm", kPositive, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
-    MotorFigureSpec{{"terminal_inductance", "H", kPositive, "of the winding"}, &MotorValues::terminal_inductance_H},
-    MotorFigureSpec{{"torque_constant", "N m/A", kPositive, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, Need::required, true},
-    MotorFigureSpec{{"speed_constant", "rad/s/V", kPositive, "speed per volt of back-EMF"}, &MotorValues::speed_constant_rad_per_s_per_V},
-    MotorFigureSpec{{"speed_torque_gradient", "rad/s/(N m)", kPositive, "loss of speed per torque at constant voltage"}, &MotorValues::speed_torque_gradient_rad_per_s_per_Nm},
-    MotorFigureSpec{{"mechanical_time_constant", "s", kPositive, "R·J/K_t²"}, &MotorValues::mechanical_time_constant_s},
-    MotorFigureSpec{{"rotor_inertia", "kg m2", kPositive, "moment of inertia of the rotor"}, &MotorValues::rotor_inertia_kg_m2},
-    MotorFigureSpec{{"no_load_speed", "rad/s", kPositive, "at nominal voltage"}, &MotorValues::no_load_speed_rad_per_s},
-    MotorFigureSpec{{"no_load_current", "A", Range::non_negative(), "at nominal voltage: iron and friction loss"}, &MotorValues::no_load_current_A, Need::required, true},
-    MotorFigureSpec{{"nominal_speed", "rad/s", kPositive, "at nominal voltage and torque"}, &MotorValues::nominal_speed_rad_per_s},
-    MotorFigureSpec{{"nominal_torque", "N m", kPositive, "largest continuous torque at 25 °C ambient"}, &MotorValues::nominal_torque_Nm},
-    MotorFigureSpec{{"nominal_current", "A", kPositive, "largest continuous current at 25 °C ambient"}, &MotorValues::nominal_current_A},
-    MotorFigureSpec{{"stall_torque", "N m", kPositive, "at nominal voltage"}, &MotorValues::stall_torque_Nm},
-    MotorFigureSpec{{"stall_current", "A", kPositive, "at nominal voltage"}, &MotorValues::stall_current_A},
+    MotorFigureSpec{{"nominal_voltage", "V", kVoltage, "supply voltage the nominal figures hold for"}, &MotorValues::nominal_voltage_V, Need::required},
+    MotorFigureSpec{{"terminal_resistance", "ohm", kResistance, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
+    MotorFigureSpec{{"terminal_inductance", "H", kInductance, "of the winding"}, &MotorValues::terminal_inductance_H},
+    MotorFigureSpec{{"torque_constant", "N m/A", kTorqueConstant, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, Need::required, true},
+    MotorFigureSpec{{"speed_constant", "rad/s/V", kSpeedConstant, "speed per volt of back-EMF"}, &MotorValues::speed_constant_rad_per_s_per_V},
+    MotorFigureSpec{{"speed_torque_gradient", "rad/s/(N m)", kGradient, "loss of speed per torque at constant voltage"}, &MotorValues::speed_torque_gradient_rad_per_s_per_Nm},
+    MotorFigureSpec{{"mechanical_time_constant", "s", kMechanicalTime, "R·J/K_t²"}, &MotorValues::mechanical_time_constant_s},
+    MotorFigureSpec{{"rotor_inertia", "kg m2", kInertia, "moment of inertia of the rotor"}, &MotorValues::rotor_inertia_kg_m2},
+    MotorFigureSpec{{"no_load_speed", "rad/s", kSpeed, "at nominal voltage"}, &MotorValues::no_load_speed_rad_per_s},
+    MotorFigureSpec{{"no_load_current", "A", Range::between(0.0, 1e5), "at nominal voltage: iron and friction loss"}, &MotorValues::no_load_current_A, Need::required, true},
+    MotorFigureSpec{{"nominal_speed", "rad/s", kSpeed, "at nominal voltage and torque"}, &MotorValues::nominal_speed_rad_per_s},
+    MotorFigureSpec{{"nominal_torque", "N m", kTorque, "largest continuous torque at 25 °C ambient"}, &MotorValues::nominal_torque_Nm},
+    MotorFigureSpec{{"nominal_current", "A", kCurrent, "largest continuous current at 25 °C ambient"}, &MotorValues::nominal_current_A},
+    MotorFigureSpec{{"stall_torque", "N m", kTorque, "at nominal voltage"}, &MotorValues::stall_torque_Nm},
+    MotorFigureSpec{{"stall_current", "A", kCurrent, "at nominal voltage"}, &MotorValues::stall_current_A},
     MotorFigureSpec{{"max_efficiency", "", Range::between(0.0, 1.0), "at nominal voltage"}, &MotorValues::max_efficiency},
-    MotorFigureSpec{{"peak_current", "A", kPositive, "short-time limit of the manufacturer"}, &MotorValues::peak_current_A},
-    MotorFigureSpec{{"peak_torque", "N m", kPositive, "short-time limit of the manufacturer"}, &MotorValues::peak_torque_Nm},
-    MotorFigureSpec{{"max_speed", "rad/s", kPositive, "mechanical limit"}, &MotorValues::max_speed_rad_per_s},
-    MotorFigureSpec{{"assigned_power", "W", kPositive, "name-plate power"}, &MotorValues::assigned_power_W},
+    MotorFigureSpec{{"peak_current", "A", kCurrent, "short-time limit of the manufacturer"}, &MotorValues::peak_current_A},
+    MotorFigureSpec{{"peak_torque", "N m", kTorque, "short-time limit of the manufacturer"}, &MotorValues::peak_torque_Nm},
+    MotorFigureSpec{{"max_speed", "rad/s", kSpeed, "mechanical limit"}, &MotorValues::max_speed_rad_per_s},
+    MotorFigureSpec{{"assigned_power", "W", kPower, "name-plate power"}, &MotorValues::assigned_power_W},
     MotorFigureSpec{{"pole_pairs", "", Range::between(1.0, 100.0), "of the rotor"}, &MotorValues::pole_pairs},
-    MotorFigureSpec{{"mass", "kg", kPositive, "of the motor"}, &MotorValues::mass_kg},
-    MotorFigureSpec{{"diameter", "m", kPositive, "of the body"}, &MotorValues::diameter_m},
-    MotorFigureSpec{{"length", "m", kPositive, "of the body"}, &MotorValues::length_m},
+    MotorFigureSpec{{"mass", "kg", kMass, "of the motor"}, &MotorValues::mass_kg},
+    MotorFigureSpec{{"diameter", "m", kSize, "of the body"}, &MotorValues::diameter_m},
+    MotorFigureSpec{{"length", "m", kSize, "of the body"}, &MotorValues::length_m},
     MotorFigureSpec{{"thermal_resistance_winding_stator", "K/W", kThermalResistance, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, Need::required, true},
     MotorFigureSpec{{"thermal_resistance_stator_ambient", "K/W", kThermalResistance, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, Need::required, true},
     MotorFigureSpec{{"thermal_time_constant_winding", "s", kThermalTime, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, Need::required, true},
@@ -56,6 +69,8 @@ constexpr std::array kSpecs = {
     MotorFigureSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; copper's 0.0039 1/K where absent"}, &MotorValues::temperature_coefficient_per_K},
 };
 // clang-format on
+constexpr std::array<std::string_view, 8> kAgreed{"nominal_voltage", "assigned_power", "max_speed",   "pole_pairs",
+                                                  "winding_limit",   "stator_limit",   "ambient_min", "ambient_max"};
 
 constexpr double kCopper_per_K = 0.0039;
 
@@ -70,6 +85,7 @@ const std::array<std::pair<std::string_view, double>, 3> kTorqueConventions{
 template <class Conventions>
 double convention_factor(Reader& conventions, std::string_view key, const Conventions& known) {
   std::vector<std::string_view> names;
+  names.reserve(known.size());
   for (const auto& [name, factor] : known) {
     names.push_back(name);
   }
@@ -87,6 +103,9 @@ void scale(Figure& figure, double factor) {
   if (figure.spread) {
     figure.spread->low *= factor;
     figure.spread->high *= factor;
+  }
+  for (Confirmation& other : figure.confirmed_by) {
+    other.value *= factor;
   }
 }
 
@@ -115,14 +134,19 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   for (const auto& [id, text] : motor.sources) {
     known.push_back(id);
   }
+  const auto look_up = [&](const Figure& figure, const std::string& key, const std::string& id) {
+    if (!motor.sources.contains(id)) {
+      diagnostics.add(figure.at, key, fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
+    }
+  };
   const auto check = [&](const std::string& key, const Figure& figure) {
     for (std::size_t at = 0; at < figure.source.size();) {
       const std::size_t end = std::min(figure.source.find(", ", at), figure.source.size());
-      const std::string id = figure.source.substr(at, end - at);
-      if (!motor.sources.contains(id)) {
-        diagnostics.add(figure.at, key + ".source", fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
-      }
+      look_up(figure, key + ".source", figure.source.substr(at, end - at));
       at = end + 2;
+    }
+    for (const Confirmation& other : figure.confirmed_by) {
+      look_up(figure, key + ".confirmed_by", other.source);
     }
   };
   for (const auto& [key, figure] : motor.figures) {
@@ -135,52 +159,64 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   }
 }
 
-void read_effects(Reader& top, Motor& motor) {
-  std::optional<Reader> table = top.table("effects", Need::optional);
-  if (!table) {
-    return;
+/// In the order in which they are drawn.
+std::vector<std::string> figure_keys(const Motor& motor) {
+  std::vector<std::string> keys;
+  for (const MotorFigureSpec& each : kSpecs) {
+    if (motor.figures.contains(each.spec.key)) {
+      keys.emplace_back(each.spec.key);
+    }
   }
-  std::vector<std::string> known;
-  for (const EffectType& type : all_effects()) {
-    known.emplace_back(type.name);
+  for (const MotorEffect& effect : motor.effects) {
+    for (const ParameterSpec& spec : effect.type->parameters) {
+      keys.push_back(fmt::format("effects.{}.{}", effect.name, spec.key));
+    }
   }
-  for (auto& [name, reader] : table->named_tables()) {
-    if (std::ranges::find(kDatasheetEffects, name) != kDatasheetEffects.end()) {
-      table->problem(name, "is the name of an effect that every motor has; give this one another name and say type = \"…\"");
-      continue;
+  return keys;
+}
+
+/// Where the numbers of a draw go, in the order of figure_keys().
+std::vector<std::pair<const Figure*, double*>> places(const Motor& motor, MotorSample& sample) {
+  std::vector<std::pair<const Figure*, double*>> all;
+  for (const MotorFigureSpec& each : kSpecs) {
+    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+      all.emplace_back(&found->second, &(sample.values.*each.value));
     }
-    const std::string type_name = reader.text("type", Need::optional).value_or(name);
-    const EffectType* type = find_effect(type_name);
-    if (!type) {
-      table->problem(
-          name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
-      continue;
-    }
-    MotorEffect effect{name, type, {}, {}, {}};
-    for (const NodeRole& role : type->nodes) {
-      effect.nodes.push_back(reader.text(role.role, Need::optional).value_or(std::string(role.default_node)));
-      constexpr std::array<std::string_view, 3> kNodes{"winding", "stator", "ambient"};
-      if (std::ranges::find(kNodes, effect.nodes.back()) == kNodes.end()) {
-        reader.problem(role.role, fmt::format("'{}' is no node; expected winding, stator or ambient", effect.nodes.back()));
-      }
-    }
-    for (const ParameterSpec& spec : type->parameters) {
-      effect.parameters.push_back(reader.figure(spec, Need::required).value_or(Figure{}));
-    }
-    if (std::optional<Reader> condition = reader.table("condition", Need::optional)) {
-      for (const std::string& key : condition->keys()) {
-        effect.condition.emplace(key, condition->text(key, Need::required).value_or(""));
-      }
-    }
-    reader.finish();
-    motor.effects.push_back(std::move(effect));
   }
-  table->finish();
+  for (std::size_t e = 0; e < motor.effects.size(); ++e) {
+    for (std::size_t p = 0; p < motor.effects[e].parameters.size(); ++p) {
+      all.emplace_back(&motor.effects[e].parameters[p], &sample.effect_parameters[e][p]);
+    }
+  }
+  return all;
 }
 
 }  // namespace
 
+Figure* find_figure(Motor& motor, std::string_view key) {
+  if (const auto found = motor.figures.find(key); found != motor.figures.end()) {
+    return &found->second;
+  }
+  for (MotorEffect& effect : motor.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (key == fmt::format("effects.{}.{}", effect.name, effect.type->parameters[i].key)) {
+        return &effect.parameters[i];
+      }
+    }
+  }
+  return nullptr;
+}
+
+void refresh_values(Motor& motor) {
+  for (const MotorFigureSpec& each : kSpecs) {
+    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+      motor.nominal.*each.value = found->second.value;
+    }
+  }
+}
+
 std::span<const MotorFigureSpec> motor_figure_specs() { return kSpecs; }
+bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
 
 Motor read_motor(const std::filesystem::path& path) {
   const Value root = read_toml(path);
@@ -193,7 +229,7 @@ Motor read_motor(const std::filesystem::path& path) {
   motor.name = top.text("name", Need::required).value_or("");
   motor.part_number = top.text("part_number", Need::optional).value_or("");
   constexpr std::array<std::string_view, 2> kTypes{"brushless", "brushed"};
-  top.choice("type", kTypes, Need::required);
+  motor.type = top.choice("type", kTypes, Need::required).value_or("");
   motor.notes = top.texts("notes", Need::optional);
   if (std::optional<Reader> sources = top.table("sources", Need::required)) {
     for (const std::string& id : sources->keys()) {
@@ -210,7 +246,10 @@ Motor read_motor(const std::filesystem::path& path) {
   }
   motor.nominal.temperature_coefficient_per_K = kCopper_per_K;
   read_figures(top, motor, resistance_factor, torque_factor);
-  read_effects(top, motor);
+  motor.effects = read_effects(top);
+  if (std::optional<Reader> table = top.table("fit", Need::optional)) {
+    motor.fit = read_fit(*table, figure_keys(motor));
+  }
   top.finish();
   check_sources(motor, diagnostics);
   diagnostics.throw_if_any();
@@ -230,17 +269,28 @@ MotorSample nominal_sample(const Motor& motor) {
 
 MotorSample draw_sample(const Motor& motor, Random& random) {
   MotorSample sample = nominal_sample(motor);
-  for (const MotorFigureSpec& each : kSpecs) {
-    const auto found = motor.figures.find(each.spec.key);
-    if (found != motor.figures.end() && found->second.spread) {
-      sample.values.*each.value = found->second.quantile(random.uniform());
+  const std::vector<std::pair<const Figure*, double*>> all = places(motor, sample);
+  std::vector<double> uniforms(all.size(), 0.5);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].first->spread) {
+      uniforms[i] = random.uniform();
     }
   }
-  for (std::size_t e = 0; e < motor.effects.size(); ++e) {
-    for (std::size_t p = 0; p < motor.effects[e].parameters.size(); ++p) {
-      if (motor.effects[e].parameters[p].spread) {
-        sample.effect_parameters[e][p] = motor.effects[e].parameters[p].quantile(random.uniform());
-      }
+  if (motor.fit) {
+    const std::vector<std::string> keys = figure_keys(motor);
+    const auto place = [&](const std::string& key) { return static_cast<std::size_t>(std::ranges::find(keys, key) - keys.begin()); };
+    std::vector<double> fitted;
+    for (const std::string& key : motor.fit->figures) {
+      fitted.push_back(uniforms[place(key)]);
+    }
+    correlate(*motor.fit, fitted);
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      uniforms[place(motor.fit->figures[i])] = fitted[i];
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].first->spread) {
+      *all[i].second = all[i].first->quantile(uniforms[i]);
     }
   }
   return sample;
@@ -249,7 +299,11 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
 std::string_view data_quality(const Motor& motor) {
   bool all_of_sheet = true;
   for (const MotorEffect& effect : motor.effects) {
-    for (const Figure& figure : effect.parameters) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      const Figure& figure = effect.parameters[i];
+      if (!effect.type->parameters[i].choices.empty()) {
+        continue;
+      }
       if (figure.origin == Origin::estimated) {
         return "estimated";
       }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "base/parameter.h"
 #include "base/random.h"
 #include "input/reader.h"
+#include "motor/fit_table.h"
 #include "thermal/effect.h"
 
 namespace heatsoak {
@@ -64,6 +66,8 @@ struct MotorFigureSpec {
   bool is_thermal = false;  ///< the temperature calculation rests on it
 };
 std::span<const MotorFigureSpec> motor_figure_specs();
+/// Agreed, not built, such as a limit or the nominal voltage: no part has another one, so it needs no tolerance.
+bool is_agreed(std::string_view key);
 
 /// An effect that the file adds to the datasheet network.
 struct MotorEffect {
@@ -82,18 +86,25 @@ struct Motor {
   std::string manufacturer;
   std::string name;
   std::string part_number;
+  std::string type;  ///< "brushless", "brushed"
   std::vector<std::string> notes;
   std::map<std::string, std::string, std::less<>> sources;
   bool stall_includes_saturation = false;
   std::map<std::string_view, Figure> figures;  ///< by key, in this program's conventions
   std::vector<MotorEffect> effects;
+  std::optional<MotorFit> fit;  ///< where a calibration wrote the file
   MotorValues nominal;
 };
 
 /// Throws Failure (bad_input) with every problem of the file.
 Motor read_motor(const std::filesystem::path& path);
 
-/// One draw of every declared tolerance and range.
+/// By key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null where the motor has none.
+Figure* find_figure(Motor& motor, std::string_view key);
+/// Sets `nominal` by the figures, after some of them were changed.
+void refresh_values(Motor& motor);
+
+/// One draw of every declared tolerance and range; figures of a fit hang together as the fit says.
 struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order

@@ -45,7 +45,11 @@ double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, dou
 /// Current that heats as much through the terminal resistance, per current that makes the torque.
 double heating_factor(const Robot& robot);
 
-/// What the thermal network sees of it.
+/// Electrical power into the motor: copper loss at 25 °C, drag and what leaves at the shaft. `speed_rad_per_s` is |ω|.
+double input_power_W(const MotorValues& motor, double heating_current_A, double shaft_power_W, double speed_rad_per_s);
+
+/// What the thermal network sees of it. Voltage and input power are those of a winding at 25 °C; the vehicle is as fast as
+/// the wheel rolls, an estimate where wheels stand askew. Nothing is known of neighbours, and the motor is new.
 OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C);
 
 }  // namespace heatsoak

@@ -38,7 +38,8 @@ struct Stage {
 struct Electrics {
   std::array<MotorPoint, kMostWheels> points;
   double power_W = 0.0;
-  bool at_bus = false;  ///< the bus limits a motor
+  double highest_bridge_V = 0.0;  ///< of any motor, without sign
+  bool at_bus = false;            ///< the bus limits a motor
 };
 
 Electrics motors_at(const PlantConfig& plant, const PlantState& state, const PlantInput& input,
@@ -48,8 +49,9 @@ Electrics motors_at(const PlantConfig& plant, const PlantState& state, const Pla
     const double motor_rad_per_s = state.wheel_speed_rad_per_s[i] * plant.gear_ratio;
     made.points[i] = motor_point(plant.motor, plant.driver, command[i], motor_rad_per_s, input.winding_C[i], input.magnet_C[i], bus_V);
     made.power_W += made.points[i].input_W;
-    made.at_bus = made.at_bus || std::abs(made.points[i].bridge_V) >= bus_V;
+    made.highest_bridge_V = std::max(made.highest_bridge_V, std::abs(made.points[i].bridge_V));
   }
+  made.at_bus = made.highest_bridge_V >= bus_V;
   return made;
 }
 
@@ -99,7 +101,7 @@ std::array<MotorPoint, kMostWheels> settle_electrics(const PlantConfig& plant, c
   Electrics made = motors_at(plant, state, input, input.command, source_V);
   BatteryLoad load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
   // With the bus found, what it limits is limited by it; else only whoever is between source and bus.
-  if (made.at_bus || motors_at(plant, state, input, input.command, load.terminal_V).at_bus) {
+  if (made.at_bus || made.highest_bridge_V >= load.terminal_V) {
     made = sagging_bus(plant, state, input);
     load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
   }

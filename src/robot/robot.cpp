@@ -12,7 +12,7 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::array<RobotFigureSpec, 27> kSpecs{{
+constexpr std::array<RobotFigureSpec, 28> kSpecs{{
     {"body", {"yaw_inertia", "kg m2", Range::positive(), "about the vertical through the centre of gravity"}, &Robot::yaw_inertia_kg_m2},
     {"body", {"center_of_gravity_height", "m", Range::non_negative(), "above the ground"}, &Robot::center_of_gravity_height_m},
     {"body", {"center_of_gravity_x", "m", Range::any(), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
@@ -44,6 +44,7 @@ constexpr std::array<RobotFigureSpec, 27> kSpecs{{
      {"driver_resistance", "ohm", Range::non_negative(), "of switches and traces in series with one motor"},
      &Robot::driver_resistance_ohm},
     {"drive", {"driver_standby_power", "W", Range::non_negative(), "of one motor's driver without current"}, &Robot::driver_standby_W},
+    {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "how often the firmware commands the motors"}, &Robot::control_rate_Hz},
     {"battery", {"full_voltage", "V", Range::positive(), "open circuit, full"}, &Robot::battery_full_V},
     {"battery", {"empty_voltage", "V", Range::positive(), "open circuit, empty"}, &Robot::battery_empty_V},
     {"battery", {"internal_resistance", "ohm", Range::non_negative(), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
@@ -58,7 +59,7 @@ constexpr std::array<RobotFigureSpec, 27> kSpecs{{
      &Robot::yaw_acceleration_limit_rad_per_s2},
 }};
 
-constexpr std::array<std::string_view, 3> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency"};
+constexpr std::array<std::string_view, 4> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate"};
 
 void read_figures(Reader& reader, std::string_view table, Robot& robot) {
   for (const RobotFigureSpec& each : kSpecs) {
@@ -72,20 +73,6 @@ void read_figures(Reader& reader, std::string_view table, Robot& robot) {
   }
 }
 
-/// Angles as texts, one per wheel.
-std::vector<double> read_angles_rad(Reader& reader, std::string_view key) {
-  std::vector<double> angles_rad;
-  for (const std::string& text : reader.texts(key, Need::required)) {
-    const ParsedQuantity angle = parse_quantity(text, "rad");
-    if (angle.ok()) {
-      angles_rad.push_back(angle.value);
-    } else {
-      reader.problem(key, angle.problem);
-    }
-  }
-  return angles_rad;
-}
-
 void read_friction(Reader& top, Robot& robot) {
   std::optional<Reader> friction = top.table("friction", Need::optional);
   if (!friction) {
@@ -94,7 +81,7 @@ void read_friction(Reader& top, Robot& robot) {
   read_figures(*friction, "friction", robot);
   if (std::optional<Reader> heading = friction->table("heading", Need::optional)) {
     read_figures(*heading, "friction.heading", robot);
-    robot.heading_phase_rad = read_angles_rad(*heading, "double_angle_phases");
+    robot.heading_phase_rad = heading->quantities({"double_angle_phases", "rad", Range::any(), "one per wheel"}, Need::required);
     if (robot.heading_phase_rad.size() != robot.wheel_axis_rad.size()) {
       heading->problem("double_angle_phases", "expected one phase per wheel");
     }
@@ -115,7 +102,7 @@ void read_wheels(Reader& top, Robot& robot) {
   robot.wheel_contact_radius_m =
       wheels->quantity({"contact_radius", "m", Range::positive(), "from the robot's axis to the contact points"}, Need::required)
           .value_or(1.0);
-  robot.wheel_axis_rad = read_angles_rad(*wheels, "axis_angles");
+  robot.wheel_axis_rad = wheels->quantities({"axis_angles", "rad", Range::any(), "of the wheels' axes"}, Need::required);
   if (robot.wheel_axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }

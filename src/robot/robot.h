@@ -53,6 +53,7 @@ struct Robot {
   double slip_speed_m_per_s = kAbsent;     ///< slip at which 0.71 of it is used
   double driver_resistance_ohm = kAbsent;  ///< switches and traces of one motor, in series with the winding
   double driver_standby_W = kAbsent;       ///< per motor: gate drive, logic, switching
+  double control_rate_Hz = kAbsent;        ///< of the firmware's commands to the motors
   double battery_full_V = kAbsent;
   double battery_empty_V = kAbsent;
   double battery_resistance_ohm = kAbsent;

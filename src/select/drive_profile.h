@@ -19,7 +19,8 @@ DutySample nominal_sample(const Duty& duty);
 DutySample draw_sample(const Duty& duty, Random& random);
 
 /// What the thermal network sees of a bin: the rms current that its torque takes, clamped to what voltage (at
-/// the bin's mean speed, 25 °C) and driver let through.
+/// the bin's mean speed, 25 °C) and driver let through. Shaft and input power are exact means of the bin where the current is
+/// not cut, and shrink with it where it is; the modulation is that of rms current and mean speed.
 OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& robot, DutyKind kind, const LoadBin& bin,
                                        const DutySample& sample);
 

@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
 
 #include "base/diagnostic.h"
-#include "base/parallel.h"
 #include "motor/datasheet_network.h"
 #include "select/drive_profile.h"
 #include "thermal/ensemble.h"
@@ -19,6 +20,8 @@ namespace {
 enum Node { winding, stator };
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
+/// Each takes as long as a nominal run of every motor; the percentiles of a duty's own spread are as coarse as that.
+constexpr int kMostDraws = 16;
 
 /// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
 class Block {
@@ -85,8 +88,10 @@ class Block {
         std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
     const auto by_speed = std::ranges::max_element(demand_.bins, {}, &LoadBin::speed_rms_rad_per_s);
     double step_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
+    constexpr double kHotter_K = 60.0;
     for (const auto& bin : {by_current, by_speed}) {
-      step_s = std::min(step_s, longest_step_s(network_, parameters_, point(*bin)));
+      const OperatingPoint<Lanes> at = point(*bin);
+      step_s = std::min({step_s, longest_step_s(network_, parameters_, at), longest_step_s(network_, parameters_, at, kHotter_K)});
     }
     if (demand_.duration_s() / step_s > static_cast<double>(kMostSteps)) {
       throw Failure(
@@ -158,7 +163,7 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
   double share = 0.5;
   std::vector<Lanes> parameters;
   for (const double value : network.values()) {
-    parameters.push_back(Lanes::Constant(value));
+    parameters.emplace_back(Lanes::Constant(value));
   }
   for (int round = 0; round < kRounds; ++round) {
     const Lanes factor = Lanes::LinSpaced(low, high);
@@ -168,6 +173,8 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
       OperatingPoint<Lanes> at;
       for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, at, interval.at);
       at.current_rms_A *= factor;
+      at.input_power_W = at.shaft_power_W * factor + (at.input_power_W - at.shaft_power_W) * factor * factor;
+      at.shaft_power_W *= factor;
       at.resistive_headroom_V = Lanes::Constant(std::numeric_limits<double>::infinity());
       run.over(interval.duration_s, at, longest_step_s(network, parameters, at));
     }
@@ -274,8 +281,20 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   }
 }
 
+/// The wheel that works hardest: with draws of a duty it stands for the hottest one, which is known only afterwards.
+const WheelDemand& hardest(const std::vector<WheelDemand>& wheels) {
+  const auto effort_Nm2_s = [](const WheelDemand& wheel) {
+    return std::accumulate(wheel.bins.begin(), wheel.bins.end(), 0.0, [](double sum_Nm2_s, const LoadBin& bin) {
+      return sum_Nm2_s + bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
+    });
+  };
+  return *std::ranges::max_element(wheels, {}, effort_Nm2_s);
+}
+
 void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
-  const Block block(*work.motor, robot, duty, *work.wheel, options, first_sample);
+  const std::size_t turn = static_cast<std::size_t>(first_sample / kLanes);
+  const WheelDemand& demand = options.draws.empty() ? *work.wheel : hardest(options.draws[turn % options.draws.size()]);
+  const Block block(*work.motor, robot, duty, demand, options, first_sample);
   const double cell_s = work.wheel->duration_s() / static_cast<double>(kBandCells);
   const auto samples = static_cast<std::size_t>(options.samples);
   std::size_t cell = 0;
@@ -288,8 +307,8 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
   };
   const std::vector<Lanes> peak_C = block.peaks(
       options.with_curves ? cell_s : std::numeric_limits<double>::infinity(), [&](double time_s, const std::vector<Lanes>& state_C) {
-        if (!options.with_curves) {
-          return;
+        if (!options.with_curves || time_s > work.wheel->duration_s() * (1.0 + 1e-9)) {
+          return;  // the picture ends with the nominal duty, a draw may go on
         }
         take(state_C);
         while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
@@ -298,22 +317,28 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
         }
       });
   for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
-    const auto place = static_cast<std::size_t>(first_sample + lane);
+    const std::size_t place = static_cast<std::size_t>(first_sample) + static_cast<std::size_t>(lane);
     const MotorValues& values = block.motor(lane).values;
     work.winding_peak_C[place] = peak_C[winding][lane];
     work.stator_peak_C[place] = peak_C[stator][lane];
-    work.over_limit[place] = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
+    const bool is_over = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
+    work.over_limit[place] = is_over ? 1 : 0;
     const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
-    const Feasibility each = feasibility(values, robot, duty.kind, *work.wheel, block.duty(lane), hottest_C);
+    const Feasibility each = feasibility(values, robot, duty.kind, demand, block.duty(lane), hottest_C);
     work.short_of_demand[place] = each.short_time_share > kTolerableShortTime ? each.limit : DriveLimit::none;
   }
 }
 
-/// A percentile over the samples in every cell.
+/// A percentile over the samples in every cell that a sample has reached: draws of a duty end sooner or later.
 std::vector<double> percentile(const std::vector<float>& by_cell, int samples, double share) {
   std::vector<double> result;
   for (auto first = by_cell.begin(); first != by_cell.end(); first += samples) {
-    std::vector<double> sorted(first, first + samples);
+    std::vector<double> sorted;
+    std::copy_if(first, first + samples, std::back_inserter(sorted),
+                 [](float value_C) { return std::abs(value_C) < std::numeric_limits<float>::max(); });
+    if (sorted.empty()) {
+      break;
+    }
     std::ranges::sort(sorted);
     result.push_back(quantile(sorted, share));
   }
@@ -322,13 +347,13 @@ std::vector<double> percentile(const std::vector<float>& by_cell, int samples, d
 
 void finish_band(Work& work, int samples) {
   TemperatureCurves& curves = work.result.curves;
-  for (std::size_t cell = 0; cell < kBandCells; ++cell) {
-    curves.band_time_s.push_back(work.wheel->duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
-  }
   curves.winding_p05_C = percentile(work.winding_envelope_C.low_C, samples, 0.05);
   curves.winding_p95_C = percentile(work.winding_envelope_C.high_C, samples, 0.95);
   curves.stator_p05_C = percentile(work.stator_envelope_C.low_C, samples, 0.05);
   curves.stator_p95_C = percentile(work.stator_envelope_C.high_C, samples, 0.95);
+  for (std::size_t cell = 0; cell < curves.winding_p05_C.size(); ++cell) {
+    curves.band_time_s.push_back(work.wheel->duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
+  }
 }
 
 void conclude(Work& work, const EvaluateOptions& options) {
@@ -367,6 +392,18 @@ std::string_view to_string(LimitingFactor factor) {
   return kNames.at(static_cast<std::size_t>(factor));
 }
 
+int draw_count(const Duty& duty, int samples) {
+  return duty.shape_data->has_unknowns() ? std::min((samples + kLanes - 1) / kLanes, kMostDraws) : 0;
+}
+
+std::vector<std::vector<WheelDemand>> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
+                                                   const Progress& progress) {
+  std::vector<std::vector<WheelDemand>> draws(static_cast<std::size_t>(count));
+  in_parallel(draws.size(), threads, 0, draws.size(), progress,
+              [&](std::size_t draw) { draws[draw] = duty.shape_data->draw(robot, seed, draw); });
+  return draws;
+}
+
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                       std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress) {
   const auto samples = static_cast<std::size_t>(options.samples);
@@ -381,19 +418,13 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
   }
-  std::size_t done = 0;
-  const auto tell = [&] {
-    if (++done; progress) {
-      progress(done, motors.size() * (blocks + 1));
-    }
-  };
+  const std::size_t jobs = motors.size() * (blocks + 1);
   // The samples need to know the hottest wheel, so every motor's nominal run comes first.
-  const auto nominal = [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); };
-  in_parallel(motors.size(), options.threads, nominal, tell);
-  const auto samples_of = [&](std::size_t job) {
+  in_parallel(motors.size(), options.threads, 0, jobs, progress,
+              [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
+  in_parallel(motors.size() * blocks, options.threads, motors.size(), jobs, progress, [&](std::size_t job) {
     evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * kLanes);
-  };
-  in_parallel(motors.size() * blocks, options.threads, samples_of, tell);
+  });
   std::vector<MotorEvaluation> results;
   for (Work& work : works) {
     conclude(work, options);

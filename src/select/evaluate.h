@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/parallel.h"
 #include "duty/duty.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
@@ -34,6 +34,9 @@ struct EvaluateOptions {
   std::uint64_t seed = 1;
   int threads = 0;           ///< 0: all cores; the result does not depend on it
   bool with_curves = false;  ///< keep what a picture needs
+  /// Demands under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all samples have the
+  /// nominal demand.
+  std::span<const std::vector<WheelDemand>> draws{};
 };
 
 /// The figure without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
@@ -77,8 +80,12 @@ struct MotorEvaluation {
   TemperatureCurves curves;
 };
 
-/// `done` of `total` units of work are finished.
-using Progress = std::function<void(std::size_t done, std::size_t total)>;
+/// How many draws of a duty's unknowns serve `samples`: each is as much work as generating the duty once.
+int draw_count(const Duty& duty, int samples);
+
+/// The same for every number of threads.
+std::vector<std::vector<WheelDemand>> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
+                                                   const Progress& progress = {});
 
 /// Best first: pass, marginal, fail, infeasible; within them by margin. `wheels` is the duty's demand; every figure is
 /// of the wheel whose winding gets hottest. `progress` is called from one thread at a time.

@@ -9,7 +9,7 @@
 namespace heatsoak {
 namespace {
 
-enum Node { winding, stator };
+enum Node { winding, stator, first_own };
 
 /// The same demand in bins no longer than `every_s`.
 WheelDemand subdivided(const WheelDemand& demand, double every_s) {
@@ -58,6 +58,9 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
   options.with_ledger = true;
   const double end_s = wheel.duration_s() * (1.0 - 1e-12);
   Trace trace;
+  for (int node = first_own; node < network.state_count(); ++node) {
+    trace.own_nodes.emplace_back(network.node_name(node));
+  }
   const auto add_row = [&](const TransientMoment& moment) {
     if (!moment.begins_interval && moment.time_s < end_s) {
       return;
@@ -72,6 +75,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
                  .torque_Nm = point.motor_torque_Nm,
                  .motor_V = terminal_voltage_V(sample.values, point, moment.state_C[winding])};
     row.power_in_W = row.motor_V * row.current_A;
+    row.own_C.assign(moment.state_C.begin() + first_own, moment.state_C.end());
     trace.rows.push_back(row);
   };
   const std::vector<double> parameters = network.values();
@@ -85,10 +89,19 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
 }
 
 std::string to_csv(const Trace& trace) {
-  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W\n";
+  std::string text = "time_s,winding_C,stator_C,ambient_C,";
+  const auto out = std::back_inserter(text);
+  for (const std::string& node : trace.own_nodes) {
+    fmt::format_to(out, "{}_C,", node);
+  }
+  text += "current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W\n";
   for (const TraceRow& row : trace.rows) {
-    fmt::format_to(std::back_inserter(text), "{:.10g},{:.4f},{:.4f},{:.2f},{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.time_s, row.winding_C,
-                   row.stator_C, row.ambient_C, row.current_A, row.speed_rad_per_s, row.torque_Nm, row.motor_V, row.power_in_W);
+    fmt::format_to(out, "{:.10g},{:.4f},{:.4f},{:.2f},", row.time_s, row.winding_C, row.stator_C, row.ambient_C);
+    for (const double own_C : row.own_C) {
+      fmt::format_to(out, "{:.4f},", own_C);
+    }
+    fmt::format_to(out, "{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.current_A, row.speed_rad_per_s, row.torque_Nm, row.motor_V,
+                   row.power_in_W);
   }
   return text;
 }

@@ -19,6 +19,7 @@ struct TraceRow {
   double torque_Nm = 0.0;        ///< at the motor's shaft
   double motor_V = 0.0;          ///< at the terminals, at this winding temperature
   double power_in_W = 0.0;       ///< into the terminals
+  std::vector<double> own_C;     ///< of the nodes that effects brought, as own_nodes names them
 };
 
 /// Heat that one effect brought into one node, as the mean over the run.
@@ -30,14 +31,15 @@ struct BookedHeat {
 
 struct Trace {
   std::vector<TraceRow> rows;
+  std::vector<std::string> own_nodes;
   std::vector<BookedHeat> balance;
-  double stored_W = 0.0;  ///< mean rate at which winding and stator took heat up
+  double stored_W = 0.0;  ///< mean rate at which the nodes took heat up
 };
 
 /// Rows stand at every change of the inputs and at most `every_s` apart.
 Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, const Motor& motor, double every_s);
 
-/// The canonical log format: one header row, names end in units.
+/// The canonical log format: one header row, names end in units. Nodes of effects stand behind the ambient.
 std::string to_csv(const Trace& trace);
 
 }  // namespace heatsoak

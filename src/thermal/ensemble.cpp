@@ -7,18 +7,22 @@
 
 namespace heatsoak {
 
-double longest_step_s(const Network& network, std::span<const Lanes> parameters, const OperatingPoint<Lanes>& at) {
+double longest_step_s(const Network& network, std::span<const Lanes> parameters, const OperatingPoint<Lanes>& at, double rise_K) {
   constexpr double kStepPerTimeConstant = 0.25;
   const auto states = static_cast<std::size_t>(network.state_count());
-  std::vector<Lanes> state_C(states + 1, at.ambient_C);
+  OperatingPoint<Lanes> moment = at;
+  std::vector<Lanes> state_C(states + 1);
   std::vector<Lanes> rate(states);
   std::vector<Lanes> moved(states);
-  network.rate_K_per_s<Lanes>(at, parameters, state_C, rate);
+  for (std::size_t i = 0; i < states; ++i) {
+    state_C[i] = at.ambient_C + rise_K * static_cast<double>(states - i);
+  }
+  network.rate_K_per_s<Lanes>(moment, parameters, state_C, rate);
   // Gershgorin: no eigenvalue is larger than the largest sum of a row's absolute entries.
   std::vector<Lanes> row_sum(states, Lanes::Zero());
   for (std::size_t i = 0; i < states; ++i) {
     state_C[i] += 1.0;
-    network.rate_K_per_s<Lanes>(at, parameters, state_C, moved);
+    network.rate_K_per_s<Lanes>(moment, parameters, state_C, moved);
     state_C[i] -= 1.0;
     for (std::size_t j = 0; j < states; ++j) {
       row_sum[j] += (moved[j] - rate[j]).abs();
@@ -42,12 +46,13 @@ EnsembleRun::EnsembleRun(const Network& network, std::span<const Lanes> paramete
 
 void EnsembleRun::over(double duration_s, const OperatingPoint<Lanes>& at, double longest_step_s) {
   const double steps = std::max(1.0, std::ceil(duration_s / longest_step_s));
+  at_ = at;
   for (int i = 0; i < static_cast<int>(steps); ++i) {
-    one_step(duration_s / steps, at);
+    one_step(duration_s / steps);
   }
 }
 
-void EnsembleRun::one_step(double step_s, const OperatingPoint<Lanes>& at) {
+void EnsembleRun::one_step(double step_s) {
   struct Stage {
     double share;   ///< of the step, where the stage looks
     double weight;  ///< of its rate in the result
@@ -60,7 +65,7 @@ void EnsembleRun::one_step(double step_s, const OperatingPoint<Lanes>& at) {
     for (std::size_t i = 0; i < states; ++i) {
       stage_C_[i] = state_C_[i] + share * step_s * rate_[i];
     }
-    network_.rate_K_per_s<Lanes>(at, parameters_, stage_C_, rate_);
+    network_.rate_K_per_s<Lanes>(at_, parameters_, stage_C_, rate_);
     for (std::size_t i = 0; i < states; ++i) {
       sum_[i] += weight * rate_[i];
     }

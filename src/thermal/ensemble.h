@@ -13,8 +13,9 @@ namespace heatsoak {
 inline constexpr long kMostSteps = 2'000'000;
 
 /// The longest step with which the classical Runge-Kutta method stays below 1e-5 of the fastest
-/// transient, from a bound on the network's eigenvalues at `at`.
-double longest_step_s(const Network& network, std::span<const Lanes> parameters, const OperatingPoint<Lanes>& at);
+/// transient, from a bound on the network's eigenvalues at `at`, with the last state node `rise_K` above ambient and each
+/// node before it as much above the next: convection and radiation are faster the hotter it is.
+double longest_step_s(const Network& network, std::span<const Lanes> parameters, const OperatingPoint<Lanes>& at, double rise_K = 0.0);
 
 /// A running integration of kLanes samples. Temperatures stop at kDestroyed_C.
 class EnsembleRun {
@@ -27,10 +28,11 @@ class EnsembleRun {
   [[nodiscard]] const std::vector<Lanes>& peak_C() const { return peak_C_; }
 
  private:
-  void one_step(double step_s, const OperatingPoint<Lanes>& at);
+  void one_step(double step_s);
 
   const Network& network_;
   std::span<const Lanes> parameters_;
+  OperatingPoint<Lanes> at_;
   std::vector<Lanes> state_C_;
   std::vector<Lanes> peak_C_;
   std::vector<Lanes> stage_C_;  ///< node_count() entries; the last is ambient

@@ -31,7 +31,7 @@ int Network::add_parameter(NetworkParameter parameter) {
 }
 
 int Network::add_node(std::string name, double heat_capacity_J_per_K) {
-  const int capacity = add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K, false});
+  const int capacity = add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K, {}});
   return add_state(std::move(name), capacity);
 }
 
@@ -69,8 +69,8 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
   EffectInPlace effect{.name = std::move(name), .type = &type, .node_index = {}, .parameter_index = {}};
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const ParameterSpec& spec = type.parameters[i];
-    effect.parameter_index.push_back(add_parameter({fmt::format("{}.{}", effect.name, spec.key), unit_of(type.parameters, i, parameters),
-                                                    spec.range, parameters[i], !spec.choices.empty()}));
+    effect.parameter_index.push_back(add_parameter(
+        {fmt::format("{}.{}", effect.name, spec.key), unit_of(type.parameters, i, parameters), spec.range, parameters[i], spec.choices}));
   }
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (const int capacity = type.nodes[role].own_capacity; capacity >= 0) {
@@ -96,20 +96,19 @@ void Network::limit_current_by(std::string_view copper_effect) {
 }
 
 template <class S>
-OperatingPoint<S> Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const {
-  OperatingPoint<S> limited = at;
-  if (copper_effect_ >= 0) {
-    const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
-    const S rise_K = temperature_C[copper.node_index[0]] - 25.0;
-    const S most_A =
-        at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * (1.0 + parameters[copper.parameter_index[1]] * rise_K));
-    if constexpr (std::is_same_v<S, double>) {
-      limited.current_rms_A = std::min(at.current_rms_A, most_A);
-    } else {
-      limited.current_rms_A = at.current_rms_A.min(most_A);
-    }
+S Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const {
+  if (copper_effect_ < 0) {
+    return at.current_rms_A;
   }
-  return limited;
+  const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
+  const S rise_K = temperature_C[copper.node_index[0]] - 25.0;
+  const S most_A =
+      at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * (1.0 + parameters[copper.parameter_index[1]] * rise_K));
+  if constexpr (std::is_same_v<S, double>) {
+    return std::min(at.current_rms_A, most_A);
+  } else {
+    return at.current_rms_A.min(most_A);
+  }
 }
 
 std::size_t Network::booked_at(std::size_t turn) const {
@@ -129,20 +128,23 @@ std::vector<double> Network::values() const {
 }
 
 template <class S>
-void Network::rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C,
-                           std::span<S> rate) const {
+void Network::rate_K_per_s(OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const {
   std::array<S, kMostNodes> heat_W;
   const std::size_t states = node_names_.size();
   std::fill_n(heat_W.begin(), states + 1, S(0.0));
   temperature_C[states] = at.ambient_C;
-  OperatingPoint<S> seen = within_headroom(at, parameters.data(), temperature_C.data());
+  const S given_A = at.current_rms_A;
+  const S given_W = at.copper_loss_W;
+  at.current_rms_A = within_headroom(at, parameters.data(), temperature_C.data());
   for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
     const EffectInPlace& effect = effects_[booked_at(turn)];
-    book<S>(effect, seen, parameters.data(), temperature_C.data(), heat_W.data());
+    book<S>(effect, at, parameters.data(), temperature_C.data(), heat_W.data());
     if (turn == 0 && copper_effect_ >= 0) {
-      seen.copper_loss_W = heat_W[static_cast<std::size_t>(effect.node_index[0])];
+      at.copper_loss_W = heat_W[static_cast<std::size_t>(effect.node_index[0])];
     }
   }
+  at.current_rms_A = given_A;
+  at.copper_loss_W = given_W;
   for (std::size_t node = 0; node < states; ++node) {
     rate[node] = heat_W[node] / parameters[static_cast<std::size_t>(capacity_index_[node])];
   }
@@ -154,7 +156,8 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
   temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
   std::ranges::fill(heat_W, 0.0);
-  OperatingPoint<double> seen = within_headroom(at, parameters.data(), temperature_C.data());
+  OperatingPoint<double> seen = at;
+  seen.current_rms_A = within_headroom(at, parameters.data(), temperature_C.data());
   for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
     const std::size_t e = booked_at(turn);
     double* const row_W = heat_W.data() + e * static_cast<std::size_t>(node_count());
@@ -165,8 +168,7 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   }
 }
 
-template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>,
-                                            std::span<double>) const;
-template void Network::rate_K_per_s<Lanes>(const OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
+template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
+template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
 
 }  // namespace heatsoak

@@ -16,7 +16,7 @@ struct NetworkParameter {
   std::string_view unit;
   Range range;
   double value = 0.0;
-  bool is_choice = false;  ///< the place of what was chosen: not a number to sample or to fit
+  std::span<const Choice> choices = {};  ///< where there are any, the value is the place of one: no number to sample or to fit
 };
 
 /// An effect in place: which nodes play its roles, where its parameters stand in the flat list.
@@ -67,9 +67,15 @@ class Network {
   [[nodiscard]] std::vector<double> values() const;
 
   /// dT/dt of every state node in K/s. `temperature_C` has node_count() entries; the last one is ignored and
-  /// overwritten with the point's ambient. S is double or Lanes.
+  /// overwritten with the point's ambient. S is double or Lanes. Works on the point's current and copper loss, for copies
+  /// of it would take half the time, and leaves them as they were.
   template <class S>
-  void rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const;
+  void rate_K_per_s(OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const;
+  template <class S>
+  void rate_K_per_s(const OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const {
+    OperatingPoint<S> own = at;
+    rate_K_per_s<S>(own, parameters, temperature_C, rate);
+  }
 
   /// Exact derivatives of the laws. The current is taken as given: the operating point's headroom must be infinite.
   /// `state_C` has state_count() entries. Does not allocate where `out` has its shapes already.
@@ -85,8 +91,9 @@ class Network {
   int add_state(std::string name, int capacity_index);
   /// Effects in the order in which they are booked: the copper loss first, for others look at its heat.
   [[nodiscard]] std::size_t booked_at(std::size_t turn) const;
+  /// What of the current the headroom lets through; all of it where no copper loss is named.
   template <class S>
-  [[nodiscard]] OperatingPoint<S> within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
+  [[nodiscard]] S within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
 
   std::vector<std::string> node_names_;
   std::vector<int> capacity_index_;
@@ -95,9 +102,8 @@ class Network {
   int copper_effect_ = -1;
 };
 
-extern template void Network::rate_K_per_s<double>(const OperatingPoint<double>&, std::span<const double>, std::span<double>,
+extern template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>,
                                                    std::span<double>) const;
-extern template void Network::rate_K_per_s<Lanes>(const OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>,
-                                                  std::span<Lanes>) const;
+extern template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
 
 }  // namespace heatsoak

@@ -30,9 +30,15 @@ inline Tangent power(const Tangent& base, const Tangent& exponent) { return base
 inline double exponential(double x) { return std::exp(x); }
 inline Tangent exponential(const Tangent& x) { return ceres::exp(x); }
 
-/// 1/(1 + e^(−x)): a step that has derivatives.
-inline double soft_step(double x) { return 0.5 * (1.0 + std::tanh(0.5 * x)); }
-inline Tangent soft_step(const Tangent& x) { return 0.5 * (1.0 + ceres::tanh(0.5 * x)); }
+/// 1/(1 + e^(−x)): a step that has derivatives. Written so that no e^… grows and both tails keep their digits.
+inline double soft_step(double x) {
+  const double decay = std::exp(-std::abs(x));
+  return (x < 0.0 ? decay : 1.0) / (1.0 + decay);
+}
+inline Tangent soft_step(const Tangent& x) {
+  const Tangent decay = ceres::exp(-ceres::abs(x));
+  return (x.a < 0.0 ? decay : Tangent(1.0)) / (1.0 + decay);
+}
 
 // Lane by lane, so that a sample in a lane and one alone have the same bits: Eigen's own differ in the last.
 inline Lanes power(const Lanes& base, const Lanes& exponent) {

@@ -35,7 +35,7 @@ class Rates {
 
  private:
   const Network& network_;
-  const OperatingPoint<double>& at_;
+  OperatingPoint<double> at_;
   std::vector<double> values_;
   std::vector<double> temperature_C_;
 };

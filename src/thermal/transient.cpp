@@ -148,7 +148,7 @@ class Run {
                                         ? hermite_peak(y_[node], state[node], slope_before_[node] * step_s, slope_[node] * step_s)
                                         : std::pair(state[node], 1.0);
       if (value_C > result_.peak_C[node]) {
-        result_.peak_C[node] = value_C;
+        result_.peak_C[node] = std::min(value_C, kDestroyed_C);
         result_.peak_time_s[node] = result_.end_s + share * step_s;
       }
       result_.destroyed = result_.destroyed || state[node] > kDestroyed_C;

@@ -43,7 +43,7 @@ struct TransientMoment {
 
 struct TransientResult {
   std::vector<double> end_C;                           ///< per state node
-  std::vector<double> peak_C;                          ///< per state node, between the steps too
+  std::vector<double> peak_C;                          ///< per state node, between the steps too; at most kDestroyed_C
   std::vector<double> peak_time_s;                     ///< per state node
   std::vector<std::optional<double>> time_to_limit_s;  ///< per limit: first crossing from below, located by the solver
   bool destroyed = false;                              ///< a node passed kDestroyed_C at end_s and the rest was not run

@@ -198,6 +198,67 @@ TEST(List, effects_and_formats_are_described) {
   }
 }
 
+TEST(List, formats_name_the_importers_of_games) {
+  const ProgramRun formats = run({"list", "formats"});
+  EXPECT_THAT(formats.out, HasSubstr("ssl_log "));
+  EXPECT_THAT(formats.out, HasSubstr("duty --import LOG"));
+}
+
+// Lint.
+
+TEST(Lint, takes_files_folders_and_ids_of_every_kind) {
+  const fs::path motors = kSource / "motor_db";
+  const json of_folder = run({"lint", motors.string(), "--json", "-"}).json();
+  EXPECT_EQ(of_folder.at("files").size(), files_of(motors, "", ".toml").size());
+  EXPECT_EQ(of_folder.at("errors"), 0);
+  EXPECT_EQ(of_folder.at("warnings"), 0);
+  const json of_ids = run({"lint", "maxon_dcx19s_24v", "tigers_v2020", "paper_intermittent", "--json", "-"}).json();
+  EXPECT_EQ(of_ids.at("files"), json({motors / "maxon_dcx19s_24v.toml", kSource / "robot_core/robots/tigers_v2020.toml",
+                                      kSource / "duty_profiles/paper_intermittent.toml"}));
+}
+
+TEST(Lint, fails_for_errors_and_tells_warnings) {
+  const fs::path data = kSource / "tests" / "data";
+  const ProgramRun wrong = run({"lint", (data / "lint_df45l_wiki.toml").string()});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.out, HasSubstr(": error: density: 320 g"));
+  EXPECT_THAT(wrong.out, HasSubstr(": warning: nominal_point_heat: "));
+  const TemporaryFolder folder;
+  std::string doubtful = content_of(kSource / "motor_db" / "nanotec_df45l024048_a2.toml");
+  doubtful.replace(doubtful.find("\"27 mm\""), 7, "\"48 mm\"");
+  write(folder.path() / "doubtful.toml", doubtful);
+  const ProgramRun warned = run({"lint", (folder.path() / "doubtful.toml").string()});
+  EXPECT_EQ(warned.exit_code, 0);
+  EXPECT_THAT(warned.out, HasSubstr("1 file: 0 errors, 1 warning\n"));
+}
+
+/// What `describe` prints is ready to paste: an effect's lines behind a motor's.
+class EffectLines : public testing::TestWithParam<std::string> {};
+
+TEST_P(EffectLines, make_a_motor_file_that_runs) {
+  const std::string text = run({"describe", GetParam()}).out;
+  const std::string mark = "in a motor file:\n";
+  ASSERT_NE(text.find(mark), std::string::npos) << text;
+  const TemporaryFolder folder;
+  const fs::path motor = folder.path() / "motor.toml";
+  write(motor, content_of(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml") + "\n" + text.substr(text.find(mark) + mark.size()));
+  const ProgramRun lint = run({"lint", motor.string()});
+  EXPECT_EQ(lint.exit_code, 0) << lint.err << text;
+  const ProgramRun result =
+      run({"simulate", "--motor", motor.string(), "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--json", "-"});
+  EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << result.err;
+  EXPECT_TRUE(std::ranges::any_of(result.json().at("balance"), [](const json& row) { return row.at("effect") == "my_" + GetParam(); }));
+}
+
+INSTANTIATE_TEST_SUITE_P(catalogue, EffectLines, testing::ValuesIn([] {
+                           std::vector<std::string> ids;
+                           for (const std::string& file : files_of(kSource / "src" / "thermal" / "effects", "", ".cpp")) {
+                             ids.push_back(fs::path(file).stem().string());
+                           }
+                           return ids;
+                         }()),
+                         [](const auto& instance) { return instance.param; });
+
 // Exit codes and JSON.
 
 TEST(ExitCode, says_whether_a_limit_is_exceeded) {
@@ -370,7 +431,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"missing_value", kSteady + Words{"--json"}, "--json"},
         Mistake{"option_twice", kSteady + Words{"--current-on", "5"}, "--current-on"},
         Mistake{"missing_option", {"steady", "--motor", "maxon_ec45_flat_70w_24v"}, "is required"},
-        Mistake{"unknown_kind", {"list", "motor"}, "motors"},
+        Mistake{"unknown_kind", {"list", "motor"}, "motors"}, Mistake{"no_kind", {"list"}, "motors, robots, duties, effects, formats"},
+        Mistake{"lint_of_nothing", {"lint", "maxon_ec45_flat_70w_24"}, "did you mean 'maxon_ec45_flat_70w_24v'?"},
+        Mistake{"lint_of_an_empty_folder", {"lint", (kSource / "reports").string()}, "there is no .toml file in the folder"},
         Mistake{"unknown_motor",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24", "--current-on", "1", "--time-on", "1", "--time-off", "1"},
                 "did you mean 'maxon_ec45_flat_70w_24v'?"},
@@ -392,6 +455,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"current_1e400",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "1e400", "--time-on", "1", "--time-off", "1"},
                 "too large"},
+        Mistake{"current_1e200",
+                {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "1e200A", "--time-on", "1", "--time-off", "1"},
+                "1e200A is out of range; expected 0 A to 100000 A"},
         Mistake{"decimal_comma",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6,5A", "--time-on", "1", "--time-off", "1"},
                 "decimal comma"},
@@ -399,11 +465,11 @@ INSTANTIATE_TEST_SUITE_P(
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6", "--time-on", "0", "--time-off", "1"},
                 "out of range"},
         Mistake{"cold_ambient", kSteady + Words{"--ambient", "-300 degC"}, "out of range"},
-        Mistake{"negative_samples", kEvaluate + Words{"--samples", "-1"}, "--samples"},
+        Mistake{"negative_samples", kEvaluate + Words{"--samples", "-1"}, "--samples: '-1' is not a whole number from 0 to 1000000"},
         Mistake{"half_samples", kEvaluate + Words{"--samples", "2.5"}, "--samples"},
         Mistake{"too_many_samples", kEvaluate + Words{"--samples", "1000001"}, "--samples"},
         Mistake{"octal_samples", kEvaluate + Words{"--samples", "010"}, "--samples"},
-        Mistake{"too_many_threads", kEvaluate + Words{"--threads", "1025"}, "--threads"},
+        Mistake{"too_many_threads", kEvaluate + Words{"--threads", "1025"}, "--threads: '1025' is not a whole number from 0 to 1024"},
         Mistake{"negative_seed", kEvaluate + Words{"--seed", "-1"}, "--seed"},
         Mistake{"huge_seed", kEvaluate + Words{"--seed", "99999999999999999999"}, "--seed"},
         Mistake{"every_zero", kSimulate + Words{"--every", "0"}, "out of range"},

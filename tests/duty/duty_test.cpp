@@ -106,6 +106,19 @@ TEST_F(DutyTest, a_recorded_row_holds_until_the_next) {
   EXPECT_DOUBLE_EQ(wheel_of(duty).duration_s(), 5.0);
 }
 
+TEST_F(DutyTest, a_recording_of_several_wheels_has_all_up_to_the_last) {
+  write("log.csv", "time_s,speed_2_rad_per_s,\"torque_2_Nm\",torque_1_Nm,speed_1_rad_per_s\n0,4,3,1,2\n1,8,7,5,6\n2,0,0,0,0\n");
+  const std::vector<WheelDemand> wheels = read("recorded", "file = \"log.csv\"\nquantity = \"torque\"\n").demand({}, 1);
+  ASSERT_THAT(wheels, SizeIs(2));
+  EXPECT_DOUBLE_EQ(wheels[0].bins.at(1).torque_mean_Nm, 5.0);
+  EXPECT_DOUBLE_EQ(wheels[1].bins.at(0).torque_mean_Nm, 3.0);
+  EXPECT_DOUBLE_EQ(wheels[1].bins.at(1).velocity_mean_rad_per_s, 8.0);
+  write("log.csv", "time_s,torque_1_Nm,speed_1_rad_per_s,torque_3_Nm,speed_3_rad_per_s\n0,1,1,1,1\n1,0,0,0,0\n");
+  const std::string said = problem("recorded", "file = \"log.csv\"\nquantity = \"torque\"\n");
+  EXPECT_THAT(said, HasSubstr("torque_2_Nm: there is no such column"));
+  EXPECT_THAT(said, HasSubstr("speed_2_rad_per_s: there is no such column"));
+}
+
 TEST_F(DutyTest, a_recording_of_current_is_repeated_whole) {
   write("log.csv", "time_s,current_A,speed_rad_per_s\n0,1,10\n2,3,20\n3,0,0\n");
   const Duty duty = read("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"3\"\n");

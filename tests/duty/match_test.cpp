@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -181,6 +182,43 @@ TEST(Match, same_seed_same_demand_and_another_seed_another) {
   const std::vector<double> one = rms(7);
   EXPECT_EQ(one, rms(7));
   EXPECT_NE(one, rms(8));
+}
+
+// The script is what another way of driving is asked: it covers the game without gaps, phase by phase.
+TEST(Match, the_script_is_the_game) {
+  const MatchLoad load = play_match(division_a(), division_a().nominal(), twente(), 4, Planner::jerk_limited);
+  std::array<double, kPhaseNames.size()> time_s{};
+  ASSERT_EQ(load.script.front().time_s, 0.0);
+  for (std::size_t i = 0; i < load.script.size(); ++i) {
+    const double end_s = i + 1 < load.script.size() ? load.script[i + 1].time_s : load.duration_s;
+    EXPECT_GE(end_s, load.script[i].time_s);
+    time_s[static_cast<std::size_t>(load.script[i].phase)] += end_s - load.script[i].time_s;
+  }
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    EXPECT_NEAR(time_s[i], load.phases[i].time_s, 1e-6);
+  }
+}
+
+// Draws are other games with other inputs, each the same whenever it is drawn.
+TEST(Match, draws_spread_the_demand) {
+  const Robot robot = twente();
+  const MatchDuty duty(division_a());
+  ASSERT_TRUE(duty.has_unknowns());
+  const auto rms_Nm = [](const std::vector<WheelDemand>& wheels) {
+    double sum_Nm2_s = 0.0;
+    for (const LoadBin& bin : wheels[2].bins) {
+      sum_Nm2_s += bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
+    }
+    return std::sqrt(sum_Nm2_s / wheels[2].duration_s());
+  };
+  std::vector<double> drawn_Nm;
+  for (std::uint64_t draw = 0; draw < 6; ++draw) {
+    drawn_Nm.push_back(rms_Nm(duty.draw(robot, 1, draw)));
+  }
+  EXPECT_EQ(rms_Nm(duty.draw(robot, 1, 3)), drawn_Nm[3]);
+  EXPECT_NE(rms_Nm(duty.draw(robot, 2, 3)), drawn_Nm[3]);
+  const auto [least, most] = std::ranges::minmax(drawn_Nm);
+  EXPECT_GT(most - least, 0.1 * rms_Nm(duty.demand(robot, 1)));
 }
 
 TEST(Match, a_keeper_works_less_than_an_attacker) {

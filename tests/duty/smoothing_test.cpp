@@ -206,6 +206,9 @@ TEST(Smoothing, SeesNoAccelerationOfARobotThatStands) {
     ++count;
   });
   EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.1);
+  // All of next to nothing is no finding.
+  EXPECT_EQ(to_string(motion.report()).find("100.0 %"), std::string::npos);
+  EXPECT_NE(to_string(motion.report()).find("too small to stand out"), std::string::npos);
 }
 
 TEST(Smoothing, GivesTheSameInOnePieceAsInBlocks) {

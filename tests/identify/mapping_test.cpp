@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "base/diagnostic.h"
 #include "identify/measurement/read_recording.h"
@@ -148,6 +150,26 @@ TEST(Mapping, IsFoundBesideTheLog) {
   EXPECT_TRUE(mapping_for(file.path(), "").is_canonical());
   const auto map = file.add("run.map.toml", "[quantities]\ntime_s = { column = \"t\" }\nwinding_C = { column = \"T\" }\n");
   EXPECT_EQ(mapping_for(file.path(), "").file, map);
+}
+
+/// The example of the README is read as it stands there.
+TEST(Mapping, ExampleOfTheReadme) {
+  std::ifstream file(std::string(HEATSOAK_SOURCE_DIR) + "/README.md");
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = readme.find("motor = \"ri50\"");
+  ASSERT_NE(begin, std::string::npos);
+  const LogFile log("bench7.csv",
+                    "t;motor temp [F];i_d;i_q;rpm;duty;P;mode;run\nms;F;A;A;;;W;;\n;;;;;;;;\n0;77;0;-2;60;1;;3;1\n100;77;0;2;60;0;;3;1\n"
+                    "200;77;0;2;60;0;;2;1\n300;77;0;2;60;0;5;3;2\n");
+  const auto map = log.add("m.toml", readme.substr(begin, readme.find("```", begin) - begin));
+  RecordingReport report;
+  const Mapping mapping = read_mapping(map, log.path());
+  const Recording recording = read_recording(log.path(), mapping, report);
+  EXPECT_EQ(recording.conditions.at("fan"), "on");
+  EXPECT_THAT(recording.line, ElementsAre(4, 5, 7));
+  EXPECT_THAT(recording.run_begins, ElementsAre(0U, 2U));
+  EXPECT_THAT(values(recording, "winding_C"), ElementsAre(DoubleNear(25.0, 1e-9), DoubleNear(25.0, 1e-9), DoubleNear(25.0, 1e-9)));
+  EXPECT_THAT(values(recording, "power_in_W"), Pointwise(NanSensitiveDoubleEq(), {kNone, 0.0, 5.0}));
 }
 
 TEST(Mapping, EveryProblemWithItsPlace) {

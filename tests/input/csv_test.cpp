@@ -54,6 +54,18 @@ class CsvTest : public testing::Test {
   std::vector<int> lines_;
 };
 
+TEST_F(CsvTest, columns_may_be_chosen_by_the_header) {
+  std::ofstream(file_, std::ios::binary) << "\xEF\xBB\xBF\"b_V\",a_A,\"time_s\"\n2,1,0\n4,3,1\n";
+  std::vector<std::string> seen;
+  const auto choose = [&](std::span<const std::string> header) {
+    seen.assign(header.begin(), header.end());
+    return CsvColumns{{"time_s", header.front()}, {"absent_W"}};
+  };
+  read_csv(file_, choose, {}, [this](const CsvRow& row) { rows_.emplace_back(row.values.begin(), row.values.begin() + 2); });
+  EXPECT_THAT(seen, ElementsAre("b_V", "a_A", "time_s"));
+  EXPECT_THAT(rows_, ElementsAre(ElementsAre(0.0, 2.0), ElementsAre(1.0, 4.0)));
+}
+
 TEST_F(CsvTest, finds_columns_by_name_in_any_order) {
   read("note,current_A,bus_V,time_s\nx,2,24,0\ny,3.5,23,1e-1\n");
   EXPECT_THAT(rows_, ElementsAre(ElementsAre(0.0, 2.0, 24.0), ElementsAre(0.1, 3.5, 23.0)));

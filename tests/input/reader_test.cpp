@@ -95,6 +95,13 @@ TEST_F(ReaderTest, tables_of_a_list_are_numbered) {
   EXPECT_THAT(places(), ElementsAre("3:14 wheel[1].resistance"));
 }
 
+TEST_F(ReaderTest, a_wrong_quantity_of_a_list_is_reported_at_its_place) {
+  const std::vector<double> values =
+      read(R"(resistance = ["1 ohm", 2, "3 V", "-4 ohm", "5000 mohm"])").quantities(kResistance, Need::required);
+  EXPECT_THAT(values, ElementsAre(1.0, 0.0, 0.0, 0.0, 5.0));
+  EXPECT_THAT(places(), ElementsAre("1:24 resistance[1]", "1:27 resistance[2]", "1:34 resistance[3]"));
+}
+
 Figure figure_of(std::optional<Figure> figure) { return figure.value_or(Figure{}); }
 
 TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
@@ -118,6 +125,17 @@ TEST_F(ReaderTest, a_range_has_units_of_its_own) {
   ASSERT_TRUE(diagnostics_.empty()) << message();
   EXPECT_DOUBLE_EQ(figure.spread->low, 1.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 2.5);
+}
+
+TEST_F(ReaderTest, other_sources_of_a_figure_have_units_too) {
+  const Figure figure = figure_of(
+      read(R"(resistance = { value = "2 ohm", origin = "measured", source = "s", confirmed_by = { a = "2100 mohm", b = "1.9 ohm" } })")
+          .figure(kResistance, Need::required));
+  ASSERT_TRUE(diagnostics_.empty()) << message();
+  ASSERT_EQ(figure.confirmed_by.size(), 2U);
+  EXPECT_EQ(figure.confirmed_by[0].source, "a");
+  EXPECT_DOUBLE_EQ(figure.confirmed_by[0].value, 2.1);
+  EXPECT_EQ(figure.confirmed_by[0].printed, "2100 mohm");
 }
 
 TEST_F(ReaderTest, an_unknown_origin_is_one_problem_not_three) {

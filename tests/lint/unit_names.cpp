@@ -16,6 +16,7 @@ const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "real
 /// A pure number; the last word of the name says which.
 const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "efficiency",
+                                                      "exponent",
                                                       "factor",
                                                       "headroom",
                                                       "load",
@@ -41,13 +42,17 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      // of a chart: its axis label has the unit; of an ODE: the system has it
                                                      "x", "y", "dydt", "event_values", "written",
                                                      // mixed units, place by place
-                                                     "parameters", "effect_parameters", "integrals",
+                                                     "parameters", "effect_parameters", "integrals", "variants",
+                                                     // of a power: its exponent takes the unit away
+                                                     "base",
                                                      // stages of a method, in the state's unit
                                                      "rate", "sum",
                                                      // of a smoothed coordinate: its samples have the unit
                                                      "acceleration",
                                                      // of a square: in the root of its argument's unit
                                                      "root",
+                                                     // of a channel of a log: its quantity has the unit
+                                                     "columns", "noise", "saturates_high", "saturates_low", "step", "usual",
                                                      // VTK's own signature
                                                      "point",
                                                      // not a number
@@ -132,7 +137,7 @@ std::vector<NamedNumber> floating_point_names(std::string_view header) {
 }
 
 bool ends_in_unit(std::string_view name) {
-  static const std::string kUnit = "(A|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px)";
+  static const std::string kUnit = "(A|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px)";
   static const std::regex kEnd("[A-Za-z0-9]_(" + kUnit + "|per_" + kUnit + ")(_per_" + kUnit + ")*_?$");
   return std::regex_search(name.begin(), name.end(), kEnd);
 }

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <numbers>
 
+#include "motor/datasheet_network.h"
+
 namespace heatsoak {
 namespace {
 
@@ -103,6 +105,56 @@ thermal_resistance = { value = "40 K/W", origin = "estimated", derivation = "gue
   EXPECT_NE(first, second);
   EXPECT_GE(std::min(first, second), 20.0);
   EXPECT_LE(std::max(first, second), 80.0);
+}
+
+const std::string kChassis = R"([effects.chassis]
+type = "third_node"
+conductance = { value = "0.2 W/K", origin = "measured", source = "sheet" }
+leak_ratio = { value = "0.5", origin = "measured", source = "sheet" }
+heat_capacity = { value = "150 J/K", origin = "measured", source = "sheet" }
+)";
+
+TEST(MotorEffects, a_node_of_its_own_is_named_after_the_effect_and_others_may_name_it) {
+  // The lamp and the mount stand before what they hang on.
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere", R"([effects.a_lamp]
+type = "constant_heat"
+heated = "chassis"
+power = { value = "2 W", origin = "measured", source = "sheet" }
+[effects.b_mount]
+type = "third_node"
+node = "chassis"
+conductance = { value = "0.1 W/K", origin = "measured", source = "sheet" }
+leak_ratio = { value = "1", origin = "measured", source = "sheet" }
+heat_capacity = { value = "300 J/K", origin = "measured", source = "sheet" }
+)" + kChassis);
+  ASSERT_EQ(motor.effects.size(), 3U);
+  EXPECT_EQ(motor.effects[0].name, "chassis");
+  EXPECT_EQ(motor.effects[0].nodes, (std::vector<std::string>{"stator", "chassis", "ambient"}));
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  EXPECT_EQ(network.state_count(), 4);
+  for (const char* node : {"winding", "stator", "chassis", "b_mount"}) {
+    EXPECT_GE(network.find_node(node), 0) << node;
+  }
+  EXPECT_EQ(network.values()[static_cast<std::size_t>(network.capacity_index(network.find_node("b_mount")))], 300.0);
+}
+
+TEST(MotorEffects, a_curve_takes_its_units_from_what_was_chosen_and_a_choice_is_no_estimate) {
+  std::string curve = R"([effects.resonance]
+type = "tabulated"
+driver = "speed"
+form = "heat"
+first_knot = { value = "0 rpm", origin = "measured", source = "sheet" }
+last_knot = { value = "6000 rpm", origin = "measured", source = "sheet" }
+)";
+  for (int i = 1; i <= 7; ++i) {
+    curve +=
+        "value_" + std::to_string(i) + " = { value = \"" + std::to_string(i) + "00 mW\", origin = \"measured\", source = \"sheet\" }\n";
+  }
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere", curve);
+  ASSERT_EQ(motor.effects.size(), 1U);
+  EXPECT_NEAR(motor.effects[0].parameters[3].value, 200.0 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(motor.effects[0].parameters[6].value, 0.3, 1e-12);
+  EXPECT_EQ(data_quality(motor), "datasheet");
 }
 
 TEST(DataQuality, is_that_of_the_worst_thermal_figure) {

@@ -14,31 +14,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-
-// SUNDIALS allocates in C, which operator new does not see; a sanitizer brings its own malloc.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define HEATSOAK_COUNTS_ALLOCATIONS 1
-namespace {
-long allocation_count = 0;
-}
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* malloc(std::size_t size) {
-  ++allocation_count;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocation_count;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* old, std::size_t size) {
-  ++allocation_count;
-  return __libc_realloc(old, size);
-}
-}
-#endif
+#include "support/allocation_counter.h"
 
 namespace heatsoak {
 namespace {
@@ -567,12 +543,14 @@ TEST_P(IntegratorTest, impossible_tolerance_says_so) {
 // --- cost -------------------------------------------------------------------------------------------------
 
 TEST_P(IntegratorTest, nothing_is_allocated_after_the_first_step) {
-#ifdef HEATSOAK_COUNTS_ALLOCATIONS
+  if (!allocations_are_counted()) {
+    GTEST_SKIP() << "malloc cannot be counted here";
+  }
   TestSystem system(2, oscillate, 1, [](double, State y, Values values) { values[0] = y[0] - 0.3; });
   Integrator integrator(system, method(), {});
   integrator.start(0.0, std::array{0.0, 1.0});
   integrator.step(0.1);
-  const long before = allocation_count;
+  const long before = allocation_count();
   ASSERT_GT(before, 0);
 
   int found = 0;
@@ -586,11 +564,8 @@ TEST_P(IntegratorTest, nothing_is_allocated_after_the_first_step) {
   }
 
   // SUNDIALS' difference quotient clones an empty vector: three small blocks, at most two Jacobians a piece here.
-  EXPECT_LE(allocation_count - before, method() == OdeMethod::cvodes_bdf ? 100 * 6 : 0);
+  EXPECT_LE(allocation_count() - before, method() == OdeMethod::cvodes_bdf ? 100 * 6 : 0);
   EXPECT_EQ(found, 23);  // 70 rad are 11 turns and the twelfth rise, at 69.42 rad
-#else
-  GTEST_SKIP() << "malloc cannot be counted here";
-#endif
 }
 
 TEST(ArkodeTest, a_short_piece_is_one_step) {

@@ -263,6 +263,29 @@ TEST_F(ChartTest, LimitAndBandStandWhereTheAxesSay) {
   EXPECT_NEAR(seen.high.y_px, winding.y.px(chart.panels[1].curves[0].y.back() + 9.0), 1.0);
 }
 
+// A ripple as wide as the plot leaves no free place on the line: the name then stands beside the plot, below the legend.
+TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
+  Chart chart = warm_up();
+  ChartCurve& ripple = chart.panels[1].curves[0];
+  for (std::size_t i = 0; i < ripple.y.size(); ++i) {
+    ripple.y[i] = i % 2 == 0 ? 100.0 : 200.0;
+  }
+
+  const auto elements = drawn(chart);
+  const SeenPanel winding = seen_panels(elements).at(1);
+  const auto is_name = [](const Element& each) { return each.name == "text" && each.text == "winding limit 155 °C"; };
+  const auto name = std::ranges::find_if(elements, is_name);
+  const auto last = std::ranges::find_if(elements, [](const Element& each) { return each.name == "text" && each.text == "5 % to 95 %"; });
+
+  ASSERT_NE(name, elements.end());
+  ASSERT_NE(last, elements.end());
+  EXPECT_EQ(name->at("text-anchor"), "") << "it begins there";
+  EXPECT_GT(name->number("x"), winding.x.px(40.0));
+  EXPECT_LT(name->number("x"), winding.x.px(40.0) + 20.0);
+  EXPECT_NEAR(name->number("y"), winding.y.px(155.0), 6.0);
+  EXPECT_GT(name->number("y"), last->number("y") + 12.0);
+}
+
 TEST_F(ChartTest, EverythingIsInsideThePlotWithHeadroom) {
   Chart chart = warm_up();
   chart.panels[1].levels = {{"far above", 400.0}, {"far below", -100.0}};

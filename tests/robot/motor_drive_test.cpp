@@ -197,6 +197,40 @@ TEST(OperatingPoint, has_no_signs) {
   EXPECT_EQ(at.ambient_C, 31.0);
 }
 
+// Driving: I = (0.09 + 0.006)/0.03 = 3.2 A; shaft 0.09·100 = 9 W; terminals 3.2·0.5 + 0.03·100 = 4.6 V, so 4.6·3.2 = 14.72 W go in.
+TEST(OperatingPoint, has_powers_voltage_and_the_vehicle_of_a_driving_wheel) {
+  Robot wheeled = robot();
+  wheeled.wheel_radius_m = 0.03;
+  const OperatingPoint<double> at = operating_point(drive_point(motor(), wheeled, {0.09, 100.0}), motor(), wheeled, 25.0);
+  EXPECT_NEAR(at.shaft_power_W, 9.0, 1e-12);
+  EXPECT_NEAR(at.input_power_W, 14.72, 1e-12);
+  EXPECT_EQ(at.bus_V, 24.0);
+  EXPECT_NEAR(at.modulation_ratio, 4.6 / 24.0, 1e-13);
+  EXPECT_NEAR(at.vehicle_speed_m_per_s, 3.0, 1e-13);
+  EXPECT_EQ(at.velocity_rad_per_s, 100.0);
+  EXPECT_EQ(at.neighbour_share, 0.0);
+}
+
+// Braking, turning backwards: I = (0.09 − 0.006)/0.03 = 2.8 A, −9 W at the shaft, 2.8·0.5 − 3 = −1.6 V, −4.48 W: it feeds back.
+TEST(OperatingPoint, has_negative_powers_where_the_motor_brakes) {
+  const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {0.09, -100.0}), motor(), robot(), 25.0);
+  EXPECT_NEAR(at.shaft_power_W, -9.0, 1e-12);
+  EXPECT_NEAR(at.input_power_W, -4.48, 1e-12);
+  EXPECT_NEAR(at.modulation_ratio, 1.6 / 24.0, 1e-13);
+  EXPECT_EQ(at.velocity_rad_per_s, -100.0);
+}
+
+// A gear of 4 behind a wheel at 50 rad/s: the motor turns at 200, the robot rolls as the wheel does.
+TEST(OperatingPoint, has_the_wheels_speed_behind_a_gear_and_never_more_modulation_than_the_supply) {
+  Robot geared = robot();
+  geared.gear_ratio = 4.0;
+  geared.wheel_radius_m = 0.03;
+  const OperatingPoint<double> at = operating_point(drive_point(motor(), geared, {0.1, 50.0}), motor(), geared, 25.0);
+  EXPECT_NEAR(at.vehicle_speed_m_per_s, 1.5, 1e-13);
+  EXPECT_EQ(at.velocity_rad_per_s, 200.0);
+  EXPECT_EQ(operating_point(drive_point(motor(), geared, {9.0, 100.0}), motor(), geared, 25.0).modulation_ratio, 1.0);
+}
+
 // Block: a current I against the back-EMF between two terminals of crest E, whose mean over the 60° around the crest is
 // (3/π)·E. Sinusoidal: an amplitude Î against phase amplitudes E/√3, 1.5·Î·E/√3. Heat: I²·R against 3·(Î²/2)·(R/2).
 TEST(OperatingPoint, sinusoidal_commutation_heats_0_912_of_block) {

@@ -132,6 +132,7 @@ TEST(Evaluate, runaway_is_destroyed) {
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(20.0));
   EXPECT_TRUE(result.destroyed);
   EXPECT_EQ(result.verdict, Verdict::fail);
+  EXPECT_EQ(result.winding_peak_C.nominal, kDestroyed_C) << "where the calculation ends, as for samples";
 }
 
 TEST(Evaluate, infeasible_by_voltage) {
@@ -422,6 +423,58 @@ TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
     EXPECT_LT(result.curves.stator_p05_C[i], result.curves.stator_p95_C[i]);
   }
   EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_p95_C), result.winding_peak_C.p95, 8.0);
+}
+
+std::vector<WheelDemand> steady_wheels(double torque_Nm, double duration_s) {
+  WheelDemand idle{.wheel = "idle", .bins = {constant_bin(duration_s, 0.0, 0.0, 0.0)}, .points = {}};
+  WheelDemand busy{.wheel = "busy", .bins = {constant_bin(duration_s, torque_Nm, 0.0, 0.0)}, .points = {}};
+  return {idle, busy};
+}
+
+// Blocks of samples take the draws in turn, each its busiest wheel: without other spread every peak is a closed form.
+TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
+  const Motor motor = simple_motor();
+  const Robot robot = simple_robot();
+  Duty duty = constant_current(1.0);
+  duty.kind = DutyKind::torque;
+  const std::vector<double> torques_Nm{0.03, 0.06, 0.09, 0.12};  // 1 A to 4 A
+  std::vector<std::vector<WheelDemand>> draws;
+  for (const double torque_Nm : torques_Nm) {
+    draws.push_back(steady_wheels(torque_Nm, 400.0));
+  }
+  const std::vector<WheelDemand> nominal = steady_wheels(0.03, 600.0);
+  EvaluateOptions options{.samples = 4 * 8 * 3, .with_curves = true};
+  options.draws = draws;
+  const MotorEvaluation result = evaluate(robot, duty, nominal, std::span(&motor, 1), options).front();
+  EXPECT_NEAR(result.winding_peak_C.nominal, rest_C(kResistance_ohm, 1.0), 0.01);
+  EXPECT_NEAR(result.winding_peak_C.p05, rest_C(kResistance_ohm, 1.0), 0.01);
+  EXPECT_NEAR(result.winding_peak_C.p95, rest_C(kResistance_ohm, 4.0), 0.01);
+  EXPECT_NEAR(result.winding_peak_C.p50, 0.5 * (rest_C(kResistance_ohm, 2.0) + rest_C(kResistance_ohm, 3.0)), 0.01);
+  // All draws end before the nominal duty: the band of the picture ends there too.
+  ASSERT_FALSE(result.curves.band_time_s.empty());
+  EXPECT_LT(result.curves.band_time_s.back(), 410.0);
+  EXPECT_EQ(result.curves.band_time_s.size(), result.curves.winding_p95_C.size());
+  options.threads = 3;
+  const MotorEvaluation again = evaluate(robot, duty, nominal, std::span(&motor, 1), options).front();
+  EXPECT_EQ(again.winding_peak_C.p50, result.winding_peak_C.p50);
+  EXPECT_EQ(again.curves.winding_p95_C, result.curves.winding_p95_C);
+}
+
+TEST(Evaluate, draws_are_the_same_for_every_number_of_threads) {
+  const Duty duty = duty_of_file("division_b_match");
+  const Robot robot = robot_of_file("roboteam_twente_v2024");
+  EXPECT_EQ(draw_count(duty, 0), 0);
+  EXPECT_EQ(draw_count(duty, 9), 2);
+  EXPECT_EQ(draw_count(constant_current(1.0), 500), 0);
+  const auto torques = [&](int threads) {
+    std::vector<double> all_Nm;
+    for (const std::vector<WheelDemand>& wheels : draw_demands(duty, robot, 5, 3, threads)) {
+      all_Nm.push_back(wheels[0].bins.at(100).torque_rms_Nm);
+      all_Nm.push_back(wheels[3].duration_s());
+    }
+    return all_Nm;
+  };
+  EXPECT_EQ(torques(1), torques(3));
 }
 
 }  // namespace

@@ -1,79 +1,21 @@
 // What every effect owes, driven by the registry: a new file in src/thermal/effects is tested by being there.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <numeric>
+#include <regex>
+#include <set>
 
-#include "two_node.h"
+#include "one_effect.h"
 
 namespace heatsoak {
 namespace {
 
-/// One effect alone, with its parameters and nodes in declared order.
-template <class S>
-std::vector<S> heat_W(const EffectType& type, const OperatingPoint<S>& at, const std::vector<S>& parameters,
-                      const std::vector<S>& temperature_C) {
-  std::vector<int> parameter_index(parameters.size());
-  std::iota(parameter_index.begin(), parameter_index.end(), 0);
-  std::vector<int> node_index(temperature_C.size());
-  std::iota(node_index.begin(), node_index.end(), 0);
-  std::vector<S> heat;
-  if constexpr (std::is_same_v<S, double>) {
-    heat.assign(temperature_C.size(), 0.0);
-  } else {
-    heat.assign(temperature_C.size(), S::Zero());
-  }
-  const Situation<S> situation(at, parameters.data(), parameter_index.data(), temperature_C.data(), node_index.data());
-  HeatBook<S> book(heat.data(), node_index.data());
-  if constexpr (std::is_same_v<S, double>) {
-    type.laws.one(situation, book);
-  } else {
-    type.laws.lanes(situation, book);
-  }
-  return heat;
-}
+using testing::IsEmpty;
+using testing::Not;
 
-double low_of(const Range& range) { return std::isfinite(range.low) ? range.low + (range.low_is_open ? 1e-6 : 0.0) : -1e6; }
-double high_of(const Range& range) { return std::isfinite(range.high) ? range.high - (range.high_is_open ? 1e-6 : 0.0) : 1e6; }
-
-double random_in(Chance& chance, const Range& range) {
-  const double low = low_of(range);
-  const double high = high_of(range);
-  return low > 0.0 && high / low > 100.0 ? chance.by_ratio(low, high) : chance.between(low, high);
-}
-
-std::vector<double> random_parameters(Chance& chance, const EffectType& type) {
-  std::vector<double> parameters;
-  for (const ParameterSpec& spec : type.parameters) {
-    parameters.push_back(random_in(chance, spec.range));
-  }
-  return parameters;
-}
-OperatingPoint<double> random_point(Chance& chance) {
-  const double mean = chance.between(0.0, 2000.0);
-  return {chance.between(0.0, 100.0), mean, mean * chance.between(1.0, 2.0), chance.between(-40.0, 60.0)};
-}
-std::vector<double> random_temperatures(Chance& chance, const EffectType& type) {
-  std::vector<double> temperature_C;
-  for (std::size_t i = 0; i < type.nodes.size(); ++i) {
-    temperature_C.push_back(chance.between(-60.0, 400.0));
-  }
-  return temperature_C;
-}
-
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
-double size_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0, [](double all, double each) { return all + std::abs(each); });
-}
-
-class EveryEffect : public testing::TestWithParam<std::size_t> {
- protected:
-  static const EffectType& type() { return all_effects()[GetParam()]; }
-};
-INSTANTIATE_TEST_SUITE_P(Registry, EveryEffect, testing::Range(std::size_t{0}, all_effects().size()),
-                         [](const auto& effect) { return std::string(all_effects()[effect.param].name); });
+INSTANTIATE_TEST_SUITE_P(Registry, EveryEffect, every_effect(), name_of_effect);
 
 TEST_P(EveryEffect, worked_example) {
   const WorkedExample& example = type().example;
@@ -88,6 +30,21 @@ TEST_P(EveryEffect, worked_example) {
   EXPECT_GT(size_of(heat), 0.0) << "an example of no heat shows nothing";
   for (std::size_t i = 0; i < example.parameters.size(); ++i) {
     EXPECT_TRUE(type().parameters[i].range.contains(example.parameters[i])) << type().parameters[i].key;
+  }
+}
+
+TEST_P(EveryEffect, is_told_in_words) {
+  for (const std::string_view text : {type().summary, type().equation, type().reference, type().typical, type().look_alike}) {
+    EXPECT_THAT(text, Not(IsEmpty()));
+  }
+  for (const ParameterSpec& spec : type().parameters) {
+    EXPECT_THAT(spec.meaning, Not(IsEmpty())) << spec.key;
+  }
+  // What is spelt like an effect is one.
+  const std::string prose(type().look_alike);
+  const std::regex name("[a-z]+(_[a-z]+)+");
+  for (std::sregex_iterator found(prose.begin(), prose.end(), name), end; found != end; ++found) {
+    EXPECT_NE(find_effect(found->str()), nullptr) << found->str();
   }
 }
 
@@ -106,15 +63,15 @@ TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
       temperature_C[lane] = random_temperatures(chance, type());
       at[lane] = random_point(chance);
       for (std::size_t p = 0; p < lane_parameters.size(); ++p) {
+        if (!type().parameters[p].choices.empty()) {
+          parameters[lane][p] = parameters[0][p];  // a choice is the same for all samples
+        }
         lane_parameters[p][l] = parameters[lane][p];
       }
       for (std::size_t node = 0; node < lane_temperature_C.size(); ++node) {
         lane_temperature_C[node][l] = temperature_C[lane][node];
       }
-      lane_at.current_rms_A[l] = at[lane].current_rms_A;
-      lane_at.speed_mean_rad_per_s[l] = at[lane].speed_mean_rad_per_s;
-      lane_at.speed_rms_rad_per_s[l] = at[lane].speed_rms_rad_per_s;
-      lane_at.ambient_C[l] = at[lane].ambient_C;
+      for_each_quantity([l](Lanes& to, const double& from) { to[l] = from; }, lane_at, at[lane]);
     }
     const std::vector<Lanes> side_by_side = heat_W(type(), lane_at, lane_parameters, lane_temperature_C);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -138,11 +95,13 @@ TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
       values.push_back((corner >> p & 1U) != 0U ? high_of(range) : low_of(range));
     }
     for (const double size : {0.0, 1.0, 1e4}) {
+      OperatingPoint<double> at;
+      for_each_quantity([size](double& quantity) { quantity = size; }, at);
       for (const double hot_C : {-60.0, 25.0, kDestroyed_C}) {
         for (const double cold_C : {-60.0, 25.0, kDestroyed_C}) {
           std::vector<double> temperature_C(type().nodes.size(), cold_C);
           temperature_C[0] = hot_C;
-          for (const double heat : heat_W(type(), {size, size, size, cold_C}, values, temperature_C)) {
+          for (const double heat : heat_W(type(), at, values, temperature_C)) {
             EXPECT_TRUE(std::isfinite(heat)) << "corner " << corner << " size " << size << " from " << hot_C << " to " << cold_C << " °C";
           }
         }
@@ -151,14 +110,81 @@ TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
   }
 }
 
-/// Either heat is made, then no node loses any; or it is moved, then none is gained or lost and it runs downhill: Σ P·T ≤ 0.
-TEST_P(EveryEffect, makes_heat_or_moves_it_downhill) {
-  Chance chance(801);
-  for (int i = 0; i < 500; ++i) {
+TEST_P(EveryEffect, heat_is_finite_wherever_a_range_and_a_machine_lead) {
+  Chance chance(805);
+  for (int i = 0; i < 3000; ++i) {
+    for (const double heat : heat_W(type(), random_point(chance), random_parameters(chance, type()), random_temperatures(chance, type()))) {
+      EXPECT_TRUE(std::isfinite(heat));
+    }
+  }
+}
+
+/// A law that says it does without a signal gives the same bits when the signal is no number at all; the surroundings' temperature
+/// it has from its nodes, and the headroom is the network's business.
+TEST_P(EveryEffect, looks_at_no_signal_but_those_it_needs) {
+  Chance chance(806);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto needs = [](Signal signal) { return std::ranges::find(type().needs, signal) != type().needs.end(); };
+  for (int i = 0; i < 200; ++i) {
+    const std::vector<double> parameters = random_parameters(chance, type());
     const std::vector<double> temperature_C = random_temperatures(chance, type());
-    const std::vector<double> heat = heat_W(type(), random_point(chance), random_parameters(chance, type()), temperature_C);
+    const OperatingPoint<double> at = random_point(chance);
+    OperatingPoint<double> blind = at;
+    blind.ambient_C = blind.resistive_headroom_V = none;
+    if (!needs(Signal::current)) {
+      blind.current_rms_A = blind.copper_loss_W = none;
+    }
+    if (!needs(Signal::speed)) {
+      blind.speed_mean_rad_per_s = blind.speed_rms_rad_per_s = blind.velocity_rad_per_s = blind.acceleration_rad_per_s2 = none;
+    }
+    for (const auto& [signal, quantity] : {std::pair{Signal::shaft_power, &OperatingPoint<double>::shaft_power_W},
+                                           {Signal::input_power, &OperatingPoint<double>::input_power_W},
+                                           {Signal::modulation, &OperatingPoint<double>::modulation_ratio},
+                                           {Signal::bus_voltage, &OperatingPoint<double>::bus_V},
+                                           {Signal::vehicle_speed, &OperatingPoint<double>::vehicle_speed_m_per_s},
+                                           {Signal::neighbour_temperature, &OperatingPoint<double>::neighbour_C},
+                                           {Signal::neighbour_temperature, &OperatingPoint<double>::neighbour_share},
+                                           {Signal::age, &OperatingPoint<double>::age_h}}) {
+      if (!needs(signal)) {
+        blind.*quantity = none;
+      }
+    }
+    const std::vector<double> seeing_W = heat_W(type(), at, parameters, temperature_C);
+    const std::vector<double> blind_W = heat_W(type(), blind, parameters, temperature_C);
+    for (std::size_t node = 0; node < seeing_W.size(); ++node) {
+      EXPECT_EQ(seeing_W[node], blind_W[node]);
+    }
+  }
+}
+
+/// First and second law: nothing is taken away, and entropy is not destroyed: Σ P ≥ 0 and Σ P/T ≥ 0, T in kelvin.
+TEST_P(EveryEffect, neither_destroys_heat_nor_entropy) {
+  Chance chance(801);
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<double> temperature_C = random_temperatures(chance, type());
+    OperatingPoint<double> at = random_point(chance);
+    settle_neighbour(at, type(), temperature_C);
+    const std::vector<double> heat = heat_W(type(), at, random_parameters(chance, type()), temperature_C);
+    EXPECT_GE(sum(heat), -1e-12 * size_of(heat));
+    double entropy_W_per_K = 0.0;
+    for (std::size_t node = 0; node < heat.size(); ++node) {
+      entropy_W_per_K += heat[node] / (temperature_C[node] + 273.15);
+    }
+    EXPECT_GE(entropy_W_per_K, -1e-12 * size_of(heat) / 200.0);
+  }
+}
+
+/// What makes no heat in any state moves it, and only downhill: Σ P·T ≤ 0.
+TEST_P(EveryEffect, what_only_moves_heat_moves_it_downhill) {
+  Chance chance(802);
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<double> temperature_C = random_temperatures(chance, type());
+    OperatingPoint<double> at = random_point(chance);
+    at.copper_loss_W = at.current_rms_A = 0.0;
+    settle_neighbour(at, type(), temperature_C);
+    const std::vector<double> heat = heat_W(type(), at, random_parameters(chance, type()), temperature_C);
     if (std::ranges::all_of(heat, [](double each_W) { return each_W >= 0.0; })) {
-      continue;
+      continue;  // a source, or nothing
     }
     EXPECT_NEAR(sum(heat), 0.0, 1e-12 * size_of(heat));
     double uphill = 0.0;
@@ -172,7 +198,8 @@ TEST_P(EveryEffect, makes_heat_or_moves_it_downhill) {
 TEST_P(EveryEffect, at_one_temperature_no_heat_is_moved) {
   Chance chance(803);
   for (int i = 0; i < 100; ++i) {
-    const OperatingPoint<double> at = random_point(chance);
+    OperatingPoint<double> at = random_point(chance);
+    at.neighbour_C = at.ambient_C;
     for (const double heat :
          heat_W(type(), at, random_parameters(chance, type()), std::vector<double>(type().nodes.size(), at.ambient_C))) {
       EXPECT_GE(heat, 0.0);
@@ -184,27 +211,118 @@ TEST_P(EveryEffect, at_one_temperature_no_heat_is_moved) {
 TEST_P(EveryEffect, balance_and_rate_of_a_network_agree) {
   Chance chance(804);
   Network network;
-  std::vector<std::string> nodes;
-  std::vector<double> capacity_J_per_K;
-  for (std::size_t i = 0; i < type().nodes.size(); ++i) {
-    nodes.push_back("node" + std::to_string(i));
-    capacity_J_per_K.push_back(chance.by_ratio(1.0, 100.0));
-    network.add_node(nodes.back(), capacity_J_per_K.back());
-  }
-  network.add_effect("first", type(), nodes, random_parameters(chance, type()));
-  network.add_effect("second", type(), nodes, random_parameters(chance, type()));
+  add_alone(network, "first", type(), chance);
+  add_alone(network, "second", type(), chance);
   const OperatingPoint<double> at = random_point(chance);
-  std::vector<double> temperature_C = random_temperatures(chance, type());
-  const std::size_t count = temperature_C.size() + 1;
-  std::vector<double> balance(2 * count);
+  const auto states = static_cast<std::size_t>(network.state_count());
+  std::vector<double> temperature_C;
+  for (std::size_t node = 0; node < states; ++node) {
+    temperature_C.push_back(chance.between(-60.0, 400.0));
+  }
+  std::vector<double> balance(2 * (states + 1));
   const std::vector<double> values = network.values();
   network.balance_W(at, values, temperature_C, balance);
   temperature_C.push_back(-999.0);  // ambient: overwritten
-  std::vector<double> rate(count - 1);
+  std::vector<double> rate(states);
   network.rate_K_per_s<double>(at, values, temperature_C, rate);
   EXPECT_EQ(temperature_C.back(), at.ambient_C);
-  for (std::size_t node = 0; node + 1 < count; ++node) {
-    EXPECT_NEAR(rate[node] * capacity_J_per_K[node], balance[node] + balance[count + node], 1e-9 * size_of(balance));
+  for (std::size_t node = 0; node < states; ++node) {
+    const double capacity_J_per_K = values[static_cast<std::size_t>(network.capacity_index(static_cast<int>(node)))];
+    EXPECT_NEAR(rate[node] * capacity_J_per_K, balance[node] + balance[states + 1 + node], 1e-9 * size_of(balance));
+  }
+}
+
+// --- where a model may lack it ------------------------------------------------------------------------------
+
+/// The candidates' sizes and shapes.
+class EveryCandidate : public EveryEffect {
+ protected:
+  void SetUp() override {
+    if (type().candidacy.size_parameter < 0) {
+      GTEST_SKIP() << "never a candidate";
+    }
+  }
+  static std::size_t size_place() { return static_cast<std::size_t>(type().candidacy.size_parameter); }
+};
+INSTANTIATE_TEST_SUITE_P(Registry, EveryCandidate, every_effect(), name_of_effect);
+
+TEST_P(EveryCandidate, is_described_at_its_typical_size) {
+  EXPECT_THAT(type().candidacy.family, Not(IsEmpty()));
+  EXPECT_THAT(type().candidacy.experiment, Not(IsEmpty()));
+  ASSERT_THAT(type().candidacy.variants, Not(IsEmpty()));
+  std::set<std::vector<double>> shapes;
+  for (const std::vector<double>& variant : type().candidacy.variants) {
+    ASSERT_EQ(variant.size(), type().parameters.size());
+    for (std::size_t p = 0; p < variant.size(); ++p) {
+      EXPECT_TRUE(type().parameters[p].range.contains(variant[p])) << type().parameters[p].key;
+    }
+    EXPECT_GT(variant[size_place()], 0.0);
+    std::vector<double> shape = variant;
+    shape[size_place()] = 0.0;
+    EXPECT_TRUE(shapes.insert(shape).second) << "two variants of one shape";
+  }
+  EXPECT_TRUE(type().parameters[size_place()].range.contains(0.0));
+}
+
+TEST_P(EveryCandidate, of_size_zero_is_absent) {
+  Chance chance(807);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<double> parameters = random_parameters(chance, type());
+    parameters[size_place()] = 0.0;
+    EXPECT_EQ(size_of(heat_W(type(), random_point(chance), parameters, random_temperatures(chance, type()))), 0.0);
+  }
+}
+
+TEST_P(EveryCandidate, books_heat_in_proportion_to_its_size) {
+  Chance chance(808);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<double> parameters = random_parameters(chance, type());
+    const OperatingPoint<double> at = random_point(chance);
+    const std::vector<double> temperature_C = random_temperatures(chance, type());
+    const std::vector<double> whole_W = heat_W(type(), at, parameters, temperature_C);
+    parameters[size_place()] *= 0.25;
+    const std::vector<double> quarter_W = heat_W(type(), at, parameters, temperature_C);
+    for (std::size_t node = 0; node < whole_W.size(); ++node) {
+      EXPECT_NEAR(quarter_W[node], 0.25 * whole_W[node], 1e-12 * size_of(whole_W));
+    }
+  }
+}
+
+/// At typical size in a typical state: a motor of some 50 W at work, not a milliwatt and not a furnace.
+TEST_P(EveryCandidate, of_typical_size_books_watts) {
+  for (const std::vector<double>& variant : type().candidacy.variants) {
+    OperatingPoint<double> at{.current_rms_A = 5.0, .speed_mean_rad_per_s = 500.0, .speed_rms_rad_per_s = 500.0};
+    at.shaft_power_W = 50.0;
+    at.input_power_W = 65.0;
+    at.bus_V = 24.0;
+    at.modulation_ratio = 0.6;
+    at.vehicle_speed_m_per_s = 2.0;
+    at.neighbour_C = 60.0;
+    at.neighbour_share = 1.0;
+    at.copper_loss_W = 10.0;
+    std::vector<double> temperature_C;
+    for (const NodeRole& role : type().nodes) {
+      temperature_C.push_back(role.own_capacity >= 0           ? 35.0
+                              : role.default_node == "winding" ? 90.0
+                              : role.default_node == "stator"  ? 70.0
+                                                               : 25.0);
+    }
+    double most_W = 0.0;
+    constexpr double kShaftAndMore_W = 70.0;
+    // The states that some need to show: braking, a stall, hard current, an old contact.
+    for (const int state : {0, 1, 2, 3}) {
+      OperatingPoint<double> now = at;
+      now.shaft_power_W *= state == 1 ? -1.0 : 1.0;
+      now.speed_mean_rad_per_s *= state == 2 ? 0.0 : 1.0;
+      now.current_rms_A *= state == 2 ? 4.0 : 1.0;
+      now.copper_loss_W *= state == 2 ? 16.0 : 1.0;
+      now.age_h = state == 3 ? 50.0 : 0.0;
+      for (const double heat : heat_W(type(), now, variant, temperature_C)) {
+        most_W = std::max(most_W, std::abs(heat));
+        EXPECT_LE(std::abs(heat), kShaftAndMore_W + now.copper_loss_W);
+      }
+    }
+    EXPECT_GE(most_W, 0.1);
   }
 }
 

@@ -377,7 +377,7 @@ TEST_P(EveryMethod, above_the_critical_current_the_run_ends_destroyed) {
   options.limits = {{winding, 155.0}};
   const TransientResult result = run(kMotor, duty, options);
   EXPECT_TRUE(result.destroyed);
-  EXPECT_GE(result.peak_C[winding], kDestroyed_C);
+  EXPECT_EQ(result.peak_C[winding], kDestroyed_C);
   EXPECT_TRUE(result.time_to_limit_s[0].has_value());
   const auto above = [&](long double time_s) { return kMotor.after(time_s, {25.0L, 25.0L}, duty[0].at)[winding] - kDestroyed_C; };
   const double expected_s = static_cast<double>(bisected(0.0L, 5000.0L, above));

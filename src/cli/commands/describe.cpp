@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +30,9 @@ Json figure_json(std::string_view key, std::string_view unit, const Figure& figu
   if (figure.spread) {
     json["range"] = {figure.spread->low, figure.spread->high};
   }
+  for (const Confirmation& each : figure.confirmed_by) {
+    json["confirmed_by"][each.source] = each.value;
+  }
   if (!figure.derivation.empty()) {
     json["derivation"] = figure.derivation;
   }
@@ -44,6 +48,9 @@ std::string figure_text(std::string_view key, std::string_view unit, const Figur
     text += fmt::format(" {} … {} °C", significant(figure.spread->low, 3), significant(figure.spread->high, 3));
   }
   text += figure.source.empty() ? "\n" : fmt::format("  [{}]\n", figure.source);
+  for (const Confirmation& each : figure.confirmed_by) {
+    text += fmt::format("      {} says {}\n", each.source, each.printed);
+  }
   return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
 }
 
@@ -65,8 +72,11 @@ Description describe_motor(const Motor& motor) {
   result.text += "\nthermal network\n";
   const Network network = datasheet_network(motor, nominal_sample(motor));
   for (const NetworkParameter& each : network.parameters()) {
-    result.text += fmt::format("  {:36} {:>22}\n", each.name, with_unit(each.value, each.unit));
-    result.json["network"].push_back({{"name", each.name}, {"value", each.value}, {"unit", each.unit}});
+    const std::string value =
+        each.choices.empty() ? with_unit(each.value, each.unit) : std::string(each.choices[static_cast<std::size_t>(each.value)].name);
+    result.text += fmt::format("  {:36} {:>22}\n", each.name, value);
+    result.json["network"].push_back(
+        {{"name", each.name}, {"value", each.choices.empty() ? Json(each.value) : Json(value)}, {"unit", each.unit}});
   }
   result.text += "\nsources\n";
   for (const auto& [id, what] : motor.sources) {
@@ -117,26 +127,109 @@ Description describe_duty(const Duty& duty) {
            {"notes", duty.notes}}};
 }
 
-Description describe_effect(const EffectType& effect) {
-  Description result{fmt::format("{}: {}\n\n  {}\n\n", effect.name, effect.summary, effect.equation),
-                     {{"kind", "effect"},
-                      {"id", effect.name},
-                      {"summary", effect.summary},
-                      {"equation", effect.equation},
-                      {"reference", effect.reference}}};
-  std::string keys;
+/// Breaks at blanks; lines after the first are indented.
+std::string wrapped(std::string_view text, std::size_t indent) {
+  constexpr std::size_t kWidth = 120;
+  std::string result;
+  std::size_t column = indent;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const auto width =
+        static_cast<std::size_t>(std::ranges::count_if(text.substr(at, end - at), [](char c) { return (c & 0xC0) != 0x80; }));
+    if (column > indent && column + 1 + width > kWidth) {
+      result += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      result += ' ';
+      ++column;
+    }
+    result += text.substr(at, end - at);
+    column += width;
+    at = end + 1;
+  }
+  return result;
+}
+
+std::string_view to_string(Signal signal) {
+  constexpr std::array<std::string_view, 9> kNames{"current",     "speed",         "shaft power",           "input power", "modulation",
+                                                   "bus voltage", "vehicle speed", "neighbour temperature", "age"};
+  return kNames.at(static_cast<std::size_t>(signal));
+}
+
+/// Ready to paste, with the typical size.
+std::string motor_file_lines(const EffectType& effect) {
+  const std::vector<double>& values = effect.candidacy.variants.empty() ? effect.example.parameters : effect.candidacy.variants.front();
+  std::string text = fmt::format("[effects.my_{}]\ntype = \"{}\"\n", effect.name, effect.name);
+  for (const NodeRole& role : effect.nodes) {
+    text += role.own_capacity < 0 ? fmt::format("{} = \"{}\"\n", role.role, role.default_node) : "";
+  }
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+    const ParameterSpec& spec = effect.parameters[i];
+    const std::string_view unit = unit_of(effect.parameters, i, values);
+    if (!spec.choices.empty()) {
+      text += fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(values[i])].name);
+    } else {
+      text += fmt::format("{} = {{ value = \"{}{}{}\", origin = \"estimated\", derivation = \"typical size\" }}\n", spec.key,
+                          significant(values[i], 6), unit.empty() ? "" : " ", unit);
+    }
+  }
+  return text;
+}
+
+void describe_parameters(const EffectType& effect, Description& result) {
   for (const ParameterSpec& spec : effect.parameters) {
-    result.text +=
-        fmt::format("  {:26} {:8} {}; {}\n", spec.key, unit_for_display(spec.unit), spec.meaning, to_string(spec.range, spec.unit));
-    result.json["parameters"].push_back({{"key", spec.key}, {"unit", spec.unit}, {"meaning", spec.meaning}});
-    keys += fmt::format("{} = {{ value = \"… {}\", origin = \"estimated\", derivation = \"…\" }}\n", spec.key, spec.unit);
+    Json json{{"key", spec.key}, {"unit", spec.unit}, {"meaning", spec.meaning}};
+    const std::string unit = spec.unit_of >= 0 ? fmt::format("as {}", effect.parameters[static_cast<std::size_t>(spec.unit_of)].key)
+                                               : unit_for_display(spec.unit);
+    const std::string range = spec.choices.empty() ? to_string(spec.range, spec.unit) : "one of";
+    result.text += fmt::format("  {:24} {:10} {}\n", spec.key, unit, wrapped(fmt::format("{}; {}", spec.meaning, range), 38));
+    for (const Choice& choice : spec.choices) {
+      result.text += fmt::format("    {:22} {:10} {}\n", choice.name, unit_for_display(choice.unit), choice.meaning);
+      json["choices"].push_back({{"name", choice.name}, {"unit", choice.unit}, {"meaning", choice.meaning}});
+    }
+    result.json["parameters"].push_back(json);
   }
   for (const NodeRole& role : effect.nodes) {
-    result.text += fmt::format("  {:26} {:8} node; '{}' unless named\n", role.role, "", role.default_node);
+    const bool own = role.own_capacity >= 0;
+    result.text +=
+        fmt::format("  {:24} {:10} {}\n", role.role, "node",
+                    own ? "of its own, named after the effect in the file" : fmt::format("'{}' unless named", role.default_node));
+    result.json["nodes"].push_back({{"key", role.role}, {"default", own ? Json() : Json(role.default_node)}});
   }
-  result.text +=
-      fmt::format("\n  typical size: {}\n  look-alikes: {}\n  reference: {}\n\nin a motor file:\n[effects.my_{}]\ntype = \"{}\"\n{}",
-                  effect.typical, effect.look_alike, effect.reference, effect.name, effect.name, keys);
+}
+
+Description describe_effect(const EffectType& effect) {
+  Description result{
+      fmt::format("{}: {}\n\n  {}\n\n", effect.name, wrapped(effect.summary, effect.name.size() + 2), wrapped(effect.equation, 2)),
+      {{"kind", "effect"},
+       {"id", effect.name},
+       {"summary", effect.summary},
+       {"equation", effect.equation},
+       {"reference", effect.reference},
+       {"typical", effect.typical},
+       {"look_alike", effect.look_alike}}};
+  describe_parameters(effect, result);
+  std::vector<std::string_view> needs;
+  for (const Signal signal : effect.needs) {
+    needs.push_back(to_string(signal));
+  }
+  result.json["needs"] = needs;
+  const auto say = [&result](std::string_view what, std::string_view text) {
+    result.text += text.empty() ? "" : fmt::format("  {:14} {}\n", what, wrapped(text, 17));
+  };
+  result.text += "\n";
+  say("typical size", effect.typical);
+  say("look-alikes", effect.look_alike);
+  const bool has_choice = std::ranges::any_of(effect.parameters, [](const ParameterSpec& spec) { return !spec.choices.empty(); });
+  say("needs a log of", has_choice ? "the signal that was chosen" : fmt::format("{}", fmt::join(needs, ", ")));
+  if (effect.candidacy.size_parameter >= 0) {
+    say("family", effect.candidacy.family);
+    say("to tell apart", effect.candidacy.experiment);
+    result.json["family"] = effect.candidacy.family;
+    result.json["experiment"] = effect.candidacy.experiment;
+  }
+  say("reference", effect.reference);
+  result.text += fmt::format("\nin a motor file:\n{}", motor_file_lines(effect));
   return result;
 }
 

@@ -43,8 +43,9 @@ LogPart log_part(const std::string& text) {
     share /= 100.0;
     return result.ec == std::errc() && result.ptr == text.data() + end;
   };
-  const bool is_sound = dash != std::string::npos && number(at + 1, dash, part.from_share) && number(dash + 1, text.size() - 1, part.to_share) &&
-                        part.from_share >= 0.0 && part.from_share < part.to_share && part.to_share <= 1.0;
+  const bool is_sound = dash != std::string::npos && number(at + 1, dash, part.from_share) &&
+                        number(dash + 1, text.size() - 1, part.to_share) && part.from_share >= 0.0 && part.from_share < part.to_share &&
+                        part.to_share <= 1.0;
   if (!is_sound) {
     throw Failure(ExitCode::bad_input, fmt::format("'{}': expected LOG@FROM-TO%, such as run4.csv@0-60%", text));
   }
@@ -66,8 +67,8 @@ Recording read_part(const std::string& text, const Options& options, std::vector
   return part.from_share > 0.0 || part.to_share < 1.0 ? part_of(recording, part.from_share, part.to_share) : recording;
 }
 
-std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options, std::vector<FreeSignals>* free,
-                                 std::vector<std::string>& notes) {
+std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options,
+                                 std::vector<FreeSignals>* free, std::vector<std::string>& notes) {
   std::vector<MeasuredRun> all;
   for (const Recording& recording : recordings) {
     MeasuredRuns runs = measured_runs(recording, options);
@@ -128,32 +129,37 @@ ExitCode run(const Options& options, Session& session) {
     session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
   }
   session.answer(diagnosis_json(diagnosis, input));
-  return diagnosis.verdict == Verdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
+  return diagnosis.verdict == DiagnosisVerdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
 }
 
 }  // namespace
 
 Command diagnose_command() {
-  return {.name = {},
-          .summary = "Finds what a model cannot explain in measured runs, names the missing effect, adds it, and shows the error before and after",
-          .example = "heatsoak diagnose --model maxon_ec45_flat_70w_24v --train examples/soak/match_1.csv examples/soak/match_2.csv "
-                     "examples/soak/bench.csv --holdout examples/soak/match_3.csv --out diagnosis",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
-            const auto options = std::make_shared<Options>();
-            app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id")->required()->type_name("MODEL.toml");
-            app.add_option("--train", options->train, "logs that the model is extended by; LOG@0-60% takes the first 60 % of its time")
-                ->required()
-                ->type_name("LOG...");
-            app.add_option("--holdout", options->holdout, "logs that the fit never sees; for the error before and after")->type_name("LOG...");
-            app.add_option("--map", options->map, "mapping of columns to quantities; LOG.map.toml beside a log is found by itself")
-                ->type_name("FILE.toml");
-            app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
-            add_quantity(app, "--ambient", options->ambient_C,
-                         {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air where a log has none"});
-            session.add_data_option(app);
-            session.add_json_option(app);
-            return [options, &session] { return run(*options, session); };
-          }};
+  return {
+      .name = {},
+      .summary =
+          "Finds what a model cannot explain in measured runs, names the missing effect, adds it, and shows the error before and after",
+      .example =
+          "heatsoak diagnose --model maxon_ec45_flat_70w_24v --train examples/soak/match_1.csv examples/soak/match_2.csv "
+          "examples/soak/bench.csv --holdout examples/soak/match_3.csv --out diagnosis",
+      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+        const auto options = std::make_shared<Options>();
+        app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id")
+            ->required()
+            ->type_name("MODEL.toml");
+        app.add_option("--train", options->train, "logs that the model is extended by; LOG@0-60% takes the first 60 % of its time")
+            ->required()
+            ->type_name("LOG...");
+        app.add_option("--holdout", options->holdout, "logs that the fit never sees; for the error before and after")->type_name("LOG...");
+        app.add_option("--map", options->map, "mapping of columns to quantities; LOG.map.toml beside a log is found by itself")
+            ->type_name("FILE.toml");
+        app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
+        add_quantity(app, "--ambient", options->ambient_C,
+                     {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air where a log has none"});
+        session.add_data_option(app);
+        session.add_json_option(app);
+        return [options, &session] { return run(*options, session); };
+      }};
 }
 
 }  // namespace heatsoak::commands

@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "cli/command.h"
+#include "cli/match_roles.h"
 #include "cli/quantity_option.h"
 #include "duty/duty.h"
 #include "duty/game_to_demand.h"
@@ -24,7 +25,7 @@ struct Options {
   std::string out;
   double every_s = 0.01;
   std::uint64_t seed = 1;
-  bool bang_bang = false;
+  std::string planner = "jerk_limited";
 };
 
 /// Rows of all wheels: a row holds until the next, its torque is the rms with the sign of the mean, so that the heat stays.
@@ -73,31 +74,6 @@ void write_duty(const Options& options, const std::vector<WheelDemand>& wheels, 
   session.say(fmt::format("written: {} and {} (heatsoak evaluate --duty {})\n", options.out, description.string(), description.string()));
 }
 
-/// Copper heat of one wheel's motor follows ∫M²dt; its parts by phase say where it comes from, whatever the motor.
-std::string phase_table(const MatchLoad& load) {
-  double all_Nm2_s = 0.0;
-  for (const PhaseLoad& phase : load.phases) {
-    for (const double wheel_Nm2_s : phase.torque_squared_Nm2_s) {
-      all_Nm2_s += wheel_Nm2_s;
-    }
-  }
-  std::string text = fmt::format("{:22} {:>8} {:>8} {:>10} {:>12} {:>14}\n", "phase", "time / s", "duels / s", "rms / mN m", "of all heat",
-                                 "of it in duels");
-  for (std::size_t i = 0; i < load.phases.size(); ++i) {
-    const PhaseLoad& phase = load.phases[i];
-    double sum_Nm2_s = 0.0;
-    for (const double wheel_Nm2_s : phase.torque_squared_Nm2_s) {
-      sum_Nm2_s += wheel_Nm2_s;
-    }
-    if (phase.time_s > 0.0) {
-      text += fmt::format("{:22} {:8.0f} {:8.0f} {:10.0f} {:10.0f} % {:12.0f} %\n", kPhaseNames[i], phase.time_s, phase.duel_s,
-                          1e3 * std::sqrt(sum_Nm2_s / phase.time_s / static_cast<double>(load.wheels.size())),
-                          100.0 * sum_Nm2_s / all_Nm2_s, sum_Nm2_s > 0.0 ? 100.0 * phase.duel_torque_squared_Nm2_s / sum_Nm2_s : 0.0);
-    }
-  }
-  return text;
-}
-
 nlohmann::ordered_json phase_json(const MatchLoad& load) {
   nlohmann::ordered_json phases = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < load.phases.size(); ++i) {
@@ -122,12 +98,13 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
         {{"schema", "heatsoak.duty/1"}, {"duty", duty.id}, {"origin", duty.origin}, {"duration_s", wheels.front().duration_s()}});
     return ExitCode::done;
   }
-  const Planner planner = options.bang_bang ? Planner::bang_bang : Planner::jerk_limited;
+  const Planner planner = options.planner == "bang_bang" ? Planner::bang_bang : Planner::jerk_limited;
   const MatchLoad load =
       play_match(match->inputs(), match->inputs().nominal(), robot, options.seed, planner, options.out.empty() ? 0.25 : options.every_s);
+  const RoleLoads roles = play_roles(match->inputs(), robot, options.seed, planner);
   session.say(fmt::format("{} of {} as {}, seed {}: {:.0f} min, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
                           kRoleNames[static_cast<std::size_t>(match->inputs().role)], options.seed, load.duration_s / 60.0, load.play_s,
-                          load.distance_m / 1e3, duty.origin, phase_table(load)));
+                          load.distance_m / 1e3, duty.origin, role_table(roles)));
   write_duty(options, load.wheels, duty.summary, duty.origin, session);
   session.answer({{"schema", "heatsoak.duty/1"},
                   {"duty", duty.id},
@@ -137,7 +114,8 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
                   {"duration_s", rounded(load.duration_s, 3)},
                   {"play_s", rounded(load.play_s, 3)},
                   {"distance_m", rounded(load.distance_m, 1)},
-                  {"phases", phase_json(load)}});
+                  {"phases", phase_json(load)},
+                  {"roles", role_json(roles)}});
   return ExitCode::done;
 }
 
@@ -192,7 +170,10 @@ Command duty_command() {
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
             app.add_option("--seed", options->seed, "same seed, same game")->capture_default_str();
-            app.add_flag("--bang-bang", options->bang_bang, "plan with jumping acceleration, for comparison");
+            app.add_option("--planner", options->planner, "of a match")
+                ->check(CLI::IsMember({"jerk_limited", "bang_bang"}))
+                ->type_name("P")
+                ->capture_default_str();
             session.add_data_option(app);
             session.add_json_option(app);
             return [options, &session] { return run(*options, session); };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -23,18 +24,24 @@ namespace {
 struct Options {
   std::string robot;
   std::string duty;
-  std::vector<std::string> motors{"all"};
+  std::vector<std::string> motors;
+  std::string model;
   std::string plot;
   EvaluateOptions evaluate;
 };
 
-std::vector<Motor> read_motors(const std::vector<std::string>& names, const DataFolders& folders) {
-  const bool all = names.size() == 1 && names.front() == "all";
+/// A model takes the place of the motor that its fit began with, or stands alone where no motors are named.
+std::vector<Motor> read_motors(const std::vector<std::string>& names, const std::string& model, const DataFolders& folders) {
+  const bool all = (names.empty() && model.empty()) || (names.size() == 1 && names.front() == "all");
   std::vector<Motor> motors;
+  if (!model.empty()) {
+    motors.push_back(read_motor(model));
+  }
   std::set<std::filesystem::path> taken;
   for (const std::string& name : all ? ids_in(folders.motors) : names) {
     const std::filesystem::path file = all ? folders.motors / (name + ".toml") : file_of(folders.motors, "motor", name);
-    if (taken.insert(file).second) {
+    const bool is_replaced = !model.empty() && motors.front().fit && motors.front().fit->motor == file.stem();
+    if (!is_replaced && taken.insert(file).second) {
       motors.push_back(read_motor(file));
     }
   }
@@ -104,6 +111,10 @@ std::string report(const std::vector<MotorEvaluation>& results, const Robot& rob
                                                              options.evaluate.samples == 1 ? "" : "s", options.evaluate.seed)
                                                : "nominal figures only",
                   duty.origin);
+  if (!options.evaluate.draws.empty()) {
+    text += fmt::format("spread of the duty is included: {} draw{} of its inputs and of the robot's figures, shared by the samples\n",
+                        options.evaluate.draws.size(), options.evaluate.draws.size() == 1 ? "" : "s");
+  }
   text += fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict", "limited by",
                       "winding peak °C", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -143,20 +154,26 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
 }
 
 /// CLI11 takes -1 for 2^64 − 1, a number too large for the largest one, and 010 for 8.
-std::string whole_number(const std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool good = error == std::errc() && end == text.data() + text.size() && (text == "0" || text.front() != '0');
-  return good ? "" : fmt::format("'{}' is not a whole number from 0 to 18446744073709551615", text);
+auto whole_number(std::uint64_t most) {
+  return [most](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number = error == std::errc() && end == text.data() + text.size() && (text == "0" || text.front() != '0');
+    return is_number && value <= most ? "" : fmt::format("'{}' is not a whole number from 0 to {}", text, most);
+  };
 }
 
 ExitCode run(Options& options, Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
-  const std::vector<Motor> motors = read_motors(options.motors, folders);
+  const std::vector<Motor> motors = read_motors(options.motors, options.model, folders);
   options.evaluate.with_curves = !options.plot.empty();
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
+  const std::vector<std::vector<WheelDemand>> draws =
+      draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples), options.evaluate.threads,
+                   progress_bar(fmt::format("playing draws of {}", duty.id)));
+  options.evaluate.draws = draws;
   const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
@@ -170,7 +187,8 @@ ExitCode run(Options& options, Session& session) {
                                 {"duty", duty.id},
                                 {"duty_origin", duty.origin},
                                 {"seed", options.evaluate.seed},
-                                {"samples", options.evaluate.samples}};
+                                {"samples", options.evaluate.samples},
+                                {"duty_draws", draws.size()}};
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
   for (const MotorEvaluation& each : results) {
@@ -198,14 +216,17 @@ Command evaluate_command() {
             ->delimiter(',')
             ->type_name("M,M")
             ->default_str("all");
+        app.add_option("--model", options->model,
+                       "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
+            ->type_name("FILE.toml");
         app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
-            ->check(whole_number)
-            ->check(CLI::Range(0, 1'000'000))
+            ->check(whole_number(1'000'000))
             ->capture_default_str();
-        app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")->check(whole_number)->capture_default_str();
+        app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")
+            ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
+            ->capture_default_str();
         app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")
-            ->check(whole_number)
-            ->check(CLI::Range(0, 1024))
+            ->check(whole_number(1024))
             ->capture_default_str();
         add_picture(app, options->plot, "picture of stator and winding temperature over time");
         session.add_data_option(app);

@@ -29,22 +29,63 @@ std::vector<LintFinding> look_into(const std::filesystem::path& file) {
   return lint(read_motor(file));
 }
 
-ExitCode run(const std::vector<std::string>& files, Session& session) {
+/// A file, every file of a folder, or the file of an id.
+std::vector<std::string> files_named(const std::string& name, const Session& session) {
+  std::vector<std::string> files;
+  std::error_code unreachable;  // then reading it says why
+  if (std::filesystem::is_directory(name, unreachable)) {
+    for (const std::string& id : ids_in(name)) {
+      files.push_back((std::filesystem::path(name) / (id + ".toml")).string());
+    }
+    if (files.empty()) {
+      throw Failure(ExitCode::bad_input, fmt::format("there is no .toml file in the folder {}", name));
+    }
+    return files;
+  }
+  if (name.find('/') != std::string::npos || name.ends_with(".toml") || std::filesystem::exists(name, unreachable)) {
+    return {name};
+  }
+  const DataFolders folders = session.folders();
+  std::vector<std::string> known;
+  for (const std::filesystem::path& folder : {folders.motors, folders.robots, folders.duties}) {
+    for (const std::string& id : ids_in(folder)) {
+      known.push_back(id);
+      if (id == name) {
+        files.push_back((folder / (id + ".toml")).string());
+      }
+    }
+  }
+  if (files.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("'{}' is no file, no folder, and no motor, robot or duty{}", name, did_you_mean(name, known)));
+  }
+  return files;
+}
+
+std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
+ExitCode run(const std::vector<std::string>& names, Session& session) {
+  std::vector<std::string> files;
+  for (const std::string& name : names) {
+    const std::vector<std::string> named = files_named(name, session);
+    files.insert(files.end(), named.begin(), named.end());
+  }
   std::vector<Diagnostic> unreadable;
   std::string text;
   nlohmann::ordered_json findings = nlohmann::ordered_json::array();
   std::size_t errors = 0;
+  std::size_t warnings = 0;
   for (const std::string& file : files) {
     try {
       for (const LintFinding& each : look_into(file)) {
-        const bool is_error = each.level == LintFinding::Level::error;
-        errors += is_error ? 1 : 0;
-        text += fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, is_error ? "error" : "note", each.check,
+        errors += each.level == LintFinding::Level::error ? 1 : 0;
+        warnings += each.level == LintFinding::Level::warning ? 1 : 0;
+        text += fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, to_string(each.level), each.check,
                             each.message);
         findings.push_back({{"file", each.at.file},
                             {"line", each.at.line},
                             {"column", each.at.column},
-                            {"level", is_error ? "error" : "note"},
+                            {"level", to_string(each.level)},
                             {"check", each.check},
                             {"message", each.message}});
       }
@@ -55,9 +96,10 @@ ExitCode run(const std::vector<std::string>& files, Session& session) {
   if (!unreadable.empty()) {
     throw Failure(ExitCode::bad_input, "", std::move(unreadable));
   }
-  session.say(text + fmt::format("{} file{}: {}\n", files.size(), files.size() == 1 ? "" : "s",
-                                 errors == 0 ? "sound" : fmt::format("{} errors", errors)));
-  session.answer({{"schema", "heatsoak.lint/1"}, {"files", files}, {"errors", errors}, {"findings", findings}});
+  const bool sound = errors + warnings == 0;
+  session.say(text + fmt::format("{}: {}\n", counted(files.size(), "file"),
+                                 sound ? "sound" : fmt::format("{}, {}", counted(errors, "error"), counted(warnings, "warning"))));
+  session.answer({{"schema", "heatsoak.lint/1"}, {"files", files}, {"errors", errors}, {"warnings", warnings}, {"findings", findings}});
   return errors == 0 ? ExitCode::done : ExitCode::limit_exceeded;
 }
 
@@ -70,7 +112,8 @@ Command lint_command() {
       .example = "heatsoak lint motor_db/maxon_ec45_flat_70w_24v.toml",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto files = std::make_shared<std::vector<std::string>>();
-        app.add_option("files", *files, "TOML files")->required()->type_name("FILE");
+        app.add_option("files", *files, "TOML files, folders of them, or ids of motors, robots and duties")->required()->type_name("FILE");
+        session.add_data_option(app);
         session.add_json_option(app);
         return [files, &session] { return run(*files, session); };
       }};

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "duty/duty.h"
+#include "duty/log_type.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
 #include "thermal/effect.h"
@@ -36,11 +37,16 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
     }
   } else if (what == "effects") {
     for (const EffectType& effect : all_effects()) {
-      result.push_back({std::string(effect.name), std::string(effect.summary)});
+      // The first sentence; `describe` has the rest.
+      const std::size_t end = effect.summary.find(". ");
+      result.push_back({std::string(effect.name), std::string(effect.summary.substr(0, end == std::string_view::npos ? end : end + 1))});
     }
   } else {
     for (const ShapeType& shape : all_shapes()) {
       result.push_back({std::string(shape.name), fmt::format("duty: {}", shape.summary)});
+    }
+    for (const LogType& log : all_logs()) {
+      result.push_back({std::string(log.name), fmt::format("recorded game: {}; duty --import LOG", log.summary)});
     }
     result.push_back({"svg", "picture: --plot FILE.svg"});
     result.push_back({"json", "answer: --json FILE"});
@@ -50,6 +56,9 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
 }
 
 ExitCode run(const std::string& what, Session& session) {
+  if (what.empty()) {
+    throw Failure(ExitCode::bad_input, "list what? Expected one of motors, robots, duties, effects, formats: `heatsoak list motors`");
+  }
   const std::vector<Row> all = rows(what, session.folders());
   std::string text;
   nlohmann::ordered_json items = nlohmann::ordered_json::array();
@@ -71,7 +80,6 @@ Command list() {
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto what = std::make_shared<std::string>();
             app.add_option("kind", *what, "motors, robots, duties, effects or formats")
-                ->required()
                 ->check(CLI::IsMember({"motors", "robots", "duties", "effects", "formats"}));
             session.add_data_option(app);
             session.add_json_option(app);

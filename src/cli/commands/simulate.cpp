@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
 #include "cli/command.h"
+#include "cli/jerk_sweep.h"
+#include "cli/match_simulation.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
 #include "report/chart.h"
@@ -17,10 +20,13 @@ namespace {
 
 struct Options {
   std::string motor;
+  std::string model;
   std::string robot;
   std::string duty;
   std::string out;
   std::string plot;
+  std::string planner = "jerk_limited";
+  bool jerk_sweep = false;
   double every_s = 1.0;
   std::uint64_t seed = 1;
 };
@@ -42,11 +48,11 @@ nlohmann::ordered_json balance_json(const Trace& trace) {
   return rows;
 }
 
-ExitCode run(const Options& options, Session& session) {
-  const DataFolders folders = session.folders();
-  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
-  const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
-  const Motor motor = read_motor(file_of(folders.motors, "motor", options.motor));
+/// A prescribed load of one wheel.
+ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor, const Duty& duty, Session& session) {
+  if (options.planner != "jerk_limited") {
+    throw Failure(ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", duty.id, duty.shape));
+  }
   constexpr double kMostRows = 5e6;  // some 1 GB
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
   const double duration_s = wheels.front().duration_s();
@@ -92,22 +98,65 @@ ExitCode run(const Options& options, Session& session) {
   return result.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
 }
 
+ExitCode run(const Options& options, Session& session) {
+  if (options.duty.empty() != options.jerk_sweep) {
+    throw Failure(ExitCode::bad_input, "expected one of --duty and --jerk-sweep (`heatsoak simulate --help` shows examples)");
+  }
+  const DataFolders folders = session.folders();
+  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
+  if (options.motor.empty() == options.model.empty()) {
+    throw Failure(ExitCode::bad_input, "expected one of --motor M and --model FILE");
+  }
+  const Motor motor =
+      read_motor(options.model.empty() ? file_of(folders.motors, "motor", options.motor) : std::filesystem::path(options.model));
+  if (options.jerk_sweep) {
+    if (!options.out.empty()) {
+      throw Failure(ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
+    }
+    return sweep_jerk(robot, motor, options.plot, session);
+  }
+  const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
+  const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
+  if (!match) {
+    return run_load(options, robot, motor, duty, session);
+  }
+  std::vector<Planner> planners;
+  if (options.planner != "bang_bang") {
+    planners.push_back(Planner::jerk_limited);
+  }
+  if (options.planner != "jerk_limited") {
+    planners.push_back(Planner::bang_bang);
+  }
+  return simulate_match({robot, motor, duty, match->inputs(), planners, options.seed, options.out, options.plot, options.every_s}, session);
+}
+
 }  // namespace
 
 Command simulate() {
   return {.name = {},
-          .summary = "One motor through one duty: every signal over time as CSV, and which effect heats which node",
+          .summary = "One match in a closed loop, or one motor under a prescribed load: every signal over time, and where the energy goes",
           .example =
-              "heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty paper_intermittent --out trace.csv "
-              "--plot trace.svg",
+              "heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty division_a_match --out trace.csv "
+              "--plot trace.svg\n"
+              "  heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty division_a_match --planner both\n"
+              "  heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --jerk-sweep --plot sweep.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
-            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
+            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
+            app.add_option("--model", options->model, "a calibrated motor (`heatsoak calibrate --out FILE`) in its place")
+                ->type_name("FILE.toml");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-            app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
+            app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file; a match is driven in a closed loop")
+                ->type_name("D");
             app.add_option("--out", options->out, "every signal; names end in units, a row's inputs hold until the next row")
                 ->type_name("FILE.csv");
-            add_picture(app, options->plot, "picture of stator and winding temperature");
+            app.add_option("--planner", options->planner, "of a match; both: the two side by side")
+                ->check(CLI::IsMember({"jerk_limited", "bang_bang", "both"}))
+                ->type_name("P")
+                ->capture_default_str();
+            app.add_flag("--jerk-sweep", options->jerk_sweep,
+                         "in place of a duty: short drives over the limit of the jerk against bang-bang; slip, time, precision, heat");
+            add_picture(app, options->plot, "picture of temperatures and what makes them");
             app.add_option("--seed", options->seed, "of a generated match; same seed, same bytes")->capture_default_str();
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});

@@ -57,12 +57,14 @@ Command steady() {
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
-            add_quantity(app, "--current-on", options->current.current_on_A, {"current-on", "A", Range::non_negative(), "current while on"})
+            add_quantity(app, "--current-on", options->current.current_on_A,
+                         {"current-on", "A", Range::between(0.0, 1e5), "current while on"})
                 ->required();
-            add_quantity(app, "--time-on", options->current.time_on_s, {"time-on", "s", Range::positive(), "time of a cycle with current"})
+            add_quantity(app, "--time-on", options->current.time_on_s,
+                         {"time-on", "s", Range::between(1e-9, 1e9), "time of a cycle with current"})
                 ->required();
             add_quantity(app, "--time-off", options->current.time_off_s,
-                         {"time-off", "s", Range::non_negative(), "time of a cycle without current"})
+                         {"time-off", "s", Range::between(0.0, 1e9), "time of a cycle without current"})
                 ->required();
             add_quantity(app, "--ambient", options->current.ambient_C,
                          {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});

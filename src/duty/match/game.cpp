@@ -73,7 +73,6 @@ class Game {
 PhaseRule rule_of(Phase phase) {
   switch (phase) {
     case Phase::running:
-      return {.clock_runs = true};
     case Phase::free_kick:
       return {.clock_runs = true};
     case Phase::stop:

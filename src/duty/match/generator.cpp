@@ -45,9 +45,11 @@ class IdealTracking final : public Follower {
     const AxisState<double> target[3] = {{command.x_m, 0.0, 0.0}, {command.y_m, 0.0, 0.0}, {command.yaw_rad, 0.0, 0.0}};
     PlaneLimits<double> plane = plane_;
     plane.speed_max = least(plane.speed_max, std::max(0.05, command.speed_limit_m_per_s));
-    const PlanResult result = command.stand                       ? brake()
-                              : planner_ == Planner::jerk_limited ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_)
-                                                                  : bang_bang(target, plane);
+    constexpr AxisState<double> stand[3]{};
+    const PlanResult result = command.stand ? robot_core::plan_plane_velocity(state_, stand, plane_, yaw_, trajectories_)
+                              : planner_ == Planner::jerk_limited
+                                  ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_)
+                                  : robot_core::plan_plane_bang_bang(state_, target, plane, yaw_, trajectories_);
     if (result != PlanResult::ok) {
       throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: planner code {}", command.x_m, command.y_m,
                                                            static_cast<int>(result)));
@@ -72,31 +74,6 @@ class IdealTracking final : public Follower {
   }
 
  private:
-  /// The shortest way to a stand. Each axis gets what both could use at once.
-  PlanResult brake() {
-    constexpr double kShare = 0.70710678;  // 1/√2
-    const auto plane = AxisLimits<double>::symmetric(plane_.speed_max, plane_.acceleration_max * kShare, plane_.jerk_max * kShare);
-    PlanResult result = PlanResult::ok;
-    for (int axis = 0; axis < 3; ++axis) {
-      result = std::max(result, robot_core::plan_velocity(state_[axis], {}, axis < 2 ? plane : yaw_, trajectories_[axis]));
-    }
-    return result;
-  }
-
-  /// For comparison: each axis on its own, with the share of the limits that its part of the way has.
-  PlanResult bang_bang(const AxisState<double> (&target)[3], const PlaneLimits<double>& plane) {
-    const double dx = target[0].position - state_[0].position;
-    const double dy = target[1].position - state_[1].position;
-    const double length = std::hypot(dx, dy);
-    PlanResult result = PlanResult::ok;
-    for (int axis = 0; axis < 2; ++axis) {
-      const double share = length > 0.0 ? std::max(0.1, std::abs(axis == 0 ? dx : dy) / length) : 1.0;
-      const auto limits = AxisLimits<double>::symmetric(plane.speed_max * share, plane.acceleration_max * share, plane.jerk_max * share);
-      result = std::max(result, robot_core::plan_bang_bang(state_[axis], target[axis], limits, trajectories_[axis]));
-    }
-    return std::max(result, robot_core::plan_bang_bang(state_[2], target[2], yaw_, trajectories_[2]));
-  }
-
   Planner planner_;
   PlaneLimits<double> plane_;
   AxisLimits<double> yaw_;
@@ -148,12 +125,15 @@ class Match {
   /// no longer than the `left_s` of the phase. Returns how long it took.
   double follow(Phase phase, const MotionCommand& command, double left_s) {
     motion_->take(command);
+    load_.script.push_back({load_.duration_s, phase, command});
     double done_s = 0.0;
     double length_s = std::max(command.duration_s, kStep_s);
     if (command.duel) {
-      for (length_s = std::max(left_s, kStep_s); !motion_->at_rest() && length_s - done_s > 0.5 * kStep_s; done_s += kStep_s) {
+      length_s = std::max(left_s, kStep_s);
+      while (!motion_->at_rest() && length_s - done_s > 0.5 * kStep_s) {
         motion_->advance(kStep_s);
         moment(phase, command, kStep_s, false);
+        done_s += kStep_s;
       }
       length_s = std::min(length_s, done_s + command.duration_s);
     }

@@ -45,6 +45,13 @@ struct MatchMoment {
   const WheelDemands* wheels = nullptr;
 };
 
+/// A command and when the game gave it.
+struct ScheduledCommand {
+  double time_s = 0.0;
+  Phase phase = Phase::halt;
+  MotionCommand command;
+};
+
 /// What the phases ask, for the table of where heat comes from.
 struct PhaseLoad {
   double time_s = 0.0;
@@ -57,6 +64,7 @@ struct PhaseLoad {
 struct MatchLoad {
   std::vector<WheelDemand> wheels;
   std::array<PhaseLoad, kPhaseNames.size()> phases{};
+  std::vector<ScheduledCommand> script;  ///< so that another way of driving can be asked the same; ends at duration_s
   double duration_s = 0.0;
   double play_s = 0.0;
   double distance_m = 0.0;

@@ -1,6 +1,8 @@
 // The match as a duty.
 #pragma once
 
+#include <utility>
+
 #include "duty/duty.h"
 #include "duty/match/generator.h"
 
@@ -8,11 +10,19 @@ namespace heatsoak {
 
 class MatchDuty final : public DutyShape {
  public:
-  explicit MatchDuty(const MatchInputs& inputs) : inputs_(inputs) {}
+  explicit MatchDuty(MatchInputs inputs) : inputs_(std::move(inputs)) {}
 
   [[nodiscard]] const MatchInputs& inputs() const { return inputs_; }
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const override {
     return play_match(inputs_, inputs_.nominal(), robot, seed, Planner::jerk_limited).wheels;
+  }
+  [[nodiscard]] bool has_unknowns() const override { return true; }
+  /// Another game with other inputs by a robot with other figures.
+  [[nodiscard]] std::vector<WheelDemand> draw(const Robot& robot, std::uint64_t seed, std::uint64_t draw) const override {
+    constexpr std::uint64_t kBehindTheSamples = std::uint64_t{1} << 32;
+    Random random(seed, kBehindTheSamples + draw);
+    const MatchValues values = inputs_.draw(random);
+    return play_match(inputs_, values, draw_sample(robot, random), seed + kBehindTheSamples * (draw + 1), Planner::jerk_limited).wheels;
   }
 
  private:

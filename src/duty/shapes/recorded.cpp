@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 
 #include "duty/duty.h"
 #include "input/csv.h"
@@ -29,19 +29,8 @@ class Recording {
   Recording(std::filesystem::path file, DutyKind kind) : file_(std::move(file)), kind_(kind) {}
 
   std::vector<WheelDemand> read() {
-    std::vector<std::string> required{"time_s"};
-    std::vector<std::string> numbered;
-    for (int wheel = 1; wheel <= kMostWheels; ++wheel) {
-      numbered.push_back(column(kind_, wheel, true));
-      numbered.push_back(column(kind_, wheel, false));
-    }
-    const bool has_numbers = names(numbered.front());
-    if (!has_numbers) {
-      required.push_back(column(kind_, 0, true));
-      required.push_back(column(kind_, 0, false));
-      numbered.clear();
-    }
-    read_csv(file_, required, numbered, [&](const CsvRow& row) { take(row); });
+    const auto choose = [this](std::span<const std::string> header) { return columns(header); };
+    read_csv(file_, choose, {}, [&](const CsvRow& row) { take(row); });
     diagnostics_.throw_if_any();
     if (rows_ < 2) {
       throw bad_input({file_.string()}, "", "has one row; expected at least two, the last one ends the duty");
@@ -53,19 +42,19 @@ class Recording {
   }
 
  private:
-  /// Whether the header names a column.
-  [[nodiscard]] bool names(const std::string& wanted) const {
-    std::error_code unknown;
-    if (!std::filesystem::is_regular_file(file_, unknown)) {
-      return false;  // a pipe would keep us waiting; read_csv() says what is wrong with it
+  /// Numbered columns up to the last wheel that the header knows, else those of the only wheel.
+  [[nodiscard]] CsvColumns columns(std::span<const std::string> header) const {
+    const auto has = [&](const std::string& name) { return std::ranges::find(header, name) != header.end(); };
+    int wheels = kMostWheels;
+    while (wheels > 0 && !has(column(kind_, wheels, true)) && !has(column(kind_, wheels, false))) {
+      --wheels;
     }
-    std::ifstream in(file_);
-    std::string header;
-    header.resize(1 << 12);
-    in.read(header.data(), static_cast<std::streamsize>(header.size()));
-    header.resize(static_cast<std::size_t>(in.gcount()));
-    header = header.substr(0, header.find_first_of("\r\n"));
-    return fmt::format(",{},", header).find(fmt::format(",{},", wanted)) != std::string::npos;
+    CsvColumns wanted{{"time_s"}, {}};
+    for (int wheel = std::min(wheels, 1); wheel <= wheels; ++wheel) {
+      wanted.required.push_back(column(kind_, wheel, true));
+      wanted.required.push_back(column(kind_, wheel, false));
+    }
+    return wanted;
   }
 
   void take(const CsvRow& row) {
@@ -91,9 +80,6 @@ class Recording {
       }
     }
     for (std::size_t i = 1; i + 1 < row.values.size(); i += 2) {
-      if (!std::isfinite(row.values[i])) {
-        break;  // a column that the header does not have
-      }
       const std::size_t wheel = (i - 1) / 2;
       if (wheel == wheels_.size()) {
         wheels_.push_back({row.values.size() > 3 ? fmt::format("wheel {}", wheel + 1) : "recorded wheel", {}, {}});

@@ -14,8 +14,9 @@ std::string errors_in_words(const Errors& before, const Errors& after, std::stri
   for (const auto& [signal, error] : before) {
     const auto found = after.find(signal);
     if (found != after.end()) {
-      text += fmt::format(" {} of the {}: {:.2g} K rms before, {:.2g} K after.", text.empty() ? fmt::format("On {}, error", where) : "Error",
-                          signal.substr(0, signal.rfind('_')), error.rmse_K, found->second.rmse_K);
+      text +=
+          fmt::format(" {} of the {}: {:.2g} K rms before, {:.2g} K after.", text.empty() ? fmt::format("On {}, error", where) : "Error",
+                      signal.substr(0, signal.rfind('_')), error.rmse_K, found->second.rmse_K);
     }
   }
   return text;
@@ -34,7 +35,8 @@ std::string effect_in_words(const FoundEffect& effect) {
   std::string text = fmt::format(" Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
   for (const FittedParameter& parameter : effect.parameters) {
     if (parameter.low < parameter.high) {
-      text += fmt::format("; {} {:.3g} {} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit, parameter.low, parameter.high);
+      text += fmt::format("; {} {:.3g} {} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit, parameter.low,
+                          parameter.high);
       break;
     }
   }
@@ -53,17 +55,18 @@ std::string effect_in_words(const FoundEffect& effect) {
 std::string describe(const Diagnosis& diagnosis) {
   std::string text;
   switch (diagnosis.verdict) {
-    case Verdict::effect_found:
+    case DiagnosisVerdict::effect_found:
       text = "The runs show heat that the model does not have, and it follows a known law.";
       break;
-    case Verdict::nothing_missing:
-      text = "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
-             "smooth heat of the size that every model leaves.";
+    case DiagnosisVerdict::nothing_missing:
+      text =
+          "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
+          "smooth heat of the size that every model leaves.";
       break;
-    case Verdict::unexplained:
+    case DiagnosisVerdict::unexplained:
       text = "The runs show heat that the model does not have, and no law of the catalogue explains it.";
       break;
-    case Verdict::not_identifiable:
+    case DiagnosisVerdict::not_identifiable:
       text = "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no name is given.";
       break;
   }

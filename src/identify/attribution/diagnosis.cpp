@@ -130,7 +130,8 @@ class Teller {
       if (!spec.choices.empty()) {
         continue;
       }
-      FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p], values[p]};
+      FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p],
+                                values[p]};
       for (Eigen::Index i = 0; i < model.free_count(); ++i) {
         if (model.free[static_cast<std::size_t>(i)].place == in_place.parameter_index[p]) {
           const double sd = std::sqrt(after().covariance(i, i));
@@ -349,14 +350,14 @@ class Teller {
     out_.unexplained.push_back(std::move(heat));
   }
 
-  [[nodiscard]] Verdict verdict() const {
+  [[nodiscard]] DiagnosisVerdict verdict() const {
     if (std::ranges::any_of(out_.effects, &FoundEffect::is_from_catalogue)) {
-      return Verdict::effect_found;
+      return DiagnosisVerdict::effect_found;
     }
     if (!out_.unexplained.empty()) {
-      return Verdict::unexplained;
+      return DiagnosisVerdict::unexplained;
     }
-    return out_.selection.refused.empty() ? Verdict::nothing_missing : Verdict::not_identifiable;
+    return out_.selection.refused.empty() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::not_identifiable;
   }
 
   const DiagnosisInput& input_;
@@ -365,15 +366,15 @@ class Teller {
 
 }  // namespace
 
-std::string_view to_string(Verdict verdict) {
+std::string_view to_string(DiagnosisVerdict verdict) {
   switch (verdict) {
-    case Verdict::effect_found:
+    case DiagnosisVerdict::effect_found:
       return "effect_found";
-    case Verdict::nothing_missing:
+    case DiagnosisVerdict::nothing_missing:
       return "nothing_missing";
-    case Verdict::unexplained:
+    case DiagnosisVerdict::unexplained:
       return "unexplained";
-    case Verdict::not_identifiable:
+    case DiagnosisVerdict::not_identifiable:
       return "not_identifiable";
   }
   return "?";

@@ -10,8 +10,8 @@
 
 namespace heatsoak {
 
-enum class Verdict { effect_found, nothing_missing, unexplained, not_identifiable };
-std::string_view to_string(Verdict verdict);
+enum class DiagnosisVerdict { effect_found, nothing_missing, unexplained, not_identifiable };
+std::string_view to_string(DiagnosisVerdict verdict);
 
 struct DiagnosisInput {
   ExtendedModel model;  ///< as calibrated
@@ -37,23 +37,23 @@ struct FittedParameter {
   std::string name;
   std::string unit;
   double value = 0.0;
-  double low = 0.0;   ///< of the 95 % interval
+  double low = 0.0;  ///< of the 95 % interval
   double high = 0.0;
 };
 
 struct FoundEffect {
-  std::string id;           ///< of the catalogue; "tabulated" and the like for curves
-  std::string name;         ///< of the instance in the model file; empty for faults of sensors
+  std::string id;    ///< of the catalogue; "tabulated" and the like for curves
+  std::string name;  ///< of the instance in the model file; empty for faults of sensors
   std::string node;
   std::string description;  ///< one line in words
   std::vector<FittedParameter> parameters;
   std::map<std::string, std::string> condition;  ///< where it acts; empty: everywhere
   std::vector<std::string> drivers;              ///< of a curve
-  double mean_W = 0.0;     ///< of the magnitude over the time of the runs in which it acts
-  double peak_W = 0.0;     ///< 99 % of the magnitude
-  double gain_nats = 0.0;  ///< that the final model would lose without it
-  double delta_bic = 0.0;  ///< −2 · gain
-  double p_value = 1.0;    ///< of the size being 0, one parameter
+  double mean_W = 0.0;                           ///< of the magnitude over the time of the runs in which it acts
+  double peak_W = 0.0;                           ///< 99 % of the magnitude
+  double gain_nats = 0.0;                        ///< that the final model would lose without it
+  double delta_bic = 0.0;                        ///< −2 · gain
+  double p_value = 1.0;                          ///< of the size being 0, one parameter
   double visibility_ratio = 0.0;
   std::vector<std::string> confusable_with;
   bool is_from_catalogue = true;
@@ -89,13 +89,13 @@ struct BalanceRow {
 };
 
 struct Experiment {
-  std::string rivals;    ///< "iron_loss_eddy or windage"
+  std::string rivals;  ///< "iron_loss_eddy or windage"
   std::string what;
   double expected_nats = 0.0;  ///< that it adds to their difference; 0: not computed
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::nothing_missing;
+  DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   std::vector<FoundEffect> effects;
   std::vector<Unexplained> unexplained;
   Errors before_train, before_holdout, after_train, after_holdout;

@@ -225,7 +225,8 @@ class Scanner {
       normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
       const Eigen::MatrixXd triangle = normal.selfadjointView<Eigen::Upper>().llt().matrixU();
       const Eigen::Index rest = inner.cols() + size + 1;
-      const double start_logs = triangle.topLeftCorner(starts, starts).diagonal().array().log().sum() + design.start.sd_K.array().log().sum();
+      const double start_logs =
+          triangle.topLeftCorner(starts, starts).diagonal().array().log().sum() + design.start.sd_K.array().log().sum();
       evidence.push_back({triangle.bottomRightCorner(rest, rest), whitening.log_determinant() + 2.0 * start_logs, whitening.count()});
       at += size;
     }
@@ -257,7 +258,8 @@ class Scanner {
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t axis = 0; axis < result.place.size(); ++axis) {
-        const auto count = static_cast<int>(axis + 1 < result.place.size() ? table_.grid().rms_W.size() : table_.grid().time_scale_s.size());
+        const auto count =
+            static_cast<int>(axis + 1 < result.place.size() ? table_.grid().rms_W.size() : table_.grid().time_scale_s.size());
         for (const int step : {-1, 1}) {
           FluxGrid::Place place = result.place;
           place[axis] += step;
@@ -381,7 +383,8 @@ Eigen::VectorXd hats(const std::vector<double>& knots, double value) {
     all[all.size() - 1] = 1.0;
   } else {
     const auto right = std::ranges::upper_bound(knots, value) - knots.begin();
-    const double share = (value - knots[static_cast<std::size_t>(right - 1)]) / (knots[static_cast<std::size_t>(right)] - knots[static_cast<std::size_t>(right - 1)]);
+    const double share = (value - knots[static_cast<std::size_t>(right - 1)]) /
+                         (knots[static_cast<std::size_t>(right)] - knots[static_cast<std::size_t>(right - 1)]);
     all[right - 1] = 1.0 - share;
     all[right] = share;
   }

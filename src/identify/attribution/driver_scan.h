@@ -31,13 +31,13 @@ struct ScanTerm {
 
 struct ScanResult {
   ScanTerm term;
-  double usual = 1.0;           ///< size of curves that the prior takes for usual, in the curve's unit
-  double gain_nats = 0.0;       ///< evidence above the base's, both at their best unknown heat
-  std::vector<double> knots;    ///< of the driver, in its unit; one for a run
-  Eigen::VectorXd curve;        ///< g at the knots, in unit_of(multiplier)
-  Eigen::MatrixXd covariance;   ///< of the curve
-  double mean_W = 0.0;          ///< of the heat's magnitude over the time it acts
-  double peak_W = 0.0;          ///< 99 % of its magnitude
+  double usual = 1.0;          ///< size of curves that the prior takes for usual, in the curve's unit
+  double gain_nats = 0.0;      ///< evidence above the base's, both at their best unknown heat
+  std::vector<double> knots;   ///< of the driver, in its unit; one for a run
+  Eigen::VectorXd curve;       ///< g at the knots, in unit_of(multiplier)
+  Eigen::MatrixXd covariance;  ///< of the curve
+  double mean_W = 0.0;         ///< of the heat's magnitude over the time it acts
+  double peak_W = 0.0;         ///< 99 % of its magnitude
   FluxGrid::Place place;
 };
 

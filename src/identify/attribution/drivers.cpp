@@ -128,7 +128,8 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     all.add(excess, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k) - ambient_C(r, k); });
   }
   if (model.network.state_count() > 1) {
-    Driver between = driver_of(fmt::format("{}_above_{}", model.network.node_name(0), model.network.node_name(1)), "K", DriverKind::node_temperature);
+    Driver between =
+        driver_of(fmt::format("{}_above_{}", model.network.node_name(0), model.network.node_name(1)), "K", DriverKind::node_temperature);
     between.choice = "temperature_difference";
     between.watched = model.network.node_name(0);
     between.reference = model.network.node_name(1);
@@ -187,9 +188,8 @@ std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedR
   Collector all(model, fitted, runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
-  all.add(driver_of("time", "s", DriverKind::log_only), [&](std::size_t r, Eigen::Index k) {
-    return runs[r].time_s[static_cast<std::size_t>(k)] - runs[r].time_s.front();
-  });
+  all.add(driver_of("time", "s", DriverKind::log_only),
+          [&](std::size_t r, Eigen::Index k) { return runs[r].time_s[static_cast<std::size_t>(k)] - runs[r].time_s.front(); });
   std::set<std::string> names;
   for (const FreeSignals& of_run : free) {
     for (const auto& [name, values] : of_run) {

@@ -1,7 +1,8 @@
 // How well each extension of a model explains the runs, from small dense least squares in whitened space.
 //
-// The evidence of a set of candidates (identify/evidence.h, with Z = [∂/∂θ, the set's columns]) is maximised over the strengths σ of the unknown heat and its time scale ℓ for every set anew: otherwise the unknown heat
-// swallows the effect. One whitening per (σ, ℓ) serves all sets.
+// The evidence of a set of candidates (identify/evidence.h, with Z = [∂/∂θ, the set's columns]) is maximised over the strengths σ of the
+// unknown heat and its time scale ℓ for every set anew: otherwise the unknown heat swallows the effect. One whitening per (σ, ℓ) serves all
+// sets.
 #pragma once
 
 #include <Eigen/Core>

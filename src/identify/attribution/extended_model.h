@@ -13,8 +13,8 @@ namespace heatsoak {
 /// An effect of the network that acts only where a run has the condition.
 struct ConditionalTerm {
   std::string effect_name;
-  int place = 0;               ///< of the parameter that switches it
-  double off_value = 0.0;      ///< with which the effect does nothing
+  int place = 0;           ///< of the parameter that switches it
+  double off_value = 0.0;  ///< with which the effect does nothing
   std::map<std::string, std::string> condition;
 };
 

@@ -38,8 +38,9 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
     }
   }
   if (!has_heat) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("no log has a heat input that {} turns into heat: current_A, or power_in_W with an effect input_power_loss", motor.id));
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("no log has a heat input that {} turns into heat: current_A, or power_in_W with an effect input_power_loss", motor.id));
   }
   for (const EffectInPlace& effect : out.model.model.network.effects()) {
     for (const Signal signal : effect.type->needs) {
@@ -55,7 +56,8 @@ std::string parameter_line(const FittedParameter& parameter, const ParameterSpec
   const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
   std::string line = fmt::format("{} = {{ value = \"{:.5g}{}\", origin = \"measured\", source = \"heatsoak_diagnose\"", parameter.name,
                                  parameter.value, unit);
-  const bool has_range = parameter.low < parameter.value && parameter.high > parameter.value && parameter.low > spec.range.low && parameter.low > 0.0;
+  const bool has_range =
+      parameter.low < parameter.value && parameter.high > parameter.value && parameter.low > spec.range.low && parameter.low > 0.0;
   line += has_range ? fmt::format(", range = [\"{:.5g}{}\", \"{:.5g}{}\"]", parameter.low, unit, parameter.high, unit) : "";
   return line + " }\n";
 }
@@ -115,7 +117,8 @@ std::map<std::string, FittedParameter> thermal_figures(const RefitResult& fit) {
     const double spread = std::hypot(std::log(a.high / a.value), std::log(b.high / b.value));
     return FittedParameter{"", "s", a.value * b.value, a.value * b.value * std::exp(-spread), a.value * b.value * std::exp(spread)};
   };
-  std::map<std::string, FittedParameter> figures{{"thermal_resistance_winding_stator", inner}, {"thermal_resistance_stator_ambient", outer}};
+  std::map<std::string, FittedParameter> figures{{"thermal_resistance_winding_stator", inner},
+                                                 {"thermal_resistance_stator_ambient", outer}};
   figures["thermal_resistance_winding_stator"].unit = figures["thermal_resistance_stator_ambient"].unit = "K/W";
   figures["thermal_time_constant_winding"] = product(inner, winding);
   figures["thermal_time_constant_stator"] = product(outer, stator);
@@ -128,10 +131,14 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   ModelOfLogs out;
   Model& model = out.model.model;
   model.network = datasheet_network(motor, nominal_sample(motor));
-  const auto have = [&](Signal signal) { return std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, signal); }); };
+  const auto have = [&](Signal signal) {
+    return std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, signal); });
+  };
   if (!have(Signal::current) && have(Signal::input_power)) {
-    model.network.add_effect("input_power", *find_effect("input_power_loss"), std::vector<std::string>{"winding"}, std::vector<double>{1.0});
-    out.notes.emplace_back("no current in the logs: all electric power that goes in is taken as heat of the winding, the driver's share included");
+    model.network.add_effect("input_power", *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
+                             std::vector<double>{1.0});
+    out.notes.emplace_back(
+        "no current in the logs: all electric power that goes in is taken as heat of the winding, the driver's share included");
   }
   model.values = model.network.values();
   model.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
@@ -155,7 +162,8 @@ Recording part_of(const Recording& recording, double from_share, double to_share
   const double length_s = recording.time_s.back() - begin_s;
   const auto row_at = [&](double share) {
     const double time_s = begin_s + share * length_s;
-    return share >= 1.0 ? recording.rows() : static_cast<std::size_t>(std::ranges::lower_bound(recording.time_s, time_s) - recording.time_s.begin());
+    return share >= 1.0 ? recording.rows()
+                        : static_cast<std::size_t>(std::ranges::lower_bound(recording.time_s, time_s) - recording.time_s.begin());
   };
   const std::size_t first = row_at(from_share);
   const std::size_t last = std::max(first, row_at(to_share));
@@ -185,8 +193,10 @@ std::string extended_motor_file(const std::string& original, const Motor& motor,
   for (std::string line; std::getline(lines, line);) {
     for (const auto& [key, figure] : figures) {
       if (std::regex_search(line, std::regex("^" + key + "\\s*=")) && figure.value > 0.0) {
-        line = fmt::format("{} = {{ value = \"{:.5g} {}\", origin = \"measured\", source = \"heatsoak_diagnose\", range = [\"{:.5g} {}\", \"{:.5g} {}\"] }}",
-                           key, figure.value, figure.unit, figure.low, figure.unit, figure.high, figure.unit);
+        line = fmt::format(
+            "{} = {{ value = \"{:.5g} {}\", origin = \"measured\", source = \"heatsoak_diagnose\", range = [\"{:.5g} {}\", \"{:.5g} {}\"] "
+            "}}",
+            key, figure.value, figure.unit, figure.low, figure.unit, figure.high, figure.unit);
       }
     }
     text += line + "\n";

@@ -152,7 +152,8 @@ class Fitter {
     std::vector<Eigen::VectorXd> start_step_K;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const DesignRun& design = table.runs()[r];
-      start_step_K.push_back(start_correction_K(*design.run, design.columns, fit.coefficients, Whitening(*design.run, flux, design.noise), design.start));
+      start_step_K.push_back(
+          start_correction_K(*design.run, design.columns, fit.coefficients, Whitening(*design.run, flux, design.noise), design.start));
     }
     for (double share = 1.0; share > 0.05; share *= 0.5) {
       RefitResult next;
@@ -240,7 +241,8 @@ std::vector<double> measured_start_C(const Network& network, const MeasuredRun& 
     }
   }
   const double between_C = count > 0.0 ? sum_C / count : run.at.front().ambient_C;
-  std::ranges::replace_if(start_C, [](double known_C) { return std::isnan(known_C); }, between_C);
+  std::ranges::replace_if(
+      start_C, [](double known_C) { return std::isnan(known_C); }, between_C);
   return start_C;
 }
 

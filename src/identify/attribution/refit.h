@@ -12,7 +12,7 @@ struct RefitResult {
   ExtendedModel model;
   std::vector<std::vector<double>> start_C;  ///< per run
   std::vector<LinearisedRun> fitted;
-  FluxGrid::Place place;       ///< of the unknown heat that is most probable
+  FluxGrid::Place place;  ///< of the unknown heat that is most probable
   double evidence_nats = 0.0;
   Eigen::MatrixXd covariance;  ///< of the coordinates; 0 for those at a bound
   bool converged = false;
@@ -20,8 +20,8 @@ struct RefitResult {
 
 struct RefitOptions {
   FluxGrid grid;
-  FluxGrid::Place place;                           ///< to begin with
-  std::vector<Eigen::VectorXd> weights;            ///< per run and sample; empty: all count
+  FluxGrid::Place place;                 ///< to begin with
+  std::vector<Eigen::VectorXd> weights;  ///< per run and sample; empty: all count
   int most_steps = 8;
   /// Average the result over how probable neighbouring suppositions about the unknown heat are: intervals that hold what they
   /// promise. Otherwise the most probable one alone counts.

@@ -112,8 +112,8 @@ class Selector {
     }
     std::vector<Columns> columns(input_.runs.size());
     in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
-      columns[r] = candidate_columns(candidates, out_.after.model.model.network, out_.after.model.values_in(input_.runs[r]), out_.after.fitted[r],
-                                     input_.runs[r]);
+      columns[r] = candidate_columns(candidates, out_.after.model.model.network, out_.after.model.values_in(input_.runs[r]),
+                                     out_.after.fitted[r], input_.runs[r]);
     });
     EvidenceTable table(design(out_.after.fitted, input_.runs, options_.weights, columns), options_.grid, prior_here(out_.after.model),
                         column_rules(candidates));
@@ -123,8 +123,8 @@ class Selector {
     round.ladder = judge(candidates, table, base);
     if (input_.scans_drivers) {
       out_.drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs, input_.free);
-      round.scan = scan_drivers({&out_.after.model.model, &input_.runs, &out_.after.fitted, &out_.drivers, std::max(0.05, out_.mean_heat_W)},
-                                table, base, 8);
+      round.scan = scan_drivers(
+          {&out_.after.model.model, &input_.runs, &out_.after.fitted, &out_.drivers, std::max(0.05, out_.mean_heat_W)}, table, base, 8);
     }
     const bool taken = take_best(round, candidates, table, base);
     out_.rounds.push_back(std::move(round));
@@ -132,7 +132,8 @@ class Selector {
   }
 
   [[nodiscard]] bool has_sensor_term(const Candidate& candidate) const {
-    return candidate.sensor_type && std::ranges::any_of(out_.after.model.sensors, [&](const SensorTerm& term) { return term.type == candidate.sensor_type; });
+    return candidate.sensor_type &&
+           std::ranges::any_of(out_.after.model.sensors, [&](const SensorTerm& term) { return term.type == candidate.sensor_type; });
   }
 
   /// The best few candidates with their unknown heat re-maximised.
@@ -140,7 +141,8 @@ class Selector {
     const std::vector<double> gain_nats = table.single_gains_nats(base);
     std::vector<int> order(candidates.size());
     std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, [&](int a, int b) { return gain_nats[static_cast<std::size_t>(a)] > gain_nats[static_cast<std::size_t>(b)]; });
+    std::ranges::stable_sort(order,
+                             [&](int a, int b) { return gain_nats[static_cast<std::size_t>(a)] > gain_nats[static_cast<std::size_t>(b)]; });
     std::vector<JudgedCandidate> ladder;
     for (const int j : order) {
       if (static_cast<int>(ladder.size()) >= rules_.refitted + 2 || gain_nats[static_cast<std::size_t>(j)] <= 0.0) {
@@ -166,10 +168,12 @@ class Selector {
   }
 
   /// Evidence that effects of the catalogue reach together, one after the other, at the present fit.
-  double catalogue_gain_nats(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) const {
+  double catalogue_gain_nats(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table,
+                             const SetScore& base) const {
     std::vector<int> pool;
     for (const JudgedCandidate& each : round.ladder) {
-      const auto found = std::ranges::find_if(candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
+      const auto found = std::ranges::find_if(
+          candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
       pool.push_back(static_cast<int>(found - candidates.begin()));
     }
     SetScore best = base;
@@ -210,10 +214,11 @@ class Selector {
       const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
       if (each.visibility_ratio < rules_.least_visibility_ratio || fails_elsewhere) {
         if (each.gain_nats >= least) {
-          out_.refused.push_back(fmt::format("{}: {:.0f} nats, but {}", each.candidate.id, each.gain_nats,
-                                             each.visibility_ratio < rules_.least_visibility_ratio
-                                                 ? fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * each.visibility_ratio)
-                                                 : std::string("runs left out of the fit get no better")));
+          out_.refused.push_back(
+              fmt::format("{}: {:.0f} nats, but {}", each.candidate.id, each.gain_nats,
+                          each.visibility_ratio < rules_.least_visibility_ratio
+                              ? fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * each.visibility_ratio)
+                              : std::string("runs left out of the fit get no better")));
         }
         continue;
       }
@@ -263,7 +268,8 @@ class Selector {
       if (each.gain_nats < round.scan.front().gain_nats - rules_.ambiguous_within_nats) {
         break;
       }
-      const std::optional<ExtendedModel> with = with_curve(out_.after.model, each, out_.drivers[static_cast<std::size_t>(each.term.driver)]);
+      const std::optional<ExtendedModel> with =
+          with_curve(out_.after.model, each, out_.drivers[static_cast<std::size_t>(each.term.driver)]);
       if (!with) {
         continue;
       }

@@ -11,9 +11,9 @@
 namespace heatsoak {
 
 struct SelectionInput {
-  ExtendedModel model;              ///< near its fit
-  std::vector<MeasuredRun> runs;    ///< at least one
-  std::vector<FreeSignals> free;    ///< per run, or empty
+  ExtendedModel model;            ///< near its fit
+  std::vector<MeasuredRun> runs;  ///< at least one
+  std::vector<FreeSignals> free;  ///< per run, or empty
   bool scans_drivers = true;
 };
 
@@ -35,7 +35,7 @@ struct JudgedCandidate {
   double left_out_gain_nats = 0.0;  ///< on runs left out of the fit, all together
   int runs_gained = 0;              ///< of the runs in which it acts at all
   int runs_acting = 0;
-  double size_share = 0.0;          ///< in typical sizes
+  double size_share = 0.0;  ///< in typical sizes
 };
 
 /// A round of the selection: what was in question and what came of it.
@@ -64,11 +64,11 @@ struct Selection {
   std::vector<Round> rounds;
   std::vector<Driver> drivers;  ///< that the scans looked at
   std::vector<std::string> not_judged;
-  double mean_heat_W = 0.0;     ///< that the model knows of, over all runs
+  double mean_heat_W = 0.0;              ///< that the model knows of, over all runs
   std::optional<ScanResult> open_curve;  ///< that nothing in the network can follow, or physics forbids as it stands
   FluxGrid grid;
   std::vector<Eigen::VectorXd> weights;  ///< of the samples, per run
-  std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
+  std::vector<std::string> refused;      ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
 };
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);

@@ -109,8 +109,8 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
   parameters.insert(parameters.end(), values->begin(), values->end());
   ExtendedModel out = model;
-  const EffectInPlace effect =
-      add(out.model, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name), type, {curve.term.node, cold, watched, reference}, parameters);
+  const EffectInPlace effect = add(out.model, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name), type,
+                                   {curve.term.node, cold, watched, reference}, parameters);
   for (Eigen::Index knot = 0; knot < values->size(); ++knot) {
     set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
   }
@@ -140,12 +140,16 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
     const ParameterSpec& spec = candidate.type->parameters[p];
     if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
       // Exponents, thresholds, capacities: near what is usual, yet the runs may say otherwise.
-      out.model.set_free({.place = effect.parameter_index[p], .by_log = true, .scale = 1.0, .low = std::max(spec.range.low, parameters[p] / 20.0),
-                          .high = std::min(spec.range.high, parameters[p] * 20.0)}, kShapeSpread);
+      out.model.set_free({.place = effect.parameter_index[p],
+                          .by_log = true,
+                          .scale = 1.0,
+                          .low = std::max(spec.range.low, parameters[p] / 20.0),
+                          .high = std::min(spec.range.high, parameters[p] * 20.0)},
+                         kShapeSpread);
     }
   }
-  set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(), range,
-                       kSizeSpread_share);
+  set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(),
+                       range, kSizeSpread_share);
   return out;
 }
 

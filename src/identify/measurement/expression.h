@@ -25,8 +25,8 @@ class Expression {
   [[nodiscard]] bool ok() const { return is_ok_; }
   /// Places in the header, each once.
   [[nodiscard]] const std::vector<std::size_t>& columns() const { return columns_; }
-  /// One value per row; `inputs` are the columns() in their order. NaN where a column is, or where the value is not finite.
-  void evaluate(std::span<const std::vector<double>* const> inputs, std::vector<double>& values);
+  /// One value per row; `columns` are those of columns() in their order. NaN where a column is, or where the value is not finite.
+  void evaluate(std::span<const std::vector<double>* const> columns, std::vector<double>& values);
 
  private:
   struct Compiled;

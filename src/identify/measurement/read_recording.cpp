@@ -51,6 +51,7 @@ class Intake {
     while (table_.next(block)) {
       bad.read(block);
       take(block, bad);
+      make_room();
     }
     report_.file_bytes = table_.bytes_read();
     Recording recording = order();
@@ -141,6 +142,25 @@ class Intake {
           run_value_.push_back(run[row]);
         }
       }
+    }
+  }
+
+  /// As soon as the length of rows is known: columns that grow by doubling would be copied and take twice the memory.
+  void make_room() {
+    constexpr std::size_t kEnoughRows = 50'000;
+    constexpr double kMargin_ratio = 1.03;
+    std::error_code unknown;
+    const std::uintmax_t file_bytes = std::filesystem::file_size(log_, unknown);
+    if (has_room_ || unknown || time_s_.size() < kEnoughRows) {
+      return;
+    }
+    has_room_ = true;
+    const auto rows = static_cast<std::size_t>(kMargin_ratio * static_cast<double>(time_s_.size()) * static_cast<double>(file_bytes) /
+                                               static_cast<double>(table_.bytes_read()));
+    time_s_.reserve(rows);
+    line_.reserve(rows);
+    for (std::vector<double>& column : columns_) {
+      column.reserve(rows);
     }
   }
 
@@ -240,6 +260,7 @@ class Intake {
   std::vector<double> run_value_;
   std::vector<std::vector<double>> columns_;
   std::vector<double> offsets_s_;  ///< of the recording's channels
+  bool has_room_ = false;
 };
 
 }  // namespace

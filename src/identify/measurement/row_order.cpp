@@ -50,8 +50,7 @@ std::vector<char> increasing_rows(std::span<const double> time_s) {
   return stays;
 }
 
-std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> run_values,
-                                    std::optional<double> longest_gap_s) {
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values, std::optional<double> longest_gap_s) {
   std::vector<std::size_t> begins;
   if (time_s.empty()) {
     return begins;
@@ -59,7 +58,7 @@ std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<co
   begins.push_back(0);
   const double longest_s = longest_gap_s.value_or(kLongestStep_ratio * usual_period_s(time_s));
   for (std::size_t row = 1; row < time_s.size(); ++row) {
-    if (time_s[row] - time_s[row - 1] > longest_s || (!run_values.empty() && changes(run_values[row - 1], run_values[row]))) {
+    if (time_s[row] - time_s[row - 1] > longest_s || (!values.empty() && changes(values[row - 1], values[row]))) {
       begins.push_back(row);
     }
   }

@@ -16,8 +16,7 @@ double usual_period_s(std::span<const double> time_s);
 std::vector<char> increasing_rows(std::span<const double> time_s);
 
 /// The first rows of runs: 0, each row after a gap of more than `longest_gap_s` (three median steps unless given), each row where
-/// `run_value` (empty, or one per row) changes.
-std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> run_values,
-                                    std::optional<double> longest_gap_s);
+/// `values` (empty, or one per row) changes.
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values, std::optional<double> longest_gap_s);
 
 }  // namespace heatsoak

@@ -157,6 +157,8 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
   for (const ChartLevel& level : panel.levels) {
     const ChartCurve line{.name = "", .x = {across.range.low, across.range.high}, .y = {level.y, level.y}};
     for (const std::vector<CurvePoint>& piece : reduce(line, across, up)) {
+      // On a white line, so that the dashes stand out from whatever they cross.
+      add_line(chart, piece, {0xFF, 0xFF, 0xFF}, 3.0F, false);
       add_line(chart, piece, std::to_array(limit_color), 1.5F, true);
     }
   }

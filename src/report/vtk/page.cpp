@@ -19,6 +19,7 @@ constexpr TextStyle limit_style{.size_px = 12, .is_bold = false, .color = {limit
 
 constexpr double margin_px = 24.0;
 constexpr double label_line_px = 18.0;
+constexpr double legend_gap_px = 4.0;
 constexpr double tick_row_px = 26.0;
 constexpr double tick_distance_x_px = 70.0;  // at least
 constexpr double tick_distance_y_px = 36.0;
@@ -145,6 +146,10 @@ class PageBuilder {
     add_heading();
     find_margins();
     const double legend_top_px = y_px_ + panel_title_height_px(chart_.panels.empty() ? "" : chart_.panels[0].title);
+    legend_bottom_px_ = legend_top_px;
+    for (const LegendEntry& entry : entries_) {
+      legend_bottom_px_ += static_cast<double>(legend_lines(entry).size()) * label_line_px + legend_gap_px;
+    }
     for (const ChartPanel& panel : chart_.panels) {
       add_panel(panel);
     }
@@ -224,8 +229,8 @@ class PageBuilder {
     }
   }
 
-  /// Just above the line at its right end; below where the top is near; further left where a curve or
-  /// another name is in the way, if there is a free place.
+  /// Just above the line at its right end; below where the top is near; further left where a curve or another name is in
+  /// the way; outside, below the legend, where curves are everywhere.
   void add_level_names(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
     if (panel.levels.empty()) {
       return;
@@ -241,10 +246,25 @@ class PageBuilder {
       const double line_px = vertical.to_px(level.y);
       const double y_px = line_px - vertical.high_px < limit_style.size_px + 1.0 ? line_px + 14.0 : line_px - 5.0;
       const Box at_right{right_px_ - 6.0 - width_px, right_px_ - 6.0, y_px - limit_style.size_px, y_px + 3.0};
-      // On a curve it is still readable, on another name it is not.
-      const Box box = free_place(at_right, left_px_, names, curves).value_or(free_place(at_right, left_px_, names, {}).value_or(at_right));
-      names.push_back(box);
-      add({.text = name, .x_px = box.right_px, .y_px = y_px, .style = limit_style, .anchor = Anchor::right, .has_rim = true});
+      const Box outside{right_px_ + 8.0, right_px_ + 8.0 + width_px, line_px - 0.6 * limit_style.size_px,
+                        line_px + 0.6 * limit_style.size_px};
+      const bool has_room_outside =
+          outside.right_px <= page_.width_px - 6.0 && outside.top_px > legend_bottom_px_ && !is_taken(outside, names, {});
+      PlacedText text{
+          .text = name, .x_px = at_right.right_px, .y_px = y_px, .style = limit_style, .anchor = Anchor::right, .has_rim = true};
+      if (const std::optional<Box> free = free_place(at_right, left_px_, names, curves)) {
+        text.x_px = free->right_px;
+        names.push_back(*free);
+      } else if (has_room_outside) {
+        text.x_px = outside.left_px;
+        text.y_px = line_px + 0.36 * limit_style.size_px;
+        text.anchor = Anchor::left;
+        names.push_back(outside);
+      } else {  // on a curve it is still readable, on another name it is not
+        names.push_back(free_place(at_right, left_px_, names, {}).value_or(at_right));
+        text.x_px = names.back().right_px;
+      }
+      add(std::move(text));
     }
   }
 
@@ -266,7 +286,7 @@ class PageBuilder {
         add({.text = line, .x_px = legend_x_px_ + swatch_width_px + 8.0, .y_px = baseline_px, .style = label_style});
         baseline_px += label_line_px;
       }
-      baseline_px += 4.0;
+      baseline_px += legend_gap_px;
     }
     y_px_ = std::max(y_px_, baseline_px - label_line_px);
   }
@@ -310,6 +330,7 @@ class PageBuilder {
   double left_px_ = 0.0;
   double right_px_ = 0.0;
   double legend_x_px_ = 0.0;
+  double legend_bottom_px_ = 0.0;
   double y_label_x_px_ = 0.0;
 };
 

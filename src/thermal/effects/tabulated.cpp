@@ -143,7 +143,10 @@ EffectType tabulated() {
       .laws = laws<Tabulated>(),
       .needs = {Signal::current, Signal::speed, Signal::shaft_power, Signal::input_power, Signal::modulation, Signal::bus_voltage,
                 Signal::vehicle_speed, Signal::neighbour_temperature, Signal::age},
-      .candidacy = {},
+      .candidacy = {.size_parameter = -1,
+                    .variants = {{speed, heat_into, 0.0, 600.0, 0.0, 0.2, 0.5, 1.0, 1.5, 2.0, 2.5}},
+                    .family = {},
+                    .experiment = {}},
   };
 }
 

@@ -1,0 +1,40 @@
+// What every planner asks of its numbers first.
+#pragma once
+
+#include <limits>
+
+#include "robot_core/math.h"
+#include "robot_core/trajectory.h"
+
+namespace robot_core::detail {
+
+/// What a start that was computed, not chosen, may be off, relative. More than a few roundings: behind a gap of durations
+/// that opens at a small slope y, an error of the velocities counts 1/y times.
+template <typename Real>
+inline constexpr Real kTouch = std::numeric_limits<Real>::digits > 32 ? Real(1e-11) : Real(1e-5);
+
+template <typename Real>
+inline constexpr Real kLimitTolerance = Real(4096) * std::numeric_limits<Real>::epsilon();
+template <typename Real>
+bool is_whole(const AxisState<Real>& state) {
+  return is_finite(state.position) && is_finite(state.velocity) && is_finite(state.acceleration);
+}
+
+template <typename Real>
+PlanResult check_limits(const AxisLimits<Real>& limits) {
+  if (!is_finite(limits.velocity_max) || !is_finite(limits.velocity_min) || !is_finite(limits.acceleration_max) ||
+      !is_finite(limits.acceleration_min) || !is_finite(limits.jerk_max)) {
+    return PlanResult::not_finite;
+  }
+  const bool has_room = limits.velocity_max > Real(0) && limits.velocity_min < Real(0) && limits.acceleration_max > Real(0) &&
+                        limits.acceleration_min < Real(0) && limits.jerk_max > Real(0);
+  return has_room ? PlanResult::ok : PlanResult::limit_without_room;
+}
+
+template <typename Real>
+bool is_beyond(Real value, Real low, Real high) {
+  const Real tolerance = kLimitTolerance<Real> * absolute(value);
+  return value > high + tolerance || value < low - tolerance;
+}
+
+}  // namespace robot_core::detail

@@ -1,0 +1,257 @@
+// The first of the widest motions that covers the distance asked for; see trajectory_ascent.h.
+#pragma once
+
+#include <limits>
+
+#include "robot_core/math.h"
+#include "robot_core/trajectory_ascent.h"
+#include "robot_core/trajectory_limits.h"
+#include "robot_core/trajectory_root.h"
+
+namespace robot_core::detail {
+
+/// Neither leg held: the duration s of the fall.
+template <typename Real>
+inline Shape<Real> solve_free(const Ascent<Real>& a, Real low_s, Real high_s, Real guess) {
+  const Real quarter_rise_2 = a.rise * a.rise / Real(4);
+  const auto function = [&](Real s) {
+    const Real inverse = Real(1) / s;
+    const Real pull = quarter_rise_2 * inverse;
+    const Real s_2 = s * s;
+    return Jet<Real>{s * (s_2 / Real(4) + a.sum) - pull - a.goal, s * (s_2 / Real(4) + absolute(a.sum)) + pull + absolute(a.goal),
+                     Real(3) / Real(4) * s_2 + a.sum + pull * inverse, Real(3) / Real(2) * s - Real(2) * pull * inverse * inverse};
+  };
+  return free_shape(a, root_between(function, low_s, high_s, guess, Real(0)), a.goal);
+}
+
+/// One leg held at `bound`: the slope of the other leg. `rise` is the other vertex less the held leg's.
+template <typename Real>
+inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, Real low, Real high, Real guess) {
+  const Real inverse = Real(1) / bound;
+  const Real rest = sum / Real(2) * (bound + rise * inverse);
+  const Real offset = rest - goal;
+  const Real offset_magnitude = absolute(rest) + absolute(goal);
+  const auto function = [&](Real y) {
+    const Real y_2 = y * y;
+    const Real speed = vertex + y_2 + bound * y / Real(2);
+    const Real stretch = Real(1) + y * inverse;
+    const Real curve = y * ((vertex + y_2 / Real(2)) * inverse + bound / Real(2) + y);
+    return Jet<Real>{y * (Real(2) * vertex + curve) + offset,
+                     absolute(y) * (Real(2) * absolute(vertex) + absolute(curve)) + offset_magnitude, Real(2) * speed * stretch,
+                     Real(2) * ((Real(2) * y + bound / Real(2)) * stretch + speed * inverse)};
+  };
+  return root_between(function, low, high, guess, bound);
+}
+
+/// Some u with distance(u) <= goal < distance(ceiling): the motion with a top above `from` that meets the goal.
+template <typename Real>
+inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, const Place<Real>& ceiling) {
+  Real low = from.at;
+  Real low_distance = from.distance;
+  Real high = ceiling.at;
+  Real high_distance = ceiling.distance;
+  const Real low_threshold = a.low.vertex + a.low.bound * a.low.bound;
+  const Real high_threshold = a.high.vertex + a.high.bound * a.high.bound;
+  bool low_is_held = low_threshold <= low;
+  bool high_is_held = high_threshold <= low;
+  if (!low_is_held && low_threshold < high) {
+    const Real distance = top_place(a, low_threshold).distance;
+    low_is_held = distance <= a.goal;
+    (low_is_held ? low : high) = low_threshold;
+    (low_is_held ? low_distance : high_distance) = distance;
+  }
+  if (!high_is_held && high_threshold < high) {
+    if (high_threshold <= low) {
+      high_is_held = true;
+    } else {
+      const Real distance = top_place(a, high_threshold).distance;
+      high_is_held = distance <= a.goal;
+      (high_is_held ? low : high) = high_threshold;
+      (high_is_held ? low_distance : high_distance) = distance;
+    }
+  }
+  if (low_is_held && high_is_held) {
+    const Real square = Real(1) / a.low.bound + Real(1) / a.high.bound;
+    const Real half = (a.low.bound + a.high.bound) / Real(2);
+    const Real rest = a.low.vertex * (a.low.bound - a.low.vertex / a.low.bound) +
+                      a.high.vertex * (a.high.bound - a.high.vertex / a.high.bound) - Real(2) * a.goal;
+    const Real root = square_root(half * half - square * rest);
+    const Real top = half > Real(0) ? -rest / (half + root) : (root - half) / square;
+    return top_shape(a, top_place(a, clamped(top, low, high)), Real(0), a.goal);
+  }
+  const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
+  if (low_is_held) {
+    const Real y_low = square_root(low - a.high.vertex);
+    const Real y_high = square_root(high - a.high.vertex);
+    const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, y_low, y_high, y_low + share * (y_high - y_low));
+    return low_held_shape(a, y, a.goal);
+  }
+  if (high_is_held) {
+    const Real x_low = square_root(low - a.low.vertex);
+    const Real x_high = square_root(high - a.low.vertex);
+    const Real x = solve_held(a.high.bound, a.low.vertex, a.sum, -a.rise, a.goal, x_low, x_high, x_low + share * (x_high - x_low));
+    return high_held_shape(a, x, a.goal);
+  }
+  const Real s_low = square_root(low - a.low.vertex) + square_root(low - a.high.vertex);
+  const Real s_high = square_root(high - a.low.vertex) + square_root(high - a.high.vertex);
+  // The legs' own velocities pull the root of the pure cubic up or down.
+  Real guess = s_low + share * (s_high - s_low);
+  const Real linear = a.sum - a.rise / Real(4);
+  const Real cubic = rough_cube_root(Real(4) * larger(a.goal, Real(0)));
+  const Real bound = linear > Real(0) ? cubic : cubic + Real(2) * square_root(-linear);
+  guess = larger(smaller(guess, bound), larger(s_low, s_high * std::numeric_limits<Real>::epsilon()));
+  return solve_free(a, s_low, s_high, guess);
+}
+
+/// The saddle between y = low and y = high (same way of being held) that meets the goal.
+template <typename Real>
+inline Shape<Real> solve_saddle(const Ascent<Real>& a, Real low, Real high, Real low_distance, Real high_distance) {
+  const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
+  if (saddle_is_held(a, (low + high) / Real(2))) {
+    const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, low, high, low + share * (high - low));
+    return low_held_shape(a, y, a.goal);
+  }
+  const Real s_low = a.rise / (square_root(a.rise + low * low) - low);
+  const Real s_high = a.rise / (square_root(a.rise + high * high) - high);
+  return solve_free(a, s_low, s_high, s_low + share * (s_high - s_low));
+}
+
+/// The y of the saddle where the distance stops to grow with T, or `otherwise` if it grows on.
+template <typename Real>
+inline Real saddle_crest(const Ascent<Real>& a, Real from, Real otherwise) {
+  const Real bound = a.low.bound;
+  if (saddle_is_held(a, from)) {
+    const Real square = bound * bound / Real(16) - a.high.vertex;
+    if (square > Real(0)) {
+      const Real y = -bound / Real(4) - square_root(square);
+      if (y > from && saddle_is_held(a, y)) {
+        return smaller(y, otherwise);
+      }
+    }
+  }
+  const Real square = a.sum * a.sum - Real(3) / Real(4) * a.rise * a.rise;
+  if (a.sum < Real(0) && square > Real(0) && a.rise > Real(0)) {
+    // The smaller root of 3 s^4 + 4 W s^2 + K^2, in the form without cancellation.
+    const Real s = a.rise / square_root(Real(2) * (square_root(square) - a.sum));
+    const Real y = (s - a.rise / s) / Real(2);
+    if (y > from && y < otherwise && !saddle_is_held(a, y)) {
+      return y;
+    }
+  }
+  return otherwise;
+}
+
+/// d(distance)/dT.
+template <typename Real>
+inline Real saddle_speed(const Ascent<Real>& a, Real y) {
+  const Real x = smaller(a.low.bound, square_root(a.rise + y * y));
+  return a.high.vertex + y * (y + x / Real(2));
+}
+
+/// One piece of a saddle's range, at whose start the distance is not above the goal: true if it is met in it.
+template <typename Real>
+inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until, Shape<Real>& shape) {
+  if (!(until > from.at)) {
+    return false;
+  }
+  const Real reach = a.low.bound * a.low.bound - a.rise;
+  if (saddle_is_held(a, from.at) && !saddle_is_held(a, until)) {
+    const Real release = clamped(-square_root(reach), from.at, until);
+    const Real distance = held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, release);
+    if (distance >= a.goal) {
+      const Real share = clamped((a.goal - from.distance) / (distance - from.distance), Real(0), Real(1));
+      const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, from.at, release, from.at + share * (release - from.at));
+      shape = low_held_shape(a, y, a.goal);
+      return true;
+    }
+    from = saddle_place(release, distance);
+    const Real end = saddle_distance(a, until);
+    if (end >= a.goal && until > release && a.rise > Real(0)) {
+      const Real s_low = a.rise / (a.low.bound - release);
+      const Real s_high = a.rise / (square_root(a.rise + until * until) - until);
+      shape = solve_free(a, s_low, s_high, s_low + clamped((a.goal - distance) / (end - distance), Real(0), Real(1)) * (s_high - s_low));
+      return true;
+    }
+    from = saddle_place(until, end);
+    return false;
+  }
+  const Real end = saddle_distance(a, until);
+  if (end >= a.goal && a.rise > Real(0)) {
+    shape = solve_saddle(a, from.at, until, from.distance, end);
+    return true;
+  }
+  from = saddle_place(until, end);
+  return false;
+}
+
+/// Whether the motion at a place meets the goal, but for rounding errors. What looks so from vertex to vertex is measured
+/// once more from end to end: short motions between large accelerations are far shorter than that.
+template <typename Real>
+inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
+  if (absolute(a.goal - place.distance) > kTouch<Real> * (a.goal_scale + absolute(place.distance))) {
+    return false;
+  }
+  const Shape<Real> shape = shape_at(a, place);
+  Real distance = 0;
+  Real duration = 0;
+  Real velocity = 0;
+  const auto go = [&](Real from, Real slope, Real jerk, Real time) {
+    distance += time * (from + time * (slope / Real(2) + time * jerk / Real(6)));
+    duration += time;
+    velocity = larger(velocity, absolute(from));
+    return from + time * (slope + time * jerk / Real(2));
+  };
+  const auto raise = [&](const Leg<Real>& leg, Real slope, Real hold) {
+    const Real reached = go(leg.vertex + leg.entry * leg.entry / Real(2), leg.entry, Real(1), larger(slope - leg.entry, Real(0)));
+    return go(reached, slope, Real(0), hold);
+  };
+  raise(a.high, shape.slope_high, shape.hold_high);
+  go(raise(a.low, shape.slope_low, shape.hold_low), shape.slope_low, Real(-1), shape.fall);
+  const Real slope = absolute(shape.slope_low) + absolute(shape.slope_high);
+  return absolute(a.distance - distance) <= kTouch<Real> * (a.position_scale + duration * (velocity + duration * slope));
+}
+
+/// A motion that meets the goal but for a rounding error. Where the next one is far off, that makes all the difference:
+/// whoever plans again on the way would be sent around.
+template <typename Real>
+inline bool touch(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& shape) {
+  const bool meets = is_met(a, place);
+  if (meets) {
+    shape = shape_at(a, place);
+  }
+  return meets;
+}
+
+/// The first motion from `from` on (whose distance is not above the goal) that meets the goal. False if a gap comes first.
+template <typename Real>
+inline bool meet(const Ascent<Real>& a, Place<Real> from, Shape<Real>& shape) {
+  if (from.is_saddle) {
+    const Real until = a.gap;
+    if (saddle_speed(a, from.at) > Real(0)) {
+      const Real crest = saddle_crest(a, from.at, until);
+      if (crest < until && (meet_in_saddle(a, from, crest, shape) || touch(a, from, shape))) {
+        return true;
+      }
+    }
+    if (meet_in_saddle(a, from, until, shape)) {
+      return true;
+    }
+    if (a.has_gap) {
+      return touch(a, from, shape);
+    }
+    from = top_place(a, a.high.vertex, a.rise, Real(0));
+  }
+  const Place<Real> ceiling = top_place(a, a.ceiling);
+  if (a.goal >= ceiling.distance) {
+    shape = top_shape(a, ceiling, (a.goal - ceiling.distance) / a.ceiling, a.goal);
+    return true;
+  }
+  if (a.goal <= from.distance) {
+    shape = shape_at(a, from);
+    return true;
+  }
+  shape = solve_top(a, from, ceiling);
+  return true;
+}
+
+}  // namespace robot_core::detail

@@ -1,0 +1,143 @@
+// Stretches of constant jerk, before they become segments of a trajectory. Part of the trajectory planner; the unit of
+// jerk is the axis' jerk_max, as in trajectory_ascent.h.
+#pragma once
+
+#include <limits>
+
+#include "robot_core/math.h"
+#include "robot_core/trajectory.h"
+#include "robot_core/trajectory_limits.h"
+
+namespace robot_core::detail {
+
+/// Durations and the jerk of each, in units of jerk_max.
+template <typename Real, int most>
+struct Path {  // NOLINT(cppcoreguidelines-pro-type-member-init): only `count` of the places hold values
+  int count = 0;
+  Real duration_s[most];
+  Real jerk[most];
+
+  void add(Real for_s, Real with_jerk) {
+    if (!(for_s > Real(0))) {
+      return;
+    }
+    if (count > 0 && jerk[count - 1] == with_jerk) {
+      duration_s[count - 1] += for_s;
+      return;
+    }
+    duration_s[count] = for_s;
+    jerk[count] = with_jerk;
+    ++count;
+  }
+};
+
+template <typename Real>
+using Way = Path<Real, Trajectory<Real>::kMostSegments>;
+template <typename Real>
+using Extreme = Path<Real, 7>;
+
+template <typename Real>
+void append(const Extreme<Real>& path, Way<Real>& way) {
+  for (int i = 0; i < path.count; ++i) {
+    way.add(path.duration_s[i], path.jerk[i]);
+  }
+}
+
+/// One end of a motion that is taken apart from both ends.
+template <typename Real>
+struct Cursor {
+  int at;
+  Real left_s;  ///< of the segment `at`
+};
+
+/// Both motions, each with its share of the jerk. Times are counted from the nearer end: what is short there stays exact
+/// even beside a long cruise, where the rounding errors go.
+template <typename Real>
+void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_share, Real duration_s, Way<Real>& way) {
+  if (up.count == 0 || down.count == 0) {
+    return;
+  }
+  const Extreme<Real>* const motions[2] = {&up, &down};
+  Cursor<Real> front[2];
+  Cursor<Real> back[2];
+  for (int k = 0; k < 2; ++k) {
+    front[k] = {0, motions[k]->duration_s[0]};
+    back[k] = {motions[k]->count - 1, motions[k]->duration_s[motions[k]->count - 1]};
+  }
+  const auto jerk = [&](const Cursor<Real>(&at)[2]) { return up_share * up.jerk[at[0].at] + (Real(1) - up_share) * down.jerk[at[1].at]; };
+  const auto next_of = [&](const Cursor<Real>(&at)[2]) {
+    const bool up_ends = front[0].at < back[0].at;
+    const bool down_ends = front[1].at < back[1].at;
+    return up_ends && (!down_ends || at[0].left_s < at[1].left_s) ? 0 : 1;
+  };
+  // The step to the nearest change of either jerk; a step that only rounding makes is left out.
+  const auto step = [](Cursor<Real>(&at)[2], int which, const Extreme<Real>& motion, int forward, Real& passed_s) {
+    const Real step_s = larger(at[which].left_s, Real(0));
+    at[1 - which].left_s -= step_s;
+    at[which].at += forward;
+    at[which].left_s = motion.duration_s[at[which].at];
+    passed_s += step_s;
+    return step_s > Real(4) * std::numeric_limits<Real>::epsilon() * passed_s ? step_s : Real(0);
+  };
+  Extreme<Real> tail[2];
+  Real from_front_s = 0;
+  Real from_back_s = 0;
+  while (front[0].at < back[0].at || front[1].at < back[1].at) {
+    const int first = next_of(front);
+    const int last = next_of(back);
+    if (from_front_s + front[first].left_s <= from_back_s + back[last].left_s) {
+      const Real with = jerk(front);
+      way.add(step(front, first, *motions[first], 1, from_front_s), with);
+    } else {
+      const Real with = jerk(back);
+      Extreme<Real>& half = tail[0].count < 7 ? tail[0] : tail[1];
+      half.add(step(back, last, *motions[last], -1, from_back_s), with);
+    }
+  }
+  way.add(duration_s - from_front_s - from_back_s, jerk(front));
+  for (int half = 1; half >= 0; --half) {
+    for (int i = tail[half].count - 1; i >= 0; --i) {
+      way.add(tail[half].duration_s[i], tail[half].jerk[i]);
+    }
+  }
+}
+
+/// `value`, or the one of `low`, 0 and `high` that it differs from by a rounding error of `scale`.
+template <typename Real>
+Real snapped(Real value, Real low, Real high, Real scale) {
+  const Real tolerance = kTouch<Real> * scale;
+  if (absolute(value) <= tolerance) {
+    return Real(0);
+  }
+  return absolute(value - high) <= tolerance ? high : (absolute(value - low) <= tolerance ? low : value);
+}
+
+/// The way as segments of the axis. False if the numbers do not hold.
+template <typename Real>
+bool lay_out(const Way<Real>& way, const AxisState<Real>& start, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
+  AxisState<Real> state = start;
+  Real time_s = 0;
+  Real most_acceleration = 0;
+  Real most_velocity = 0;
+  for (int i = 0; i < way.count; ++i) {
+    const Real jerk = way.jerk[i] * limits.jerk_max;
+    most_acceleration = larger(most_acceleration, absolute(state.acceleration));
+    most_velocity = larger(most_velocity, absolute(state.velocity));
+    if (jerk == Real(0)) {
+      // Rounding errors would add up over a long hold or cruise.
+      state.acceleration = snapped(state.acceleration, limits.acceleration_min, limits.acceleration_max, most_acceleration);
+      if (state.acceleration == Real(0)) {
+        state.velocity = snapped(state.velocity, limits.velocity_min, limits.velocity_max, most_velocity);
+      }
+    }
+    trajectory.segments[i] = {time_s, way.duration_s[i], jerk, state};
+    state = Trajectory<Real>::advanced(state, jerk, way.duration_s[i]);
+    time_s += way.duration_s[i];
+  }
+  trajectory.segment_count = way.count;
+  trajectory.duration_s = time_s;
+  trajectory.target = state;
+  return is_finite(state.position) && is_finite(state.velocity) && is_finite(time_s);
+}
+
+}  // namespace robot_core::detail

@@ -1,0 +1,11 @@
+// The picture of a calibration: measured temperatures, and the free-running model before and after.
+#pragma once
+
+#include "identify/calibration/calibrate.h"
+#include "report/chart.h"
+
+namespace heatsoak {
+
+Chart calibration_chart(const Motor& motor, const Calibration& calibration);
+
+}  // namespace heatsoak

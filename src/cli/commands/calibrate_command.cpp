@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/quantity.h"
+#include "cli/calibration_chart.h"
+#include "cli/command.h"
+#include "cli/quantity_option.h"
+#include "identify/calibration/calibrate.h"
+#include "identify/measurement/mapping.h"
+#include "identify/measurement/read_recording.h"
+#include "motor/motor.h"
+#include "motor/write_motor.h"
+
+namespace heatsoak::commands {
+namespace {
+
+struct Options {
+  std::string motor;
+  std::string map;
+  std::vector<std::string> logs;
+  std::vector<std::string> holdout;
+  std::string out;
+  std::string plot;
+  CalibrationOptions calibration;
+};
+
+std::vector<Recording> read_logs(const std::vector<std::string>& files, const std::string& map) {
+  std::vector<Recording> all;
+  for (const std::string& file : files) {
+    RecordingReport report;
+    all.push_back(read_recording(file, mapping_for(file, map), report));
+  }
+  return all;
+}
+
+/// As many digits as the interval carries: its half gets two.
+std::string with_digits(double value, double half) {
+  const double smallest = std::max(half, 1e-6 * std::abs(value));
+  const int digits = 2 + static_cast<int>(std::floor(std::log10(std::abs(value)))) - static_cast<int>(std::floor(std::log10(smallest)));
+  return significant(value, std::clamp(digits, 1, 6));
+}
+
+std::string figure_row(const CalibratedFigure& each) {
+  const double half = 0.5 * (each.high - each.low);
+  return fmt::format("  {:36} {:>9} → {:>9}   [{} … {}] {}{}\n", each.name, significant(each.before, 3), with_digits(each.value, half),
+                     with_digits(each.low, half), with_digits(each.high, half), unit_for_display(each.unit),
+                     each.is_identifiable ? "" : "   not identifiable");
+}
+
+std::string error_rows(const std::string& what, const std::vector<ErrorBeforeAfter>& errors) {
+  std::string text;
+  for (const ErrorBeforeAfter& each : errors) {
+    text += fmt::format("  {:9} {:12} rms {:6.2f} K → {:5.2f} K   largest {:6.2f} K → {:5.2f} K   ({} samples)\n", what, each.signal,
+                        each.before.rmse_K, each.after.rmse_K, each.before.max_abs_K, each.after.max_abs_K, each.after.samples);
+  }
+  return text;
+}
+
+std::string text_of(const Motor& motor, const Calibration& result) {
+  std::string text = fmt::format("{} from {} run{}\n\nfigure, file → fit, 95 % interval\n", motor.id, result.runs.size(),
+                                 result.runs.size() == 1 ? "" : "s");
+  for (const CalibratedFigure& each : result.figures) {
+    text += figure_row(each);
+  }
+  text += "\nerror of the free-running model, file → fit\n" + error_rows("fit", result.fit_error) +
+          error_rows("hold-out", result.holdout_error);
+  text += fmt::format("\nheat that no term of the model explains: winding {} W rms, stator {} W rms, over some {} s\n",
+                      significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
+                      significant(result.fit.flux.time_scale_s, 1));
+  if (result.fit.rejected_share > 0.0) {
+    text += fmt::format("{} % of the samples were left out as outliers\n", significant(100.0 * result.fit.rejected_share, 2));
+  }
+  if (!result.open.empty()) {
+    text += "\nwhat these runs do not tell\n";
+    for (const OpenDirection& each : result.open) {
+      text += fmt::format("  {}\n    {}\n    would settle it: {}\n", each.what, each.why, each.experiment);
+    }
+    text += fmt::format("next experiment: {}\n", result.next_experiment);
+  }
+  for (const std::string& note : result.notes) {
+    text += fmt::format("note: {}\n", note);
+  }
+  return text;
+}
+
+nlohmann::ordered_json error_json(const std::vector<ErrorBeforeAfter>& errors, bool after) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::object();
+  for (const ErrorBeforeAfter& each : errors) {
+    const SignalError& error = after ? each.after : each.before;
+    all[each.signal] = {{"rmse_K", rounded(error.rmse_K, 4)}, {"max_abs_K", rounded(error.max_abs_K, 4)}, {"samples", error.samples}};
+  }
+  return all;
+}
+
+/// Six significant digits: enough for any use, and the same on every machine.
+nlohmann::ordered_json number(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+
+nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, const std::string& out) {
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
+  for (const CalibratedFigure& each : result.figures) {
+    parameters.push_back({{"name", each.name},
+                          {"value", number(each.value)},
+                          {"unit", each.unit},
+                          {"ci95", {number(each.low), number(each.high)}},
+                          {"identifiable", each.is_identifiable},
+                          {"before", number(each.before)},
+                          {"interval", each.by_profile ? "profile_likelihood" : "curvature"}});
+  }
+  nlohmann::ordered_json open = nlohmann::ordered_json::array();
+  for (const OpenDirection& each : result.open) {
+    open.push_back({{"parameters", each.what}, {"why", each.why}, {"experiment", each.experiment}});
+  }
+  nlohmann::ordered_json correlation = nlohmann::ordered_json::array();
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
+    nlohmann::ordered_json row = nlohmann::ordered_json::array();
+    for (Eigen::Index j = 0; j < result.correlation.cols(); ++j) {
+      row.push_back(rounded(result.correlation(i, j), 4));
+    }
+    correlation.push_back(std::move(row));
+  }
+  return {{"schema", "heatsoak.calibration/1"},
+          {"motor", motor.id},
+          {"runs", result.runs.size()},
+          {"parameters", parameters},
+          {"correlation", correlation},
+          {"error", error_json(result.fit_error, true)},
+          {"error_before", error_json(result.fit_error, false)},
+          {"holdout_error", error_json(result.holdout_error, true)},
+          {"holdout_error_before", error_json(result.holdout_error, false)},
+          {"latent_flux",
+           {{"winding_W", number(result.fit.flux.rms_W[0])},
+            {"stator_W", number(result.fit.flux.rms_W[1])},
+            {"time_scale_s", number(result.fit.flux.time_scale_s)}}},
+          {"rejected_share", number(result.fit.rejected_share)},
+          {"not_identifiable", open},
+          {"next_experiment", result.next_experiment},
+          {"notes", result.notes},
+          {"model", out}};
+}
+
+ExitCode run(const Options& options, Session& session) {
+  const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.motor));
+  const std::vector<Recording> logs = read_logs(options.logs, options.map);
+  const std::vector<Recording> holdout = read_logs(options.holdout, options.map);
+  const Calibration result = calibrate(motor, logs, holdout, options.calibration);
+  session.write(options.out, to_toml(calibrated_motor(motor, result)));
+  if (!options.plot.empty()) {
+    session.write(options.plot, draw_svg(calibration_chart(motor, result)));
+  }
+  session.say(text_of(motor, result));
+  session.say(fmt::format("written: {}\n", options.out));
+  session.say(options.plot.empty() ? "" : fmt::format("written: {}\n", options.plot));
+  session.answer(json_of(motor, result, options.out));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command calibrate_command() {
+  return {
+      .name = {},
+      .summary = "Fits the thermal figures of a motor to measured runs, with intervals and what the runs cannot tell; exit 3 if nothing",
+      .example =
+          "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
+          "heatsoak calibrate --motor maxon_ec45_flat_50w_24v log.csv --out model.toml --plot calibration.svg",
+      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+        const auto options = std::make_shared<Options>();
+        app.add_option("--motor", options->motor,
+                       "id (see `heatsoak list motors`) or file: where the fit begins, and what was known before")
+            ->required()
+            ->type_name("M");
+        app.add_option("logs", options->logs, "measured runs (CSV)")->required()->type_name("LOG");
+        app.add_option("--map", options->map, "mapping file of the logs; beside each log LOG.map.toml is found without")
+            ->type_name("FILE.toml");
+        app.add_option("--holdout", options->holdout, "runs to test on, not fitted to")->type_name("LOG");
+        app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
+        add_picture(app, options->plot, "picture of measured and fitted temperatures");
+        add_quantity(app, "--ambient", options->calibration.ambient_C,
+                     {"ambient", "degC", Range::between(-60.0, 100.0), "of the surroundings, where a log has no such column"});
+        app.add_option("--seed", options->calibration.fit.seed, "of the starting points; same seed, same bytes")
+            ->check(whole_number)
+            ->capture_default_str();
+        app.add_option("--threads", options->calibration.fit.threads, "0: all cores; the result does not depend on it")
+            ->check(whole_number)
+            ->check(CLI::Range(0, 1024))
+            ->capture_default_str();
+        session.add_data_option(app);
+        session.add_json_option(app);
+        return [options, &session] { return run(*options, session); };
+      }};
+}
+
+}  // namespace heatsoak::commands

@@ -1,0 +1,12 @@
+// `simulate --jerk-sweep`: what the limit of the jerk does to slip, time, precision and heat.
+#pragma once
+
+#include <string>
+
+#include "cli/command.h"
+
+namespace heatsoak {
+
+ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const std::string& plot, Session& session);
+
+}  // namespace heatsoak

@@ -1,0 +1,291 @@
+#include "cli/match_simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/chart.h"
+#include "simulate/match_trace.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kMostRows = 500'000.0;  ///< some 250 MB of text
+constexpr double kPictureStep_s = 2.0;
+
+/// One run and what was kept of it.
+struct Played {
+  Planner planner = Planner::jerk_limited;
+  MatchRun run;
+  std::string csv;
+  std::vector<MatchRow> rows;  ///< for the picture
+};
+
+Played play(const MatchSimulation& wanted, Planner planner) {
+  Played played{planner, {}, {}, {}};
+  const double ambient_C = wanted.duty.ambient_C.value;
+  const auto wheels = static_cast<int>(wanted.robot.wheel_axis_rad.size());
+  if (!wanted.out.empty()) {
+    played.csv = csv_header(wheels);
+  }
+  MatchRows csv(wanted.every_s, ambient_C, [&](const MatchRow& row) { append_csv(played.csv, row, wheels, ambient_C); });
+  MatchRows picture(kPictureStep_s, ambient_C, [&](const MatchRow& row) { played.rows.push_back(row); });
+  const MatchRunOptions options{planner, wanted.seed, ambient_C, progress_bar(fmt::format("driving, {}", to_string(planner)))};
+  played.run = run_match(wanted.inputs, wanted.robot, wanted.motor, options, [&](const LoopMoment& moment) {
+    if (!wanted.out.empty()) {
+      csv.take(moment);
+    }
+    if (!wanted.plot.empty()) {
+      picture.take(moment);
+    }
+  });
+  csv.finish();
+  picture.finish();
+  return played;
+}
+
+bool too_hot(const MatchSimulation& wanted, const DriveScore& score) {
+  const MotorValues& limits = wanted.motor.nominal;
+  return score.winding_peak_C > limits.winding_limit_C || score.stator_peak_C > limits.stator_limit_C;
+}
+
+struct TableRow {
+  std::string_view name;
+  std::string (*cell)(const DriveScore& score);
+};
+
+constexpr TableRow kRows[] = {
+    {"driven / m", [](const DriveScore& s) { return fmt::format("{:.0f}", s.distance_m); }},
+    {"slip of a mean wheel / mm per m", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.slip_m / s.distance_m); }},
+    {"  of it sliding", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.sliding_m / s.distance_m); }},
+    {"time in which a wheel slides / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
+    {"tracking error / mm rms", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
+    {"  largest / mm", [](const DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
+    {"overshoot / mm, mean of arrivals",
+     [](const DriveScore& s) { return fmt::format("{:.1f} of {:.0f}", 1e3 * s.overshoot_mean_m, s.arrivals_count); }},
+    {"  largest / mm", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_most_m); }},
+    {"peak current / A", [](const DriveScore& s) { return fmt::format("{:.1f}", s.peak_current_A); }},
+    {"rms current, hottest motor / A", [](const DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
+    {"driver or battery falls short / s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
+    {"lowest battery voltage / V", [](const DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
+    {"copper heat, all motors / kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
+    {"  per metre / J", [](const DriveScore& s) { return fmt::format("{:.1f}", s.energy.copper_J / s.distance_m); }},
+    {"  of it in duels / %", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
+    {"winding peak / °C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
+    {"stator peak / °C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},
+};
+
+std::string table(const std::vector<Played>& all) {
+  std::string text = fmt::format("{:36}", "");
+  for (const Played& each : all) {
+    text += fmt::format(" {:>14}", to_string(each.planner));
+  }
+  for (const TableRow& row : kRows) {
+    text += fmt::format("\n{:36}", row.name);
+    for (const Played& each : all) {
+      text += fmt::format(" {:>14}", row.cell(each.run.score));
+    }
+  }
+  return text + "\n";
+}
+
+struct EnergyRow {
+  std::string_view name;
+  double EnergyAccount::*value;
+};
+constexpr EnergyRow kEnergies[] = {{"copper", &EnergyAccount::copper_J},
+                                   {"iron_and_bearings", &EnergyAccount::motor_drag_J},
+                                   {"drivers", &EnergyAccount::driver_J},
+                                   {"battery_resistance", &EnergyAccount::battery_loss_J},
+                                   {"gear", &EnergyAccount::gear_J},
+                                   {"rolling", &EnergyAccount::rolling_J},
+                                   {"wheel_friction", &EnergyAccount::friction_J},
+                                   {"rollers", &EnergyAccount::roller_J},
+                                   {"slip", &EnergyAccount::slip_J}};
+
+std::string energy_text(const std::vector<Played>& all) {
+  std::string text = fmt::format("{:36}", "energy out of the battery / kJ");
+  for (const Played& each : all) {
+    text += fmt::format(" {:14.2f}", 1e-3 * each.run.score.energy.battery_J);
+  }
+  for (const EnergyRow& row : kEnergies) {
+    text += fmt::format("\n  {:34}", row.name);
+    for (const Played& each : all) {
+      const EnergyAccount& energy = each.run.score.energy;
+      text += fmt::format(" {:12.1f} %", 100.0 * energy.*row.value / energy.battery_J);
+    }
+  }
+  text += fmt::format("\n  {:34}", "not accounted for");
+  for (const Played& each : all) {
+    text += fmt::format(" {:12.3f} %", 100.0 * each.run.score.energy.residual_J() / each.run.score.energy.battery_J);
+  }
+  return text + "\n";
+}
+
+nlohmann::ordered_json json(const Played& played) {
+  const DriveScore& s = played.run.score;
+  nlohmann::ordered_json energy{{"battery_J", rounded(s.energy.battery_J, 2)}};
+  for (const EnergyRow& row : kEnergies) {
+    energy[fmt::format("{}_J", row.name)] = rounded(s.energy.*row.value, 2);
+  }
+  energy["kinetic_J"] = rounded(s.energy.kinetic_J, 4);
+  energy["external_J"] = rounded(s.energy.external_J, 4);
+  energy["residual_J"] = rounded(s.energy.residual_J(), 4);
+  nlohmann::ordered_json phases = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < played.run.phases.size(); ++i) {
+    phases.push_back({{"phase", kPhaseNames[i]},
+                      {"time_s", rounded(played.run.phases[i].time_s, 3)},
+                      {"copper_J", rounded(played.run.phases[i].copper_J, 3)}});
+  }
+  return {{"planner", to_string(played.planner)},
+          {"distance_m", rounded(s.distance_m, 2)},
+          {"slip_m", rounded(s.slip_m, 4)},
+          {"sliding_m", rounded(s.sliding_m, 4)},
+          {"sliding_s", rounded(s.sliding_s, 3)},
+          {"tracking_rms_m", rounded(s.tracking_rms_m, 6)},
+          {"tracking_most_m", rounded(s.tracking_most_m, 5)},
+          {"arrivals", s.arrivals_count},
+          {"overshoot_mean_m", rounded(s.overshoot_mean_m, 6)},
+          {"overshoot_most_m", rounded(s.overshoot_most_m, 5)},
+          {"peak_current_A", rounded(s.peak_current_A, 3)},
+          {"current_rms_A", rounded(s.current_rms_A, 4)},
+          {"short_s", rounded(s.short_s, 3)},
+          {"lowest_battery_V", rounded(s.lowest_battery_V, 3)},
+          {"winding_peak_C", rounded(s.winding_peak_C, 3)},
+          {"stator_peak_C", rounded(s.stator_peak_C, 3)},
+          {"duel_copper_share", rounded(s.duel_copper_share, 4)},
+          {"energy", energy},
+          {"phases", phases}};
+}
+
+std::vector<double> column(const std::vector<MatchRow>& rows, const std::function<double(const MatchRow&)>& of) {
+  std::vector<double> values;
+  for (const MatchRow& row : rows) {
+    values.push_back(of(row));
+  }
+  return values;
+}
+
+/// One planner: every wheel's winding, and what the hottest one's motor, the robot and the battery do.
+std::vector<ChartPanel> detail(const MatchSimulation& wanted, const Played& played) {
+  const auto hottest = static_cast<std::size_t>(played.run.score.hottest_wheel);
+  const std::vector<double> minutes = column(played.rows, [](const MatchRow& row) { return row.time_s / 60.0; });
+  const auto curve = [&](std::string name, int color, const std::function<double(const MatchRow&)>& of) {
+    return ChartCurve{std::move(name), minutes, column(played.rows, of), color, false};
+  };
+  ChartPanel heat{.title = "Windings and stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
+  for (std::size_t i = 0; i < wanted.robot.wheel_axis_rad.size(); ++i) {
+    heat.curves.push_back(
+        curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const MatchRow& row) { return row.winding_C[i]; }));
+  }
+  heat.curves.push_back(curve(fmt::format("stator {}", hottest + 1), 4, [&](const MatchRow& row) { return row.stator_C[hottest]; }));
+  heat.levels.push_back({fmt::format("limit {:.0f} °C", wanted.motor.nominal.winding_limit_C), wanted.motor.nominal.winding_limit_C});
+  const auto single = [](std::string title, std::string label, ChartCurve one) {
+    return ChartPanel{.title = std::move(title), .y_label = std::move(label), .curves = {std::move(one)}, .bands = {}, .levels = {}};
+  };
+  const int color = static_cast<int>(hottest);
+  return {std::move(heat),
+          single(fmt::format("Motor {}", hottest + 1), "current, rms of 2 s / A",
+                 curve("", color, [&](const MatchRow& row) { return std::abs(row.current_A[hottest]); })),
+          single("Robot", "speed / m/s",
+                 curve("", 5, [](const MatchRow& row) { return std::hypot(row.velocity.x_m_per_s, row.velocity.y_m_per_s); })),
+          single("Battery", "voltage / V", curve("", 6, [](const MatchRow& row) { return row.battery_V; }))};
+}
+
+/// Both planners: heat, slip and precision against each other.
+std::vector<ChartPanel> comparison(const MatchSimulation& wanted, const std::vector<Played>& all) {
+  std::vector<ChartPanel> panels{
+      {.title = "Hottest winding", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}},
+      {.title = "Copper heat of all motors so far", .y_label = "heat / kJ", .curves = {}, .bands = {}, .levels = {}},
+      {.title = "Distance between plan and robot", .y_label = "distance / mm", .curves = {}, .bands = {}, .levels = {}}};
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    const Played& played = all[p];
+    const std::string name(to_string(played.planner));
+    const auto hottest = static_cast<std::size_t>(played.run.score.hottest_wheel);
+    const std::vector<double> minutes = column(played.rows, [](const MatchRow& row) { return row.time_s / 60.0; });
+    double sum_kJ = 0.0;
+    const int color = static_cast<int>(p);
+    panels[0].curves.push_back(
+        {name, minutes, column(played.rows, [&](const MatchRow& row) { return row.winding_C[hottest]; }), color, false});
+    panels[1].curves.push_back({"", minutes,
+                                column(played.rows,
+                                       [&](const MatchRow& row) {
+                                         for (const double copper_W : row.copper_W) {
+                                           sum_kJ += 1e-3 * copper_W * kPictureStep_s;
+                                         }
+                                         return sum_kJ;
+                                       }),
+                                color, false});
+    panels[2].curves.push_back(
+        {"", minutes, column(played.rows, [](const MatchRow& row) { return 1e3 * row.tracking_error_m; }), color, false});
+  }
+  panels[0].levels.push_back({fmt::format("limit {:.0f} °C", wanted.motor.nominal.winding_limit_C), wanted.motor.nominal.winding_limit_C});
+  return panels;
+}
+
+Chart picture(const MatchSimulation& wanted, const std::vector<Played>& all) {
+  return {.title = fmt::format("{} with {} on {}", wanted.robot.name, wanted.motor.id, wanted.duty.id),
+          .subtitle = fmt::format("closed loop, synthetic match, seed {}", wanted.seed),
+          .x_label = "time / min",
+          .panels = all.size() == 1 ? detail(wanted, all.front()) : comparison(wanted, all),
+          .panel_height_px = 260};
+}
+
+}  // namespace
+
+std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
+
+ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
+  if (!wanted.out.empty() && wanted.planners.size() > 1) {
+    throw Failure(ExitCode::bad_input, "--out holds one run; expected --planner bang_bang or jerk_limited with it");
+  }
+  if (!wanted.out.empty() && 1e4 / wanted.every_s > kMostRows) {
+    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes too many rows of a match; expected 0.02 s or more", wanted.every_s));
+  }
+  std::vector<Played> all;
+  bool exceeded = false;
+  for (const Planner planner : wanted.planners) {
+    all.push_back(play(wanted, planner));
+    exceeded = exceeded || too_hot(wanted, all.back().run.score);
+  }
+  if (!wanted.out.empty()) {
+    session.write(wanted.out, std::move(all.front().csv));
+  }
+  if (!wanted.plot.empty()) {
+    session.write(wanted.plot, draw_svg(picture(wanted, all)));
+  }
+  const DriveScore& first = all.front().run.score;
+  session.say(fmt::format(
+      "{} on {}, {} as {}, seed {}: closed loop of {:.0f} min at 1 kHz, firmware at {:.0f} Hz, {} thermal data\nload: {}\n\n{}\n{}"
+      "hottest: wheel {} at {:.1f} °C (limit {:.0f} °C): {}\n",
+      wanted.motor.id, wanted.robot.id, wanted.duty.id, kRoleNames.at(static_cast<std::size_t>(wanted.inputs.role)), wanted.seed,
+      first.time_s / 60.0, wanted.robot.control_rate_Hz, data_quality(wanted.motor), wanted.duty.origin, table(all), energy_text(all),
+      first.hottest_wheel + 1, first.winding_peak_C, wanted.motor.nominal.winding_limit_C, exceeded ? "fail" : "pass"));
+  for (const std::string& file : {wanted.out, wanted.plot}) {
+    session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
+  }
+  nlohmann::ordered_json planners = nlohmann::ordered_json::array();
+  for (const Played& each : all) {
+    planners.push_back(json(each));
+  }
+  session.answer({{"schema", "heatsoak.simulate/1"},
+                  {"motor", wanted.motor.id},
+                  {"robot", wanted.robot.id},
+                  {"duty", wanted.duty.id},
+                  {"duty_origin", wanted.duty.origin},
+                  {"seed", wanted.seed},
+                  {"duration_s", rounded(first.time_s, 3)},
+                  {"wheel", fmt::format("wheel {}", first.hottest_wheel + 1)},
+                  {"winding_peak_C", rounded(first.winding_peak_C, 3)},
+                  {"stator_peak_C", rounded(first.stator_peak_C, 3)},
+                  {"winding_limit_C", rounded(wanted.motor.nominal.winding_limit_C, 2)},
+                  {"current_rms_A", rounded(first.current_rms_A, 4)},
+                  {"verdict", exceeded ? "fail" : "pass"},
+                  {"data_quality", data_quality(wanted.motor)},
+                  {"planners", planners}});
+  return exceeded ? ExitCode::limit_exceeded : ExitCode::done;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,28 @@
+// `simulate` on a match: the closed loop as text, JSON, CSV and picture, of one planner or of both side by side.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "simulate/match_run.h"
+
+namespace heatsoak {
+
+struct MatchSimulation {
+  const Robot& robot;
+  const Motor& motor;
+  const Duty& duty;
+  const MatchInputs& inputs;
+  std::vector<Planner> planners;
+  std::uint64_t seed = 1;
+  std::string out;   ///< CSV, of one planner
+  std::string plot;  ///< SVG
+  double every_s = 1.0;
+};
+
+std::string_view to_string(Planner planner);
+
+ExitCode simulate_match(const MatchSimulation& wanted, Session& session);
+
+}  // namespace heatsoak

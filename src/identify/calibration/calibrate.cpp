@@ -1,0 +1,207 @@
+#include "identify/calibration/calibrate.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+#include "identify/calibration/identifiability.h"
+#include "identify/calibration/profile.h"
+#include "identify/measurement/quality.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kQuantile = 1.959964;
+/// Beyond this standard deviation of a logarithm the parabola at the optimum is no picture of the likelihood.
+constexpr double kCurvatureHolds_sd = 0.1;
+/// An interval of a factor of two to each side is no answer, and less than a third off the former uncertainty is no news.
+constexpr double kIdentifiable_sd = 0.35;
+constexpr double kNews_share = 0.7;
+
+std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const MeasuredRunOptions& options,
+                                 std::vector<std::string>& notes) {
+  std::vector<MeasuredRun> all;
+  for (const Recording& recording : recordings) {
+    MeasuredRuns found = measured_runs(recording, options);
+    std::ranges::move(found.runs, std::back_inserter(all));
+    std::ranges::move(found.notes, std::back_inserter(notes));
+  }
+  return all;
+}
+
+bool all_have_speed(std::span<const Recording> recordings) {
+  return std::ranges::all_of(recordings, [](const Recording& each) {
+    const std::vector<Signal> signals = signals_of(each);
+    return std::ranges::find(signals, Signal::speed) != signals.end();
+  });
+}
+
+std::vector<ErrorBeforeAfter> errors(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs) {
+  std::vector<ErrorBeforeAfter> all;
+  if (runs.empty()) {
+    return all;
+  }
+  const std::vector<SignalError> before = open_loop_error(motor.model.network, motor.model.values, runs);
+  const std::vector<SignalError> after = open_loop_error(motor.model.network, motor.model.values_at(fit.theta), runs);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    all.push_back({after[i].signal, before[i], after[i]});
+  }
+  return all;
+}
+
+class Calibrating {
+ public:
+  Calibrating(std::span<const Recording> recordings, std::span<const Recording> holdout, const CalibrationOptions& options)
+      : recordings_(recordings), holdout_(holdout), options_(options) {}
+
+  Calibration run(const Motor& motor) {
+    for (const Recording& recording : recordings_) {
+      const DataQuality quality = assess(recording, {});
+      require_thermal(recording, quality);
+      for (const std::string& each : quality.suspicions) {
+        all_.notes.push_back(fmt::format("{}: {}", recording.name, each));
+      }
+    }
+    all_.motor_model = motor_model(motor, heat_input_for(recordings_), all_have_speed(recordings_));
+    std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
+    MeasuredRunOptions how;
+    // A fifth of the winding's time constant, however short the sheet says it is.
+    constexpr double kShortest_s = 0.2;
+    constexpr double kLongest_s = 2.0;
+    how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 5.0, kShortest_s, kLongest_s);
+    how.needed = all_.motor_model.needed;
+    how.ambient_C = options_.ambient_C;
+    all_.runs = runs_of(recordings_, how, all_.notes);
+    all_.holdout = runs_of(holdout_, how, all_.notes);
+    all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
+    all_.open = open_directions(all_.motor_model, all_.fit, all_.runs);
+    figures();
+    all_.fit_error = errors(all_.motor_model, all_.fit, all_.runs);
+    all_.holdout_error = errors(all_.motor_model, all_.fit, all_.holdout);
+    if (!all_.open.empty()) {
+      all_.next_experiment = all_.open.back().experiment;
+    }
+    refuse_where_nothing_was_learned();
+    return std::move(all_);
+  }
+
+ private:
+  void figures() {
+    const MotorModel& motor = all_.motor_model;
+    const Model& model = motor.model;
+    const Fit& fit = all_.fit;
+    std::vector<std::optional<std::pair<double, double>>> profiles(static_cast<std::size_t>(model.free_count()));
+    Eigen::Index of_file = 0;
+    for (const FittedFigure& each : motor.figures) {
+      of_file += each.is_of_file ? 1 : 0;
+      const double moved = each.exponents.dot(fit.theta - model.theta());
+      const double sd = std::sqrt(each.exponents.dot(fit.covariance * each.exponents));
+      CalibratedFigure figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
+      figure.value = each.before * std::exp(moved);
+      double below = kQuantile * sd;
+      double above = kQuantile * sd;
+      Eigen::Index only = 0;
+      if (sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 && each.exponents.cwiseAbs().sum() == 1.0) {
+        const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only), options_.fit.threads);
+        // The profile holds the flux; what the flux leaves open widens it as it widens the curvature.
+        const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
+        below = (fit.theta[only] - low) * std::max(1.0, widened);
+        above = (high - fit.theta[only]) * std::max(1.0, widened);
+        figure.by_profile = true;
+      }
+      figure.low = figure.value * std::exp(-below);
+      figure.high = figure.value * std::exp(above);
+      figure.is_identifiable = sd < kIdentifiable_sd && sd < kNews_share * each.prior_sd;
+      all_.figures.push_back(std::move(figure));
+    }
+    Eigen::MatrixXd exponents(of_file, model.free_count());
+    for (Eigen::Index i = 0; i < of_file; ++i) {
+      exponents.row(i) = motor.figures[static_cast<std::size_t>(i)].exponents.transpose();
+    }
+    const Eigen::MatrixXd covariance = exponents * fit.covariance * exponents.transpose();
+    const Eigen::VectorXd inverse_sd = covariance.diagonal().cwiseSqrt().cwiseInverse();
+    all_.correlation = inverse_sd.asDiagonal() * covariance * inverse_sd.asDiagonal();
+  }
+
+  void refuse_where_nothing_was_learned() const {
+    if (std::ranges::any_of(all_.figures, &CalibratedFigure::is_identifiable)) {
+      return;
+    }
+    std::string why = "nothing can be learned about this motor from these logs";
+    for (const OpenDirection& each : all_.open) {
+      why += fmt::format("\n  open: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
+    }
+    throw Failure(ExitCode::cannot_answer, why);
+  }
+
+  std::span<const Recording> recordings_;
+  std::span<const Recording> holdout_;
+  const CalibrationOptions& options_;
+  Calibration all_;
+};
+
+std::vector<std::string> names_of(std::span<const MeasuredRun> runs) {
+  std::vector<std::string> names;
+  for (const MeasuredRun& run : runs) {
+    const std::string name = run.name.substr(0, run.name.find('#'));
+    if (std::ranges::find(names, name) == names.end()) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
+                      const CalibrationOptions& options) {
+  return Calibrating(recordings, holdout, options).run(motor);
+}
+
+Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
+  constexpr const char* kSource = "calibration";
+  Motor result = motor;
+  MotorFit& fit = result.fit.emplace();
+  fit.motor = motor.id;
+  fit.runs = names_of(calibration.runs);
+  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(fit.runs, ", "));
+  for (std::size_t i = 0; i < calibration.figures.size(); ++i) {
+    const CalibratedFigure& each = calibration.figures[i];
+    if (!each.is_of_file) {
+      continue;
+    }
+    fit.figures.push_back(each.name);
+    Figure* const figure = find_figure(result, each.name);
+    figure->value = each.value;
+    figure->printed.clear();
+    if (each.is_identifiable) {
+      figure->origin = Origin::measured;
+      figure->source = kSource;
+      figure->derivation = "fit to measured temperatures";
+    } else {
+      // Moved along with the others, but what it is worth is still what was known before.
+      figure->source += figure->source.empty() ? kSource : fmt::format(", {}", kSource);
+      figure->derivation +=
+          fmt::format("{}fit to measured temperatures, which do not tell it alone", figure->derivation.empty() ? "" : "; ");
+    }
+    figure->spread = Spread{Spread::Kind::range, each.low, each.high, true};
+  }
+  fit.correlation = calibration.correlation;
+  fit.latent_flux_W = calibration.fit.flux.rms_W;
+  fit.latent_flux_time_scale_s = calibration.fit.flux.time_scale_s;
+  for (std::size_t i = 0; i < calibration.fit.sensor_nodes.size(); ++i) {
+    const std::string& node = calibration.fit.sensor_nodes[i];
+    const MeasuredRun& run = *std::ranges::find_if(calibration.runs, [&](const MeasuredRun& r) { return r.sensor_at(node) >= 0; });
+    const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node))].noise_K * calibration.fit.noise_ratio[i];
+    fit.noise_K.emplace_back(node, noise_K);
+  }
+  refresh_values(result);
+  return result;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,70 @@
+// The figures of a motor from measured runs: values, how sure they are, what the data cannot tell and what would.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identify/calibration/motor_model.h"
+#include "identify/fit.h"
+#include "identify/measurement/recording.h"
+#include "motor/motor.h"
+
+namespace heatsoak {
+
+struct CalibrationOptions {
+  FitOptions fit;
+  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
+};
+
+struct CalibratedFigure {
+  std::string name;  ///< as in the motor file; heat capacities besides
+  std::string unit;
+  bool is_of_file = true;
+  double before = 0.0;
+  double value = 0.0;
+  double low = 0.0;  ///< of the 95 % interval
+  double high = 0.0;
+  bool is_identifiable = false;  ///< the data, not only what was known before, tell it to a factor of two or better
+  bool by_profile = false;       ///< the interval is that of the profile likelihood, else of the curvature
+};
+
+/// A combination of parameters that the data leave open.
+struct OpenDirection {
+  std::string what;        ///< in words, with the parameters
+  std::string why;         ///< in words
+  std::string experiment;  ///< the cheapest that would settle it
+};
+
+struct ErrorBeforeAfter {
+  std::string signal;
+  SignalError before;
+  SignalError after;
+};
+
+struct Calibration {
+  Fit fit;
+  MotorModel motor_model;
+  std::vector<MeasuredRun> runs;
+  std::vector<MeasuredRun> holdout;
+  std::vector<CalibratedFigure> figures;
+  Eigen::MatrixXd correlation;  ///< of the logarithms of the figures of the file, in their order
+  std::vector<OpenDirection> open;
+  std::string next_experiment;  ///< empty where nothing is open
+  std::vector<ErrorBeforeAfter> fit_error;
+  std::vector<ErrorBeforeAfter> holdout_error;
+  std::vector<std::string> notes;  ///< what was taken for granted or left out, in sentences
+};
+
+/// Throws Failure: bad_input where the logs lack what is needed, cannot_answer where nothing can be learned from them (with the
+/// reason), numerics_failed where no fit succeeds.
+Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
+                      const CalibrationOptions& options);
+
+/// The motor with what was learned: figures that the data tell carry the origin "measured" and the interval, the file's
+/// other figures stay. `source_id` names the runs among the file's sources.
+Motor calibrated_motor(const Motor& motor, const Calibration& calibration);
+
+}  // namespace heatsoak

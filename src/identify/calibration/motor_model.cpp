@@ -1,0 +1,223 @@
+#include "identify/calibration/motor_model.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/diagnostic.h"
+#include "identify/measured_run.h"
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+/// Of the logarithm, where the file states no spread; and by how much a stated one is widened: sheets hold for the mounting on which
+/// they were measured, and the others' guesses for still less.
+struct Trust {
+  Origin origin;
+  double unstated_sd;
+  double widening;
+};
+constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, 0.4, 1.5}, Trust{Origin::third_party, 0.5, 1.5},
+                            Trust{Origin::derived, 0.5, 1.5}, Trust{Origin::estimated, 0.9, 2.0}};
+
+/// Mean of what motors are made of (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and how well a motor's mass tells its
+/// heat capacity: part of the mass hangs loosely on the stator.
+constexpr double kSpecificHeat_J_per_kg_K = 440.0;
+constexpr double kMassTells_sd = 0.25;
+
+int place_of(const Network& network, std::string_view parameter) {
+  const auto all = network.parameters();
+  const auto found = std::ranges::find(all, parameter, &NetworkParameter::name);
+  return found == all.end() ? -1 : static_cast<int>(found - all.begin());
+}
+
+class Builder {
+ public:
+  Builder(const Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
+    all_.heat = heat;
+    all_.model.network = datasheet_network(motor, nominal_sample(motor));
+    if (heat == HeatInput::input_power) {
+      // Beside it the copper loss is 0, for no log has a current, and the no-load loss is asked to stay silent.
+      all_.model.network.add_effect("input_power_loss", *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
+                                    std::vector<double>{1.0});
+    }
+    all_.model.values = all_.model.network.values();
+    if (heat == HeatInput::input_power) {
+      all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
+    }
+    all_.model.flux_nodes = {all_.model.network.find_node("winding"), all_.model.network.find_node("stator")};
+    all_.needed = {heat == HeatInput::current ? Signal::current : Signal::input_power};
+  }
+
+  MotorModel build() {
+    const int winding = free("winding.heat_capacity");
+    const int across = free("winding_stator.thermal_resistance");
+    const int stator = free("stator.heat_capacity");
+    const int out = free("stator_ambient.thermal_resistance");
+    figure("thermal_resistance_winding_stator", {{across, 1.0}});
+    figure("thermal_resistance_stator_ambient", {{out, 1.0}});
+    figure("thermal_time_constant_winding", {{winding, 1.0}, {across, 1.0}});
+    figure("thermal_time_constant_stator", {{stator, 1.0}, {out, 1.0}});
+    if (all_.heat == HeatInput::current) {
+      heat_of_current();
+    } else {
+      all_.held.emplace_back(
+          "the share of the stated power that becomes heat is held at 1: all heat capacities and resistances scale with it");
+    }
+    effects();
+    const auto file_figures = all_.figures.size();
+    capacity("winding_heat_capacity", winding);
+    capacity("stator_heat_capacity", stator);
+    set_prior(file_figures, winding, stator);
+    return std::move(all_);
+  }
+
+ private:
+  /// Returns the place among the free ones.
+  int free(const std::string& parameter) {
+    const int place = place_of(all_.model.network, parameter);
+    const double value = all_.model.values[static_cast<std::size_t>(place)];
+    constexpr double kFar = 30.0;
+    all_.model.free.push_back({.place = place, .by_log = true, .scale = 1.0, .low = value / kFar, .high = value * kFar});
+    return static_cast<int>(all_.model.free.size()) - 1;
+  }
+
+  void figure(std::string_view key, const std::vector<std::pair<int, double>>& exponents) {
+    const Figure& figure = motor_.figures.find(key)->second;
+    const auto specs = motor_figure_specs();
+    const auto spec = std::ranges::find(specs, key, [](const MotorFigureSpec& each) { return each.spec.key; });
+    add(std::string(key), std::string(spec->spec.unit), figure, exponents);
+  }
+  void add(std::string name, std::string unit, const Figure& figure, const std::vector<std::pair<int, double>>& exponents) {
+    FittedFigure fitted{std::move(name), std::move(unit),     true,         Eigen::VectorXd::Zero(kMostFree),
+                        figure.value,    prior_sd_of(figure), figure.origin};
+    for (const auto& [place, exponent] : exponents) {
+      fitted.exponents[place] = exponent;
+    }
+    all_.figures.push_back(std::move(fitted));
+  }
+
+  void heat_of_current() {
+    const Figure& resistance = motor_.figures.find("terminal_resistance")->second;
+    if (resistance.spread) {
+      figure("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
+      // A stated resistance does not depend on the mounting: its own spread is all that there is.
+      all_.figures.back().prior_sd = std::min(all_.figures.back().prior_sd, prior_sd_of_spread(resistance));
+    } else {
+      all_.held.emplace_back("terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
+    }
+    if (!with_speed_) {
+      all_.held.emplace_back("no_load_current is held: the logs have no speed, so that the loss it stands for is not computed");
+    } else if (motor_.nominal.no_load_current_A > 0.0) {
+      all_.needed.push_back(Signal::speed);
+      figure("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
+    }
+  }
+
+  void effects() {
+    for (const MotorEffect& effect : motor_.effects) {
+      for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+        const ParameterSpec& spec = effect.type->parameters[i];
+        const std::string name = fmt::format("{}.{}", effect.name, spec.key);
+        const int place = place_of(all_.model.network, name);
+        const bool is_choice = place >= 0 && all_.model.network.parameters()[static_cast<std::size_t>(place)].is_choice;
+        if (is_choice || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
+          all_.held.push_back(fmt::format("effects.{} is held: the file states no spread for it", name));
+          continue;
+        }
+        add("effects." + name, std::string(spec.unit), effect.parameters[i], {{free(name), 1.0}});
+      }
+    }
+  }
+
+  void capacity(const std::string& name, int place) {
+    const double before = all_.model.values[static_cast<std::size_t>(all_.model.free[static_cast<std::size_t>(place)].place)];
+    all_.figures.push_back({name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, Origin::derived});
+    all_.figures.back().exponents[place] = 1.0;
+  }
+
+  static double prior_sd_of_spread(const Figure& figure) { return 0.25 * std::log(figure.spread->high / figure.spread->low); }
+
+  /// Figures of the file are known independently of each other; the model's parameters are not.
+  void set_prior(std::size_t file_figures, int winding, int stator) {
+    Model& model = all_.model;
+    const Eigen::Index count = model.free_count();
+    for (FittedFigure& each : all_.figures) {
+      each.exponents.conservativeResize(count);
+    }
+    model.prior.mean = model.theta();
+    model.prior.precision.setZero(count, count);
+    for (std::size_t i = 0; i < file_figures; ++i) {
+      const FittedFigure& each = all_.figures[i];
+      model.prior.precision += each.exponents * each.exponents.transpose() / (each.prior_sd * each.prior_sd);
+    }
+    if (const double mass_kg = motor_.nominal.mass_kg; !std::isnan(mass_kg)) {
+      const double winding_J_per_K = std::exp(model.prior.mean[winding]);
+      const double stator_J_per_K = std::exp(model.prior.mean[stator]);
+      const double sum_J_per_K = winding_J_per_K + stator_J_per_K;
+      Eigen::VectorXd share = Eigen::VectorXd::Zero(count);
+      share[winding] = winding_J_per_K / sum_J_per_K;
+      share[stator] = stator_J_per_K / sum_J_per_K;
+      const double off = std::log(kSpecificHeat_J_per_kg_K * mass_kg / sum_J_per_K);
+      const Eigen::MatrixXd before = model.prior.precision;
+      model.prior.precision += share * share.transpose() / (kMassTells_sd * kMassTells_sd);
+      model.prior.mean += model.prior.precision.ldlt().solve(share) * off / (kMassTells_sd * kMassTells_sd);
+    }
+    const Eigen::MatrixXd covariance = model.prior.precision.inverse();
+    for (FittedFigure& each : all_.figures) {
+      if (!each.is_of_file) {
+        each.prior_sd = std::sqrt(each.exponents.dot(covariance * each.exponents));
+      }
+    }
+  }
+
+  static constexpr Eigen::Index kMostFree = 64;
+  const Motor& motor_;
+  bool with_speed_;
+  MotorModel all_;
+};
+
+}  // namespace
+
+double prior_sd_of(const Figure& figure) {
+  const auto* const trust = std::ranges::find(kTrust, figure.origin, &Trust::origin);
+  if (!figure.spread || !(figure.spread->low > 0.0) || !(figure.spread->high > figure.spread->low)) {
+    return trust->unstated_sd;
+  }
+  // Both kinds of spread hold for some 95 %: ± 2 standard deviations.
+  return trust->widening * 0.25 * std::log(figure.spread->high / figure.spread->low);
+}
+
+HeatInput heat_input_for(std::span<const Recording> recordings) {
+  const auto all_have = [&](Signal signal) {
+    return std::ranges::all_of(recordings, [&](const Recording& each) {
+      const std::vector<Signal> signals = signals_of(each);
+      return std::ranges::find(signals, signal) != signals.end();
+    });
+  };
+  if (all_have(Signal::current)) {
+    return HeatInput::current;
+  }
+  if (all_have(Signal::input_power)) {
+    return HeatInput::input_power;
+  }
+  std::vector<Diagnostic> lacking;
+  for (const Recording& each : recordings) {
+    const std::vector<Signal> signals = signals_of(each);
+    if (std::ranges::find(signals, Signal::current) == signals.end()) {
+      lacking.push_back({{each.file.string()},
+                         "current_A",
+                         "is no column of this log, and not all logs have power_in_W instead; heat cannot be computed"});
+    }
+  }
+  throw Failure(ExitCode::bad_input, "the logs do not tell how much heat goes in", std::move(lacking));
+}
+
+MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed) { return Builder(motor, heat, with_speed).build(); }
+
+}  // namespace heatsoak

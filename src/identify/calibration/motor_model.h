@@ -1,0 +1,48 @@
+// From a motor's file and what its logs can tell to a model that can be fitted, and back to figures.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identify/measurement/recording.h"
+#include "identify/model.h"
+#include "motor/motor.h"
+
+namespace heatsoak {
+
+/// What the heat of a model is computed from.
+enum class HeatInput { current, input_power };
+
+/// A figure of the file, or a heat capacity made of two of them: its logarithm is linear in θ.
+struct FittedFigure {
+  std::string name;  ///< as in the file: "thermal_time_constant_winding", "effects.fan.conductance"
+  std::string unit;
+  bool is_of_file = true;     ///< false: a heat capacity, which files give as time constants
+  Eigen::VectorXd exponents;  ///< figure = Π parameter^exponent · constant
+  double before = 0.0;        ///< value of the file
+  double prior_sd = 0.0;      ///< of the logarithm, by spread and origin
+  Origin origin = Origin::estimated;
+};
+
+struct MotorModel {
+  Model model;
+  HeatInput heat = HeatInput::current;
+  std::vector<Signal> needed;
+  std::vector<FittedFigure> figures;
+  std::vector<std::string> held;  ///< what was not fitted and why, in sentences
+};
+
+/// What all of the recordings can drive: the copper loss where each has a current, else the input power. Throws Failure
+/// (bad_input) where they have neither.
+HeatInput heat_input_for(std::span<const Recording> recordings);
+
+/// `with_speed`: all logs have a speed, so that the no-load loss can be told.
+MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);
+
+/// Standard deviation of a figure's logarithm before any data: by its spread where it has one, widened by how far its origin
+/// is to be trusted for this motor in this mounting.
+double prior_sd_of(const Figure& figure);
+
+}  // namespace heatsoak

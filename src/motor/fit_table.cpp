@@ -1,0 +1,124 @@
+#include "motor/fit_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/normal.hpp>
+#include <sstream>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::array<std::string_view, 2> kNodes{"winding", "stator"};
+constexpr double kLargest_W = 1e6;
+
+/// Rows of a lower triangle with 1 on the diagonal: "1", "0.2 1", …
+Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
+  const auto size = static_cast<Eigen::Index>(count);
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
+  const std::vector<std::string> rows = table.texts("correlation", Need::required);
+  if (rows.size() != count) {
+    table.problem("correlation", fmt::format("has {} rows, expected {}: one per figure of the fit", rows.size(), count));
+    return correlation;
+  }
+  for (Eigen::Index i = 0; i < size; ++i) {
+    std::istringstream row(rows[static_cast<std::size_t>(i)]);
+    std::vector<double> values;
+    for (std::string word; row >> word;) {
+      const std::optional<double> value = parse_number(word);
+      if (!value || !(*value >= -1.0 && *value <= 1.0)) {
+        table.problem("correlation", fmt::format("'{}' in row {}: expected a number between -1 and 1", word, i + 1));
+        return correlation;
+      }
+      values.push_back(*value);
+    }
+    if (static_cast<Eigen::Index>(values.size()) != i + 1 || values.back() != 1.0) {
+      table.problem("correlation", fmt::format("row {} has {} numbers, expected {}, the last one 1", i + 1, values.size(), i + 1));
+      return correlation;
+    }
+    for (Eigen::Index j = 0; j < i; ++j) {
+      correlation(i, j) = correlation(j, i) = values[static_cast<std::size_t>(j)];
+    }
+  }
+  constexpr double kRounding = 1e-3;
+  if (size > 0 && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation).eigenvalues().minCoeff() < -kRounding) {
+    table.problem("correlation", "is no correlation matrix: it has a negative eigenvalue");
+  }
+  return correlation;
+}
+
+}  // namespace
+
+MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
+  MotorFit fit;
+  fit.motor = table.text("motor", Need::required).value_or("");
+  fit.runs = table.texts("runs", Need::optional);
+  fit.figures = table.texts("figures", Need::required);
+  for (const std::string& each : fit.figures) {
+    if (std::ranges::find(figures, each) == figures.end()) {
+      table.problem("figures", fmt::format("'{}' is no figure of this file{}", each, did_you_mean(each, figures)));
+    }
+  }
+  fit.correlation = read_correlation(table, fit.figures.size());
+  for (const std::string_view node : kNodes) {
+    const std::string noise = fmt::format("noise_{}", node);
+    if (const std::optional<double> noise_K = table.quantity({noise, "K", Range::non_negative(), "of one sample"}, Need::optional)) {
+      fit.noise_K.emplace_back(node, *noise_K);
+    }
+    const std::string flux = fmt::format("latent_flux_{}", node);
+    fit.latent_flux_W.push_back(
+        table.quantity({flux, "W", Range::between(0.0, kLargest_W), "rms of the heat that stayed unknown"}, Need::optional).value_or(0.0));
+  }
+  fit.latent_flux_time_scale_s =
+      table.quantity({"latent_flux_time_scale", "s", Range::positive(), "over which it forgets"}, Need::optional).value_or(0.0);
+  table.finish();
+  return fit;
+}
+
+std::string to_toml(const MotorFit& fit) {
+  std::string text = "\n[fit]\n";
+  text += fmt::format("motor = \"{}\"\n", fit.motor);
+  text += fmt::format("runs = [\"{}\"]\n", fmt::join(fit.runs, "\", \""));
+  text += fmt::format("figures = [\"{}\"]\n", fmt::join(fit.figures, "\", \""));
+  text += "# of the figures' logarithms: lower triangle\ncorrelation = [\n";
+  for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
+    std::vector<std::string> row;
+    for (Eigen::Index j = 0; j < i; ++j) {
+      row.push_back(fmt::format("{:.5f}", fit.correlation(i, j)));
+    }
+    row.emplace_back("1");
+    text += fmt::format("  \"{}\",\n", fmt::join(row, " "));
+  }
+  text += "]\n";
+  for (const auto& [node, noise_K] : fit.noise_K) {
+    text += fmt::format("noise_{} = \"{} K\"\n", node, significant(noise_K, 2));
+  }
+  for (std::size_t i = 0; i < std::min(kNodes.size(), fit.latent_flux_W.size()); ++i) {
+    text += fmt::format("latent_flux_{} = \"{} W\"\n", kNodes[i], significant(fit.latent_flux_W[i], 2));
+  }
+  return text + fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
+}
+
+void correlate(const MotorFit& fit, std::span<double> uniforms) {
+  static const boost::math::normal kNormal;
+  // The root of the matrix, with what rounding made negative cut off.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(fit.correlation);
+  Eigen::VectorXd independent(fit.correlation.rows());
+  for (Eigen::Index i = 0; i < independent.size(); ++i) {
+    independent[i] = boost::math::quantile(kNormal, uniforms[static_cast<std::size_t>(i)]);
+  }
+  Eigen::MatrixXd root =
+      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
+  root.array().colwise() /= root.rowwise().norm().array().eval();
+  const Eigen::VectorXd dependent = root * independent;
+  for (Eigen::Index i = 0; i < dependent.size(); ++i) {
+    uniforms[static_cast<std::size_t>(i)] = boost::math::cdf(kNormal, dependent[i]);
+  }
+}
+
+}  // namespace heatsoak

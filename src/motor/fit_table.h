@@ -1,0 +1,32 @@
+// What a calibration knows besides values and intervals: how the figures hang together, and what was left unexplained.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "input/reader.h"
+
+namespace heatsoak {
+
+/// The [fit] table of a motor file that a calibration wrote.
+struct MotorFit {
+  std::string motor;  ///< id of the motor file that the fit began with
+  std::vector<std::string> runs;
+  std::vector<std::string> figures;                     ///< keys: "thermal_resistance_winding_stator", "effects.fan.conductance"
+  Eigen::MatrixXd correlation;                          ///< of their logarithms, in that order
+  std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of one sample
+  std::vector<double> latent_flux_W;                    ///< unknown heat of winding and stator: rms
+  double latent_flux_time_scale_s = 0.0;
+};
+
+/// Reads the table; `figures` are the keys that the file has. Problems go to the reader's diagnostics.
+MotorFit read_fit(Reader& table, std::span<const std::string> figures);
+std::string to_toml(const MotorFit& fit);
+
+/// Independent numbers in (0, 1), one per figure of the fit, become dependent ones with the fit's correlation (Gaussian copula).
+void correlate(const MotorFit& fit, std::span<double> uniforms);
+
+}  // namespace heatsoak

@@ -1,0 +1,81 @@
+// What a motor's figures rest on: who says so, who confirms it, how far it may be wrong.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/quantity.h"
+#include "motor/lint_checks.h"
+
+namespace heatsoak::lint_checks {
+namespace {
+
+/// Of an agreed figure, which has no tolerance.
+constexpr double kSame = 1e-6;
+
+/// Every figure of the file, those of its effects too, with a name for messages.
+template <class Visit>
+void for_each_figure(const Motor& motor, const Visit& visit) {
+  for (const auto& [key, figure] : motor.figures) {
+    visit(std::string(key), figure);
+  }
+  for (const MotorEffect& effect : motor.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      visit(fmt::format("{}.{}", effect.name, effect.type->parameters[i].key), effect.parameters[i]);
+    }
+  }
+}
+
+}  // namespace
+
+void sources(const Motor& motor, Findings& findings) {
+  for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
+    if (figure.source.empty()) {
+      findings.error_at(figure.at, fmt::format("{} of {} names no source; expected the ids of what it was derived from, or one whose text "
+                                               "says that it is your own judgement",
+                                               key, figure.printed));
+    }
+  });
+}
+
+/// Two sources that know nothing of each other agree within the tolerance of the figure, or one of them is wrong.
+void confirmations(const Motor& motor, Findings& findings) {
+  for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
+    const Bounds bounds = figure.spread
+                              ? Bounds{figure.spread->low, figure.spread->high}
+                              : Bounds{figure.value - kSame * std::abs(figure.value), figure.value + kSame * std::abs(figure.value)};
+    for (const Confirmation& other : figure.confirmed_by) {
+      if (bounds.excludes(other.value)) {
+        findings.error_at(
+            figure.at, fmt::format("{} is {}, but {} says {}, expected to lie within the figure's tolerance; one of the two is wrong", key,
+                                   figure.printed, other.source, other.printed));
+      }
+    }
+  });
+}
+
+void estimates(const Motor& motor, Findings& findings) {
+  for (const MotorFigureSpec& each : motor_figure_specs()) {
+    const auto figure = motor.figures.find(each.spec.key);
+    if (figure == motor.figures.end() || figure->second.origin != Origin::estimated) {
+      continue;
+    }
+    const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(figure->second.value, each.spec.unit));
+    if (each.is_thermal) {
+      findings.note(each.spec.key,
+                    found + ": the temperature rests on it, expected a figure of the sheet; measure it or calibrate before you rely on it");
+    } else if (each.spec.key.starts_with("nominal_")) {
+      findings.note(each.spec.key, found + ": the nominal point rests on it, expected a figure of the sheet; take it from there");
+    }
+  }
+}
+
+void spreads(const Motor& motor, Findings& findings) {
+  for (const auto& [key, figure] : motor.figures) {
+    if (!is_agreed(key) && !figure.spread) {
+      findings.error(
+          key, fmt::format("{} of {} has neither tolerance nor range; expected one of both (see motor_db/README.md)", key, figure.printed));
+    }
+  }
+}
+
+}  // namespace heatsoak::lint_checks

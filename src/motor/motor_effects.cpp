@@ -1,0 +1,162 @@
+#include "motor/motor_effects.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::array<std::string_view, 3> kNodes{"winding", "stator", Network::kAmbient};
+
+bool is_word(std::string_view name) {
+  return !name.empty() && std::ranges::all_of(name, [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+}
+
+bool brings_node(const EffectType& type) {
+  return std::ranges::any_of(type.nodes, [](const NodeRole& role) { return role.own_capacity >= 0; });
+}
+
+struct Entry {
+  std::string name;
+  Reader reader;
+  const EffectType* type;
+};
+
+/// The tables whose name and type are good.
+std::vector<Entry> entries_of(Reader& table) {
+  std::vector<std::string> known;
+  for (const EffectType& type : all_effects()) {
+    known.emplace_back(type.name);
+  }
+  std::vector<Entry> entries;
+  for (auto& [name, reader] : table.named_tables()) {
+    if (std::ranges::find(kDatasheetEffects, name) != kDatasheetEffects.end()) {
+      table.problem(name, "is the name of an effect that every motor has; give this one another name and say type = \"…\"");
+      continue;
+    }
+    const std::string type_name = reader.text("type", Need::optional).value_or(name);
+    const EffectType* type = find_effect(type_name);
+    if (!type) {
+      table.problem(
+          name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
+      continue;
+    }
+    if (!is_word(name)) {
+      table.problem(name, "is no name for an effect; expected small letters, digits and underscores");
+      continue;
+    }
+    if (brings_node(*type) && std::ranges::find(kNodes, name) != kNodes.end()) {
+      table.problem(name, fmt::format("is the name of a node, and {} brings one of its own; give it another name and say type = \"{}\"",
+                                      type_name, type_name));
+      continue;
+    }
+    entries.push_back({name, std::move(reader), type});
+  }
+  return entries;
+}
+
+void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect& effect) {
+  for (const NodeRole& role : entry.type->nodes) {
+    if (role.own_capacity >= 0) {
+      effect.nodes.push_back(entry.name);
+      continue;
+    }
+    effect.nodes.push_back(entry.reader.text(role.role, Need::optional).value_or(std::string(role.default_node)));
+    if (std::ranges::find(known, effect.nodes.back()) == known.end() ||
+        effect.nodes.back() == (brings_node(*entry.type) ? entry.name : "")) {
+      const std::vector<std::string> before(known.begin(), known.end() - 1);
+      entry.reader.problem(role.role,
+                           fmt::format("'{}' is no node; expected {} or {}", effect.nodes.back(), fmt::join(before, ", "), known.back()));
+    }
+  }
+}
+
+void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect) {
+  std::vector<double> values;
+  bool chosen = true;
+  for (std::size_t i = 0; i < type.parameters.size(); ++i) {
+    ParameterSpec spec = type.parameters[i];
+    Figure figure;
+    if (!spec.choices.empty()) {
+      std::vector<std::string_view> names;
+      for (const Choice& choice : spec.choices) {
+        names.push_back(choice.name);
+      }
+      const std::optional<std::string> name = reader.choice(spec.key, names, Need::required);
+      chosen = chosen && name;
+      figure.printed = name.value_or("");
+      figure.value = name ? static_cast<double>(std::ranges::find(names, *name) - names.begin()) : 0.0;
+    } else if (spec.unit_of >= 0 && !chosen) {
+      reader.pass_over(spec.key);
+    } else {
+      spec.unit = unit_of(type.parameters, i, values);
+      figure = reader.figure(spec, Need::required).value_or(Figure{});
+    }
+    values.push_back(figure.value);
+    effect.parameters.push_back(std::move(figure));
+  }
+}
+
+/// Those that bring a node come before those that name it, else as in the file.
+std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& table) {
+  std::vector<std::string> there(kNodes.begin(), kNodes.end());
+  std::vector<MotorEffect> ordered;
+  const auto is_there = [&](const MotorEffect& effect) {
+    return std::ranges::all_of(effect.nodes, [&](const std::string& node) {
+      return (node == effect.name && brings_node(*effect.type)) || std::ranges::find(there, node) != there.end();
+    });
+  };
+  for (auto next = std::ranges::find_if(waiting, is_there); next != waiting.end(); next = std::ranges::find_if(waiting, is_there)) {
+    there.push_back(next->name);
+    ordered.push_back(std::move(*next));
+    waiting.erase(next);
+  }
+  for (const MotorEffect& effect : waiting) {
+    table.problem(effect.name, "hangs on a node that hangs on this one; expected a chain that ends at winding, stator or ambient");
+  }
+  return ordered;
+}
+
+}  // namespace
+
+std::vector<MotorEffect> read_effects(Reader& top) {
+  std::optional<Reader> table = top.table("effects", Need::optional);
+  if (!table) {
+    return {};
+  }
+  std::vector<Entry> entries = entries_of(*table);
+  std::vector<std::string> known(kNodes.begin(), kNodes.end());
+  for (const Entry& entry : entries) {
+    if (brings_node(*entry.type)) {
+      known.push_back(entry.name);
+    }
+  }
+  if (known.size() > Network::kMostNodes) {
+    table->problem(known.back(),
+                   fmt::format("is node number {}; expected at most {}, ambient among them", known.size(), Network::kMostNodes));
+  }
+  std::vector<MotorEffect> effects;
+  bool sound = true;
+  for (Entry& entry : entries) {
+    MotorEffect effect{entry.name, entry.type, {}, {}, {}};
+    read_nodes(entry, known, effect);
+    read_parameters(entry.reader, *entry.type, effect);
+    if (std::optional<Reader> condition = entry.reader.table("condition", Need::optional)) {
+      for (const std::string& key : condition->keys()) {
+        effect.condition.emplace(key, condition->text(key, Need::required).value_or(""));
+      }
+    }
+    entry.reader.finish();
+    sound =
+        sound && std::ranges::all_of(effect.nodes, [&](const std::string& node) { return std::ranges::find(known, node) != known.end(); });
+    effects.push_back(std::move(effect));
+  }
+  table->finish();
+  return sound ? in_order(std::move(effects), *table) : effects;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,131 @@
+#include "motor/write_motor.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr int kDigits = 6;
+
+/// As a basic string of TOML.
+std::string toml_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string amount(double value, const std::string& unit) {
+  return unit.empty() ? significant(value, kDigits) : fmt::format("{} {}", significant(value, kDigits), unit);
+}
+
+std::string figure_text(const Figure& figure, const std::string& unit) {
+  const ParsedQuantity printed = parse_quantity(figure.printed, unit);
+  const bool is_as_printed = printed.ok() && std::abs(printed.value - figure.value) <= 1e-9 * std::abs(figure.value);
+  std::string text = fmt::format("{{ value = {}, origin = {}", toml_text(is_as_printed ? figure.printed : amount(figure.value, unit)),
+                                 toml_text(to_string(figure.origin)));
+  if (!figure.source.empty()) {
+    std::vector<std::string> ids;
+    for (std::size_t at = 0; at < figure.source.size();) {
+      const std::size_t end = std::min(figure.source.find(", ", at), figure.source.size());
+      ids.push_back(toml_text(figure.source.substr(at, end - at)));
+      at = end + 2;
+    }
+    text += ids.size() == 1 ? fmt::format(", source = {}", ids.front()) : fmt::format(", source = [{}]", fmt::join(ids, ", "));
+  }
+  if (figure.spread) {
+    const Spread& spread = *figure.spread;
+    const double half = 0.5 * (spread.high - spread.low);
+    if (spread.kind == Spread::Kind::range) {
+      text += fmt::format(", range = [{}, {}]", toml_text(amount(spread.low, unit)), toml_text(amount(spread.high, unit)));
+    } else if (unit == "degC") {
+      text += fmt::format(", tolerance = {}", toml_text(amount(half, "K")));
+    } else {
+      text += fmt::format(", tolerance = {}", toml_text(amount(100.0 * half / std::abs(figure.value), "%")));
+    }
+  }
+  if (!figure.derivation.empty()) {
+    text += fmt::format(", derivation = {}", toml_text(figure.derivation));
+  }
+  return text + " }";
+}
+
+std::string effect_text(const MotorEffect& effect) {
+  std::string text = fmt::format("\n[effects.{}]\n", effect.name);
+  if (effect.name != effect.type->name) {
+    text += fmt::format("type = {}\n", toml_text(effect.type->name));
+  }
+  for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
+    // A node of the effect's own is named after it.
+    if (effect.type->nodes[role].own_capacity < 0) {
+      text += fmt::format("{} = {}\n", effect.type->nodes[role].role, toml_text(effect.nodes[role]));
+    }
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+    const ParameterSpec& spec = effect.type->parameters[i];
+    const std::string unit(unit_of(effect.type->parameters, i, values));
+    values.push_back(effect.parameters[i].value);
+    text += fmt::format("{} = {}\n", spec.key,
+                        spec.choices.empty() ? figure_text(effect.parameters[i], unit) : toml_text(effect.parameters[i].printed));
+  }
+  if (!effect.condition.empty()) {
+    text += fmt::format("[effects.{}.condition]\n", effect.name);
+    for (const auto& [key, value] : effect.condition) {
+      text += fmt::format("{} = {}\n", key, toml_text(value));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_toml(const Motor& motor) {
+  std::string text = fmt::format("manufacturer = {}\nname = {}\n", toml_text(motor.manufacturer), toml_text(motor.name));
+  if (!motor.part_number.empty()) {
+    text += fmt::format("part_number = {}\n", toml_text(motor.part_number));
+  }
+  text += fmt::format("type = {}\n", toml_text(motor.type));
+  if (!motor.notes.empty()) {
+    text += "notes = [\n";
+    for (const std::string& note : motor.notes) {
+      text += fmt::format("  {},\n", toml_text(note));
+    }
+    text += "]\n";
+  }
+  text += "\n[sources]\n";
+  for (const auto& [id, what] : motor.sources) {
+    text += fmt::format("{} = {}\n", id, toml_text(what));
+  }
+  text += fmt::format(
+      "\n[conventions]\nterminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\nstall_includes_saturation = {}\n",
+      motor.stall_includes_saturation);
+  text += "\n[figures]\n";
+  for (const MotorFigureSpec& each : motor_figure_specs()) {
+    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+      text += fmt::format("{} = {}\n", each.spec.key, figure_text(found->second, std::string(each.spec.unit)));
+    }
+  }
+  for (const MotorEffect& effect : motor.effects) {
+    text += effect_text(effect);
+  }
+  return motor.fit ? text + to_toml(*motor.fit) : text;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,57 @@
+// How well, and at what price, a script was driven.
+#pragma once
+
+#include <vector>
+
+#include "simulate/drive_script.h"
+
+namespace heatsoak {
+
+struct DriveScore {
+  double time_s = 0.0;
+  double distance_m = 0.0;
+  double slip_m = 0.0;            ///< ∫|slip|dt, mean of the wheels: creep under load and sliding
+  double sliding_m = 0.0;         ///< the part of it beyond the creep, where more than 0.71 of the grip is used
+  double sliding_s = 0.0;         ///< time in which any wheel does so
+  double tracking_rms_m = 0.0;    ///< distance between plan and robot while the plan moves
+  double tracking_most_m = 0.0;   ///< at any time
+  double arrivals_count = 0.0;    ///< commands whose plan came to a stand
+  double overshoot_mean_m = 0.0;  ///< over the arrivals: how far the robot goes on when the plan stands
+  double overshoot_most_m = 0.0;
+  double peak_current_A = 0.0;  ///< of any motor
+  double current_rms_A = 0.0;   ///< of the motor with the most
+  double short_s = 0.0;         ///< time in which a driver or the battery gave less than was commanded
+  double lowest_battery_V = 0.0;
+  double winding_peak_C = 0.0;
+  double stator_peak_C = 0.0;
+  int hottest_wheel = 0;  ///< from 0
+  double duel_copper_share = 0.0;
+  EnergyAccount energy;
+};
+
+/// Takes every moment of a run.
+class DriveScorer {
+ public:
+  void take(const LoopMoment& moment);
+  [[nodiscard]] DriveScore finish();
+
+ private:
+  void follow_command(const LoopMoment& moment);
+  void close_command();
+
+  DriveScore score_;
+  const SimulatedRobot* robot_ = nullptr;
+  double error_squared_m2_s_ = 0.0;
+  double planned_moving_s_ = 0.0;
+  double duel_copper_J_ = 0.0;
+  PerWheel current_squared_A2_s_{};
+  // The command that is being driven.
+  const ScheduledCommand* command_ = nullptr;
+  double way_x_share_ = 0.0;  ///< direction of the plan's last motion
+  double way_y_share_ = 0.0;
+  double beyond_m_ = 0.0;
+  bool came_from_afar_ = false;
+  bool arrived_ = false;
+};
+
+}  // namespace heatsoak

@@ -1,0 +1,114 @@
+#include "simulate/drive_script.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace {
+
+/// The force of the opponent on the robot: against the push, only while they touch.
+class Duel {
+ public:
+  void begin(const MotionCommand& command, const Pose& at, double grip_N) {
+    x_share_ = std::cos(command.push_direction_rad);
+    y_share_ = std::sin(command.push_direction_rad);
+    force_N_ = command.push_share * grip_N;
+    wall_m_ = along(at.x_m, at.y_m);
+    active_ = true;
+  }
+  void end() { active_ = false; }
+  [[nodiscard]] bool active() const { return active_; }
+  /// What the controller is to push with, global frame.
+  [[nodiscard]] Wrench push() const { return active_ ? Wrench{force_N_ * x_share_, force_N_ * y_share_, 0.0} : Wrench{}; }
+  /// What comes back, local frame.
+  [[nodiscard]] Wrench reaction(const SimulatedRobot& robot) const {
+    if (!active_) {
+      return {};
+    }
+    const Pose& pose = robot.state().pose;
+    const BodyVelocity velocity = robot.velocity_global();
+    const double into_m = along(pose.x_m, pose.y_m) - wall_m_;
+    const double force_N = into_m > 0.0 ? std::max(0.0, opponent_.stiffness_N_per_m * into_m +
+                                                            opponent_.damping_N_s_per_m * along(velocity.x_m_per_s, velocity.y_m_per_s))
+                                        : 0.0;
+    return to_local(Wrench{-force_N * x_share_, -force_N * y_share_, 0.0}, pose.yaw_rad);
+  }
+
+ private:
+  [[nodiscard]] double along(double x, double y) const { return x * x_share_ + y * y_share_; }
+
+  Opponent opponent_;
+  double x_share_ = 1.0;
+  double y_share_ = 0.0;
+  double force_N_ = 0.0;
+  double wall_m_ = 0.0;
+  bool active_ = false;
+};
+
+class Loop {
+ public:
+  Loop(SimulatedRobot& robot, DriveController& controller, Follower& plan, double control_period_s, const LoopObserver& observer)
+      : robot_(robot), controller_(controller), plan_(plan), observer_(observer), periods_per_control_(periods(control_period_s)) {
+    const BodyConfig& body = robot.plant().body;
+    grip_N_ = body.traction.traction_ratio * body.weight.mass_kg * kGravity_m_per_s2;
+  }
+
+  void run(std::span<const ScheduledCommand> script, double end_s) {
+    for (std::size_t i = 0; i < script.size(); ++i) {
+      const std::int64_t until = periods(i + 1 < script.size() ? script[i + 1].time_s : end_s);
+      if (now_ >= until) {
+        continue;
+      }
+      plan_.take(script[i].command);
+      for (duel_.end(); now_ < until;) {
+        period(script[i], i);
+      }
+    }
+  }
+
+ private:
+  static std::int64_t periods(double time_s) { return std::llround(time_s / SimulatedRobot::kPeriod_s); }
+
+  void period(const ScheduledCommand& scheduled, std::size_t index) {
+    const bool at_rest = plan_.at_rest();
+    if (scheduled.command.duel && at_rest && !duel_.active()) {
+      duel_.begin(scheduled.command, robot_.state().pose, grip_N_);
+    }
+    if (now_ % periods_per_control_ == 0) {
+      const Setpoint setpoint{plan_.pose(), plan_.velocity_global(), plan_.acceleration_global(), duel_.push()};
+      commands_ = controller_.command(setpoint, {robot_.state().pose, robot_.state().velocity, robot_.state().wheel_speed_rad_per_s});
+    }
+    plan_.advance(SimulatedRobot::kPeriod_s);
+    const PlantOutput& out = robot_.advance(commands_, duel_.reaction(robot_));
+    ++now_;
+    observer_({static_cast<double>(now_) * SimulatedRobot::kPeriod_s, &scheduled, index, at_rest, duel_.active(), &plan_, &out, &robot_});
+  }
+
+  SimulatedRobot& robot_;
+  DriveController& controller_;
+  Follower& plan_;
+  const LoopObserver& observer_;
+  std::int64_t periods_per_control_;
+  double grip_N_ = 0.0;
+  Duel duel_;
+  std::array<MotorCommand, kMostWheels> commands_{};
+  std::int64_t now_ = 0;
+};
+
+}  // namespace
+
+void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script,
+                  double end_s, double control_period_s, const LoopObserver& observer) {
+  Loop(robot, controller, plan, control_period_s, observer).run(script, end_s);
+}
+
+double control_period_s(const Robot& robot) {
+  if (std::isnan(robot.control_rate_Hz)) {
+    throw bad_input({robot.file.string()}, "drive.control_rate", "is missing: how often the firmware commands the motors");
+  }
+  return SimulatedRobot::kPeriod_s * std::round(1.0 / (robot.control_rate_Hz * SimulatedRobot::kPeriod_s));
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,43 @@
+// A script of commands, driven in a closed loop: planner, controller at the firmware's rate, plant.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "duty/match/generator.h"
+#include "simulate/drive_controller.h"
+#include "simulate/simulated_robot.h"
+
+namespace heatsoak {
+
+/// What the loop shows after every period of the plant.
+struct LoopMoment {
+  double time_s = 0.0;  ///< at the end of the period
+  const ScheduledCommand* command = nullptr;
+  std::size_t command_index = 0;
+  bool planned_at_rest = false;  ///< the plan of this command has ended
+  bool pushes = false;
+  const Follower* plan = nullptr;
+  const PlantOutput* out = nullptr;  ///< means over the period
+  const SimulatedRobot* robot = nullptr;
+};
+using LoopObserver = std::function<void(const LoopMoment&)>;
+
+/// The robot that is pushed in a duel stands like a wall at the place where the duel began, and is somewhat soft; what it
+/// is made of has no part in the force at stall.
+struct Opponent {
+  double stiffness_N_per_m = 5000.0;
+  double damping_N_s_per_m = 100.0;
+};
+
+/// Drives `script` until `end_s`, from the plan's and the robot's present state on. Every `control_period_s` (a multiple of
+/// the plant's period) the controller is asked. In a duel the robot pushes from when its plan stands still. Times of
+/// the script are taken to the nearest period of the plant.
+void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script,
+                  double end_s, double control_period_s, const LoopObserver& observer);
+
+/// That of the robot's file. Throws Failure (bad_input) where it has none.
+double control_period_s(const Robot& robot);
+
+}  // namespace heatsoak

@@ -1,0 +1,59 @@
+// A closed-loop match as rows: what stands in the CSV and in the picture.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "simulate/drive_script.h"
+
+namespace heatsoak {
+
+/// Motion, plan, phase and temperatures are those at time_s; the rest are means from there to the next row: currents
+/// rms with the sign of their mean.
+struct MatchRow {
+  double time_s = 0.0;
+  Phase phase = Phase::halt;
+  bool duel = false;
+  Pose plan;
+  Pose pose;
+  BodyVelocity velocity;  ///< global frame
+  PerWheel winding_C{};
+  PerWheel stator_C{};
+  PerWheel current_A{};
+  PerWheel motor_V{};
+  PerWheel speed_rad_per_s{};  ///< of the motors
+  PerWheel torque_Nm{};        ///< at the motors' shafts
+  PerWheel slip_m_per_s{};     ///< rim minus ground
+  PerWheel normal_N{};
+  PerWheel copper_W{};
+  double battery_V = 0.0;
+  double battery_A = 0.0;
+  double battery_charge_A_s = 0.0;
+  double tracking_error_m = 0.0;
+};
+
+/// Gives `row` a row every `every_s`, of a run that begins at time 0 with everything at ambient temperature.
+class MatchRows {
+ public:
+  MatchRows(double every_s, double ambient_C, std::function<void(const MatchRow&)> row);
+
+  void take(const LoopMoment& moment);
+  /// The last row, which may be shorter than the others.
+  void finish();
+
+ private:
+  void start(double time_s, const SimulatedRobot& robot, const Pose& plan, Phase phase, bool duel);
+
+  double every_s_;
+  std::function<void(const MatchRow&)> row_;
+  MatchRow open_;
+  PerWheel current_squared_A2_{};  ///< sums over the periods of the open row, as are its means
+  int periods_ = 0;
+  bool begun_ = false;
+};
+
+std::string csv_header(int wheel_count);
+/// One line, with its end.
+void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C);
+
+}  // namespace heatsoak

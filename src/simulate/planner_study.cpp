@@ -1,0 +1,129 @@
+#include "simulate/planner_study.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "robot/inverse_dynamics.h"
+#include "simulate/drive_score.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::array<double, 3> kDistances_m{0.5, 1.0, 2.0};
+constexpr int kDirections = 8;
+constexpr double kAmbient_C = 25.0;
+/// Time that a robot gets to settle after its plan has ended.
+constexpr double kAfterwards_s = 1.0;
+constexpr std::size_t kDrives = kDistances_m.size() * kDirections;
+
+double planned_s(const Robot& robot, Planner planner, const MotionCommand& command) {
+  const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, planner);
+  plan->take(command);
+  double time_s = 0.0;
+  for (; !plan->at_rest(); time_s += SimulatedRobot::kPeriod_s) {
+    plan->advance(SimulatedRobot::kPeriod_s);
+  }
+  return time_s;
+}
+
+StudyResult drive(const Robot& robot, const Motor& motor, Planner planner, const MotionCommand& command) {
+  const double period_s = control_period_s(robot);
+  SimulatedRobot simulated(robot, motor, kAmbient_C);
+  const std::unique_ptr<DriveController> controller = tracking_controller(robot, motor.nominal, period_s);
+  const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, planner);
+  StudyResult result;
+  result.planned_s = planned_s(robot, planner, command);
+  const std::array<ScheduledCommand, 1> script{{{0.0, Phase::running, command}}};
+  DriveScorer scorer;
+  drive_script(simulated, *controller, *plan, script, result.planned_s + kAfterwards_s, period_s, [&](const LoopMoment& moment) {
+    scorer.take(moment);
+    const Pose& pose = simulated.state().pose;
+    if (std::hypot(pose.x_m - command.x_m, pose.y_m - command.y_m) > kSettled_m) {
+      result.settled_s = moment.time_s;
+    }
+  });
+  const DriveScore score = scorer.finish();
+  result.slip_share = score.slip_m / score.distance_m;
+  result.sliding_share = score.sliding_m / score.distance_m;
+  result.tracking_rms_m = score.tracking_rms_m;
+  result.overshoot_mean_m = score.overshoot_mean_m;
+  result.peak_current_A = score.peak_current_A;
+  result.copper_J = score.energy.copper_J;
+  return result;
+}
+
+StudyResult one_case(const Robot& robot, const Motor& motor, const StudyCase& limits) {
+  const bool bang_bang = std::isinf(limits.jerk_m_per_s3);
+  Robot limited = robot;
+  limited.acceleration_limit_m_per_s2 = limits.acceleration_m_per_s2;
+  limited.braking_limit_m_per_s2 = limits.acceleration_m_per_s2;
+  limited.jerk_limit_m_per_s3 = bang_bang ? robot.jerk_limit_m_per_s3 : limits.jerk_m_per_s3;
+  StudyResult sum;
+  for (const double distance_m : kDistances_m) {
+    for (int direction = 0; direction < kDirections; ++direction) {
+      const double heading_rad = 2.0 * std::numbers::pi * direction / kDirections;
+      MotionCommand command;
+      command.x_m = distance_m * std::cos(heading_rad);
+      command.y_m = distance_m * std::sin(heading_rad);
+      const StudyResult each = drive(limited, motor, bang_bang ? Planner::bang_bang : Planner::jerk_limited, command);
+      for (double StudyResult::*const mean :
+           {&StudyResult::planned_s, &StudyResult::settled_s, &StudyResult::slip_share, &StudyResult::sliding_share,
+            &StudyResult::tracking_rms_m, &StudyResult::overshoot_mean_m, &StudyResult::copper_J}) {
+        sum.*mean += each.*mean / static_cast<double>(kDrives);
+      }
+      sum.peak_current_A = std::max(sum.peak_current_A, each.peak_current_A);
+    }
+  }
+  sum.limits = limits;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, std::span<const StudyCase> cases, int threads,
+                                        const Progress& progress) {
+  std::vector<StudyResult> results(cases.size());
+  in_parallel(cases.size(), threads, 0, cases.size(), progress, [&](std::size_t i) { results[i] = one_case(robot, motor, cases[i]); });
+  return results;
+}
+
+double grip_m_per_s2(const Robot& robot) {
+  MotorValues no_rotor;
+  no_rotor.rotor_inertia_kg_m2 = 0.0;
+  const BodyConfig body = make_body(robot, no_rotor);
+  const auto use_beyond_ratio = [&](double acceleration_m_per_s2) {
+    constexpr int kHeadings = 72;
+    double use_ratio = 0.0;
+    for (int heading = 0; heading < kHeadings; ++heading) {
+      const double heading_rad = 2.0 * std::numbers::pi * heading / kHeadings;
+      BodyMotion motion;
+      motion.acceleration = {acceleration_m_per_s2 * std::cos(heading_rad), acceleration_m_per_s2 * std::sin(heading_rad), 0.0};
+      use_ratio = std::max(use_ratio, std::ranges::max(inverse_dynamics(body, motion).traction_use_ratio));
+    }
+    return use_ratio - 1.0;
+  };
+  const auto [low, high] = boost::math::tools::bisect(use_beyond_ratio, 0.0, robot.traction_ratio * kGravity_m_per_s2 * 2.0,
+                                                      boost::math::tools::eps_tolerance<double>(20));
+  return 0.5 * (low + high);
+}
+
+std::vector<StudyCase> jerk_sweep(const Robot& robot) {
+  constexpr int kJerks = 12;
+  constexpr double kLeast_m_per_s3 = 3.0;
+  constexpr double kMost_m_per_s3 = 60.0;
+  const double own_m_per_s2 = std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2);
+  std::vector<StudyCase> cases;
+  for (const double acceleration_m_per_s2 : {own_m_per_s2, grip_m_per_s2(robot), 1.5 * grip_m_per_s2(robot)}) {
+    for (int i = 0; i < kJerks; ++i) {
+      cases.push_back({acceleration_m_per_s2, kLeast_m_per_s3 * std::pow(kMost_m_per_s3 / kLeast_m_per_s3, i / (kJerks - 1.0))});
+    }
+    cases.push_back({acceleration_m_per_s2, std::numeric_limits<double>::infinity()});
+  }
+  return cases;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,82 @@
+// The robot that is driven: the plant, and the windings and stators that its currents heat.
+#pragma once
+
+#include "motor/motor.h"
+#include "robot/plant.h"
+#include "thermal/ensemble.h"
+
+namespace heatsoak {
+
+/// Where energy went since the start. battery = losses + kinetic − external, all as integrals of the plant's powers but
+/// `battery_J`, which is what the charge has lost, and `kinetic_J`, which follows from the state.
+struct EnergyAccount {
+  double battery_J = 0.0;
+  double battery_loss_J = 0.0;
+  double copper_J = 0.0;
+  double driver_J = 0.0;
+  double motor_drag_J = 0.0;
+  double gear_J = 0.0;
+  double rolling_J = 0.0;
+  double friction_J = 0.0;
+  double slip_J = 0.0;
+  double roller_J = 0.0;
+  double kinetic_J = 0.0;   ///< gained
+  double external_J = 0.0;  ///< done on the robot from outside
+
+  [[nodiscard]] double heat_J() const {
+    return battery_loss_J + copper_J + driver_J + motor_drag_J + gear_J + rolling_J + friction_J + slip_J + roller_J;
+  }
+  /// What is not accounted for: the error of the method.
+  [[nodiscard]] double residual_J() const { return battery_J + external_J - heat_J() - kinetic_J; }
+};
+
+/// One motor per wheel, all alike. Starts at rest with a full battery, everything at ambient temperature.
+/// R and K_t follow winding and stator (the magnets are taken to be as warm as the stator); both are computed by the
+/// motor's thermal network, which gets the means of the currents every kThermalPeriod_s.
+class SimulatedRobot {
+ public:
+  static constexpr double kPeriod_s = 0.001;
+  static constexpr double kThermalPeriod_s = 0.01;
+
+  /// Throws Failure (bad_input) that names what the robot's or the motor's file lacks.
+  SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C);
+  SimulatedRobot(const SimulatedRobot&) = delete;
+  SimulatedRobot& operator=(const SimulatedRobot&) = delete;
+
+  /// One period of the plant. `external` acts on the body from outside at the height of its centre of gravity, local axes.
+  const PlantOutput& advance(const std::array<MotorCommand, kMostWheels>& command, const Wrench& external);
+
+  [[nodiscard]] const PlantConfig& plant() const { return plant_; }
+  [[nodiscard]] const PlantState& state() const { return state_; }
+  [[nodiscard]] BodyVelocity velocity_global() const { return to_global(state_.velocity, state_.pose.yaw_rad); }
+  [[nodiscard]] int wheel_count() const { return plant_.body.kinematics.wheel_count; }
+  [[nodiscard]] double winding_C(int wheel) const { return thermal_.state_C()[kWinding][wheel]; }
+  [[nodiscard]] double stator_C(int wheel) const { return thermal_.state_C()[kStator][wheel]; }
+  [[nodiscard]] double winding_peak_C(int wheel) const { return thermal_.peak_C()[kWinding][wheel]; }
+  [[nodiscard]] double stator_peak_C(int wheel) const { return thermal_.peak_C()[kStator][wheel]; }
+  [[nodiscard]] EnergyAccount energy() const;
+
+ private:
+  static constexpr std::size_t kWinding = 0;
+  static constexpr std::size_t kStator = 1;
+  void book(const PlantOutput& out);
+  void warm_up();
+
+  PlantConfig plant_;
+  PlantState state_;
+  PlantInput input_;
+  PlantOutput output_;
+  double ambient_C_;
+  EnergyAccount account_;
+  Network network_;
+  std::vector<Lanes> parameters_;
+  EnsembleRun thermal_;  ///< a wheel per lane
+  double longest_step_s_;
+  // Sums since the network was last advanced.
+  Lanes copper_J_ = Lanes::Zero();
+  Lanes speed_rad_ = Lanes::Zero();
+  Lanes speed_squared_rad2_per_s_ = Lanes::Zero();
+  int periods_ = 0;
+};
+
+}  // namespace heatsoak

@@ -1,0 +1,139 @@
+// Matches on the command line: the closed loop, the planners side by side, where heat comes from.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "program_run.h"
+
+namespace heatsoak {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using Words = std::vector<std::string>;
+
+const Words kMatch{"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--robot", "roboteam_twente_v2024", "--duty", "division_b_match"};
+
+Words operator+(Words first, const Words& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+TEST(SimulateMatch, writes_every_signal_in_bounded_memory) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const ProgramRun result = run(kMatch + Words{"--out", "trace.csv", "--every", "0.1 s", "--seed", "3", "--json", "-"}, options);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_LT(result.memory_MB, 200.0);
+  const json answer = result.json();
+  std::istringstream lines(content_of(folder.path() / "trace.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_THAT(line, HasSubstr("time_s,phase,duel,plan_x_m"));
+  const auto columns = std::ranges::count(line, ',');
+  double last_s = 0.0;
+  double hottest_C = 0.0;
+  int rows = 0;
+  for (; std::getline(lines, line); ++rows) {
+    ASSERT_EQ(std::ranges::count(line, ','), columns);
+    const double now_s = std::stod(line);
+    EXPECT_NEAR(now_s - last_s, rows == 0 ? 0.0 : 0.1, 1e-6);
+    last_s = now_s;
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; std::getline(cells, cell, ','); ++i) {
+      if (i >= 16 && (i - 16) % 9 == 0) {
+        hottest_C = std::max(hottest_C, std::stod(cell));
+      }
+    }
+  }
+  EXPECT_NEAR(0.1 * rows, answer.at("duration_s").get<double>(), 0.11);
+  EXPECT_NEAR(hottest_C, answer.at("winding_peak_C").get<double>(), 0.5);
+}
+
+TEST(SimulateMatch, both_planners_stand_side_by_side) {
+  const ProgramRun result = run(kMatch + Words{"--planner", "both", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("jerk_limited      bang_bang"));
+  EXPECT_THAT(result.err, HasSubstr("synthetic"));
+  const json planners = result.json().at("planners");
+  ASSERT_EQ(planners.size(), 2U);
+  for (const json& each : planners) {
+    double lost_J = 0.0;
+    for (const auto& [name, value_J] : each.at("energy").items()) {
+      lost_J += name == "battery_J" || name == "external_J" ? -value_J.get<double>() : value_J.get<double>();
+    }
+    EXPECT_NEAR(lost_J, 0.0, 0.1);
+    double phases_J = 0.0;
+    for (const json& phase : each.at("phases")) {
+      phases_J += phase.at("copper_J").get<double>();
+    }
+    EXPECT_NEAR(phases_J, each.at("energy").at("copper_J").get<double>(), 0.1);
+  }
+}
+
+TEST(SimulateMatch, same_seed_same_bytes) {
+  const std::string once = run(kMatch + Words{"--json", "-"}).out;
+  EXPECT_EQ(once, run(kMatch + Words{"--json", "-"}).out);
+  EXPECT_NE(once, run(kMatch + Words{"--json", "-", "--seed", "2"}).out);
+}
+
+TEST(SimulateMatch, wrong_combinations_are_refused) {
+  const Words robot{"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--robot", "roboteam_twente_v2024"};
+  for (const auto& [words, said] : std::vector<std::pair<Words, std::string>>{
+           {robot, "one of --duty and --jerk-sweep"},
+           {robot + Words{"--jerk-sweep", "--duty", "division_a_match"}, "one of --duty and --jerk-sweep"},
+           {robot + Words{"--jerk-sweep", "--out", "x.csv"}, "--jerk-sweep has no signals"},
+           {kMatch + Words{"--planner", "both", "--out", "x.csv"}, "--out holds one run"},
+           {kMatch + Words{"--out", "x.csv", "--every", "1 ms"}, "too many rows"},
+           {kMatch + Words{"--planner", "bangbang"}, "bang_bang"},
+           {robot + Words{"--duty", "paper_intermittent", "--planner", "bang_bang"}, "--planner is for matches"}}) {
+    const ProgramRun result = run(words);
+    EXPECT_EQ(result.exit_code, 2) << said;
+    EXPECT_THAT(result.err, HasSubstr(said));
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST(DutyMatch, heat_is_told_by_phase_and_role) {
+  const ProgramRun result = run({"duty", "--duty", "division_a_match", "--robot", "tigers_v2020", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("keeper"));
+  EXPECT_THAT(result.err, HasSubstr("duels (pushing at stall)"));
+  const json answer = result.json();
+  const json roles = answer.at("roles");
+  ASSERT_EQ(roles.size(), 3U);
+  double before_share = 0.0;
+  for (const json& role : roles) {
+    double sum_share = 0.0;
+    double time_s = 0.0;
+    for (const json& phase : role.at("phases")) {
+      sum_share += phase.at("heat_share").get<double>();
+      time_s += phase.at("time_s").get<double>();
+      EXPECT_LE(phase.at("duel_heat_share").get<double>(), phase.at("heat_share").get<double>());
+    }
+    EXPECT_NEAR(sum_share, 1.0, 1e-5);
+    EXPECT_NEAR(time_s, answer.at("duration_s").get<double>(), 0.1);
+    // keeper, defender, attacker: each busier than the one before
+    EXPECT_GT(role.at("heat_of_busiest_share").get<double>(), before_share);
+    before_share = role.at("heat_of_busiest_share").get<double>();
+  }
+  EXPECT_EQ(before_share, 1.0);
+}
+
+TEST(EvaluateMatch, says_that_the_duty_s_spread_is_included) {
+  const Words line{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "division_b_match", "--motors", "maxon_ecx_flat_42m_24v"};
+  const ProgramRun sampled = run(line + Words{"--samples", "24", "--threads", "2", "--json", "-"});
+  EXPECT_THAT(sampled.err, HasSubstr("spread of the duty is included: 3 draws"));
+  EXPECT_EQ(sampled.json().at("duty_draws"), 3);
+  EXPECT_EQ(sampled.out, run(line + Words{"--samples", "24", "--threads", "1", "--json", "-"}).out);
+  const ProgramRun nominal = run(line + Words{"--samples", "0", "--json", "-"});
+  EXPECT_EQ(nominal.json().at("duty_draws"), 0);
+  EXPECT_THAT(nominal.err, testing::Not(HasSubstr("spread of the duty")));
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,33 @@
+// What the tests of the planners expect of every result.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "trajectory_reference.h"
+
+namespace robot_core::reference {
+
+/// Of a test on random problems; HEATSOAK_TRAJECTORY_PROBLEMS=1000000 is the long run.
+int problem_count();
+
+/// A task as it is written in a test.
+std::string text(const Task& task);
+
+/// The result of plan_position, which has to be ok.
+Motion planned(const Task& task);
+double duration_s(const Task& task);
+
+/// `most` bounds what the end and the limits may be off, relative to the task's scales.
+void expect_flawless(const Motion& motion, const Task& task, double judged_from_s = 0.0, double most = 1e-10);
+
+struct Fleet {
+  std::vector<Task> tasks;
+  std::vector<Motion> motions;
+};
+
+/// The results of plan_synchronised or plan_velocity_synchronised, which have to be ok.
+Fleet synchronised(std::vector<Task> tasks);
+Fleet velocity_synchronised(std::vector<Task> tasks);
+
+}  // namespace robot_core::reference

@@ -1,0 +1,97 @@
+#include "select/drive_profile.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace heatsoak {
+namespace {
+
+/// K_t = 0.03 N m/A, R = 0.5 Ω, drag 0.006 N m.
+MotorValues motor() {
+  MotorValues values;
+  values.terminal_resistance_ohm = 0.5;
+  values.torque_constant_Nm_per_A = 0.03;
+  values.no_load_current_A = 0.2;
+  values.temperature_coefficient_per_K = 0.004;
+  return values;
+}
+
+Robot robot() {
+  Robot made;
+  made.battery_V = 24.0;
+  made.wheel_radius_m = 0.028;
+  made.gear_ratio = 2.0;
+  made.gear_efficiency = 0.9;
+  return made;
+}
+
+struct Means {
+  double shaft_W = 0.0;
+  double input_W = 0.0;
+  double copper_W = 0.0;
+  double vehicle_m_per_s = 0.0;
+};
+
+/// Time means over the moments, each as a point of its own.
+Means means_of_moments(const std::vector<WheelLoad>& loads) {
+  Means means;
+  for (const WheelLoad& load : loads) {
+    const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), load), motor(), robot(), 25.0);
+    const auto share = 1.0 / static_cast<double>(loads.size());
+    means.shaft_W += share * at.shaft_power_W;
+    means.input_W += share * at.input_power_W;
+    means.copper_W += share * 0.5 * at.current_rms_A * at.current_rms_A;
+    means.vehicle_m_per_s += share * at.vehicle_speed_m_per_s;
+  }
+  return means;
+}
+
+/// Driving or braking throughout, so that the gear's efficiency is one number; with both in a bin it is that of the mean.
+TEST(OperatingPointOfABin, has_the_means_of_its_moments) {
+  std::mt19937_64 engine(1200);
+  for (const double direction : {1.0, -1.0}) {
+    for (int i = 0; i < 50; ++i) {
+      std::vector<WheelLoad> loads;
+      DemandGatherer gatherer("wheel", 1.0, {});
+      for (int k = 0; k < 100; ++k) {
+        const double speed_rad_per_s = std::uniform_real_distribution(-150.0, 150.0)(engine);
+        const double torque_Nm = direction * std::copysign(std::uniform_real_distribution(0.0, 0.1)(engine), speed_rad_per_s);
+        loads.push_back({torque_Nm, speed_rad_per_s});
+        gatherer.add(0.01, torque_Nm, speed_rad_per_s);
+      }
+      const WheelDemand demand = gatherer.finish();
+      ASSERT_EQ(demand.bins.size(), 1U);
+      const OperatingPoint<double> at = operating_point(motor(), robot(), DutyKind::torque, demand.bins[0], {25.0, 1.0});
+      const Means expected = means_of_moments(loads);
+      EXPECT_NEAR(at.shaft_power_W, expected.shaft_W, 1e-9);
+      EXPECT_NEAR(at.input_power_W, expected.input_W, 1e-9);
+      EXPECT_NEAR(0.5 * at.current_rms_A * at.current_rms_A, expected.copper_W, 1e-9);
+      EXPECT_NEAR(at.vehicle_speed_m_per_s, expected.vehicle_m_per_s, 1e-12);
+      EXPECT_NEAR(at.acceleration_rad_per_s2, 2.0 * demand.bins[0].acceleration_rad_per_s2, 1e-12);
+      EXPECT_EQ(at.bus_V, 24.0);
+    }
+  }
+}
+
+TEST(OperatingPointOfABin, asked_for_more_than_the_supply_gives_the_shaft_gets_less) {
+  const LoadBin bin = constant_bin(1.0, 0.6, 300.0, 0.0);  // 10.8 A would need 24 V beside 18 V of back-EMF
+  const OperatingPoint<double> at = operating_point(motor(), robot(), DutyKind::torque, bin, {25.0, 1.0});
+  EXPECT_GT(at.shaft_power_W, 0.0);
+  EXPECT_LT(at.shaft_power_W, 180.0);
+  EXPECT_NEAR(at.modulation_ratio, 1.0, 1e-12);
+  // What goes in is what 24 V and the current allow, 12 A, and what is not lost: here the cut is of the whole current.
+  EXPECT_NEAR(at.current_rms_A, 12.0, 1e-9);
+  EXPECT_NEAR(at.input_power_W, 0.5 * 144.0 + at.shaft_power_W + 0.006 * 600.0, 1e-9);
+}
+
+TEST(OperatingPointOfABin, of_a_given_current_has_the_power_that_the_current_makes) {
+  const LoadBin bin = constant_bin(1.0, 0.0, 50.0, 4.0);
+  const OperatingPoint<double> at = operating_point(motor(), robot(), DutyKind::current, bin, {25.0, 1.0});
+  EXPECT_NEAR(at.shaft_power_W, (0.03 * 4.0 - 0.006) * 100.0, 1e-12);
+  EXPECT_NEAR(at.input_power_W, 4.0 * (4.0 * 0.5 + 0.03 * 100.0), 1e-12);
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,141 @@
+// Effects that a motor file adds, through everything that reads a motor.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "given_demand.h"
+#include "select/evaluate.h"
+#include "select/trace.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+constexpr const char* kBase = "maxon_ecx_flat_42m_24v";
+
+class MotorFile {
+ public:
+  explicit MotorFile(const std::string& effects) : path_(std::filesystem::path(testing::TempDir()) / "heatsoak_effects_of_file.toml") {
+    std::ostringstream base;
+    base << std::ifstream(kSource / "motor_db" / (std::string(kBase) + ".toml")).rdbuf();
+    std::ofstream(path_) << base.str() << effects;
+  }
+  MotorFile(const MotorFile&) = delete;
+  MotorFile& operator=(const MotorFile&) = delete;
+  ~MotorFile() { std::filesystem::remove(path_); }
+  [[nodiscard]] Motor read() const { return read_motor(path_); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string estimated(const std::string& key, const std::string& value) {
+  return key + " = { value = \"" + value + "\", origin = \"estimated\", derivation = \"test\" }\n";
+}
+
+const std::string kChassisAndSkin = "\n[effects.chassis]\ntype = \"third_node\"\n" + estimated("conductance", "0.4 W/K") +
+                                    estimated("leak_ratio", "0.5") + estimated("heat_capacity", "60 J/K") +
+                                    "\n[effects.skin]\ntype = \"ac_copper_loss\"\n" + estimated("share", "0.3");
+
+class EffectsOfAFile : public testing::Test {
+ protected:
+  EffectsOfAFile()
+      : robot_(read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml")),
+        duty_(read_duty(kSource / "duty_profiles/paper_intermittent.toml")) {
+    give(duty_, {{300.0, 0.08, 60.0, 0.0}, {300.0, 0.0, 0.0, 0.0}, {200.0, 0.05, 40.0, 0.0}});
+  }
+  [[nodiscard]] Trace trace(const Motor& motor) const { return run_trace(robot_, duty_, duty_.demand(robot_, 1).front(), motor, 5.0); }
+  [[nodiscard]] MotorEvaluation evaluation(const Motor& motor, int samples) const {
+    EvaluateOptions options;
+    options.samples = samples;
+    const std::vector<Motor> one{motor};
+    return evaluate(robot_, duty_, duty_.demand(robot_, 1), one, options).front();
+  }
+  static double booked_W(const Trace& trace, std::string_view effect, std::string_view node) {
+    double all_W = 0.0;
+    for (const BookedHeat& each : trace.balance) {
+      all_W += each.effect == effect && each.node == node ? each.mean_W : 0.0;
+    }
+    return all_W;
+  }
+
+  Robot robot_;
+  Duty duty_;
+};
+
+TEST_F(EffectsOfAFile, balance_closes_with_a_node_of_an_effects_own) {
+  const Trace with = trace(MotorFile(kChassisAndSkin).read());
+  double into_motor_W = 0.0;
+  double all_W = 0.0;
+  for (const BookedHeat& each : with.balance) {
+    into_motor_W += each.node == "ambient" ? 0.0 : each.mean_W;
+    all_W += std::abs(each.mean_W);
+  }
+  EXPECT_NEAR(into_motor_W, with.stored_W, 1e-9 * all_W);
+  // A body of 60 J/K that is warmer at the end than at the start has stored that much.
+  const double chassis_rise_K = with.rows.back().own_C.at(0) - with.rows.front().own_C.at(0);
+  EXPECT_GT(chassis_rise_K, 1.0);
+  EXPECT_NEAR(booked_W(with, "chassis", "chassis"), 60.0 * chassis_rise_K / with.rows.back().time_s, 1e-6);
+}
+
+// 60 rad/s and 40 rad/s of a direct drive: k·(60/500)² and k·(40/500)² of the copper loss of their time.
+TEST_F(EffectsOfAFile, extra_copper_loss_is_its_share_of_the_copper_loss) {
+  give(duty_, {{400.0, 0.08, 60.0, 0.0}});
+  const Trace with = trace(MotorFile(kChassisAndSkin).read());
+  EXPECT_NEAR(booked_W(with, "skin", "winding"), 0.3 * 0.12 * 0.12 * booked_W(with, "copper_loss", "winding"), 1e-9);
+}
+
+TEST_F(EffectsOfAFile, own_nodes_are_columns_of_the_trace) {
+  const Trace with = trace(MotorFile(kChassisAndSkin).read());
+  ASSERT_EQ(with.own_nodes, std::vector<std::string>{"chassis"});
+  std::istringstream csv(to_csv(with));
+  std::string header;
+  std::string row;
+  std::getline(csv, header);
+  std::getline(csv, row);
+  EXPECT_EQ(header, "time_s,winding_C,stator_C,ambient_C,chassis_C,current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W");
+  EXPECT_EQ(std::ranges::count(row, ','), std::ranges::count(header, ','));
+  EXPECT_EQ(with.rows.front().own_C, std::vector<double>{with.rows.front().ambient_C});
+}
+
+TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples) {
+  const MotorEvaluation plain = evaluation(MotorFile("").read(), 40);
+  const MotorEvaluation cooled = evaluation(MotorFile(kChassisAndSkin).read(), 40);
+  const MotorEvaluation heated =
+      evaluation(MotorFile("\n[effects.lamp]\ntype = \"constant_heat\"\n" + estimated("power", "2 W")).read(), 40);
+  EXPECT_LT(cooled.stator_peak_C.nominal, plain.stator_peak_C.nominal - 1.0);
+  EXPECT_LT(cooled.stator_peak_C.p50, plain.stator_peak_C.p50 - 1.0);
+  EXPECT_GT(heated.stator_peak_C.nominal, plain.stator_peak_C.nominal + 1.0);
+  EXPECT_GT(heated.stator_peak_C.p50, plain.stator_peak_C.p50 + 1.0);
+}
+
+/// Samples with no spread are the nominal run: the ensemble knows own nodes and all quantities too.
+TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncertain) {
+  std::string everything;
+  for (const EffectType& type : all_effects()) {
+    if (type.candidacy.size_parameter < 0) {
+      continue;
+    }
+    everything += "\n[effects.my_" + std::string(type.name) + "]\ntype = \"" + std::string(type.name) + "\"\n";
+    std::vector<double> values = type.candidacy.variants.front();
+    values[static_cast<std::size_t>(type.candidacy.size_parameter)] *= 0.2;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      everything += estimated(std::string(type.parameters[i].key), std::to_string(values[i]) + " " + std::string(type.parameters[i].unit));
+    }
+  }
+  Motor motor = MotorFile(everything).read();
+  for (auto& [key, figure] : motor.figures) {
+    figure.spread.reset();
+  }
+  duty_.ambient_C.spread.reset();
+  duty_.load.spread.reset();
+  const MotorEvaluation result = evaluation(motor, 8);
+  EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 2e-3);
+  EXPECT_NEAR(result.stator_peak_C.p50, result.stator_peak_C.nominal, 2e-3);
+}
+
+}  // namespace
+}  // namespace heatsoak

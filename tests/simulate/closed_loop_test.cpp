@@ -1,0 +1,208 @@
+// The closed loop against conservation, the inverse dynamics (which knows nothing of it), and its own limits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "robot/inverse_dynamics.h"
+#include "simulate/match_run.h"
+#include "simulate/match_trace.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+Robot shipped_robot(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
+Motor shipped_motor(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
+Robot twente() { return shipped_robot("roboteam_twente_v2024"); }
+Motor ecx_32() { return shipped_motor("maxon_ecx_flat_32l_48v"); }
+
+/// Twente's with three wheels at equal angles and the rollers' drag in place of the measured curve of four.
+Robot three_wheels() {
+  Robot robot = twente();
+  robot.wheel_axis_rad = {-std::numbers::pi / 3.0, std::numbers::pi / 3.0, std::numbers::pi};
+  robot.heading_constant_Nm = kAbsent;
+  return robot;
+}
+
+ScheduledCommand go(double time_s, double x_m, double y_m, double yaw_rad) {
+  return {time_s, Phase::running, {.duration_s = 0.0, .stand = false, .x_m = x_m, .y_m = y_m, .yaw_rad = yaw_rad}};
+}
+
+ScheduledCommand push(double time_s, double direction_rad, double share) {
+  MotionCommand command;
+  command.stand = true;
+  command.duel = true;
+  command.push_direction_rad = direction_rad;
+  command.push_share = share;
+  return {time_s, Phase::running, command};
+}
+
+/// There, back before it has arrived, a turn, and a duel from 5 s on.
+std::vector<ScheduledCommand> lively() {
+  return {go(0.0, 1.5, 0.5, 0.5), go(1.1, -0.5, 0.2, 2.0), go(3.0, 0.3, 0.3, 2.5), push(5.0, 2.6, 0.6)};
+}
+constexpr double kLively_s = 7.0;
+
+struct Driven {
+  DriveScore score;
+  std::string csv;
+  double heat_to_air_J = 0.0;  ///< of all stators
+  double stored_J = 0.0;       ///< in all windings and stators
+};
+
+Driven drive(const Robot& robot, const Motor& motor, const std::vector<ScheduledCommand>& script, double end_s,
+             Planner planner = Planner::jerk_limited, const LoopObserver& observer = {}) {
+  constexpr double kAmbient_C = 25.0;
+  SimulatedRobot simulated(robot, motor, kAmbient_C);
+  const double period_s = control_period_s(robot);
+  const auto controller = tracking_controller(robot, motor.nominal, period_s);
+  const auto plan = ideal_tracking(robot, 1.0, planner);
+  const int wheels = simulated.wheel_count();
+  Driven driven;
+  DriveScorer scorer;
+  MatchRows rows(0.1, kAmbient_C, [&](const MatchRow& row) { append_csv(driven.csv, row, wheels, kAmbient_C); });
+  const MotorValues& values = motor.nominal;
+  drive_script(simulated, *controller, *plan, script, end_s, period_s, [&](const LoopMoment& moment) {
+    scorer.take(moment);
+    rows.take(moment);
+    for (int i = 0; i < wheels; ++i) {
+      driven.heat_to_air_J +=
+          SimulatedRobot::kPeriod_s * (simulated.stator_C(i) - kAmbient_C) / values.thermal_resistance_stator_ambient_K_per_W;
+    }
+    if (observer) {
+      observer(moment);
+    }
+  });
+  for (int i = 0; i < wheels; ++i) {
+    const double winding_J_per_K = values.thermal_time_constant_winding_s / values.thermal_resistance_winding_stator_K_per_W;
+    const double stator_J_per_K = values.thermal_time_constant_stator_s / values.thermal_resistance_stator_ambient_K_per_W;
+    driven.stored_J += winding_J_per_K * (simulated.winding_C(i) - kAmbient_C) + stator_J_per_K * (simulated.stator_C(i) - kAmbient_C);
+  }
+  driven.score = scorer.finish();
+  return driven;
+}
+
+TEST(ClosedLoop, what_the_battery_gives_is_heat_and_motion) {
+  for (const auto& [robot, motor] : {std::pair(twente(), ecx_32()), std::pair(three_wheels(), ecx_32()),
+                                     std::pair(shipped_robot("tigers_v2020"), shipped_motor("nanotec_df45l024048_a2"))}) {
+    for (const Planner planner : {Planner::jerk_limited, Planner::bang_bang}) {
+      const EnergyAccount energy = drive(robot, motor, lively(), kLively_s, planner).score.energy;
+      EXPECT_GT(energy.battery_J, 50.0);
+      EXPECT_NEAR(energy.residual_J(), 0.0, 1e-4 * energy.battery_J) << robot.id;
+      for (const double loss_J : {energy.copper_J, energy.driver_J, energy.motor_drag_J, energy.slip_J, energy.battery_loss_J}) {
+        EXPECT_GT(loss_J, 0.0);
+      }
+    }
+  }
+}
+
+// The losses of the plant arrive in the thermal network: stored there or gone into the air.
+TEST(ClosedLoop, the_motors_losses_warm_windings_and_stators) {
+  const Driven driven = drive(twente(), ecx_32(), lively(), kLively_s);
+  const double lost_J = driven.score.energy.copper_J + driven.score.energy.motor_drag_J;
+  EXPECT_NEAR(driven.stored_J + driven.heat_to_air_J, lost_J, 2e-3 * lost_J);
+  EXPECT_GT(driven.score.winding_peak_C, 25.5);
+}
+
+// Without rise of resistance, drag and rotor, a robot that tracks well needs the currents of the inverse dynamics.
+TEST(ClosedLoop, heats_as_the_inverse_dynamics_says) {
+  Robot robot = twente();
+  Motor motor = ecx_32();
+  motor.nominal.temperature_coefficient_per_K = 0.0;
+  motor.nominal.no_load_current_A = 1e-6;
+  motor.nominal.rotor_inertia_kg_m2 = 0.0;
+  const BodyConfig body = make_body(robot, motor.nominal);
+  double expected_J = 0.0;
+  const Driven driven =
+      drive(robot, motor, {go(0.0, 1.5, 0.7, 1.0), go(2.5, 0.0, 0.0, 0.0)}, 5.0, Planner::jerk_limited, [&](const LoopMoment& moment) {
+        const WheelDemands wheels = inverse_dynamics(
+            body, local_motion(body, moment.plan->pose(), moment.plan->velocity_global(), moment.plan->acceleration_global()));
+        for (const double torque_Nm : wheels.torque_Nm) {
+          const double current_A = torque_Nm / motor.nominal.torque_constant_Nm_per_A;
+          expected_J += motor.nominal.terminal_resistance_ohm * current_A * current_A * SimulatedRobot::kPeriod_s;
+        }
+      });
+  EXPECT_NEAR(driven.score.energy.copper_J, expected_J, 0.03 * expected_J);
+  EXPECT_LT(driven.score.tracking_most_m, 0.01);
+}
+
+TEST(ClosedLoop, a_duel_pushes_at_stall) {
+  const Robot robot = twente();
+  const Motor motor = ecx_32();
+  const BodyConfig body = make_body(robot, motor.nominal);
+  constexpr double kShare = 0.4;
+  const double force_N = kShare * robot.traction_ratio * robot.mass_kg * kGravity_m_per_s2;
+  BodyMotion stall;
+  stall.external = {-force_N, 0.0, 0.0};
+  stall.external_height_m = body.weight.center_of_gravity_height_m;
+  const WheelDemands expected = inverse_dynamics(body, stall);
+  PerWheel current_A{};
+  double fastest_rad_per_s = 0.0;
+  drive(robot, motor, {push(0.0, 0.0, kShare)}, 3.0, Planner::jerk_limited, [&](const LoopMoment& moment) {
+    ASSERT_TRUE(moment.pushes);
+    if (moment.time_s > 2.0) {
+      for (int i = 0; i < 4; ++i) {
+        current_A[i] = moment.out->current_A[i];
+        fastest_rad_per_s = std::max(fastest_rad_per_s, std::abs(moment.robot->state().wheel_speed_rad_per_s[i]));
+      }
+    }
+  });
+  for (int i = 0; i < 4; ++i) {
+    const double expected_A = expected.torque_Nm[i] / motor.nominal.torque_constant_Nm_per_A;
+    EXPECT_NEAR(current_A[i], expected_A, 0.1 * std::abs(expected_A)) << i;
+  }
+  // Wheels creep, as contacts under load do: s = s_0·x/√(1 − x²), x the share of the grip in use.
+  EXPECT_LT(fastest_rad_per_s * robot.wheel_radius_m, 2.0 * robot.slip_speed_m_per_s);
+}
+
+TEST(ClosedLoop, three_wheels_follow_as_well) {
+  const DriveScore score = drive(three_wheels(), ecx_32(), {go(0.0, 1.0, 0.6, 1.0)}, 4.0).score;
+  EXPECT_LT(score.tracking_most_m, 0.02);
+  EXPECT_EQ(score.arrivals_count, 1.0);
+}
+
+// A fresh start is the same to the last bit; hotter air is not.
+TEST(ClosedLoop, is_repeatable) {
+  const Driven once = drive(twente(), ecx_32(), lively(), kLively_s);
+  EXPECT_EQ(once.csv, drive(twente(), ecx_32(), lively(), kLively_s).csv);
+  EXPECT_NE(once.csv, drive(twente(), ecx_32(), lively(), kLively_s, Planner::bang_bang).csv);
+}
+
+// Rows are means over what they span, so their heat is that of the account.
+TEST(ClosedLoop, rows_hold_the_heat) {
+  const Driven driven = drive(twente(), ecx_32(), lively(), kLively_s);
+  std::istringstream lines(driven.csv);
+  double copper_J = 0.0;
+  int rows = 0;
+  for (std::string line; std::getline(lines, line); ++rows) {
+    std::vector<std::string> cells;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) {
+      cells.push_back(cell);
+    }
+    ASSERT_EQ(cells.size(), 16U + 9U * 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+      copper_J += 0.1 * std::stod(cells[16 + 9 * i + 8]);
+    }
+  }
+  EXPECT_EQ(rows, 70);
+  EXPECT_NEAR(copper_J, driven.score.energy.copper_J, 1e-4 * driven.score.energy.copper_J);
+}
+
+TEST(ClosedLoop, what_a_robot_lacks_is_named) {
+  Robot robot = twente();
+  robot.control_rate_Hz = kAbsent;
+  try {
+    static_cast<void>(control_period_s(robot));
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_EQ(failure.diagnostics().front().key, "drive.control_rate");
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

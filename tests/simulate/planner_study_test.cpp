@@ -1,0 +1,86 @@
+// Both planners through the loop: where they must agree, and where physics says what must happen.
+#include "simulate/planner_study.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "duty/match/match_duty.h"
+#include "simulate/match_run.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+constexpr double kBangBang = std::numeric_limits<double>::infinity();
+
+Robot twente() { return read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"); }
+Motor ecx_32() { return read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml"); }
+
+// A jerk without bound is bang-bang, though other code plans it. (At 100 Hz a command that is held from a start without
+// acceleration would tell them apart.)
+TEST(PlannerStudy, much_jerk_is_bang_bang) {
+  Robot robot = twente();
+  robot.control_rate_Hz = 1000.0;
+  const std::vector<StudyCase> cases{{2.0, 10000.0}, {2.0, kBangBang}};
+  const std::vector<StudyResult> results = study_planners(robot, ecx_32(), cases, 2);
+  const auto& [jerk, bang] = std::tie(results[0], results[1]);
+  EXPECT_NEAR(jerk.planned_s, bang.planned_s, 0.005);
+  EXPECT_NEAR(jerk.settled_s, bang.settled_s, 0.01);
+  EXPECT_NEAR(jerk.slip_share, bang.slip_share, 0.02 * bang.slip_share);
+  EXPECT_NEAR(jerk.copper_J, bang.copper_J, 0.01 * bang.copper_J);
+  EXPECT_NEAR(jerk.tracking_rms_m, bang.tracking_rms_m, 0.05 * bang.tracking_rms_m);
+}
+
+TEST(PlannerStudy, below_the_grip_nothing_slides_and_beyond_it_the_jerk_limit_helps) {
+  const double grip = grip_m_per_s2(twente());
+  const std::vector<StudyCase> cases{{0.6 * grip, 6.0}, {0.6 * grip, kBangBang}, {1.5 * grip, 6.0}, {1.5 * grip, kBangBang}};
+  const std::vector<StudyResult> results = study_planners(twente(), ecx_32(), cases, 2);
+  EXPECT_LT(results[0].sliding_share, 1e-3);
+  EXPECT_LT(results[1].sliding_share, 1e-3);
+  EXPECT_GT(results[3].sliding_share, 10.0 * results[2].sliding_share);
+  EXPECT_GT(results[3].overshoot_mean_m, 5.0 * results[2].overshoot_mean_m);
+  EXPECT_GT(results[3].copper_J, results[2].copper_J);
+}
+
+// The first wheel to slide has less than its share of the grip: μ·g is out of reach, and grip grows with μ.
+TEST(PlannerStudy, grip_is_that_of_the_first_wheel) {
+  Robot robot = twente();
+  const double grip = grip_m_per_s2(robot);
+  EXPECT_LT(grip, robot.traction_ratio * kGravity_m_per_s2);
+  robot.center_of_gravity_height_m = 0.0;
+  const double flat = grip_m_per_s2(robot);
+  EXPECT_GT(flat, grip);  // no weight leaves the wheels that push
+  robot.traction_ratio *= 0.5;
+  EXPECT_NEAR(grip_m_per_s2(robot), 0.5 * flat, 1e-4 * flat);
+}
+
+TEST(MatchRun, both_planners_drive_the_same_game) {
+  const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
+  MatchInputs inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();
+  const Robot robot = twente();
+  const Motor motor = ecx_32();
+  const MatchLoad ideal = play_match(inputs, inputs.nominal(), robot, 2, Planner::jerk_limited);
+  const MatchRun jerk = run_match(inputs, robot, motor, {Planner::jerk_limited, 2, 25.0, {}});
+  const MatchRun bang = run_match(inputs, robot, motor, {Planner::bang_bang, 2, 25.0, {}});
+  double phases_J = 0.0;
+  double phases_s = 0.0;
+  for (std::size_t i = 0; i < jerk.phases.size(); ++i) {
+    EXPECT_EQ(jerk.phases[i].time_s, bang.phases[i].time_s);
+    EXPECT_NEAR(jerk.phases[i].time_s, ideal.phases[i].time_s, 0.5);
+    phases_J += jerk.phases[i].copper_J;
+    phases_s += jerk.phases[i].time_s;
+  }
+  EXPECT_NEAR(phases_J, jerk.score.energy.copper_J, 1e-6 * phases_J);
+  EXPECT_NEAR(phases_s, ideal.duration_s, 0.002);
+  EXPECT_NEAR(jerk.score.distance_m, ideal.distance_m, 0.02 * ideal.distance_m);
+  EXPECT_NEAR(jerk.score.energy.residual_J(), 0.0, 1e-4 * jerk.score.energy.battery_J);
+  EXPECT_NEAR(bang.score.energy.residual_J(), 0.0, 1e-4 * bang.score.energy.battery_J);
+  // Faster there, hotter there.
+  EXPECT_GT(bang.score.distance_m, jerk.score.distance_m);
+  EXPECT_GT(bang.score.winding_peak_C, jerk.score.winding_peak_C);
+}
+
+}  // namespace
+}  // namespace heatsoak
