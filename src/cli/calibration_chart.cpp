@@ -46,7 +46,10 @@ Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
   std::vector<Traces> traces;
   for (const ErrorBeforeAfter& each : calibration.fit_error) {
     const std::string what = each.signal.substr(0, each.signal.rfind('_'));
-    Traces trace{{.title = what, .y_label = what + " temperature / °C"}, each.signal};
+    Traces trace;
+    trace.panel.title = what;
+    trace.panel.y_label = what + " temperature / °C";
+    trace.signal = each.signal;
     trace.panel.curves = {{.name = "measured", .color_index = 0},
                           {.name = fmt::format("fit, {:.2f} K rms", each.after.rmse_K), .color_index = 1},
                           {.name = fmt::format("file, {:.2f} K rms", each.before.rmse_K), .color_index = 2, .dashed = true}};

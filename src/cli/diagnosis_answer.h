@@ -20,6 +20,7 @@ struct DiagnosisPicture {
 std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, const DiagnosisInput& input);
 
 /// One self-contained HTML page; `svg` by picture name.
-std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const std::vector<std::pair<std::string, std::string>>& svg);
+std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input,
+                           const std::vector<std::pair<std::string, std::string>>& svg);
 
 }  // namespace heatsoak

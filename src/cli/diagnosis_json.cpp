@@ -65,7 +65,8 @@ Json unexplained_json(const Unexplained& heat) {
             {"time_scale_s", rounded(heat.time_scale_s, 1)},
             {"nats", rounded(heat.gain_nats, 2)}};
   if (!heat.knots.empty()) {
-    json["curve"] = {{"driver", heat.knots}, {"driver_unit", heat.driver_unit}, {"value", heat.curve}, {"sd", heat.curve_sd}, {"unit", heat.curve_unit}};
+    json["curve"] = {
+        {"driver", heat.knots}, {"driver_unit", heat.driver_unit}, {"value", heat.curve}, {"sd", heat.curve_sd}, {"unit", heat.curve_unit}};
   }
   return json;
 }
@@ -114,7 +115,8 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
   }
   json["runs"] = {{"train", Json::array()}, {"holdout", Json::array()}};
   for (const MeasuredRun& run : input.train) {
-    json["runs"]["train"].push_back({{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
+    json["runs"]["train"].push_back(
+        {{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
   }
   for (const MeasuredRun& run : input.holdout) {
     json["runs"]["holdout"].push_back({{"name", run.name},

@@ -25,7 +25,8 @@ std::string row(const std::vector<std::string>& cells, std::string_view tag = "t
 }
 
 std::string error_table(const Diagnosis& diagnosis) {
-  std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "after: rms / K", "before: worst / K", "after: worst / K"}, "th");
+  std::string text =
+      "<table>" + row({"signal", "runs", "before: rms / K", "after: rms / K", "before: worst / K", "after: worst / K"}, "th");
   const auto add = [&](const Errors& before, const Errors& after, const char* where) {
     for (const auto& [signal, error] : before) {
       const auto found = after.find(signal);
@@ -41,7 +42,9 @@ std::string error_table(const Diagnosis& diagnosis) {
 }
 
 std::string effect_table(const Diagnosis& diagnosis) {
-  std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence", "visibility", "look-alikes here"}, "th");
+  std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence",
+                                      "visibility", "look-alikes here"},
+                                     "th");
   for (const FoundEffect& effect : diagnosis.effects) {
     std::string where = effect.condition.empty() ? "always" : "";
     for (const auto& [key, value] : effect.condition) {
@@ -50,12 +53,13 @@ std::string effect_table(const Diagnosis& diagnosis) {
     bool is_first = true;
     for (const FittedParameter& parameter : effect.parameters) {
       const bool is_fitted = parameter.low < parameter.high;
-      text += row({is_first ? effect.id : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
-                   fmt::format("{:.4g} {}", parameter.value, parameter.unit),
-                   is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high) : "not fitted",
-                   is_first ? fmt::format("{:.2g} / {:.2g} W", effect.mean_W, effect.peak_W) : "",
-                   is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "", is_first ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
-                   is_first ? fmt::format("{}", fmt::join(effect.confusable_with, ", ")) : ""});
+      text +=
+          row({is_first ? effect.id : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
+               fmt::format("{:.4g} {}", parameter.value, parameter.unit),
+               is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high) : "not fitted",
+               is_first ? fmt::format("{:.2g} / {:.2g} W", effect.mean_W, effect.peak_W) : "",
+               is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "", is_first ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
+               is_first ? fmt::format("{}", fmt::join(effect.confusable_with, ", ")) : ""});
       is_first = false;
     }
   }
@@ -96,7 +100,9 @@ std::string balance_table(const Diagnosis& diagnosis) {
 }
 
 std::string test_table(const Diagnosis& diagnosis) {
-  std::string text = "<table>" + row({"innovations of", "model", "variance (1 is right)", "Ljung-Box p (40 lags)", "cumulated periodogram / band (below 1 is white)", "kurtosis / normal", "correlated with"}, "th");
+  std::string text = "<table>" + row({"innovations of", "model", "variance (1 is right)", "Ljung-Box p (40 lags)",
+                                      "cumulated periodogram / band (below 1 is white)", "kurtosis / normal", "correlated with"},
+                                     "th");
   const auto add = [&](const std::vector<InnovationTests>& tests, const char* model) {
     for (const InnovationTests& test : tests) {
       std::string inputs;
@@ -104,7 +110,8 @@ std::string test_table(const Diagnosis& diagnosis) {
         inputs += fmt::format("{}{} ({:+.3f})", inputs.empty() ? "" : ", ", name, correlation);
       }
       text += row({test.signal, model, fmt::format("{:.2f}", test.variance_ratio), fmt::format("{:.2g}", test.ljung_box_probability),
-                   fmt::format("{:.2f}", test.periodogram_ratio), fmt::format("{:.2f}", test.kurtosis_ratio), inputs.empty() ? "none" : inputs});
+                   fmt::format("{:.2f}", test.periodogram_ratio), fmt::format("{:.2f}", test.kurtosis_ratio),
+                   inputs.empty() ? "none" : inputs});
     }
   };
   add(diagnosis.tests_before, "before");
@@ -115,12 +122,15 @@ std::string test_table(const Diagnosis& diagnosis) {
 constexpr std::string_view kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1080px;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left}"
-    "th{background:#f2f2f2}svg{max-width:100%;height:auto}p.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid #c8102e}";
+    "th{background:#f2f2f2}svg{max-width:100%;height:auto}p.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid "
+    "#c8102e}";
 
 }  // namespace
 
-std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const std::vector<std::pair<std::string, std::string>>& svg) {
-  std::string text = fmt::format("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
+std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input,
+                           const std::vector<std::pair<std::string, std::string>>& svg) {
+  std::string text = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
   text += fmt::format("<h1>Diagnosis: {}</h1>\n<p class=\"words\">{}</p>\n", to_string(diagnosis.verdict), escaped(diagnosis.description));
   std::vector<std::string> train, holdout;
   for (const MeasuredRun& run : input.train) {
@@ -139,8 +149,10 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     const std::size_t begin = picture.find("<svg");
     text += fmt::format("<h2>{}</h2>\n{}\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
-  text += "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown heat; "
-          "7 nats are asked for.</p>" + ladder_table(diagnosis);
+  text +=
+      "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown heat; "
+      "7 nats are asked for.</p>" +
+      ladder_table(diagnosis);
   text += "<h2>Power balance</h2>" + balance_table(diagnosis);
   text += "<h2>Residual tests</h2>" + test_table(diagnosis);
   if (!diagnosis.experiments.empty()) {

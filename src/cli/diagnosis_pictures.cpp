@@ -23,8 +23,8 @@ struct Axis {
   }
 };
 
-ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before, const ExtendedModel& after, const std::vector<MeasuredRun>& runs,
-                          const std::vector<MeasuredRun>& before_them, const std::string& title) {
+ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before, const ExtendedModel& after,
+                          const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them, const std::string& title) {
   ChartPanel panel{title, "measured − model / K", {}, {}, {{"", 0.0}}};
   ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
   Axis axis;
@@ -47,12 +47,16 @@ ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before
 }
 
 DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& input) {
-  Chart chart{"Residual in K before and after", "runs one behind the other; the model runs freely from the first measured temperatures", "time / min", {}};
+  Chart chart{"Residual in K before and after",
+              "runs one behind the other; the model runs freely from the first measured temperatures",
+              "time / min",
+              {}};
   for (const auto& [signal, error] : diagnosis.before_train) {
     const std::string name = signal.substr(0, signal.rfind('_'));
     chart.panels.push_back(residual_panel(signal, input.model, diagnosis.selection.after.model, input.train, {}, name + ", training runs"));
     if (!input.holdout.empty()) {
-      chart.panels.push_back(residual_panel(signal, input.model, diagnosis.selection.after.model, input.holdout, input.train, name + ", runs never seen"));
+      chart.panels.push_back(
+          residual_panel(signal, input.model, diagnosis.selection.after.model, input.holdout, input.train, name + ", runs never seen"));
     }
   }
   chart.panel_height_px = 260;
@@ -60,7 +64,11 @@ DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& inp
 }
 
 DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
-  Chart chart{"Unknown heat in W before and after", "what must flow into the node besides the model for the temperatures to be as measured; band: ± 2 standard deviations of what is usual after", "time / min", {}};
+  Chart chart{"Unknown heat in W before and after",
+              "what must flow into the node besides the model for the temperatures to be as measured; band: ± 2 standard deviations of "
+              "what is usual after",
+              "time / min",
+              {}};
   for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {
     ChartPanel panel{"into the " + node, "heat / W", {}, {}, {{"", 0.0}}};
     ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
@@ -96,8 +104,10 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, con
     if (heat.knots.size() < 2) {
       continue;
     }
-    Chart chart{fmt::format("Curve found at the {}", heat.node), "straight between seven knots; band: 95 %",
-                heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit), {}};
+    Chart chart{fmt::format("Curve found at the {}", heat.node),
+                "straight between seven knots; band: 95 %",
+                heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
+                {}};
     ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};
     ChartBand band{"95 %", heat.knots, {}, {}, 0};
     for (std::size_t i = 0; i < heat.curve.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 
 #include "base/quantity.h"
@@ -31,6 +32,15 @@ CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& me
                : fmt::format("{} does not end in .svg; pictures are drawn as SVG", name);
   };
   return app.add_option("--plot", file, meaning)->check(is_svg)->type_name("FILE.svg");
+}
+
+std::function<std::string(const std::string&)> whole_number(std::uint64_t most) {
+  return [most](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number = error == std::errc() && end == text.data() + text.size() && (text == "0" || text.front() != '0');
+    return is_number && value <= most ? "" : fmt::format("'{}' is not a whole number from 0 to {}", text, most);
+  };
 }
 
 }  // namespace heatsoak

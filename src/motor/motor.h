@@ -77,7 +77,7 @@ struct MotorEffect {
   std::vector<Figure> parameters;  ///< in the type's declared order
   /// Where it acts: "cooling" -> "fan" as logs name their conditions. Empty: everywhere. An effect with a condition was seen in
   /// some runs only, so predictions leave it out.
-  std::map<std::string, std::string> condition;
+  std::map<std::string, std::string> condition = {};
 };
 
 struct Motor {

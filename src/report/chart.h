@@ -10,8 +10,8 @@ namespace heatsoak {
 /// a pixel or wider.
 struct ChartCurve {
   std::string name;  ///< shown in the legend; empty: not listed
-  std::vector<double> x;
-  std::vector<double> y;
+  std::vector<double> x = {};
+  std::vector<double> y = {};
   int color_index = 0;  ///< place in the palette of eight; the same index is the same colour in every panel
   bool dashed = false;
 };
@@ -19,9 +19,9 @@ struct ChartCurve {
 /// An area between two curves over the same `x`, such as the 5 % to 95 % range of samples.
 struct ChartBand {
   std::string name;  ///< shown in the legend; empty: not listed
-  std::vector<double> x;
-  std::vector<double> low;
-  std::vector<double> high;
+  std::vector<double> x = {};
+  std::vector<double> low = {};
+  std::vector<double> high = {};
   int color_index = 0;
 };
 
@@ -35,16 +35,16 @@ struct ChartLevel {
 struct ChartPanel {
   std::string title;
   std::string y_label;  ///< with unit, "winding temperature / °C"
-  std::vector<ChartCurve> curves;
-  std::vector<ChartBand> bands;
-  std::vector<ChartLevel> levels;
+  std::vector<ChartCurve> curves = {};
+  std::vector<ChartBand> bands = {};
+  std::vector<ChartLevel> levels = {};
 };
 
 struct Chart {
   std::string title;
   std::string subtitle;  ///< where the figures come from, in one line
   std::string x_label;   ///< with unit, "time / min"
-  std::vector<ChartPanel> panels;
+  std::vector<ChartPanel> panels = {};
   int width_px = 1000;
   int panel_height_px = 360;  ///< with its title and tick labels
 };

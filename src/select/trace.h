@@ -14,12 +14,12 @@ struct TraceRow {
   double winding_C = 0.0;
   double stator_C = 0.0;
   double ambient_C = 0.0;
-  double current_A = 0.0;        ///< equivalent DC current, signed like the torque
-  double speed_rad_per_s = 0.0;  ///< of the motor
-  double torque_Nm = 0.0;        ///< at the motor's shaft
-  double motor_V = 0.0;          ///< at the terminals, at this winding temperature
-  double power_in_W = 0.0;       ///< into the terminals
-  std::vector<double> own_C;     ///< of the nodes that effects brought, as own_nodes names them
+  double current_A = 0.0;          ///< equivalent DC current, signed like the torque
+  double speed_rad_per_s = 0.0;    ///< of the motor
+  double torque_Nm = 0.0;          ///< at the motor's shaft
+  double motor_V = 0.0;            ///< at the terminals, at this winding temperature
+  double power_in_W = 0.0;         ///< into the terminals
+  std::vector<double> own_C = {};  ///< of the nodes that effects brought, as own_nodes names them
 };
 
 /// Heat that one effect brought into one node, as the mean over the run.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -182,11 +183,10 @@ Command calibrate_command() {
         add_quantity(app, "--ambient", options->calibration.ambient_C,
                      {"ambient", "degC", Range::between(-60.0, 100.0), "of the surroundings, where a log has no such column"});
         app.add_option("--seed", options->calibration.fit.seed, "of the starting points; same seed, same bytes")
-            ->check(whole_number)
+            ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
             ->capture_default_str();
         app.add_option("--threads", options->calibration.fit.threads, "0: all cores; the result does not depend on it")
-            ->check(whole_number)
-            ->check(CLI::Range(0, 1024))
+            ->check(whole_number(1024))
             ->capture_default_str();
         session.add_data_option(app);
         session.add_json_option(app);

@@ -153,16 +153,6 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"runaway", each.destroyed}};
 }
 
-/// CLI11 takes -1 for 2^64 − 1, a number too large for the largest one, and 010 for 8.
-auto whole_number(std::uint64_t most) {
-  return [most](const std::string& text) -> std::string {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_number = error == std::errc() && end == text.data() + text.size() && (text == "0" || text.front() != '0');
-    return is_number && value <= most ? "" : fmt::format("'{}' is not a whole number from 0 to {}", text, most);
-  };
-}
-
 ExitCode run(Options& options, Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));

@@ -124,9 +124,7 @@ class Builder {
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
         const ParameterSpec& spec = effect.type->parameters[i];
         const std::string name = fmt::format("{}.{}", effect.name, spec.key);
-        const int place = place_of(all_.model.network, name);
-        const bool is_choice = place >= 0 && all_.model.network.parameters()[static_cast<std::size_t>(place)].is_choice;
-        if (is_choice || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
+        if (!spec.choices.empty() || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
           all_.held.push_back(fmt::format("effects.{} is held: the file states no spread for it", name));
           continue;
         }
