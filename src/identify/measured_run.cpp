@@ -62,7 +62,7 @@ class Rows {
         vehicle_speed_m_per_s_(values("vehicle_speed_m_per_s", recording)),
         neighbour_C_(values("neighbour_C", recording)),
         age_h_(values("age_h", recording)),
-        surroundings_C_(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording)),
+        surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
         time_s_(recording.time_s),
         options_(options) {}
 
@@ -75,7 +75,7 @@ class Rows {
     if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
       at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
     }
-    at.ambient_C = surroundings_C_ ? (*surroundings_C_)[row] : options_.ambient_C;
+    at.ambient_C = surroundings_C_.empty() ? options_.ambient_C : surroundings_C_[row];
     at.shaft_power_W = of(torque_Nm_, row) * speed_rad_per_s;
     at.input_power_W = of(input_power_W_, row);
     at.bus_V = of(bus_V_, row);
@@ -86,18 +86,41 @@ class Rows {
     at.age_h = of(age_h_, row);
     return at;
   }
-  [[nodiscard]] bool has_surroundings() const { return surroundings_C_ != nullptr; }
+  [[nodiscard]] bool has_surroundings() const { return !surroundings_C_.empty(); }
 
  private:
   static const std::vector<double>* values(std::string_view key, const Recording& recording) {
     const Channel* const channel = recording.find(key);
     return has_values(channel) ? &channel->values : nullptr;
   }
+  /// Air and coolant change slowly: between two samples less than a minute apart a straight line is what they did.
+  static std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s) {
+    constexpr double kSlow_s = 60.0;
+    std::vector<double> all = values ? *values : std::vector<double>();
+    std::size_t last = all.size();
+    for (std::size_t row = 0; row < all.size(); ++row) {
+      if (std::isnan(all[row])) {
+        continue;
+      }
+      for (std::size_t gap = last + 1; last < row && time_s[row] - time_s[last] < kSlow_s && gap < row; ++gap) {
+        all[gap] = all[last] + (all[row] - all[last]) * (time_s[gap] - time_s[last]) / (time_s[row] - time_s[last]);
+      }
+      if (last == all.size() && row > 0 && time_s[row] - time_s.front() < kSlow_s) {
+        std::fill(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(row), all[row]);
+      }
+      last = row;
+    }
+    if (last < all.size() && time_s.back() - time_s[last] < kSlow_s) {
+      std::fill(all.begin() + static_cast<std::ptrdiff_t>(last), all.end(), all[last]);
+    }
+    return all;
+  }
   /// 0 where there is no such channel: what the model needs is checked beforehand.
   static double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
 
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
-      *neighbour_C_, *age_h_, *surroundings_C_;
+      *neighbour_C_, *age_h_;
+  std::vector<double> surroundings_C_;
   const std::vector<double>& time_s_;
   const MeasuredRunOptions& options_;
 };

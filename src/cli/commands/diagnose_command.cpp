@@ -92,6 +92,11 @@ std::string text_of(const std::filesystem::path& file) {
 
 void hand_out(const Options& options, const Motor& motor, const Diagnosis& diagnosis, const DiagnosisInput& input, Session& session) {
   const std::filesystem::path folder(options.out);
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) {
+    throw Failure(ExitCode::bad_input, fmt::format("{}: the folder cannot be made: {}", options.out, problem.message()));
+  }
   std::vector<std::pair<std::string, std::string>> svg;
   for (const DiagnosisPicture& picture : diagnosis_pictures(diagnosis, input)) {
     svg.emplace_back(picture.name, draw_svg(picture.chart));
