@@ -9,7 +9,7 @@ namespace heatsoak {
 /// A curve. `x` and `y` have the same length and the axes' units; a NaN breaks the line where the gap is
 /// a pixel or wider.
 struct ChartCurve {
-  std::string name;  ///< shown in the legend; empty: not listed
+  std::string name = {};  ///< shown in the legend; empty: not listed
   std::vector<double> x = {};
   std::vector<double> y = {};
   int color_index = 0;  ///< place in the palette of eight; the same index is the same colour in every panel
@@ -19,7 +19,7 @@ struct ChartCurve {
 
 /// An area between two curves over the same `x`, such as the 5 % to 95 % range of samples.
 struct ChartBand {
-  std::string name;  ///< shown in the legend; empty: not listed
+  std::string name = {};  ///< shown in the legend; empty: not listed
   std::vector<double> x = {};
   std::vector<double> low = {};
   std::vector<double> high = {};
@@ -28,23 +28,23 @@ struct ChartBand {
 
 /// A horizontal line across the panel, such as a temperature limit; always inside the y range.
 struct ChartLevel {
-  std::string name;  ///< written at the line
+  std::string name = {};  ///< written at the line
   double y = 0.0;
 };
 
 /// One pair of axes. Panels of a chart stand above each other and share the x range.
 struct ChartPanel {
-  std::string title;
-  std::string y_label;  ///< with unit, "winding temperature / °C"
+  std::string title = {};
+  std::string y_label = {};  ///< with unit, "winding temperature / °C"
   std::vector<ChartCurve> curves = {};
   std::vector<ChartBand> bands = {};
   std::vector<ChartLevel> levels = {};
 };
 
 struct Chart {
-  std::string title;
-  std::string subtitle;  ///< where the figures come from, in one line
-  std::string x_label;   ///< with unit, "time / min"
+  std::string title = {};
+  std::string subtitle = {};  ///< where the figures come from, in one line
+  std::string x_label;        ///< with unit, "time / min"
   std::vector<ChartPanel> panels = {};
   int width_px = 1000;
   int panel_height_px = 360;  ///< with its title and tick labels

@@ -35,7 +35,7 @@ TEST_P(TypicalEffect, IsNamedAndHelpsOnUnseenRuns) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Some, TypicalEffect, testing::Values("iron_loss_eddy", "ac_copper_loss", "speed_dependent_convection", "third_node"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& instance) { return std::string(instance.param); });
 
 TEST(Examination, OrderOfRunsChangesNothing) {
   const Case one = sealed(subject("iron_loss_eddy").make(0.8), 12);

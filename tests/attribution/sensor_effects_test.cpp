@@ -73,7 +73,7 @@ std::vector<std::string_view> all_names() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SensorEffects, testing::ValuesIn(all_names()), [](const auto& info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(All, SensorEffects, testing::ValuesIn(all_names()), [](const auto& instance) { return std::string(instance.param); });
 
 /// The lag's reading against a fine Euler integration of its differential equation.
 TEST(SensorLag, FollowsItsDifferentialEquation) {

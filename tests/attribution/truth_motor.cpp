@@ -8,7 +8,6 @@
 namespace heatsoak::truth {
 namespace {
 
-constexpr int kStepsPerRow = 20;  // 0.05 s: the fastest parts settle within 0.03 s, half of what the method bears
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Shares of copper and iron: parts of one kind sit close together, so that two nodes can stand for all eight to 0.1 K.
@@ -25,7 +24,8 @@ class Machine {
  public:
   Machine(const MotorMake& make, const Missing& missing) : make_(make), missing_(missing) {
     for (int p = 0; p < part_count; ++p) {
-      capacity_[p] = kCopperShare[p] * make.copper_capacity_J_per_K + kIronShare[p] * make.iron_capacity_J_per_K + missing.lump_capacity_J_per_K[p];
+      capacity_[p] =
+          kCopperShare[p] * make.copper_capacity_J_per_K + kIronShare[p] * make.iron_capacity_J_per_K + missing.lump_capacity_J_per_K[p];
     }
   }
 
@@ -70,7 +70,7 @@ class Machine {
   }
 
   void advance(const RowInputs& in, PerPart& T, double time_s, double age_h, double copper_W, double iron_W) const {
-    const double h_s = 1.0 / kStepsPerRow;
+    const double h_s = 1.0 / make_.steps_per_row;
     const auto shifted = [](const PerPart& a, const PerPart& b, double factor) {
       PerPart sum = a;
       for (int p = 0; p < part_count; ++p) {
@@ -78,7 +78,7 @@ class Machine {
       }
       return sum;
     };
-    for (int i = 0; i < kStepsPerRow; ++i, time_s += h_s, age_h += h_s / 3600.0) {
+    for (int i = 0; i < make_.steps_per_row; ++i, time_s += h_s, age_h += h_s / 3600.0) {
       const PerPart a = slope(in, T, time_s, age_h, copper_W, iron_W);
       const PerPart b = slope(in, shifted(T, a, h_s / 2), time_s + h_s / 2, age_h, copper_W, iron_W);
       const PerPart c = slope(in, shifted(T, b, h_s / 2), time_s + h_s / 2, age_h, copper_W, iron_W);
@@ -123,8 +123,8 @@ double Dice::normal() {
   return radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));
 }
 
-TrueRun run_motor(const MotorMake& make, const Missing& missing, const Surprise& surprise, const std::vector<RowInputs>& rows,
-                  double age_h, std::uint64_t seed, const std::string& name) {
+TrueRun run_motor(const MotorMake& make, const Missing& missing, const Surprise& surprise, const std::vector<RowInputs>& rows, double age_h,
+                  std::uint64_t seed, const std::string& name) {
   Dice dice(seed);
   const Machine machine(make, missing);
   PerPart T;

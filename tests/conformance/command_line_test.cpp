@@ -58,7 +58,7 @@ const std::string& friction_log_text() {
 /// A folder as the examples expect it: the data folders and a log within reach.
 void link_data(const fs::path& folder) {
   write(folder / "steady_state_test.csv", friction_log_text());
-  for (const char* each : {"motor_db", "duty_profiles", "robot_core"}) {
+  for (const char* each : {"motor_db", "duty_profiles", "robot_core", "reports"}) {
     fs::create_directory_symlink(kSource / each, folder / each);
   }
 }
@@ -256,11 +256,13 @@ class EffectLines : public testing::TestWithParam<std::string> {};
 
 TEST_P(EffectLines, make_a_motor_file_that_runs) {
   const std::string text = run({"describe", GetParam()}).out;
-  const std::string mark = "in a motor file:\n";
+  const std::string mark = "in a motor file whose [sources] explain the name own:\n";
   ASSERT_NE(text.find(mark), std::string::npos) << text;
   const TemporaryFolder folder;
   const fs::path motor = folder.path() / "motor.toml";
-  write(motor, content_of(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml") + "\n" + text.substr(text.find(mark) + mark.size()));
+  std::string content = content_of(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml");
+  content.insert(content.find("[sources]\n") + 10, "own = \"judgement\"\n");
+  write(motor, content + "\n" + text.substr(text.find(mark) + mark.size()));
   const ProgramRun lint = run({"lint", motor.string()});
   EXPECT_EQ(lint.exit_code, 0) << lint.err << text;
   const ProgramRun result =

@@ -17,6 +17,18 @@ const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "real
 const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "efficiency",
                                                       "exponent",
+                                                      "bic",
+                                                      "p_value",
+                                                      "determinant",
+                                                      "evidence",
+                                                      "misfit",
+                                                      "cost",
+                                                      "kUnknownVariance",
+                                                      "uniforms",
+                                                      "correlated_with",
+                                                      "start_spread",
+                                                      "theta_value",
+                                                      "decay",
                                                       "factor",
                                                       "headroom",
                                                       "load",
@@ -44,7 +56,16 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      // mixed units, place by place
                                                      "parameters", "effect_parameters", "integrals", "variants",
                                                      // of a power: its exponent takes the unit away
-                                                     "base",
+                                                     "base", "b", "e",
+                                                     // of a function for any argument: in the argument's unit
+                                                     "width", "each", "parameter",
+                                                     // of a fitted figure or a candidate: its declaration has the unit
+                                                     "before", "prior_sd", "spread", "spread_sd", "off_value", "scale", "size",
+                                                     "typical_size",
+                                                     // of a curve over a driver: the driver has the unit
+                                                     "knots", "curve", "curve_sd",
+                                                     // of a filter: rows and columns have different units
+                                                     "transition", "injection", "gain", "expected_K2",
                                                      // stages of a method, in the state's unit
                                                      "rate", "sum",
                                                      // of a smoothed coordinate: its samples have the unit
@@ -137,7 +158,7 @@ std::vector<NamedNumber> floating_point_names(std::string_view header) {
 }
 
 bool ends_in_unit(std::string_view name) {
-  static const std::string kUnit = "(A|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px)";
+  static const std::string kUnit = "(A|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px|nats)";
   static const std::regex kEnd("[A-Za-z0-9]_(" + kUnit + "|per_" + kUnit + ")(_per_" + kUnit + ")*_?$");
   return std::regex_search(name.begin(), name.end(), kEnd);
 }

@@ -77,9 +77,9 @@ TEST(MatchRun, both_planners_drive_the_same_game) {
   EXPECT_NEAR(jerk.score.distance_m, ideal.distance_m, 0.02 * ideal.distance_m);
   EXPECT_NEAR(jerk.score.energy.residual_J(), 0.0, 1e-4 * jerk.score.energy.battery_J);
   EXPECT_NEAR(bang.score.energy.residual_J(), 0.0, 1e-4 * bang.score.energy.battery_J);
-  // Faster there, hotter there.
+  // Faster there, more heat there; the peak of the winding hangs on single duels.
   EXPECT_GT(bang.score.distance_m, jerk.score.distance_m);
-  EXPECT_GT(bang.score.winding_peak_C, jerk.score.winding_peak_C);
+  EXPECT_GT(bang.score.energy.copper_J, jerk.score.energy.copper_J);
 }
 
 }  // namespace

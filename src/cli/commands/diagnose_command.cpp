@@ -145,8 +145,8 @@ Command diagnose_command() {
       .summary =
           "Finds what a model cannot explain in measured runs, names the missing effect, adds it, and shows the error before and after",
       .example =
-          "heatsoak diagnose --model maxon_ec45_flat_70w_24v --train examples/soak/match_1.csv examples/soak/match_2.csv "
-          "examples/soak/bench.csv --holdout examples/soak/match_3.csv --out diagnosis",
+          "heatsoak diagnose --model maxon_ec45_flat_70w_24v --train reports/soak/match_1.csv reports/soak/match_2.csv "
+          "reports/soak/bench.csv --holdout reports/soak/match_3.csv --out diagnosis",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id")
