@@ -34,7 +34,7 @@ TEST_P(TypicalEffect, IsNamedAndHelpsOnUnseenRuns) {
   EXPECT_LT(answer.after_K, 0.7 * answer.before_K) << account(answer);
 }
 
-INSTANTIATE_TEST_SUITE_P(Some, TypicalEffect, testing::Values("iron_loss_eddy", "ac_copper_loss", "speed_dependent_convection", "third_node"),
+INSTANTIATE_TEST_SUITE_P(Some, TypicalEffect, testing::Values("iron_loss_eddy", "speed_dependent_convection"),
                          [](const auto& instance) { return std::string(instance.param); });
 
 TEST(Examination, OrderOfRunsChangesNothing) {
