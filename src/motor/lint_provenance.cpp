@@ -20,7 +20,10 @@ void for_each_figure(const Motor& motor, const Visit& visit) {
   }
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      visit(fmt::format("{}.{}", effect.name, effect.type->parameters[i].key), effect.parameters[i]);
+      // A choice is a word, not a figure that somebody found.
+      if (effect.type->parameters[i].choices.empty()) {
+        visit(fmt::format("{}.{}", effect.name, effect.type->parameters[i].key), effect.parameters[i]);
+      }
     }
   }
 }
