@@ -167,7 +167,7 @@ TEST(FrictionFit, an_undisturbed_drive_gives_the_friction_within_millivolts) {
   }
 }
 
-TEST(FrictionFit, DISABLED_bad_rows_and_return_legs_are_left_out) {
+TEST(FrictionFit, bad_rows_and_return_legs_are_left_out) {
   const Case known = any_case(4);
   const SteadyParts steady = parts_of(known, usual_drive(), 4);
   int returns = 0;
@@ -196,7 +196,7 @@ TEST(FrictionFit, DISABLED_bad_rows_and_return_legs_are_left_out) {
 
 /// Straight ahead no wheel stands, at 60° wheel 2 (axle at 30°, rolling along 120°) turns with cos 60°, wheel 1 (rolling
 /// along 60°) fully; at −30° wheel 1 should stand.
-TEST(FrictionFit, DISABLED_a_wheel_that_should_stand_tells_nothing) {
+TEST(FrictionFit, a_wheel_that_should_stand_tells_nothing) {
   const Case known = any_case(5);
   const SteadyParts steady = parts_of(known, short_drive({-30.0, 0.0, 60.0, 90.0, 150.0, 180.0, 240.0, 270.0}, {0.5, 1.0}), 5);
   const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
@@ -255,7 +255,7 @@ TEST(FrictionFit, a_robot_that_stands_or_swings_has_no_steady_parts) {
 }
 
 /// Every third heading foretold: a robot file without friction is wrong by the friction, the fit by the pushes only.
-TEST(FrictionFit, DISABLED_foretells_headings_that_it_has_not_seen) {
+TEST(FrictionFit, foretells_headings_that_it_has_not_seen) {
   const Case known = any_case(8);
   const SteadyParts steady = parts_of(known, usual_drive(), 8);
   const auto none = [](const SteadyPart& part) {

@@ -12,7 +12,6 @@
 namespace heatsoak {
 namespace {
 
-constexpr double kStanding_share = 0.1;
 constexpr double kIndependent_share = 0.05;
 constexpr double kSameHeading_rad = 2.5 * std::numbers::pi / 180.0;
 constexpr double kSpeedLevels_share = 0.15;
@@ -46,7 +45,7 @@ WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& ki
     if (!part.is_rotation) {
       point.sine = std::sin(part.heading_rad + phase_rad);
       point.cosine = std::cos(part.heading_rad + phase_rad);
-      expected = std::abs(point.sine) < kStanding_share ? 0.0 : point.sine;
+      expected = should_stand(kinematics.wheels[wheel], part.heading_rad) ? 0.0 : point.sine;
     }
     // A mean that its own noise could have turned round says nothing about the side either.
     const double doubt_rad_per_s = 3.0 * part.speed_noise_rad_per_s[wheel] / std::sqrt(std::max(1, part.rows_kept[wheel]));
@@ -340,10 +339,10 @@ bool FrictionFit::is_learned() const {
   return std::ranges::any_of(wheels, [](const WheelFriction& wheel) { return wheel.is_learned(); });
 }
 
-std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts) {
+std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings) {
   std::vector<std::size_t> order(parts.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::erase_if(order, [&](std::size_t i) { return parts[i].is_rotation; });
+  std::erase_if(order, [&](std::size_t i) { return parts[i].is_rotation || !is_used(parts[i], settings); });
   const auto turn_rad = [&](std::size_t i) { return wrapped_rad(parts[i].heading_rad + kSameHeading_rad / 2.0); };  // 0° and −0° stay one
   std::ranges::stable_sort(order, {}, turn_rad);
   std::vector<int> numbers(parts.size(), -1);
@@ -361,7 +360,7 @@ std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts) {
 
 FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings) {
   FrictionFit found;
-  const std::vector<int> numbers = heading_numbers(parts);
+  const std::vector<int> numbers = heading_numbers(parts, settings);
   found.headings = parts.empty() ? 0 : *std::ranges::max_element(numbers) + 1;
   for (int wheel = 0; wheel < kinematics.wheel_count; ++wheel) {
     const WheelPoints points = points_of(parts, kinematics, wheel, settings);
@@ -375,7 +374,7 @@ FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics&
 HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings,
                                         const ExpectedVoltages& before) {
   HeldOutError error;
-  const std::vector<int> numbers = heading_numbers(parts);
+  const std::vector<int> numbers = heading_numbers(parts, settings);
   std::vector<SteadyPart> taught;
   std::vector<SteadyPart> held_out;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -12,7 +12,7 @@
 namespace heatsoak {
 
 // In steady motion  V_i = d_i·ω_i + f_i(θ),  f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)).
-// A wheel that should stand by geometry, |t_i·v| < 0.1·|v|, carries no information and is left out, as the paper does.
+// A wheel that should stand by geometry carries no information and is left out, as the paper does.
 // The others turn the way their rolling direction says, so the sign is known; with S = sin(θ + φ_0), C = cos(θ + φ_0),
 // φ_0 that of the rolling direction, the law is linear:  V = d·ω + A·S + B·C + b·sign S  (+ c·sign ω in rotation),
 // a = ±√(A² + B²) and φ = φ_0 + atan(B/A). Fitted robustly over all parts of a wheel (robust_fit.h), legs as clusters.
@@ -60,8 +60,8 @@ struct FitSettings {
   double known_damping_V_s_per_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Headings within 2.5° of each other are one; which of them each part has, −1 for rotation.
-std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts);
+/// Headings within 2.5° of each other are one; which of them each part has, −1 for rotation and for legs that are not used.
+std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings);
 
 FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings);
 
