@@ -233,8 +233,11 @@ Description describe_effect(const EffectType& effect) {
   return result;
 }
 
-/// Names are unique across kinds; a path is looked into by what it holds.
+/// Names are unique across kinds; a path is that of a motor's file.
 Description describe(const std::string& name, const DataFolders& folders) {
+  if (std::filesystem::is_regular_file(name)) {
+    return describe_motor(read_motor(name));
+  }
   if (const EffectType* effect = find_effect(name)) {
     return describe_effect(*effect);
   }
@@ -274,7 +277,7 @@ Command describe() {
           .example = "heatsoak describe maxon_ecx_flat_32l_48v",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto name = std::make_shared<std::string>();
-            app.add_option("name", *name, "id, as `heatsoak list` shows it")->required();
+            app.add_option("name", *name, "id, as `heatsoak list` shows it, or a motor's file")->required();
             session.add_data_option(app);
             session.add_json_option(app);
             return [name, &session] {

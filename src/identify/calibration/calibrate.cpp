@@ -60,13 +60,7 @@ class Calibrating {
       : recordings_(recordings), holdout_(holdout), options_(options) {}
 
   Calibration run(const Motor& motor) {
-    for (const Recording& recording : recordings_) {
-      const DataQuality quality = assess(recording, {});
-      require_thermal(recording, quality);
-      for (const std::string& each : quality.suspicions) {
-        all_.notes.push_back(fmt::format("{}: {}", recording.name, each));
-      }
-    }
+    check(motor);
     all_.motor_model = motor_model(motor, heat_input_for(recordings_), all_have_speed(recordings_));
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     MeasuredRunOptions how;
@@ -88,10 +82,51 @@ class Calibrating {
       all_.next_experiment = std::ranges::min_element(all_.open, {}, &OpenDirection::experiment_min)->experiment;
     }
     refuse_where_nothing_was_learned();
+    refuse_where_nothing_is_explained();
     return std::move(all_);
   }
 
  private:
+  void check(const Motor& motor) {
+    std::vector<Diagnostic> wrong;
+    for (const Recording& recording : recordings_) {
+      const DataQuality quality = assess(recording, {});
+      require_thermal(recording, quality);
+      for (const std::string& each : quality.suspicions) {
+        all_.notes.push_back(fmt::format("{}: {}", recording.name, each));
+      }
+      std::vector<std::string> spoiling = quality.spoiling;
+      if (std::string too_much = current_beyond(motor, quality); spoiling.empty() && !too_much.empty()) {
+        spoiling.push_back(std::move(too_much));
+      }
+      for (const std::string& each : spoiling) {
+        wrong.push_back({{recording.file.string()}, {}, each});
+      }
+    }
+    if (!wrong.empty() && !options_.takes_logs_as_they_are) {
+      throw Failure(ExitCode::bad_input,
+                    "units or sensors of the logs look wrong; correct them in a mapping (--map), or if they are right go on with --as-is",
+                    std::move(wrong));
+    }
+  }
+
+  /// More than the winding lets through at thrice the nominal voltage is another unit.
+  static std::string current_beyond(const Motor& motor, const DataQuality& quality) {
+    const auto found = std::ranges::find_if(quality.channels, [](const ChannelQuality& each) { return each.quantity.key == "current_A"; });
+    if (found == quality.channels.end()) {
+      return {};
+    }
+    constexpr double kMostVoltage_ratio = 3.0;
+    const double most_A = kMostVoltage_ratio * motor.nominal.nominal_voltage_V / motor.nominal.terminal_resistance_ohm;
+    const double reached_A = std::max(std::abs(found->low), std::abs(found->high));
+    return reached_A > most_A
+               ? fmt::format(
+                     "current_A reaches {} A; through {} ohm at three times the nominal voltage flow {} A: is it in "
+                     "milliamperes, or is it another motor?",
+                     significant(reached_A, 3), significant(motor.nominal.terminal_resistance_ohm, 3), significant(most_A, 3))
+               : std::string();
+  }
+
   /// What the fit says about itself.
   void warn() {
     const Fit& fit = all_.fit;
@@ -166,6 +201,45 @@ class Calibrating {
       why += fmt::format("\n  open: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
     }
     throw Failure(ExitCode::cannot_answer, why);
+  }
+
+  /// Figures of a model that does not follow the runs mean nothing, however narrow their intervals.
+  void refuse_where_nothing_is_explained() const {
+    std::string why;
+    for (const ErrorBeforeAfter& each : all_.fit_error) {
+      const double moves_K = standard_deviation_K(each.signal);
+      if (each.after.rmse_K > moves_K) {
+        why += fmt::format("\n  {} is {} K rms off, more than it moves (standard deviation {} K)", each.signal,
+                           significant(each.after.rmse_K, 2), significant(moves_K, 2));
+      }
+    }
+    if (!why.empty()) {
+      throw Failure(
+          ExitCode::cannot_answer,
+          fmt::format("no figures of this motor make the model follow these logs{}\n  is it another motor, a wrong unit, a sensor "
+                      "elsewhere, or heat that no column tells of? `heatsoak log inspect` shows each channel",
+                      why));
+    }
+  }
+
+  [[nodiscard]] double standard_deviation_K(const std::string& signal) const {
+    double sum_K = 0.0;
+    double squares_K2 = 0.0;
+    double count = 0.0;
+    for (const MeasuredRun& run : all_.runs) {
+      const auto sensor = std::ranges::find(run.sensors, signal, &Sensor::signal);
+      if (sensor == run.sensors.end()) {
+        continue;
+      }
+      for (const double each_C : run.measured_C.col(sensor - run.sensors.begin())) {
+        if (!std::isnan(each_C)) {
+          sum_K += each_C;
+          squares_K2 += each_C * each_C;
+          count += 1.0;
+        }
+      }
+    }
+    return std::sqrt(std::max(0.0, squares_K2 / count - sum_K * sum_K / (count * count)));
   }
 
   std::span<const Recording> recordings_;

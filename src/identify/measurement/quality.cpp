@@ -186,7 +186,9 @@ DataQuality assess(const Recording& recording, const RecordingReport& report) {
       }
     }
   }
-  quality.suspicions = suspicions(recording, quality.channels);
+  Suspicions suspected = suspicions(recording, quality.channels);
+  quality.suspicions = std::move(suspected.all);
+  quality.spoiling = std::move(suspected.spoiling);
   quality.thermal = thermal_fitness(recording, quality);
   quality.drive = drive_fitness(recording, quality);
   return quality;
