@@ -28,10 +28,16 @@ struct Case {
   Truth truth;
 };
 
-/// The long statistics: HEATSOAK_FRICTION_SEEDS=200 (two minutes); six drives without it.
+/// The long statistics, `ctest -C statistics -L statistics`, drives 200 times (two minutes); six drives without it.
 int seeds_wanted() {
   const char* given = std::getenv("HEATSOAK_FRICTION_SEEDS");
   return given ? std::atoi(given) : 6;
+}
+
+/// f(θ) of a wheel.
+double friction_V(const Truth& truth, std::size_t wheel, double heading_rad) {
+  const double s = std::sin(heading_rad + truth.phase_rad[wheel]);
+  return truth.sine_V[wheel] * s + std::copysign(truth.constant_V[wheel], s);
 }
 
 /// A robot with 0.9 Ω, 33 mN m/A and friction of its own at every wheel.
@@ -108,7 +114,7 @@ struct Coverage {
 
 TEST(FrictionFit, intervals_hold_the_truth_of_95_percent_of_drives) {
   const int seeds = seeds_wanted();
-  Coverage damping, sine, constant, phase;
+  Coverage damping, sine, constant, phase, offset;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Case known = any_case(static_cast<std::uint64_t>(seed));
     const FrictionLog log = log_of(DriveOnPlant(known.plant, usual_drive(), static_cast<std::uint64_t>(seed)).rows(), 4);
@@ -121,12 +127,20 @@ TEST(FrictionFit, intervals_hold_the_truth_of_95_percent_of_drives) {
       constant.add(known.truth.constant_V[i], fit.wheels[i].constant_V);
       const double turns = std::remainder(known.truth.phase_rad[i] - fit.wheels[i].phase_rad.value, 2.0 * std::numbers::pi);
       phase.add(fit.wheels[i].phase_rad.value + turns, fit.wheels[i].phase_rad);
+      for (const HeadingLine& line : fit.lines[i]) {
+        if (line.damping_V_s_per_rad.is_known()) {
+          offset.add(friction_V(known.truth, i, line.heading_rad), line.offset_V);
+        }
+      }
     }
   }
-  for (const auto& [name, coverage] : {std::pair("damping", damping), {"a", sine}, {"b", constant}, {"phase", phase}}) {
+  for (const auto& [name, coverage] :
+       {std::pair("damping", damping), {"a", sine}, {"b", constant}, {"phase", phase}, {"offset of a heading", offset}}) {
     std::cout << name << ": " << coverage.inside << " of " << coverage.all << " inside, largest error " << coverage.worst << "\n";
-    // 95 %, less three standard errors of the share; the wheels of a drive share its pushes, so drives are counted.
-    EXPECT_GE(coverage.inside, (0.95 - 3.0 * std::sqrt(0.95 * 0.05 / seeds)) * coverage.all) << name;
+    // 95 % within three standard errors of the share; the wheels of a drive share its pushes, so drives are counted.
+    const double margin = 3.0 * std::sqrt(0.95 * 0.05 / seeds);
+    EXPECT_GE(coverage.inside, (0.95 - margin) * coverage.all) << name;
+    EXPECT_LE(coverage.inside, (0.95 + margin) * coverage.all) << name << ": wider than it says";
   }
 }
 
@@ -161,8 +175,7 @@ TEST(FrictionFit, an_undisturbed_drive_gives_the_friction_within_millivolts) {
     EXPECT_GT(wheel.r2_ratio, 0.999);
     // what every heading says by itself
     for (const HeadingLine& line : fit.lines[i]) {
-      const double s = std::sin(line.heading_rad + known.truth.phase_rad[i]);
-      EXPECT_NEAR(line.offset_V.value, known.truth.sine_V[i] * s + std::copysign(known.truth.constant_V[i], s), 0.06);
+      EXPECT_NEAR(line.offset_V.value, friction_V(known.truth, i, line.heading_rad), 0.06);
     }
   }
 }

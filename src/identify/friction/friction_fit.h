@@ -26,6 +26,7 @@ struct WheelFriction {
   Estimate rotation_V;                                         ///< c; NaN without legs of rotation
   bool damping_is_given = false;                               ///< not found, taken from what is known of the robot
   bool phase_is_given = false;                                 ///< too few headings: that of the rolling direction
+  bool phase_is_bounded = false;                               ///< beyond it the wheel would turn another way than it did
   double r2_ratio = std::numeric_limits<double>::quiet_NaN();  ///< share of the voltage's variance that is explained
   double rmse_V = std::numeric_limits<double>::quiet_NaN();
   int parts_used = 0;
@@ -35,8 +36,10 @@ struct WheelFriction {
   std::string problem;  ///< why it was not learned; empty where it was
 
   [[nodiscard]] bool is_learned() const { return problem.empty(); }
-  /// Of the driver in steady motion; `side` is the sign of the wheel's speed.
+  /// Of the driver in steady motion, the friction against the wheel's speed: near a heading on which the wheel stands the
+  /// sign of sin(θ + φ) need not be that.
   [[nodiscard]] double voltage_V(double heading_rad, double wheel_speed_rad_per_s) const;
+  /// f(θ)
   [[nodiscard]] double friction_V(double heading_rad) const;
 };
 

@@ -290,9 +290,11 @@ void add_run(const FrictionLog& log, const Kinematics& kinematics, std::size_t b
 
 }  // namespace
 
-bool should_stand(const WheelDirections& wheel, double heading_rad) {
-  return std::abs(wheel.rolling_x_share * std::cos(heading_rad) + wheel.rolling_y_share * std::sin(heading_rad)) < 0.1;
+double rolling_share(const WheelDirections& wheel, double heading_rad) {
+  return wheel.rolling_x_share * std::cos(heading_rad) + wheel.rolling_y_share * std::sin(heading_rad);
 }
+
+bool should_stand(const WheelDirections& wheel, double heading_rad) { return std::abs(rolling_share(wheel, heading_rad)) < 0.1; }
 
 SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const Kinematics& kinematics) {
   SteadyParts found;

@@ -41,6 +41,8 @@ struct SteadyParts {
   int return_legs = 0;
 };
 
+/// t_i·v/|v|: with it a wheel turns on this heading.
+double rolling_share(const WheelDirections& wheel, double heading_rad);
 /// By geometry, as the paper has it: |t_i·v| < 0.1·|v|. Such a wheel tells nothing.
 bool should_stand(const WheelDirections& wheel, double heading_rad);
 
