@@ -61,7 +61,7 @@ TEST(Calibration, UnknownHeatDoesNotFoolIt) {
   };
   constexpr int kAll = kCases * 6;
   EXPECT_GE(covered(true), kAll * 3 / 4);
-  // Least squares that takes the measured heat for all heat claims a tenth of the width, and is wrong most of the time.
+  // Least squares that takes the measured heat for all heat claims far narrower ones, and is wrong most of the time.
   EXPECT_LE(covered(false), kAll / 2);
 }
 

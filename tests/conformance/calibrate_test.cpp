@@ -135,6 +135,29 @@ TEST(Calibrate, LogsThatLookWrongAreTakenAsTheyAreWhereAsked) {
   EXPECT_THAT(found.out, HasSubstr("note: log: speed_rad_per_s reaches"));
 }
 
+TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
+  const TemporaryFolder folder;
+  const std::string log = (kSoak / "match_1.csv").string();
+  write(folder.path() / "copy.csv", content_of(log));
+  for (const std::vector<std::string>& logs :
+       {std::vector<std::string>{log, "copy.csv"}, std::vector<std::string>{log, "--holdout", "copy.csv"}}) {
+    std::vector<std::string> arguments{"calibrate", "--motor", kMotor, "--out", "model.toml"};
+    arguments.insert(arguments.end(), logs.begin(), logs.end());
+    const ProgramRun found = run(arguments, in(folder.path()));
+    EXPECT_EQ(found.exit_code, 2);
+    EXPECT_THAT(found.err, HasSubstr("copy.csv: error: holds the same rows as"));
+  }
+}
+
+TEST(Calibrate, HeldOutLogsAreLookedAtToo) {
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", spoilt(each_cell(4, [](double current_A) { return std::to_string(1e3 * current_A); })));
+  const ProgramRun found = run(
+      {"calibrate", "--motor", kMotor, (kSoak / "bench.csv").string(), "--holdout", "log.csv", "--out", "model.toml"}, in(folder.path()));
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.err, HasSubstr("in milliamperes"));
+}
+
 /// The example of the README.
 class CalibratedModel : public testing::Test {
  protected:
