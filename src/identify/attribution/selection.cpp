@@ -150,9 +150,13 @@ class Selector {
       }
       const std::vector<int> set{j};
       const SetScore best = table.best(set, base.place);
-      JudgedCandidate judged{candidates[static_cast<std::size_t>(j)], best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0};
+      JudgedCandidate judged;
+      judged.candidate = candidates[static_cast<std::size_t>(j)];
+      judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
       judged.visibility_ratio = table.visibility_ratio(base, j);
       judged.size_share = best.coefficient[table.free_count()];
+      judged.place = best.place;
+      judged.step = best.coefficient.head(table.free_count());
       const std::vector<double> left_out = table.left_out_gains_nats(base, best);
       const std::vector<SizeInRun> sizes = table.size_by_run(best, j);
       for (std::size_t r = 0; r < left_out.size(); ++r) {
@@ -206,9 +210,11 @@ class Selector {
     };
     std::vector<Tried> tried;
     const double least = rules_.least_gain_nats;
-    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.6 * round.ladder.front().gain_nats - 20.0);
+    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.8 * round.ladder.front().gain_nats - 20.0);
     for (JudgedCandidate& each : round.ladder) {
-      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats) {
+      // Shapes are free in a refit: of several variants of one effect the best leads to where the others would.
+      const bool is_variant = std::ranges::any_of(tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id; });
+      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats || is_variant) {
         continue;
       }
       const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
@@ -222,7 +228,7 @@ class Selector {
         }
         continue;
       }
-      RefitResult fit = try_term(each.candidate, each.size_share);
+      RefitResult fit = try_term(each);
       each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
@@ -256,10 +262,21 @@ class Selector {
     return true;
   }
 
-  RefitResult try_term(const Candidate& candidate, double size_share) const {
+  /// From where the linear fit has arrived already.
+  RefitResult try_term(const JudgedCandidate& judged) const {
     RefitOptions options = options_;
-    options.place = out_.after.place;
-    return refit(with_candidate(out_.after.model, candidate, size_share), input_.runs, out_.after.start_C, options);
+    options.place = judged.place;
+    ExtendedModel model = with_candidate(out_.after.model, judged.candidate, judged.size_share);
+    Eigen::VectorXd theta = model.theta();
+    const Eigen::Index inner = out_.after.model.model.free_count();
+    const Eigen::Index sensors = judged.step.size() - inner;
+    theta.head(inner) += judged.step.head(inner);
+    theta.segment(model.model.free_count(), sensors) += judged.step.tail(sensors);
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
+    }
+    model.set_theta(theta);
+    return refit(std::move(model), input_.runs, out_.after.start_C, options);
   }
 
   /// The first curve that physics and the whole tool allow, refitted in the equations.
@@ -298,7 +315,13 @@ class Selector {
 
   /// Drops what the later terms have made superfluous.
   void check_backwards() {
+    bool has_dropped = false;
     for (std::size_t i = out_.terms.size(); i-- > 0;) {
+      if (i + 1 == out_.terms.size() && !has_dropped) {
+        // Without the last one the model is what it was a round before.
+        out_.terms[i].loss_without_nats = out_.terms[i].gain_nats;
+        continue;
+      }
       RefitOptions options = options_;
       options.place = out_.after.place;
       RefitResult without = refit(with_values_of(with_terms_except(i), out_.after.model), input_.runs, out_.before.start_C, options);
@@ -306,6 +329,8 @@ class Selector {
       if (out_.terms[i].loss_without_nats < rules_.least_gain_nats) {
         out_.after = std::move(without);
         out_.terms.erase(out_.terms.begin() + static_cast<std::ptrdiff_t>(i));
+        has_dropped = true;
+        i = out_.terms.size();
       }
     }
   }
