@@ -134,6 +134,16 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
       lines += fmt::format("wheel {} turning on the spot: {} V\n", i + 1, text(fit.wheels[i].rotation_V, 3));
     }
   }
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (fit.wheels[i].phase_is_bounded) {
+      lines += fmt::format(
+          "wheel {}: past this phase it would have to turn another way than it did; its friction hardly follows a sin(θ+φ) + b sign\n",
+          i + 1);
+    }
+  }
+  if (std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
+    lines += "below 0 V is no friction: the voltage is not in proportion to the modulation, or not to the battery's taken\n";
+  }
   return lines;
 }
 
@@ -167,6 +177,7 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
                       {"legs_outlying", wheel.parts_outlying},
                       {"damping_given", wheel.damping_is_given},
                       {"phase_given", wheel.phase_is_given},
+                      {"phase_bounded", wheel.phase_is_bounded},
                       {"before_rmse_V", number(error.before_of_wheel_V[i])},
                       {"after_rmse_V", number(error.after_of_wheel_V[i])},
                       {"problem", wheel.problem}});
@@ -174,7 +185,8 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
   return wheels;
 }
 
-void draw(const Options& options, const Input& input, const SteadyParts& steady, const FrictionFit& fit, Session& session) {
+void draw(const Options& options, const Input& input, const SteadyParts& steady, const FrictionFit& fit, const FitSettings& settings,
+          Session& session) {
   const std::string of_headings = fmt::format("{} legs on {} headings", steady.parts.size(), fit.headings);
   std::filesystem::path voltage = options.plot;
   voltage.replace_filename(voltage.stem().string() + "_voltage.svg");
@@ -184,7 +196,7 @@ void draw(const Options& options, const Input& input, const SteadyParts& steady,
     session.say(fmt::format("written: {}\n", options.plot));
   }
   session.write(chart.panels.empty() ? std::filesystem::path(options.plot) : voltage,
-                draw_svg(voltage_chart(steady, fit, input.robot.name, options.return_legs == "use")));
+                draw_svg(voltage_chart(steady, fit, make_kinematics(input.robot), input.robot.name, settings)));
   session.say(fmt::format("written: {}\n", (chart.panels.empty() ? std::filesystem::path(options.plot) : voltage).string()));
 }
 
@@ -239,7 +251,7 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
     write_robot(options, content, notes, session);
   }
   if (!options.plot.empty()) {
-    draw(options, input, steady, fit, session);
+    draw(options, input, steady, fit, settings, session);
   }
   answer(input, steady, fit, error, before.from, session);
   return ExitCode::done;
