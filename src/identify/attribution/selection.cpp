@@ -215,8 +215,9 @@ class Selector {
     const double least = rules_.least_gain_nats;
     const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.8 * round.ladder.front().gain_nats - 20.0);
     for (JudgedCandidate& each : round.ladder) {
-      // Shapes are free in a refit: of several variants of one effect the best leads to where the others would.
-      const bool is_variant = std::ranges::any_of(tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id; });
+      // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
+      const bool is_variant = std::ranges::any_of(
+          tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id && t.gain_nats >= each.gain_nats; });
       if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats || is_variant) {
         continue;
       }
