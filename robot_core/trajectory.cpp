@@ -1,5 +1,7 @@
 #include "robot_core/trajectory.h"
 
+#include <limits>
+
 #include "robot_core/trajectory_arrival.h"
 
 namespace robot_core {
@@ -47,6 +49,7 @@ PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const
   AxisArrival<Real> arrivals[kMostAxes];
   axis_count = clamped(axis_count, 0, kMostAxes);
   Real duration_s = 0;
+  Real slopes_s = 0;
   for (int i = 0; i < axis_count; ++i) {
     if (const PlanResult result = pose_axis(start[i], target[i], limits[i], how, axes[i]); result != PlanResult::ok) {
       if (failed_axis != nullptr) {
@@ -56,13 +59,16 @@ PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const
     }
     arrive_first(axes[i], arrivals[i]);
     duration_s = larger(duration_s, arrivals[i].duration_s);
+    slopes_s = larger(slopes_s, absolute(axes[i].problem.a0) + absolute(axes[i].problem.a1));
   }
+  // What arrives together but for rounding stays: a corner of what can be reached has no second chance.
+  const Real same_s = Real(16) * std::numeric_limits<Real>::epsilon() * (duration_s + slopes_s);
   // An axis that cannot arrive in this time puts the arrival off for all. Each has only a few spans of time without arrival.
   constexpr int kMostDelays = 8 * kMostAxes;
   for (int delay = 0, agreed = 0; agreed < axis_count && delay < kMostDelays; ++delay) {
     for (agreed = 0; agreed < axis_count; ++agreed) {
       AxisArrival<Real>& arrival = arrivals[agreed];
-      if (arrival.duration_s != duration_s) {
+      if (absolute(duration_s - arrival.duration_s) > same_s) {
         arrive_from(axes[agreed], duration_s, arrival);
         if (arrival.duration_s > duration_s) {
           duration_s = arrival.duration_s;
