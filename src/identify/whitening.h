@@ -53,6 +53,8 @@ class Whitening {
  private:
   template <int Size>
   void build(const SensorNoise& noise);
+  template <bool IsWhole>
+  void apply_to_strip(Eigen::Ref<Columns> columns) const;
 
   const LinearisedRun* run_;
   LatentFlux flux_;

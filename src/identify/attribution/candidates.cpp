@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace heatsoak {
 namespace {
@@ -125,7 +126,7 @@ struct Extended {
   std::vector<int> wanted;       ///< sizes; where an effect brings nodes of its own, their capacities behind the size
   std::vector<double> slope;     ///< what each of them counts in its candidate's column
   std::vector<std::size_t> own;  ///< which candidate it belongs to
-  std::vector<double> start_C;
+  std::vector<double> state_C;   ///< at the start of an interval; nodes of their own behind the network's
 };
 
 /// Where a body of its own comes with the effect, its capacity goes with the size: a body of a given time constant that takes hardly
@@ -140,7 +141,7 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (const int capacity = candidate.type->nodes[role].own_capacity; capacity >= 0) {
       nodes[role] += fmt::format(" {}", own);
-      extended.start_C.push_back(ambient_C);
+      extended.state_C.push_back(ambient_C);
       scaled.push_back(static_cast<std::size_t>(capacity));
     }
   }
@@ -153,6 +154,64 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
     extended.wanted.push_back(extended.network.effects().back().parameter_index[place]);
     extended.slope.push_back(candidate.parameters[place]);
     extended.own.push_back(own);
+  }
+}
+
+/// How a linear system answers over a step to where it was and to a rate that is held: e^(A·h) and ∫e^(A·s)ds, both to the fourth order
+/// as the fit's own steps have them.
+void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd& power, Eigen::MatrixXd& forward,
+              Eigen::MatrixXd& held_s) {
+  const Eigen::Index size = slope_per_s.rows();
+  power.setIdentity(size, size);
+  forward.setIdentity(size, size);
+  held_s.setIdentity(size, size);
+  for (int order = 1; order <= 4; ++order) {
+    power = (slope_per_s * power.eval()) * (step_s / order);
+    forward += power;
+    held_s += order < 4 ? Eigen::MatrixXd(power / (order + 1.0)) : Eigen::MatrixXd::Zero(size, size);
+  }
+  held_s *= step_s;
+}
+
+/// The tangent of the extended network along the path that the fit has taken: laws are asked once per interval, halfway.
+void add_network_columns(Extended& extended, std::span<const double> parameters, const LinearisedRun& fitted, const MeasuredRun& run,
+                         Columns& columns) {
+  const Eigen::Index own = fitted.states;
+  const auto states = static_cast<Eigen::Index>(extended.state_C.size());
+  const auto wanted = static_cast<Eigen::Index>(extended.wanted.size());
+  std::vector<double> values = extended.network.values();
+  std::ranges::copy(parameters, values.begin());
+  Linearised slope;
+  Eigen::MatrixXd rate(states, wanted + 1), moved = Eigen::MatrixXd::Zero(states, wanted + 1), next = moved;
+  Eigen::MatrixXd power, forward, held_s;
+  for (Eigen::Index k = 0; k + 1 < fitted.samples(); ++k) {
+    for (Eigen::Index node = 0; node < own; ++node) {
+      extended.state_C[static_cast<std::size_t>(node)] = 0.5 * (fitted.state_C(node, k) + fitted.state_C(node, k + 1));
+    }
+    extended.network.linearise(run.at[static_cast<std::size_t>(k)], values, extended.state_C, slope);
+    rate.leftCols(wanted) = slope.by_parameter(Eigen::all, extended.wanted);
+    rate.rightCols<1>() = slope.rate_K_per_s;
+    const double duration_s = fitted.duration_s[static_cast<std::size_t>(k)];
+    const double fastest_per_s = slope.by_state.cwiseAbs().rowwise().sum().maxCoeff();
+    const int parts = std::max(1, static_cast<int>(std::ceil(2.0 * duration_s * fastest_per_s)));
+    set_step(slope.by_state, duration_s / parts, power, forward, held_s);
+    // The last column is how far the bodies of the candidates themselves go in this interval.
+    moved.rightCols<1>().setZero();
+    for (int part = 0; part < parts; ++part) {
+      next.noalias() = forward * moved;
+      next.noalias() += held_s * rate;
+      moved.swap(next);
+    }
+    for (Eigen::Index node = own; node < states; ++node) {
+      extended.state_C[static_cast<std::size_t>(node)] += moved(node, wanted);
+    }
+    for (Eigen::Index i = 0; i < wanted; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
+        columns((k + 1) * fitted.sensors() + sensor, static_cast<Eigen::Index>(extended.own[place])) +=
+            extended.slope[place] * moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], i);
+      }
+    }
   }
 }
 
@@ -183,19 +242,14 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Networ
                           const LinearisedRun& fitted, const MeasuredRun& run) {
   Extended extended{network, {}, {}, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
-  extended.start_C.assign(start_C.begin(), start_C.end());
+  extended.state_C.assign(start_C.begin(), start_C.end());
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     if (candidates[j].type) {
       extend(extended, candidates[j], j, run.at.front().ambient_C);
     }
   }
-  std::vector<double> values = extended.network.values();
-  std::ranges::copy(parameters, values.begin());
-  const LinearisedRun wide = linearise(extended.network, values, extended.wanted, {}, extended.start_C, run);
   Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
-  for (std::size_t i = 0; i < extended.wanted.size(); ++i) {
-    columns.col(static_cast<Eigen::Index>(extended.own[i])) += extended.slope[i] * wide.by_parameter.col(static_cast<Eigen::Index>(i));
-  }
+  add_network_columns(extended, parameters, fitted, run, columns);
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
     if (candidate.type) {

@@ -60,6 +60,8 @@ std::vector<Eigen::VectorXd> weights_of(const RefitResult& fit, const std::vecto
   return weights;
 }
 
+constexpr int kMostCurvesTried = 3;
+
 class Selector {
  public:
   Selector(const SelectionInput& input, const SelectionRules& rules) : input_(input), rules_(rules) {}
@@ -69,6 +71,7 @@ class Selector {
     options_.grid = flux_grid(std::max(0.05, out_.mean_heat_W), longest_s(input_.runs) / 2.0);
     options_.place.assign(input_.model.model.flux_nodes.size(), 3);
     options_.place.push_back(static_cast<int>(options_.grid.time_scale_s.size()) / 2);
+    first_place_ = options_.place;
     std::vector<std::vector<double>> start_C;
     for (const MeasuredRun& run : input_.runs) {
       start_C.push_back(measured_start_C(input_.model.model.network, run));
@@ -150,9 +153,13 @@ class Selector {
       }
       const std::vector<int> set{j};
       const SetScore best = table.best(set, base.place);
-      JudgedCandidate judged{candidates[static_cast<std::size_t>(j)], best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0};
-      judged.visibility_ratio = table.visibility_ratio(base, j);
+      JudgedCandidate judged;
+      judged.candidate = candidates[static_cast<std::size_t>(j)];
+      judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
+      judged.visibility_ratio = table.visibility_ratio(base.candidates, best.place, j);
       judged.size_share = best.coefficient[table.free_count()];
+      judged.place = best.place;
+      judged.step = best.coefficient.head(table.free_count());
       const std::vector<double> left_out = table.left_out_gains_nats(base, best);
       const std::vector<SizeInRun> sizes = table.size_by_run(best, j);
       for (std::size_t r = 0; r < left_out.size(); ++r) {
@@ -206,9 +213,12 @@ class Selector {
     };
     std::vector<Tried> tried;
     const double least = rules_.least_gain_nats;
-    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.6 * round.ladder.front().gain_nats - 20.0);
+    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.8 * round.ladder.front().gain_nats - 20.0);
     for (JudgedCandidate& each : round.ladder) {
-      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats) {
+      // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
+      const bool is_variant = std::ranges::any_of(
+          tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id && t.gain_nats >= each.gain_nats; });
+      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats || is_variant) {
         continue;
       }
       const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
@@ -222,19 +232,28 @@ class Selector {
         }
         continue;
       }
-      RefitResult fit = try_term(each.candidate, each.size_share);
+      RefitResult fit = try_term(each, 0.5 * each.gain_nats);
       each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
     std::ranges::stable_sort(tried, [](const Tried& a, const Tried& b) { return a.gain_nats > b.gain_nats; });
+    out_.open_curve.reset();
     const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
     const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
-    if (best_scan_nats >= least && best_scan_nats > best_nats + rules_.outside_beyond_nats &&
-        best_scan_nats > catalogue_gain_nats(round, candidates, table, base) + rules_.outside_beyond_nats) {
-      if (take_curve(round)) {
+    const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
+    const bool is_ahead = best_scan_nats >= least && best_scan_nats > best_nats + beyond_nats;
+    const double catalogue_nats = is_ahead ? catalogue_gain_nats(round, candidates, table, base) : 0.0;
+    if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
+      if (take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
         return true;
       }
-      out_.open_curve = round.scan.front();
+      const ScanResult& front = round.scan.front();
+      const std::string& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)].name;
+      out_.open_curve = front;
+      // Heat that goes by the clock, or of which all laws together explain less than half, is none of theirs.
+      if (driver == kTimeDriver || front.gain_nats > 2.0 * std::max(best_nats, catalogue_nats)) {
+        return false;
+      }
     }
     if (best_nats < least) {
       return false;
@@ -256,16 +275,37 @@ class Selector {
     return true;
   }
 
-  RefitResult try_term(const Candidate& candidate, double size_share) const {
+  /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
+  /// where the promise is not kept, once more from what was known beforehand.
+  RefitResult try_term(const JudgedCandidate& judged, double promised_nats) const {
     RefitOptions options = options_;
-    options.place = out_.after.place;
-    return refit(with_candidate(out_.after.model, candidate, size_share), input_.runs, out_.after.start_C, options);
+    options.place = judged.place;
+    ExtendedModel model = with_candidate(out_.after.model, judged.candidate, judged.size_share);
+    Eigen::VectorXd theta = model.theta();
+    const Eigen::Index inner = out_.after.model.model.free_count();
+    const Eigen::Index sensors = judged.step.size() - inner;
+    theta.head(inner) += judged.step.head(inner);
+    theta.segment(model.model.free_count(), sensors) += judged.step.tail(sensors);
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
+    }
+    model.set_theta(theta);
+    RefitResult fit = refit(std::move(model), input_.runs, out_.after.start_C, options);
+    if (fit.evidence_nats > out_.after.evidence_nats + promised_nats) {
+      return fit;
+    }
+    options.place = first_place_;
+    const double sign = judged.size_share < 0.0 ? -1.0 : 1.0;
+    RefitResult afresh = refit(with_candidate(with_values_of(out_.after.model, input_.model), judged.candidate, sign), input_.runs,
+                               out_.before.start_C, options);
+    return afresh.evidence_nats > fit.evidence_nats ? std::move(afresh) : std::move(fit);
   }
 
-  /// The first curve that physics and the whole tool allow, refitted in the equations.
-  bool take_curve(const Round& round) {
+  /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.
+  bool take_curve(const Round& round, double least_nats) {
+    int tries = 0;
     for (const ScanResult& each : round.scan) {
-      if (each.gain_nats < round.scan.front().gain_nats - rules_.ambiguous_within_nats) {
+      if (each.gain_nats < least_nats || tries == kMostCurvesTried) {
         break;
       }
       const std::optional<ExtendedModel> with =
@@ -273,13 +313,17 @@ class Selector {
       if (!with) {
         continue;
       }
+      ++tries;
       RefitOptions options = options_;
       options.place = each.place;
       RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options);
+      if (fit.evidence_nats < out_.after.evidence_nats + least_nats) {
+        fit = refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options);
+      }
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < rules_.least_gain_nats) {
+      if (term.gain_nats < least_nats) {
         continue;
       }
       term.effect_name = std::string(fit.model.model.network.effects().back().name);
@@ -298,7 +342,13 @@ class Selector {
 
   /// Drops what the later terms have made superfluous.
   void check_backwards() {
+    bool has_dropped = false;
     for (std::size_t i = out_.terms.size(); i-- > 0;) {
+      if (i + 1 == out_.terms.size() && !has_dropped) {
+        // Without the last one the model is what it was a round before.
+        out_.terms[i].loss_without_nats = out_.terms[i].gain_nats;
+        continue;
+      }
       RefitOptions options = options_;
       options.place = out_.after.place;
       RefitResult without = refit(with_values_of(with_terms_except(i), out_.after.model), input_.runs, out_.before.start_C, options);
@@ -306,6 +356,8 @@ class Selector {
       if (out_.terms[i].loss_without_nats < rules_.least_gain_nats) {
         out_.after = std::move(without);
         out_.terms.erase(out_.terms.begin() + static_cast<std::ptrdiff_t>(i));
+        has_dropped = true;
+        i = out_.terms.size();
       }
     }
   }
@@ -326,6 +378,7 @@ class Selector {
   const SelectionInput& input_;
   const SelectionRules& rules_;
   RefitOptions options_;
+  FluxGrid::Place first_place_;
   Selection out_;
 };
 

@@ -21,7 +21,8 @@ struct SelectionInput {
 struct SelectionRules {
   double least_gain_nats = 7.0;
   double ambiguous_within_nats = 5.0;
-  double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue
+  double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue, and
+  double outside_beyond_share = 0.2;  ///< of its own evidence: laws are never exact, and much data sees the least difference of shape
   double least_visibility_ratio = 0.02;
   int refitted = 6;
   int most_terms = 4;
@@ -36,6 +37,8 @@ struct JudgedCandidate {
   int runs_gained = 0;              ///< of the runs in which it acts at all
   int runs_acting = 0;
   double size_share = 0.0;  ///< in typical sizes
+  FluxGrid::Place place;    ///< of the unknown heat that is most probable beside it
+  Eigen::VectorXd step;     ///< that the model's coordinates make with it
 };
 
 /// A round of the selection: what was in question and what came of it.
