@@ -8,6 +8,15 @@ namespace robot_core {
 namespace detail {
 namespace {
 
+/// Arrivals that are this close are one. Rounding of a start moves the time of an arrival by much more than its own size, and a corner of
+/// what can be reached has no second chance: an axis that flies by its target would have to come back. The target is missed by a part of
+/// 1e-9 of what the limits reach.
+template <typename Real>
+Real same_time_s(const Problem<Real>& p) {
+  constexpr Real kTogether = std::numeric_limits<Real>::digits > 32 ? Real(1e-9) : Real(1e-4);
+  return kTogether * smaller(p.acceleration_max + p.acceleration_min, square_root(p.velocity_max + p.velocity_min)) / Real(2);
+}
+
 template <typename Real>
 PlanResult finish(const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
                   Target how, Trajectory<Real>& trajectory) {
@@ -49,7 +58,6 @@ PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const
   AxisArrival<Real> arrivals[kMostAxes];
   axis_count = clamped(axis_count, 0, kMostAxes);
   Real duration_s = 0;
-  Real slopes_s = 0;
   for (int i = 0; i < axis_count; ++i) {
     if (const PlanResult result = pose_axis(start[i], target[i], limits[i], how, axes[i]); result != PlanResult::ok) {
       if (failed_axis != nullptr) {
@@ -59,19 +67,23 @@ PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const
     }
     arrive_first(axes[i], arrivals[i]);
     duration_s = larger(duration_s, arrivals[i].duration_s);
-    slopes_s = larger(slopes_s, absolute(axes[i].problem.a0) + absolute(axes[i].problem.a1));
   }
-  // What arrives together but for rounding stays: a corner of what can be reached has no second chance.
-  const Real same_s = Real(16) * std::numeric_limits<Real>::epsilon() * (duration_s + slopes_s);
   // An axis that cannot arrive in this time puts the arrival off for all. Each has only a few spans of time without arrival.
   constexpr int kMostDelays = 8 * kMostAxes;
   for (int delay = 0, agreed = 0; agreed < axis_count && delay < kMostDelays; ++delay) {
     for (agreed = 0; agreed < axis_count; ++agreed) {
       AxisArrival<Real>& arrival = arrivals[agreed];
-      if (absolute(duration_s - arrival.duration_s) > same_s) {
-        arrive_from(axes[agreed], duration_s, arrival);
+      const Real same_s = same_time_s(axes[agreed].problem);
+      if (absolute(duration_s - arrival.duration_s) <= same_s) {
+        continue;
+      }
+      arrive_from(axes[agreed], duration_s, arrival);
+      if (arrival.duration_s > duration_s + same_s) {
+        // The end of a span of time with arrival is a corner as well.
+        const Real later_s = arrival.duration_s;
+        arrive_from(axes[agreed], duration_s - same_s, arrival);
         if (arrival.duration_s > duration_s) {
-          duration_s = arrival.duration_s;
+          duration_s = later_s;
           break;
         }
       }
