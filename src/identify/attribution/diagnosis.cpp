@@ -184,7 +184,7 @@ class Teller {
   /// Smoothed unknown heat of every run: fluxes × samples.
   [[nodiscard]] std::vector<Eigen::MatrixXd> smoothed_W(const RefitResult& fit) const {
     std::vector<Eigen::MatrixXd> all;
-    const std::vector<DesignRun> designs = design(fit.fitted, input_.train, out_.selection.weights, {});
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       all.push_back(Whitening(fit.fitted[r], flux_at(fit), designs[r].noise).smoothed_flux_W(fit.fitted[r].residual_K));
     }
@@ -244,11 +244,11 @@ class Teller {
   [[nodiscard]] std::vector<InnovationTests> tests_of(const RefitResult& fit) const {
     std::map<std::string, Eigen::VectorXd> innovations;
     std::map<std::string, std::vector<NamedInput>> inputs;
-    const std::vector<DesignRun> designs = design(fit.fitted, input_.train, out_.selection.weights, {});
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       const LinearisedRun& path = fit.fitted[r];
       const Eigen::VectorXd standardised = Whitening(path, flux_at(fit), designs[r].noise).innovations(path.residual_K).standardised;
-      const Eigen::VectorXd& weight = out_.selection.weights[r];
+      const Eigen::VectorXd& weight = out_.selection.errors.weights[r];
       for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
         Eigen::VectorXd& all = innovations[signal];

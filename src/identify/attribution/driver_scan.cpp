@@ -183,7 +183,7 @@ class Scanner {
       evidence[r] = evidence_of(design, design.columns(Eigen::all, chosen), shown, families, flux);
     });
     std::vector<Scored> scored(families.size());
-    const double base_nats = table_.score(base_.candidates, place).evidence_nats;
+    const double base_nats = table_.score(base_.candidates, place).evidence_nats - table_.grid().log_prior_nats(place);
     for (std::size_t f = 0; f < families.size(); ++f) {
       std::vector<RunEvidence> of_family;
       for (const std::vector<RunEvidence>& of_run : evidence) {
@@ -206,7 +206,10 @@ class Scanner {
     const Whitening whitening(*design.run, flux, design.noise);
     whitening.apply(all);
     Eigen::MatrixXd of_shared = all.leftCols(shared).transpose() * all.leftCols(shared);
-    of_shared.topLeftCorner(starts, starts).diagonal() += design.start.sd_K.cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
+    of_shared.topLeftCorner(starts, starts).diagonal() += precision;
+    of_shared.topRightCorner(starts, 1) += precision.cwiseProduct(design.start.mean_K);
+    of_shared(shared - 1, shared - 1) += design.start.mean_K.dot(precision.cwiseProduct(design.start.mean_K));
     const Eigen::MatrixXd across = all.leftCols(shared).transpose() * all.rightCols(shown.cols());
     std::vector<RunEvidence> evidence;
     Eigen::Index at = 0;

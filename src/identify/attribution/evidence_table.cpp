@@ -17,8 +17,18 @@ LatentFlux FluxGrid::at(const Place& place) const {
   return flux;
 }
 
+double FluxGrid::log_prior_nats(const Place& place) const {
+  constexpr double kUnusual_share = 0.1;
+  static const double decay = -std::log(0.05) / kUnusual_share;
+  double nats = 0.0;
+  for (std::size_t node = 0; node + 1 < place.size() && mean_heat_W > 0.0; ++node) {
+    nats -= decay * rms_W[static_cast<std::size_t>(place[node])] / mean_heat_W;
+  }
+  return nats;
+}
+
 FluxGrid flux_grid(double mean_heat_W, double longest_s) {
-  FluxGrid grid{{0.0}, {}};
+  FluxGrid grid{{0.0}, {}, mean_heat_W};
   for (double rms_W = 0.004 * mean_heat_W; rms_W < 3.0 * mean_heat_W; rms_W *= 2.0) {
     grid.rms_W.push_back(rms_W);
   }
@@ -97,7 +107,7 @@ SetScore EvidenceTable::score(std::span<const int> set, const FluxGrid::Place& p
   const LinearFit fitted = fit({&chosen, 1}, set);
   SetScore out;
   out.candidates.assign(set.begin(), set.end());
-  out.evidence_nats = fitted.log_evidence;
+  out.evidence_nats = fitted.log_evidence + grid_.log_prior_nats(place);
   out.place = place;
   out.coefficient = fitted.coefficients;
   out.covariance = fitted.covariance;

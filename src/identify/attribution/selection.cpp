@@ -41,24 +41,8 @@ double longest_s(const std::vector<MeasuredRun>& runs) {
   return longest;
 }
 
-/// Samples that no smooth heat explains are outliers; a run where these are many has a model problem instead and keeps them.
-std::vector<Eigen::VectorXd> weights_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid) {
-  constexpr double kOutlier_sd = 4.5;
-  std::vector<Eigen::VectorXd> weights(runs.size());
-  const std::vector<DesignRun> designs = design(fit.fitted, runs, {}, {});
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    Columns residual = fit.fitted[r].residual_K;
-    Whitening(fit.fitted[r], grid.at(fit.place), designs[r].noise).apply(residual);
-    weights[r].setOnes(residual.rows());
-    for (Eigen::Index i = 0; i < residual.rows(); ++i) {
-      weights[r][i] = std::abs(residual(i, 0)) > kOutlier_sd ? 0.0 : 1.0;
-    }
-    if (weights[r].sum() < 0.98 * static_cast<double>(weights[r].size())) {
-      weights[r].setOnes();
-    }
-  }
-  return weights;
-}
+/// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
+constexpr double kMuchUnknown_share = 0.05;
 
 class Selector {
  public:
@@ -74,14 +58,13 @@ class Selector {
       start_C.push_back(measured_start_C(input_.model.model.network, run));
     }
     out_.before = refit(input_.model, input_.runs, start_C, options_);
-    options_.weights = weights_of(out_.before, input_.runs, options_.grid);
-    options_.place = out_.before.place;
+    look_at_sensors(out_.before);
     out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
     out_.after = out_.before;
     out_.grid = options_.grid;
-    out_.weights = options_.weights;
     while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
     }
+    out_.errors = options_.errors;
     check_backwards();
     if (!out_.terms.empty()) {
       options_.place = out_.after.place;
@@ -92,6 +75,12 @@ class Selector {
   }
 
  private:
+  void look_at_sensors(const RefitResult& fit) {
+    options_.place = fit.place;
+    options_.errors = with_wander(fit, input_.runs, options_.grid, kMuchUnknown_share * out_.mean_heat_W, options_.errors);
+    options_.errors.weights = outlier_weights(fit, input_.runs, options_.grid, options_.errors);
+  }
+
   [[nodiscard]] std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) const {
     std::vector<CandidateColumn> rules;
     for (const Candidate& each : candidates) {
@@ -115,7 +104,7 @@ class Selector {
       columns[r] = candidate_columns(candidates, out_.after.model.model.network, out_.after.model.values_in(input_.runs[r]),
                                      out_.after.fitted[r], input_.runs[r]);
     });
-    EvidenceTable table(design(out_.after.fitted, input_.runs, options_.weights, columns), options_.grid, prior_here(out_.after.model),
+    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, columns), options_.grid, prior_here(out_.after.model),
                         column_rules(candidates));
     const SetScore base = table.best({}, out_.after.place);
     Round round;
