@@ -3,7 +3,8 @@
 //
 // The flux is an Ornstein-Uhlenbeck process inside the differential equation, one per node. One sequence of Kalman gains serves
 // the residual, the sensitivities and the responses to effects that the model may lack (de Jong 1991, the augmented Kalman
-// filter): the whitening is a linear operator, and everything after it is least squares.
+// filter): the whitening is a linear operator, and everything after it is least squares. A sensor may wander besides: an
+// Ornstein-Uhlenbeck error of its own, which heats nothing.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +23,9 @@ struct LatentFlux {
 /// Per sensor and sample: standard deviation of the noise in K is noise_K[sensor] / √weight.
 struct SensorNoise {
   std::vector<double> noise_K;
-  Eigen::VectorXd weight;  ///< n·s, 0 … 1; empty: all 1. 0 leaves the sample out
+  Eigen::VectorXd weight;        ///< n·s, 0 … 1; empty: all 1. 0 leaves the sample out
+  std::vector<double> wander_K;  ///< per sensor: standard deviation of its slow error; empty: none wanders
+  double wander_time_scale_s = 10.0;
 };
 
 /// What each sample says that those before it did not; NaN where nothing was measured. Samples that were left out for their weight of 0
@@ -53,11 +56,24 @@ class Whitening {
  private:
   template <int Size>
   void build(const SensorNoise& noise);
+  template <bool IsWhole>
+  void apply_to_strip(Eigen::Ref<Columns> columns) const;
+  template <class Matrix>
+  void set_transition(Eigen::Index interval, Matrix& transition) const;
+  /// What fluxes and slow errors gain in variance before interval `interval` ends; −1: all of it, at the start.
+  template <class Matrix>
+  void add_unknown(Eigen::Index interval, Matrix& covariance) const;
+  [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }
+  /// Of a sensor's slow error in the filter's state.
+  [[nodiscard]] Eigen::Index wander_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }
 
   const LinearisedRun* run_;
   LatentFlux flux_;
-  Eigen::Index size_ = 0;                 ///< of the filter's state: temperatures, then fluxes
-  std::vector<double> forget_ratio_;      ///< per interval: what is left of a flux
+  std::vector<double> wander_K_;
+  bool wanders_ = false;
+  Eigen::Index size_ = 0;                    ///< of the filter's state: temperatures, fluxes, slow errors of the sensors
+  std::vector<double> forget_ratio_;         ///< per interval: what is left of a flux
+  std::vector<double> wander_forget_ratio_;  ///< per interval: what is left of a sensor's slow error
   std::vector<double> gain_;              ///< per row: size_ numbers
   std::vector<double> inverse_sd_per_K_;  ///< per row; 0 where masked
   std::vector<double> expected_K2_;       ///< per row: variance of the prediction, without noise

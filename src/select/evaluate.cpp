@@ -32,8 +32,9 @@ class Block {
     std::vector<Network> networks;
     for (int lane = 0; lane < kLanes; ++lane) {
       Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
-      motors_.push_back(draw_sample(motor, random));
+      // The duty first: every motor, however many figures it has, then meets the same air and load.
       duties_.push_back(draw_sample(duty, random));
+      motors_.push_back(draw_sample(motor, random));
       networks.push_back(datasheet_network(motor, motors_.back()));
       const std::vector<double> values = networks.back().values();
       parameters_.resize(values.size());

@@ -37,6 +37,19 @@ void leave_out_outliers(std::vector<double>& values) {
   }
 }
 
+/// Everything that says how the motor turns, each row with that of another row.
+void shuffle_speed(Recording& log, Dice& dice) {
+  for (std::size_t row = log.rows(); row > 1; --row) {
+    const auto other = static_cast<std::size_t>(dice.below(static_cast<int>(row)));
+    for (Channel& channel : log.channels) {
+      const std::string& key = channel.quantity.key;
+      if (key == "speed_rad_per_s" || key == "duty_ratio" || key == "vehicle_speed_m_per_s") {
+        std::swap(channel.values[row - 1], channel.values[other]);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Runs record(const Case& sealed) {
@@ -49,11 +62,17 @@ Runs record(const Case& sealed) {
   double age_h = dice.uniform(0.0, 2.0);
   for (int r = 0; r < sealed.training_runs + 2; ++r) {
     const std::uint64_t seed = sealed.seed * 131 + static_cast<std::uint64_t>(r);
-    const bool on_bench = r == sealed.training_runs - 1;
+    const bool on_bench = (sealed.training_runs > 1 && r == sealed.training_runs - 1) || r == sealed.training_runs + 1;
     const std::vector<RowInputs> rows = on_bench ? bench_rows(sealed.rows, seed) : robot_rows(sealed.rows, seed);
     TrueRun run = run_motor(runs.make, sealed.missing, sealed.surprise, rows, age_h, seed ^ 0xabcdef, "run" + std::to_string(r + 1));
     for (const std::size_t channel : {0, 1}) {
       leave_out_outliers(run.log.channels[channel].values);
+    }
+    if (!sealed.has_right_speed) {
+      shuffle_speed(run.log, dice);
+    }
+    if (!sealed.has_winding_sensor) {
+      std::ranges::fill(run.log.channels.front().values, kUnknown);
     }
     age_h += sealed.rows / 3600.0;
     (r < sealed.training_runs ? runs.training : runs.unseen).push_back(std::move(run));
@@ -112,26 +131,44 @@ double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs)
   return std::sqrt(squares_K2 / count);
 }
 
-Answer examine(const Case& sealed, bool scans_drivers) {
-  const Runs runs = record(sealed);
-  SelectionInput input;
+DiagnosisInput question(const Case& sealed, const Runs& runs) {
+  DiagnosisInput input;
   input.model = model_before(runs.make, sealed.seed);
-  input.scans_drivers = scans_drivers;
   for (const TrueRun& run : runs.training) {
-    input.runs.push_back(measured(run));
-    input.free.push_back(free_signals(run.log, input.runs.back()));
+    input.train.push_back(measured(run));
+    input.free.push_back(free_signals(run.log, input.train.back()));
   }
+  for (const TrueRun& run : runs.unseen) {
+    input.holdout.push_back(measured(run));
+  }
+  return input;
+}
+
+Answer examine(const Case& sealed) {
+  const Runs runs = record(sealed);
+  const DiagnosisInput input = question(sealed, runs);
   const auto begin = std::chrono::steady_clock::now();
   Answer answer;
-  answer.selection = select_effects(input, {});
+  answer.diagnosis = diagnose(input, {});
   answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const AcceptedTerm& term : answer.selection.terms) {
-    const std::string curve = term.curve ? term.curve->term.node + "~" + answer.selection.drivers[static_cast<std::size_t>(term.curve->term.driver)].name : "";
+  const Selection& selection = answer.diagnosis.selection;
+  for (const AcceptedTerm& term : selection.terms) {
+    const std::string curve =
+        term.curve ? term.curve->term.node + "~" + selection.drivers[static_cast<std::size_t>(term.curve->term.driver)].name : "";
     answer.named.push_back(term.candidate ? term.candidate->id : curve);
   }
-  answer.before_K = rms_error_K(answer.selection.before.model, runs.unseen);
-  answer.after_K = rms_error_K(answer.selection.after.model, runs.unseen);
+  answer.before_K = rms_error_K(selection.before.model, runs.unseen);
+  answer.after_K = rms_error_K(selection.after.model, runs.unseen);
   return answer;
+}
+
+double floor_K(Case sealed) {
+  sealed.missing = {};
+  const Runs runs = record(sealed);
+  DiagnosisInput input = question(sealed, runs);
+  SelectionRules rules;
+  rules.most_terms = 0;
+  return rms_error_K(select_effects({input.model, input.train, input.free, false}, rules).before.model, runs.unseen);
 }
 
 }  // namespace heatsoak::truth

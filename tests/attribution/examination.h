@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/attribution/selection.h"
+#include "identify/attribution/diagnosis.h"
 #include "missing_effects.h"
 #include "truth_motor.h"
 
@@ -15,14 +15,16 @@ namespace heatsoak::truth {
 struct Case {
   Missing missing;
   Surprise surprise;
-  int rows = 1800;       ///< of each run, one second each
-  int training_runs = 4; ///< the last of them on the bench
+  int rows = 1800;        ///< of each run, one second each
+  int training_runs = 4;  ///< of several the last is on the bench
+  bool has_winding_sensor = true;
+  bool has_right_speed = true;  ///< otherwise the logs' speeds are those of other seconds, drawn by lot
   std::uint64_t seed = 1;
 };
 
 struct Runs {
   std::vector<TrueRun> training;
-  std::vector<TrueRun> unseen;
+  std::vector<TrueRun> unseen;  ///< the last of them on the bench
   MotorMake make;
 };
 /// Every make has capacities and resistances within ±25 % of the usual.
@@ -34,17 +36,22 @@ ExtendedModel model_before(const MotorMake& make, std::uint64_t seed);
 /// The log as the tool takes it.
 MeasuredRun measured(const TrueRun& run);
 
+/// What the analyser is given: nothing in it says what was left out.
+DiagnosisInput question(const Case& sealed, const Runs& runs);
+
 struct Answer {
-  Selection selection;
+  Diagnosis diagnosis;
   std::vector<std::string> named;  ///< ids of effects of the catalogue, curves as "node~driver"
   double seconds_s = 0.0;
   double before_K = 0.0;  ///< rms error on unseen runs against true temperatures, winding and stator together
   double after_K = 0.0;
-  double floor_K = 0.0;   ///< of the same model fitted to the same motor without anything missing
 };
-Answer examine(const Case& sealed, bool scans_drivers = true);
+Answer examine(const Case& sealed);
 
-/// Open-loop rms error of the model on a run against the true temperatures.
+/// On unseen runs, of the same model fitted to the same motor with nothing missing: what noise and unknown heat leave to the best.
+double floor_K(Case sealed);
+
+/// Open-loop rms error of the model on runs against the true temperatures.
 double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs);
 
 }  // namespace heatsoak::truth

@@ -70,61 +70,130 @@ Missing sensor(SensorFault fault) {
 }
 
 const std::vector<Subject> kSubjects{
-    {"iron_loss_hysteresis", Visibility::visible, {"bearing_friction", "no_load_loss"},
+    {"iron_loss_hysteresis",
+     Visibility::visible,
+     {"bearing_friction", "no_load_loss"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 2.0 * s * std::pow(full(m), 1.04)); }); }},
-    {"iron_loss_eddy", Visibility::visible, {"bearing_friction"},
+    {"iron_loss_eddy",
+     Visibility::visible,
+     {"bearing_friction"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 2.0 * s * std::pow(full(m), 1.96)); }); }},
-    {"windage", Visibility::visible, {},
+    {"windage",
+     Visibility::visible,
+     {},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { q[sleeve] += 0.8 * s * std::pow(full(m), 2.9); }); }},
-    {"ac_copper_loss", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.35 * s * m.copper_loss_W * std::pow(full(m), 1.95)); }); }},
-    {"pwm_ripple_loss", Visibility::visible, {},
+    {"ac_copper_loss",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.35 * s * m.copper_loss_W * std::pow(full(m), 1.95)); });
+     }},
+    {"pwm_ripple_loss",
+     Visibility::visible,
+     {},
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) {
          const double d = m.in.duty_ratio;
          into_copper(q, 1.0 * s * 4.0 * d * (1.0 - d) * m.in.bus_V * m.in.bus_V / 576.0);
        });
      }},
-    {"driver_heat", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_back] += s * 1.5 * std::abs(m.in.current_A) / 8.0; }); }, 0.9375},
-    {"connection_resistance", Visibility::visible, {"driver_heat"},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_back] += s * 0.02 * m.in.current_A * m.in.current_A; }); }, 0.02},
-    {"speed_dependent_convection", Visibility::visible, {},
+    {"driver_heat",
+     Visibility::visible,
+     {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_back] += s * 1.5 * std::abs(m.in.current_A) / 8.0; }); },
+     0.9375},
+    {"connection_resistance",
+     Visibility::visible,
+     {"driver_heat"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_back] += s * 0.02 * m.in.current_A * m.in.current_A; }); },
+     0.02},
+    {"speed_dependent_convection",
+     Visibility::visible,
+     {},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.1 * s * std::pow(full(m), 0.75)); }); }},
-    {"vehicle_airflow", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.08 * s * std::pow(m.in.vehicle_speed_m_per_s / 3.0, 0.58)); }); }},
-    {"third_node", Visibility::visible, {}, third_node},
-    {"neighbour_coupling", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_front] += 0.05 * s * (m.in.neighbour_C - m.part_C[shield_front]); }); }, 0.05},
-    {"enclosure_warm_up", Visibility::visible, {"third_node"}, enclosure},
-    {"contact_temperature_dependence", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, 0.0040 * s * (0.5 * (m.copper_C + m.iron_C) - 25.0) / 1.6); }); }},
-    {"air_gap_stirring", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, 0.16 * s * full(m)); }); }, 0.16},
-    {"winding_through_flow", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, -0.05 * s * full(m) * (m.copper_C - m.in.ambient_C)); }); }, 0.05},
-    {"stall_phase_imbalance", Visibility::visible, {},
+    {"vehicle_airflow",
+     Visibility::visible,
+     {},
      [](double s) {
-       return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.4 * s * m.copper_loss_W * (std::abs(m.in.speed_rad_per_s) < 6.0 ? 1.0 : 0.0)); });
+       return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.08 * s * std::pow(m.in.vehicle_speed_m_per_s / 3.0, 0.58)); });
      }},
-    {"load_friction", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[shield_front] += 0.05 * s * 0.034 * std::abs(m.in.current_A * m.in.speed_rad_per_s); }); }},
-    {"armature_iron_loss", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 1.5 * s * std::abs(m.in.current_A) / 5.0 * std::pow(full(m), 1.95)); }); }},
-    {"saturation", Visibility::visible, {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.35 * s * m.copper_loss_W * smooth_step((std::abs(m.in.current_A) - 5.0) / 0.3)); }); }},
-    {"constant_heat", Visibility::visible, {"sensor_offset_stator"},
-     [](double s) { return heat([s](const Moment&, PerPart& q) { into_iron(q, 1.0 * s); }); }, 1.0},
+    {"third_node", Visibility::visible, {}, third_node},
+    {"neighbour_coupling",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { q[shield_front] += 0.05 * s * (m.in.neighbour_C - m.part_C[shield_front]); });
+     },
+     0.05},
+    {"enclosure_warm_up", Visibility::visible, {"third_node"}, enclosure},
+    {"contact_temperature_dependence",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { across(m, q, 0.0040 * s * (0.5 * (m.copper_C + m.iron_C) - 25.0) / 1.6); });
+     }},
+    {"air_gap_stirring",
+     Visibility::visible,
+     {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, 0.16 * s * full(m)); }); },
+     0.16},
+    {"winding_through_flow",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { into_copper(q, -0.05 * s * full(m) * (m.copper_C - m.in.ambient_C)); });
+     },
+     0.05},
+    {"stall_phase_imbalance",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         into_copper(q, 0.4 * s * m.copper_loss_W * (std::abs(m.in.speed_rad_per_s) < 6.0 ? 1.0 : 0.0));
+       });
+     }},
+    {"load_friction",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat(
+           [s](const Moment& m, PerPart& q) { q[shield_front] += 0.05 * s * 0.034 * std::abs(m.in.current_A * m.in.speed_rad_per_s); });
+     }},
+    {"armature_iron_loss",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { into_iron(q, 1.5 * s * std::abs(m.in.current_A) / 5.0 * std::pow(full(m), 1.95)); });
+     }},
+    {"saturation",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         into_copper(q, 0.35 * s * m.copper_loss_W * smooth_step((std::abs(m.in.current_A) - 5.0) / 0.3));
+       });
+     }},
+    {"constant_heat",
+     Visibility::visible,
+     {"sensor_offset_stator"},
+     [](double s) { return heat([s](const Moment&, PerPart& q) { into_iron(q, 1.0 * s); }); },
+     1.0},
     {"sensor_offset_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_offset_K = 1.2 * s}); }, 1.2},
     {"sensor_offset_stator", Visibility::visible, {"constant_heat"}, [](double s) { return sensor({.stator_offset_K = 1.2 * s}); }, 1.2},
     {"sensor_lag_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_lag_s = 6.0 * s}); }, 6.0},
     {"sensor_lag_stator", Visibility::visible, {}, [](double s) { return sensor({.stator_lag_s = 10.0 * s}); }, 10.0},
     {"sensor_gain_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_gain_ratio = 1.0 + 0.05 * s}); }, 0.05},
     // h ∝ ΔT^0.25 against a fitted constant: 0.6 % of the response is left.
-    {"natural_convection", Visibility::faint, {"radiation"},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.03 * s * std::pow(std::abs(m.iron_C - m.in.ambient_C), 0.27)); }); }},
+    {"natural_convection",
+     Visibility::faint,
+     {"radiation"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.03 * s * std::pow(std::abs(m.iron_C - m.in.ambient_C), 0.27)); });
+     }},
     // 4 ε σ A T³ against a fitted constant: 0.1 % is left.
-    {"radiation", Visibility::faint, {"natural_convection"},
+    {"radiation",
+     Visibility::faint,
+     {"natural_convection"},
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) {
          const auto fourth = [](double temperature_C) { return std::pow(temperature_C + 273.15, 4); };
@@ -134,26 +203,60 @@ const std::vector<Subject> kSubjects{
 };
 
 const std::vector<Outsider> kOutsiders{
-    {"a resonance at 300 rad/s", "stator", {"speed", "modulation"},
+    {"a resonance at 300 rad/s",
+     "stator",
+     {"speed", "modulation"},
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) {
          const double off = (std::abs(m.in.speed_rad_per_s) - 300.0) / 40.0;
          into_iron(q, 3.0 * s * std::exp(-0.5 * off * off));
        });
      }},
-    {"drag in one direction only", "stator", {"velocity"},
+    {"drag in one direction only",
+     "stator",
+     {"velocity"},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, m.in.speed_rad_per_s < 0 ? 3.0 * s * full(m) : 0.0); }); }},
-    {"extra copper loss under braking", "winding", {"shaft_power"},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, m.in.current_A * m.in.speed_rad_per_s < -5.0 ? 4.0 * s : 0.0); }); }},
-    {"a fan that starts at 45 °C of the stator", "stator", {"stator_temperature", "stator_excess"},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.15 * s * smooth_step((m.part_C[sleeve] - 45.0) / 1.0)); }); }},
-    {"heat that stops above 250 rad/s", "stator", {"speed", "modulation"},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 2.5 * s * smooth_step((250.0 - std::abs(m.in.speed_rad_per_s)) / 20.0)); }); }},
-    {"a fan that runs in the middle of a run", "stator", {"time"},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, m.time_s > 700.0 && m.time_s < 1200.0 ? 0.12 * s : 0.0); }); }},
+    {"extra copper loss under braking",
+     "winding",
+     {"shaft_power"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { into_copper(q, m.in.current_A * m.in.speed_rad_per_s < -5.0 ? 4.0 * s : 0.0); });
+     }},
+    {"a fan that starts at 45 °C of the stator",
+     "stator",
+     {"stator_temperature", "stator_excess"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.15 * s * smooth_step((m.part_C[sleeve] - 45.0) / 1.0)); });
+     }},
+    {"heat that stops above 250 rad/s",
+     "stator",
+     {"speed", "modulation"},
+     [](double s) {
+       return heat(
+           [s](const Moment& m, PerPart& q) { into_iron(q, 2.5 * s * smooth_step((250.0 - std::abs(m.in.speed_rad_per_s)) / 20.0)); });
+     }},
+    {"a fan that runs in the middle of a run",
+     "stator",
+     {"time"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { to_air(m, q, m.time_s > 700.0 && m.time_s < 1200.0 ? 0.12 * s : 0.0); });
+     }},
 };
 
 }  // namespace
+
+Missing together(Missing one, const Missing& other) {
+  one.heat.insert(one.heat.end(), other.heat.begin(), other.heat.end());
+  for (int part = 0; part < part_count; ++part) {
+    one.lump_capacity_J_per_K[static_cast<std::size_t>(part)] += other.lump_capacity_J_per_K[static_cast<std::size_t>(part)];
+  }
+  one.sensors.winding_offset_K += other.sensors.winding_offset_K;
+  one.sensors.stator_offset_K += other.sensors.stator_offset_K;
+  one.sensors.winding_lag_s += other.sensors.winding_lag_s;
+  one.sensors.stator_lag_s += other.sensors.stator_lag_s;
+  one.sensors.winding_gain_ratio *= other.sensors.winding_gain_ratio;
+  return one;
+}
 
 const std::vector<Subject>& subjects() { return kSubjects; }
 const std::vector<Outsider>& outsiders() { return kOutsiders; }

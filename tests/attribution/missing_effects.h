@@ -23,6 +23,9 @@ struct Subject {
 };
 const std::vector<Subject>& subjects();
 
+/// Both at once.
+Missing together(Missing one, const Missing& other);
+
 /// Heat that follows a measured signal by a curve that no law of the tool has.
 struct Outsider {
   std::string_view name;

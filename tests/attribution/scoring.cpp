@@ -1,6 +1,7 @@
 #include "scoring.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,8 @@ bool is_name_of(const std::string& id, const Subject& subject) {
 }
 
 std::string curve_name(const Selection& selection, const ScanResult& curve) {
-  return fmt::format("{}~{} x {}", curve.term.node, selection.drivers[static_cast<std::size_t>(curve.term.driver)].name, to_string(curve.term.multiplier));
+  return fmt::format("{}~{} x {}", curve.term.node, selection.drivers[static_cast<std::size_t>(curve.term.driver)].name,
+                     to_string(curve.term.multiplier));
 }
 
 }  // namespace
@@ -28,7 +30,8 @@ std::string in_words(const Share& share) {
   const double n = share.of, p = share.right / n, z = 1.96;
   const double middle = (p + z * z / (2 * n)) / (1 + z * z / n);
   const double half = z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n);
-  return fmt::format("{:.1f} % ({}/{}; 95 %: {:.1f} to {:.1f})", 100 * p, share.right, share.of, 100 * (middle - half), 100 * (middle + half));
+  return fmt::format("{:.1f} % ({}/{}; 95 %: {:.1f} to {:.1f})", 100 * p, share.right, share.of, 100 * (middle - half),
+                     100 * (middle + half));
 }
 
 bool names(const std::vector<std::string>& named, const Subject& subject) {
@@ -40,34 +43,47 @@ bool names_only(const std::vector<std::string>& named, const std::vector<const S
 }
 
 bool names_outsider(const Answer& answer, const Outsider& outsider) {
+  const Selection& selection = answer.diagnosis.selection;
   const auto is_right = [&](const ScanResult& curve) {
-    const std::string& driver = answer.selection.drivers[static_cast<std::size_t>(curve.term.driver)].name;
+    const std::string& driver = selection.drivers[static_cast<std::size_t>(curve.term.driver)].name;
     return curve.term.node == outsider.node && std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
   };
-  if (answer.selection.open_curve && is_right(*answer.selection.open_curve)) {
-    return true;
-  }
-  return std::ranges::any_of(answer.selection.terms, [&](const AcceptedTerm& term) { return term.curve && is_right(*term.curve); });
+  const bool has_curve =
+      (selection.open_curve && is_right(*selection.open_curve)) ||
+      std::ranges::any_of(selection.terms, [&](const AcceptedTerm& term) { return term.curve && is_right(*term.curve); });
+  return has_curve && answer.diagnosis.verdict == DiagnosisVerdict::unexplained;
 }
 
+bool mentions(const Answer& answer, const Subject& subject) {
+  return std::ranges::any_of(answer.diagnosis.selection.terms, [&](const AcceptedTerm& term) {
+    return (term.candidate && is_name_of(term.candidate->id, subject)) || names(term.confusable_with, subject);
+  });
+}
+
+bool is_silent(const Answer& answer) { return answer.named.empty() && !answer.diagnosis.selection.open_curve; }
+
 std::string account(const Answer& answer) {
-  std::string text = fmt::format("{:5.2f} s {:6.3f} -> {:6.3f} K", answer.seconds_s, answer.before_K, answer.after_K);
+  const Selection& selection = answer.diagnosis.selection;
+  std::string text = fmt::format("{:5.2f} s {:6.3f} -> {:6.3f} K {}", answer.seconds_s, answer.before_K, answer.after_K,
+                                 to_string(answer.diagnosis.verdict));
   for (std::size_t i = 0; i < answer.named.size(); ++i) {
-    const AcceptedTerm& term = answer.selection.terms[i];
+    const AcceptedTerm& term = selection.terms[i];
     text += fmt::format(" [{} {:.1f} nats, visible {:.2f}{}]", answer.named[i], term.gain_nats, term.visibility_ratio,
                         term.confusable_with.empty() ? "" : fmt::format(", or {}", fmt::join(term.confusable_with, "/")));
   }
-  const Round& round = answer.selection.rounds.front();
-  text += " |";
-  for (std::size_t i = 0; i < std::min<std::size_t>(4, round.ladder.size()); ++i) {
-    const JudgedCandidate& each = round.ladder[i];
-    text += fmt::format(" {}:{:.1f}(v{:.2f},l{:.0f})", each.candidate.id, each.gain_nats, each.visibility_ratio, each.left_out_gain_nats);
+  for (const Round& round : selection.rounds) {
+    text += " |";
+    for (std::size_t i = 0; i < std::min<std::size_t>(4, round.ladder.size()); ++i) {
+      const JudgedCandidate& each = round.ladder[i];
+      text += fmt::format(" {}:{:.1f}(v{:.2f},l{:.0f})", each.candidate.id, each.gain_nats, each.visibility_ratio, each.left_out_gain_nats);
+    }
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, round.scan.size()); ++i) {
+      text += fmt::format(" {}:{:.1f}", curve_name(selection, round.scan[i]), round.scan[i].gain_nats);
+    }
   }
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, round.scan.size()); ++i) {
-    text += fmt::format(" {}:{:.1f}", curve_name(answer.selection, round.scan[i]), round.scan[i].gain_nats);
-  }
-  const LatentFlux flux = answer.selection.grid.at(answer.selection.after.place);
-  return text + fmt::format(" | unknown {:.2f}, {:.2f} W, {:.0f} s of {:.1f} W", flux.rms_W[0], flux.rms_W[1], flux.time_scale_s, answer.selection.mean_heat_W);
+  const LatentFlux flux = selection.grid.at(selection.after.place);
+  return text +
+         fmt::format(" | unknown {:.2f} W, {:.0f} s of {:.1f} W", fmt::join(flux.rms_W, ", "), flux.time_scale_s, selection.mean_heat_W);
 }
 
 }  // namespace heatsoak::truth

@@ -20,8 +20,12 @@ std::string in_words(const Share& share);
 bool names(const std::vector<std::string>& named, const Subject& subject);
 /// The first name is right, and there is no other.
 bool names_only(const std::vector<std::string>& named, const std::vector<const Subject*>& subjects);
-/// A curve at the right node over one of the right drivers.
+/// The verdict is "unexplained", with a curve at the right node over one of the right drivers and no effect of the catalogue.
 bool names_outsider(const Answer& answer, const Outsider& outsider);
+/// The subject is named, or stands among the look-alikes of what is named.
+bool mentions(const Answer& answer, const Subject& subject);
+/// Neither an effect nor a curve.
+bool is_silent(const Answer& answer);
 /// "[iron_loss_eddy 41 nats or windage] …" and the first of the ladder and the scan.
 std::string account(const Answer& answer);
 

@@ -8,7 +8,9 @@
 namespace heatsoak {
 namespace {
 
-Eigen::VectorXd vector(const std::vector<double>& values) { return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())); }
+Eigen::VectorXd vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
 
 class SensorEffects : public testing::TestWithParam<std::string_view> {};
 
@@ -73,7 +75,8 @@ std::vector<std::string_view> all_names() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SensorEffects, testing::ValuesIn(all_names()), [](const auto& instance) { return std::string(instance.param); });
+INSTANTIATE_TEST_SUITE_P(All, SensorEffects, testing::ValuesIn(all_names()),
+                         [](const auto& instance) { return std::string(instance.param); });
 
 /// The lag's reading against a fine Euler integration of its differential equation.
 TEST(SensorLag, FollowsItsDifferentialEquation) {
@@ -89,7 +92,8 @@ TEST(SensorLag, FollowsItsDifferentialEquation) {
   constexpr int kSteps = 20000;
   for (int k = 0; k < 60; ++k) {
     for (int i = 0; i < kSteps; ++i) {
-      const double now_C = true_C[static_cast<std::size_t>(k)] + (true_C[static_cast<std::size_t>(k) + 1] - true_C[static_cast<std::size_t>(k)]) * (i + 0.5) / kSteps;
+      const double now_C = true_C[static_cast<std::size_t>(k)] +
+                           (true_C[static_cast<std::size_t>(k) + 1] - true_C[static_cast<std::size_t>(k)]) * (i + 0.5) / kSteps;
       reading_C += (now_C - reading_C) / 7.0 / kSteps;
     }
     EXPECT_NEAR(shown[k + 1], reading_C, 1e-4);

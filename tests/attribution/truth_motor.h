@@ -61,7 +61,7 @@ struct MotorMake {
   double iron_to_air_K_per_W = 5.5;
   double resistance_25C_ohm = 0.45;
   double copper_per_K = 0.0039;
-  int steps_per_row = 20;  ///< 0.05 s: the fastest parts settle within 0.03 s, half of what the method bears; lighter parts are faster
+  int finer = 1;  ///< steps are shorter by this factor than the fastest part asks for
 };
 
 struct Surprise {
@@ -71,6 +71,8 @@ struct Surprise {
   double step_K = 0.1;  ///< of the converter
   double outlier_probability = 0.003;
   double gap_probability = 0.0008;  ///< of a gap of some 30 s to begin at a row
+  double drift_K = 0.0;             ///< rms of an error of each sensor that comes and goes
+  double drift_time_s = 300.0;
 };
 
 /// True temperatures as the sensors' places have them, beside the log.

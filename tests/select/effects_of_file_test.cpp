@@ -1,5 +1,6 @@
 // Effects that a motor file adds, through everything that reads a motor.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ constexpr const char* kBase = "maxon_ecx_flat_42m_24v";
 
 class MotorFile {
  public:
-  explicit MotorFile(const std::string& effects) : path_(std::filesystem::path(testing::TempDir()) / "heatsoak_effects_of_file.toml") {
+  explicit MotorFile(const std::string& effects) : path_(std::filesystem::path(testing::TempDir()) / unused_name()) {
     std::ostringstream base;
     base << std::ifstream(kSource / "motor_db" / (std::string(kBase) + ".toml")).rdbuf();
     std::ofstream(path_) << base.str() << effects;
@@ -29,6 +30,12 @@ class MotorFile {
   [[nodiscard]] Motor read() const { return read_motor(path_); }
 
  private:
+  /// Tests run side by side, and one test reads several files.
+  static std::string unused_name() {
+    static int count = 0;
+    return "heatsoak_effects_of_file_" + std::to_string(getpid()) + "_" + std::to_string(++count) + ".toml";
+  }
+
   std::filesystem::path path_;
 };
 
@@ -101,13 +108,15 @@ TEST_F(EffectsOfAFile, own_nodes_are_columns_of_the_trace) {
   EXPECT_EQ(with.rows.front().own_C, std::vector<double>{with.rows.front().ambient_C});
 }
 
-TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run) {
+TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples) {
   const MotorEvaluation plain = evaluation(MotorFile("").read(), 40);
   const MotorEvaluation cooled = evaluation(MotorFile(kChassisAndSkin).read(), 40);
   const MotorEvaluation heated =
       evaluation(MotorFile("\n[effects.lamp]\ntype = \"constant_heat\"\n" + estimated("power", "2 W")).read(), 40);
   EXPECT_LT(cooled.stator_peak_C.nominal, plain.stator_peak_C.nominal - 1.0);
   EXPECT_GT(heated.stator_peak_C.nominal, plain.stator_peak_C.nominal + 1.0);
+  EXPECT_LT(cooled.stator_peak_C.p50, plain.stator_peak_C.p50 - 1.0);
+  EXPECT_GT(heated.stator_peak_C.p50, plain.stator_peak_C.p50 + 1.0);
 }
 
 /// Samples with no spread are the nominal run: the ensemble knows own nodes and all quantities too.

@@ -50,7 +50,8 @@ const std::vector<Primitive>& menu() {
       {"ten minutes of current pulses at standstill", [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * (s / 120) : 0.0); }},
       {"heat at standstill for five minutes, then spin without load while hot",
        [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.9, 0.05); }},
-      {"spin without load while cold for five minutes, then rest", [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
+      {"spin without load while cold for five minutes, then rest",
+       [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
       {"one current at four speeds", [](int s) { return std::pair(0.25 * (1 + s / 150), 0.5); }},
       {"one speed at four currents", [](int s) { return std::pair(0.6, 0.2 * (1 + s / 150)); }},
       {"heat at standstill for five minutes, then rest", [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.0, 0.0); }},
@@ -83,11 +84,13 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
 }
 
 /// Of ½‖φ·(column − its part along θ and the rival)‖².
-double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share, const MeasuredRun& run) {
+double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
+                       const MeasuredRun& run) {
   const std::vector<MeasuredRun> runs{run};
   const std::vector<double> start_C(static_cast<std::size_t>(fit.model.model.network.state_count()), run.at.front().ambient_C);
   const std::vector<LinearisedRun> path{linearise(fit.model, start_C, run)};
-  const std::vector<DesignRun> designs = design(fit.model.model.network, path, runs, {}, {candidate_columns(pair, fit.model.model.network, fit.model.values_in(run), path.front(), run)});
+  const std::vector<DesignRun> designs =
+      design(fit.model.model.network, path, runs, {}, {candidate_columns(pair, fit.model, path.front(), run)});
   const Whitening whitening(path.front(), flux, designs.front().noise);
   const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
   const Eigen::Index own = fit.model.free_count();
@@ -110,7 +113,8 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
     const AcceptedTerm& term = selection.terms[t];
     for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
       const auto& ladder = selection.rounds[std::min(t, selection.rounds.size() - 1)].ladder;
-      const auto found = std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.confusable_with[rival]; });
+      const auto found =
+          std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.confusable_with[rival]; });
       if (found == ladder.end()) {
         continue;
       }

@@ -4,9 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "identify/attribution/extended_model.h"
 
 namespace heatsoak {
 namespace {
+
+/// Heat capacity of the motors that the catalogue's typical sizes are of.
+constexpr double kUsualCapacity_J_per_K = 120.0;
+const ParameterSpec& heat_share_spec() {
+  static const ParameterSpec spec{"deviation", "", Range::between(-0.9, 3.0), "of the heat that goes in from what the log says, as a share of it"};
+  return spec;
+}
 
 struct SignalName {
   Signal signal;
@@ -33,13 +43,18 @@ std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const st
   return names;
 }
 
-bool is_in(const Network& network, const EffectType& type, const std::vector<std::string>& nodes) {
+bool is_in(const ExtendedModel& model, const Candidate& candidate) {
+  const Network& network = model.model.network;
   return std::ranges::any_of(network.effects(), [&](const EffectInPlace& effect) {
-    if (effect.type->name != type.name) {
+    if (effect.type->name != candidate.type->name) {
       return false;
     }
-    for (std::size_t role = 0; role < nodes.size(); ++role) {
-      if (type.nodes[role].own_capacity < 0 && network.node_name(effect.node_index[role]) != nodes[role]) {
+    const auto term = std::ranges::find(model.conditional, effect.name, &ConditionalTerm::effect_name);
+    if ((term == model.conditional.end() ? Condition{} : term->condition) != candidate.condition) {
+      return false;
+    }
+    for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
+      if (candidate.type->nodes[role].own_capacity < 0 && network.node_name(effect.node_index[role]) != candidate.nodes[role]) {
         return false;
       }
     }
@@ -79,6 +94,83 @@ std::vector<std::vector<std::string>> placements(const Network& network, const E
   return all;
 }
 
+/// Of a motor of that size: what is typical in W, W/K and J/K grows with it.
+std::vector<double> scaled(const EffectType& type, std::vector<double> parameters, double scale) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const std::string_view unit = unit_of(type.parameters, p, parameters);
+    if (type.parameters[p].choices.empty() && (unit.starts_with("W") || unit == "J/K")) {
+      parameters[p] *= scale;
+    }
+  }
+  return parameters;
+}
+
+double scale_of(const Model& model) {
+  double capacity_J_per_K = 0.0;
+  for (int node = 0; node < model.network.state_count(); ++node) {
+    capacity_J_per_K += model.values[static_cast<std::size_t>(model.network.capacity_index(node))];
+  }
+  return std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K);
+}
+
+std::string in_words(const Condition& condition) {
+  std::string text;
+  for (const auto& [key, value] : condition) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", key == "run" ? value : fmt::format("{}={}", key, value));
+  }
+  return text;
+}
+
+/// Every way in which what is said of the runs parts them in two; a stated condition comes before the name of the only run that has it.
+std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
+  std::vector<Condition> conditions;
+  std::vector<std::vector<bool>> known;
+  for (const bool named : {false, true}) {
+    for (const MeasuredRun& each : runs) {
+      for (const auto& [key, value] : each.conditions) {
+        const Condition condition{{key, value}};
+        std::vector<bool> has;
+        for (const MeasuredRun& run : runs) {
+          has.push_back(has_condition(run, condition));
+        }
+        const bool parts = std::ranges::find(has, false) != has.end();
+        if ((key == "run") == named && parts && std::ranges::find(known, has) == known.end()) {
+          known.push_back(std::move(has));
+          conditions.push_back(condition);
+        }
+      }
+    }
+  }
+  return conditions;
+}
+
+/// What may be different in some of the runs without any signal of it: air that is moved, heat from outside, heat that the log does not tell.
+void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
+  const Network& network = model.model.network;
+  for (const Condition& condition : conditions_of(runs)) {
+    for (const std::string_view name : {"airflow", "constant_heat"}) {
+      const EffectType& type = *find_effect(name);
+      for (const std::string_view node : {"stator", "winding"}) {
+        if (network.find_node(node) < 0) {
+          continue;
+        }
+        Candidate candidate{&type, nullptr, fmt::format("{}@{} in {}", name, node, in_words(condition)), {std::string(node)}, {}, 0, condition};
+        for (std::size_t role = 1; role < type.nodes.size(); ++role) {
+          candidate.nodes.emplace_back(type.nodes[role].default_node);
+        }
+        candidate.parameters = scaled(type, type.candidacy.variants.front(), scale);
+        if (!is_in(model, candidate)) {
+          list.candidates.push_back(std::move(candidate));
+        }
+      }
+    }
+    const bool is_there = std::ranges::any_of(model.heat_shares, [&](const HeatShareTerm& term) { return term.condition == condition; });
+    if (!is_there && !heat_input_parameters(network).empty()) {
+      list.candidates.push_back({nullptr, nullptr, fmt::format("heat_share in {}", in_words(condition)), {}, {kUsualHeatShare}, 0, condition});
+    }
+  }
+}
+
 std::string id_of(const EffectType& type, const std::vector<std::string>& nodes) {
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (type.nodes[role].own_capacity < 0 && nodes[role] != type.nodes[role].default_node) {
@@ -88,7 +180,7 @@ std::string id_of(const EffectType& type, const std::vector<std::string>& nodes)
   return std::string(type.name);
 }
 
-void add_network_candidates(const Network& network, const std::vector<MeasuredRun>& runs, CandidateList& list) {
+void add_network_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
   for (const EffectType& type : all_effects()) {
     if (type.candidacy.size_parameter < 0) {
       continue;
@@ -97,13 +189,13 @@ void add_network_candidates(const Network& network, const std::vector<MeasuredRu
       list.not_judged.push_back(fmt::format("{}: not every log has {}", type.name, fmt::join(names, " and ")));
       continue;
     }
-    for (std::vector<std::string>& nodes : placements(network, type)) {
-      if (is_in(network, type, nodes)) {
-        continue;
-      }
+    for (const std::vector<std::string>& nodes : placements(model.model.network, type)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
-        list.candidates.push_back({&type, nullptr, id_of(type, nodes), nodes, parameters, variant++});
+        Candidate candidate{&type, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, scale), variant++, {}};
+        if (!is_in(model, candidate)) {
+          list.candidates.push_back(std::move(candidate));
+        }
       }
     }
   }
@@ -125,7 +217,7 @@ struct Extended {
   std::vector<int> wanted;       ///< sizes; where an effect brings nodes of its own, their capacities behind the size
   std::vector<double> slope;     ///< what each of them counts in its candidate's column
   std::vector<std::size_t> own;  ///< which candidate it belongs to
-  std::vector<double> start_C;
+  std::vector<double> state_C;   ///< at the start of an interval; nodes of their own behind the network's
 };
 
 /// Where a body of its own comes with the effect, its capacity goes with the size: a body of a given time constant that takes hardly
@@ -140,7 +232,7 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (const int capacity = candidate.type->nodes[role].own_capacity; capacity >= 0) {
       nodes[role] += fmt::format(" {}", own);
-      extended.start_C.push_back(ambient_C);
+      extended.state_C.push_back(ambient_C);
       scaled.push_back(static_cast<std::size_t>(capacity));
     }
   }
@@ -156,49 +248,145 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
   }
 }
 
+/// How a linear system answers over a step to where it was and to a rate that is held: e^(A·h) and ∫e^(A·s)ds, both to the fourth order
+/// as the fit's own steps have them.
+void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd& power, Eigen::MatrixXd& forward,
+              Eigen::MatrixXd& held_s) {
+  const Eigen::Index size = slope_per_s.rows();
+  power.setIdentity(size, size);
+  forward.setIdentity(size, size);
+  held_s.setIdentity(size, size);
+  for (int order = 1; order <= 4; ++order) {
+    power = (slope_per_s * power.eval()) * (step_s / order);
+    forward += power;
+    held_s += order < 4 ? Eigen::MatrixXd(power / (order + 1.0)) : Eigen::MatrixXd::Zero(size, size);
+  }
+  held_s *= step_s;
+}
+
+/// The tangent of the extended network along the path that the fit has taken: laws are asked once per interval, halfway.
+void add_network_columns(Extended& extended, std::span<const double> parameters, const LinearisedRun& fitted, const MeasuredRun& run,
+                         Columns& columns) {
+  const Eigen::Index own = fitted.states;
+  const auto states = static_cast<Eigen::Index>(extended.state_C.size());
+  const auto wanted = static_cast<Eigen::Index>(extended.wanted.size());
+  std::vector<double> values = extended.network.values();
+  std::ranges::copy(parameters, values.begin());
+  Linearised slope;
+  Eigen::MatrixXd rate(states, wanted + 1), moved = Eigen::MatrixXd::Zero(states, wanted + 1), next = moved;
+  Eigen::MatrixXd power, forward, held_s;
+  for (Eigen::Index k = 0; k + 1 < fitted.samples(); ++k) {
+    for (Eigen::Index node = 0; node < own; ++node) {
+      extended.state_C[static_cast<std::size_t>(node)] = 0.5 * (fitted.state_C(node, k) + fitted.state_C(node, k + 1));
+    }
+    extended.network.linearise(run.at[static_cast<std::size_t>(k)], values, extended.state_C, slope);
+    rate.leftCols(wanted) = slope.by_parameter(Eigen::all, extended.wanted);
+    rate.rightCols<1>() = slope.rate_K_per_s;
+    const double duration_s = fitted.duration_s[static_cast<std::size_t>(k)];
+    const double fastest_per_s = slope.by_state.cwiseAbs().rowwise().sum().maxCoeff();
+    const int parts = std::max(1, static_cast<int>(std::ceil(2.0 * duration_s * fastest_per_s)));
+    set_step(slope.by_state, duration_s / parts, power, forward, held_s);
+    // The last column is how far the bodies of the candidates themselves go in this interval.
+    moved.rightCols<1>().setZero();
+    for (int part = 0; part < parts; ++part) {
+      next.noalias() = forward * moved;
+      next.noalias() += held_s * rate;
+      moved.swap(next);
+    }
+    for (Eigen::Index node = own; node < states; ++node) {
+      extended.state_C[static_cast<std::size_t>(node)] += moved(node, wanted);
+    }
+    for (Eigen::Index i = 0; i < wanted; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
+        columns((k + 1) * fitted.sensors() + sensor, static_cast<Eigen::Index>(extended.own[place])) +=
+            extended.slope[place] * moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], i);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter : 0; }
 
 const ParameterSpec& Candidate::size_spec() const {
+  if (is_heat_share()) {
+    return heat_share_spec();
+  }
   return type ? type->parameters[static_cast<std::size_t>(size_parameter())] : sensor_type->size;
 }
 
-std::string_view Candidate::family() const { return type ? type->candidacy.family : std::string_view("error of a sensor"); }
+std::string_view Candidate::family() const {
+  if (is_heat_share()) {
+    return "heat that the log does not tell";
+  }
+  return type ? type->candidacy.family : std::string_view("error of a sensor");
+}
 
-std::string_view Candidate::experiment() const { return type ? type->candidacy.experiment : sensor_type->experiment; }
+std::string_view Candidate::experiment() const {
+  if (is_heat_share()) {
+    return "current and voltage measured at the motor's own terminals, with the rotor turned by a sixth of an electrical turn between runs";
+  }
+  return type ? type->candidacy.experiment : sensor_type->experiment;
+}
 
-CandidateList candidates_for(const Network& network, const std::vector<MeasuredRun>& runs) {
+bool has_condition(const MeasuredRun& run, const Condition& condition) {
+  return std::ranges::all_of(condition, [&](const auto& part) {
+    const auto found = run.conditions.find(part.first);
+    return found != run.conditions.end() && found->second == part.second;
+  });
+}
+
+std::vector<int> heat_input_parameters(const Network& network) {
+  std::vector<int> places;
+  for (const EffectInPlace& effect : network.effects()) {
+    if (effect.type->name == "copper_loss" || effect.type->name == "input_power_loss") {
+      places.push_back(effect.parameter_index.front());
+    }
+  }
+  return places;
+}
+
+CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs) {
   CandidateList list;
-  add_network_candidates(network, runs, list);
+  const double scale = scale_of(model.model);
+  add_network_candidates(model, runs, scale, list);
+  add_conditional_candidates(model, runs, scale, list);
   for (const SensorEffectType& type : all_sensor_effects()) {
-    if (is_measured(runs, type.signal)) {
-      list.candidates.push_back({nullptr, &type, std::string(type.name), {}, {type.typical_size}, 0});
+    const bool is_there = std::ranges::find(model.sensors, &type, &SensorTerm::type) != model.sensors.end();
+    if (!is_there && is_measured(runs, type.signal)) {
+      list.candidates.push_back({nullptr, &type, std::string(type.name), {}, {type.typical_size}, 0, {}});
     }
   }
   return list;
 }
 
-Columns candidate_columns(const std::vector<Candidate>& candidates, const Network& network, std::span<const double> parameters,
-                          const LinearisedRun& fitted, const MeasuredRun& run) {
-  Extended extended{network, {}, {}, {}, {}};
+Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
+                          const MeasuredRun& run) {
+  const std::vector<double> parameters = model.values_in(run);
+  Extended extended{model.model.network, {}, {}, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
-  extended.start_C.assign(start_C.begin(), start_C.end());
+  extended.state_C.assign(start_C.begin(), start_C.end());
   for (std::size_t j = 0; j < candidates.size(); ++j) {
+    if (!has_condition(run, candidates[j].condition)) {
+      continue;
+    }
     if (candidates[j].type) {
       extend(extended, candidates[j], j, run.at.front().ambient_C);
+    } else if (candidates[j].is_heat_share()) {
+      for (const int place : heat_input_parameters(model.model.network)) {
+        extended.wanted.push_back(place);
+        extended.slope.push_back(candidates[j].typical_size() * parameters[static_cast<std::size_t>(place)]);
+        extended.own.push_back(j);
+      }
     }
   }
-  std::vector<double> values = extended.network.values();
-  std::ranges::copy(parameters, values.begin());
-  const LinearisedRun wide = linearise(extended.network, values, extended.wanted, {}, extended.start_C, run);
   Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
-  for (std::size_t i = 0; i < extended.wanted.size(); ++i) {
-    columns.col(static_cast<Eigen::Index>(extended.own[i])) += extended.slope[i] * wide.by_parameter.col(static_cast<Eigen::Index>(i));
-  }
+  add_network_columns(extended, parameters, fitted, run, columns);
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
-    if (candidate.type) {
+    if (!candidate.sensor_type) {
       continue;
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);

@@ -77,8 +77,12 @@ class Teller {
       tell_sensor(*term.candidate->sensor_type, effect);
       return effect;
     }
+    if (term.candidate && term.candidate->is_heat_share()) {
+      tell_heat_share(*term.candidate, effect);
+      return effect;
+    }
     const EffectInPlace& in_place = *effect_named(term.effect_name);
-    effect.id = term.candidate ? term.candidate->id : std::string(in_place.type->name);
+    effect.id = term.candidate ? term.candidate->id.substr(0, term.candidate->id.find(" in ")) : std::string(in_place.type->name);
     effect.node = after().model.model.network.node_name(in_place.node_index.front());
     effect.description = in_place.type->summary;
     for (const ConditionalTerm& conditional : after().model.conditional) {
@@ -112,6 +116,21 @@ class Teller {
         effect.p_value = p_of(value, sd);
       }
     }
+  }
+
+  void tell_heat_share(const Candidate& candidate, FoundEffect& effect) const {
+    const auto& terms = after().model.heat_shares;
+    const auto place = std::ranges::find(terms, candidate.condition, &HeatShareTerm::condition) - terms.begin();
+    const Eigen::Index own = after().model.first_heat_share() + place;
+    const double value = terms[static_cast<std::size_t>(place)].deviation_share;
+    const double sd = kUsualHeatShare * std::sqrt(after().covariance(own, own));
+    effect.id = "heat_share";
+    effect.node = "winding";
+    effect.condition = candidate.condition;
+    effect.description = "More or less heat goes in than the log says: another phase carries the current, or the driver takes another share.";
+    effect.parameters.push_back(
+        {std::string(candidate.size_spec().key), "", value, std::max(value - kInterval_sd * sd, -1.0), value + kInterval_sd * sd});
+    effect.p_value = p_of(value, sd);
   }
 
   static double p_of(double value, double sd) {

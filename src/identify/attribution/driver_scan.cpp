@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/parallel.h"
 
@@ -47,6 +48,18 @@ Columns response(const LinearisedRun& run, const Columns& heat_W, int flux, int 
   return shown;
 }
 
+/// The two hats of evenly spaced knots that are not 0 at a value.
+struct HatsAt {
+  Eigen::Index left = 0;
+  double right_share = 0.0;
+};
+HatsAt hats_at(const std::vector<double>& knots, double value) {
+  const auto intervals = static_cast<double>(knots.size() - 1);
+  const double place = std::clamp((value - knots.front()) / (knots.back() - knots.front()) * intervals, 0.0, intervals);
+  const double left = std::min(std::floor(place), intervals - 1.0);
+  return {static_cast<Eigen::Index>(left), place - left};
+}
+
 int flux_of(const Model& model, std::string_view node) {
   const int place = model.network.find_node(node);
   const auto found = std::ranges::find(model.flux_nodes, place);
@@ -80,7 +93,6 @@ std::vector<Batch> batches_of(const ScanInput& input) {
   return batches;
 }
 
-/// Normal equations of a family's hats: with each other, with θ and the residual, start temperatures and θ taken out.
 struct Family {
   ScanTerm term;
   std::vector<double> knots;
@@ -93,40 +105,74 @@ struct Scored {
   Eigen::MatrixXd covariance;
 };
 
+/// A family on its way to the unknown heat under which it is best.
+struct Climber {
+  Family family;
+  Scored scored;
+  FluxGrid::Place place;
+};
+
+/// What all families share in one run under one supposition about the unknown heat.
+struct SharedRun {
+  Whitening whitening;
+  Columns columns;           ///< whitened: start temperatures, what is fitted already, residual
+  Eigen::MatrixXd products;  ///< of the columns, the prior of the start temperatures included
+};
+
 class Scanner {
  public:
-  Scanner(const ScanInput& input, EvidenceTable& table, const SetScore& base) : input_(input), table_(table), base_(base) {}
+  Scanner(const ScanInput& input, EvidenceTable& table, const SetScore& base) : input_(input), table_(table), base_(base) {
+    for (Eigen::Index i = 0; i < table_.free_count(); ++i) {
+      inner_.push_back(i);
+    }
+    for (const int candidate : base_.candidates) {
+      inner_.push_back(table_.free_count() + candidate);
+    }
+  }
 
   std::vector<ScanResult> run(int most) {
-    std::vector<ScanResult> results;
+    std::vector<Climber> climbers;
     for (const Batch& batch : batches_of(input_)) {
+      const std::vector<Eigen::VectorXd> multiplier = multipliers(batch.term);
       std::vector<Family> families;
       for (const int driver : batch.drivers) {
-        families.push_back(family(batch.term, driver));
+        families.push_back(family(batch.term, driver, multiplier));
       }
-      const std::vector<Scored> scored = score(families, base_.place);
+      std::vector<Scored> scored = score(families, responses(families, multiplier), base_.place);
       for (std::size_t f = 0; f < families.size(); ++f) {
-        results.push_back(result(families[f], scored[f], base_.place, scored[f].gain_nats));
+        climbers.push_back({std::move(families[f]), std::move(scored[f]), base_.place});
       }
     }
-    const auto by_gain = [](const ScanResult& a, const ScanResult& b) { return a.gain_nats > b.gain_nats; };
-    std::ranges::stable_sort(results, by_gain);
-    results.resize(std::min<std::size_t>(results.size(), static_cast<std::size_t>(2 * most)));
-    for (ScanResult& each : results) {
+    const auto keep_best = [&climbers](int count) {
+      std::ranges::stable_sort(climbers, [](const Climber& a, const Climber& b) { return a.scored.gain_nats > b.scored.gain_nats; });
+      climbers.resize(std::min<std::size_t>(climbers.size(), static_cast<std::size_t>(count)));
+    };
+    keep_best(2 * most);
+    for (Climber& each : climbers) {
       climb(each);
     }
-    std::ranges::stable_sort(results, by_gain);
-    results.resize(std::min<std::size_t>(results.size(), static_cast<std::size_t>(most)));
+    keep_best(most);
+    std::vector<ScanResult> results;
+    for (const Climber& each : climbers) {
+      results.push_back(result(each));
+    }
     return results;
   }
 
  private:
-  Family family(ScanTerm term, int driver) const {
+  [[nodiscard]] std::vector<Eigen::VectorXd> multipliers(const ScanTerm& term) const {
+    std::vector<Eigen::VectorXd> along;
+    for (std::size_t r = 0; r < input_.runs->size(); ++r) {
+      along.push_back(multiplier_along(term, *input_.model, (*input_.fitted)[r], (*input_.runs)[r]));
+    }
+    return along;
+  }
+
+  Family family(ScanTerm term, int driver, const std::vector<Eigen::VectorXd>& multiplier) const {
     term.driver = driver;
     double squares = 0.0;
     double count = 0.0;
-    for (std::size_t r = 0; r < input_.runs->size(); ++r) {
-      const Eigen::VectorXd along = multiplier_along(term, *input_.model, (*input_.fitted)[r], (*input_.runs)[r]);
+    for (const Eigen::VectorXd& along : multiplier) {
       squares += along.squaredNorm();
       count += static_cast<double>(along.size());
     }
@@ -134,16 +180,14 @@ class Scanner {
     return {term, knots_of((*input_.drivers)[static_cast<std::size_t>(driver)]), kUsual_share * input_.mean_heat_W / std::max(1e-9, rms)};
   }
 
-  /// Heat of every hat of every family, in units of the families' usual sizes.
-  [[nodiscard]] Columns heats_W(const std::vector<Family>& families, std::size_t r) const {
+  /// Heat of every hat of every family along a run, in units of the families' usual sizes.
+  [[nodiscard]] Columns heats_W(const std::vector<Family>& families, const Eigen::VectorXd& multiplier, std::size_t r) const {
     Eigen::Index width = 0;
     for (const Family& family : families) {
       width += static_cast<Eigen::Index>(family.knots.size());
     }
-    const MeasuredRun& run = (*input_.runs)[r];
-    const Eigen::VectorXd multiplier = multiplier_along(families.front().term, *input_.model, (*input_.fitted)[r], run);
     const double sign = is_taken_out(families.front().term.multiplier) ? -1.0 : 1.0;
-    Columns heat_W = Columns::Zero(run.samples() - 1, width);
+    Columns heat_W = Columns::Zero(multiplier.size(), width);
     Eigen::Index at = 0;
     for (const Family& family : families) {
       const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
@@ -153,7 +197,9 @@ class Scanner {
         if (driver.kind == DriverKind::run) {
           heat_W(k, at) = sign * family.usual * multiplier[k] * value;
         } else if (!std::isnan(value)) {
-          heat_W.row(k).segment(at, size) = sign * family.usual * multiplier[k] * hats(family.knots, value).transpose();
+          const HatsAt hats = hats_at(family.knots, value);
+          heat_W(k, at + hats.left) = sign * family.usual * multiplier[k] * (1.0 - hats.right_share);
+          heat_W(k, at + hats.left + 1) = sign * family.usual * multiplier[k] * hats.right_share;
         }
       }
       at += size;
@@ -163,25 +209,50 @@ class Scanner {
 
   static bool is_taken_out(Multiplier multiplier) { return multiplier == Multiplier::excess || multiplier == Multiplier::difference; }
 
-  std::vector<Scored> score(const std::vector<Family>& families, const FluxGrid::Place& place) {
-    const LatentFlux flux = table_.grid().at(place);
+  /// Per run, how the sensors answer to every hat.
+  [[nodiscard]] std::vector<Columns> responses(const std::vector<Family>& families, const std::vector<Eigen::VectorXd>& multiplier) const {
     const ScanTerm& term = families.front().term;
     const int into = flux_of(*input_.model, term.node);
     const int other = term.other.empty() ? -1 : flux_of(*input_.model, term.other);
-    const Eigen::Index inner = table_.free_count() + static_cast<Eigen::Index>(base_.candidates.size());
-    std::vector<Eigen::Index> chosen;
-    for (Eigen::Index i = 0; i < table_.free_count(); ++i) {
-      chosen.push_back(i);
+    std::vector<Columns> shown(multiplier.size());
+    in_parallel(shown.size(), 0,
+                [&](std::size_t r) { shown[r] = response(*table_.runs()[r].run, heats_W(families, multiplier[r], r), into, other); });
+    return shown;
+  }
+
+  const std::vector<SharedRun>& shared_at(const FluxGrid::Place& place) {
+    const auto found = shared_.find(place);
+    if (found != shared_.end()) {
+      return found->second;
     }
-    for (const int candidate : base_.candidates) {
-      chosen.push_back(table_.free_count() + candidate);
+    const LatentFlux flux = table_.grid().at(place);
+    std::vector<SharedRun> shared;
+    for (const DesignRun& design : table_.runs()) {
+      shared.push_back({Whitening(*design.run, flux, design.noise), {}, {}});
     }
-    std::vector<std::vector<RunEvidence>> evidence(input_.runs->size());
-    in_parallel(input_.runs->size(), 0, [&](std::size_t r) {
+    in_parallel(shared.size(), 0, [&](std::size_t r) {
       const DesignRun& design = table_.runs()[r];
-      const Columns shown = response(*design.run, heats_W(families, r), into, other);
-      evidence[r] = evidence_of(design, design.columns(Eigen::all, chosen), shown, families, flux);
+      const Eigen::Index starts = design.run->states;
+      Columns& columns = shared[r].columns;
+      columns.resize(design.columns.rows(), starts + static_cast<Eigen::Index>(inner_.size()) + 1);
+      columns << design.run->by_start, design.columns(Eigen::all, inner_), design.run->residual_K;
+      shared[r].whitening.apply(columns);
+      shared[r].products = columns.transpose() * columns;
+      const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
+      Eigen::MatrixXd& products = shared[r].products;
+      const Eigen::Index last = columns.cols() - 1;
+      products.topLeftCorner(starts, starts).diagonal() += precision;
+      products.topRightCorner(starts, 1) += precision.cwiseProduct(design.start.mean_K);
+      products(last, last) += design.start.mean_K.dot(precision.cwiseProduct(design.start.mean_K));
     });
+    return shared_.emplace(place, std::move(shared)).first->second;
+  }
+
+  /// Gains over the base at the same place.
+  std::vector<Scored> score(const std::vector<Family>& families, std::vector<Columns> shown, const FluxGrid::Place& place) {
+    const std::vector<SharedRun>& shared = shared_at(place);
+    std::vector<std::vector<RunEvidence>> evidence(shown.size());
+    in_parallel(shown.size(), 0, [&](std::size_t r) { evidence[r] = evidence_of(table_.runs()[r], shared[r], shown[r], families); });
     std::vector<Scored> scored(families.size());
     const double base_nats = table_.score(base_.candidates, place).evidence_nats - table_.grid().log_prior_nats(place);
     for (std::size_t f = 0; f < families.size(); ++f) {
@@ -189,7 +260,7 @@ class Scanner {
       for (const std::vector<RunEvidence>& of_run : evidence) {
         of_family.push_back(of_run[f]);
       }
-      scored[f] = solve(of_family, families[f], inner);
+      scored[f] = solve(of_family, families[f]);
       scored[f].gain_nats -= base_nats;
     }
     return scored;
@@ -197,47 +268,41 @@ class Scanner {
 
   /// One per family, of [inner, hats, residual]. All families share the whitening and what does not concern their hats; a wide
   /// QR would spend its time on products of families with each other, so triangles come from normal matrices here.
-  static std::vector<RunEvidence> evidence_of(const DesignRun& design, const Columns& inner, const Columns& shown,
-                                              const std::vector<Family>& families, const LatentFlux& flux) {
+  static std::vector<RunEvidence> evidence_of(const DesignRun& design, const SharedRun& common, Columns& shown,
+                                              const std::vector<Family>& families) {
+    common.whitening.apply(shown);
     const Eigen::Index starts = design.run->states;
-    const Eigen::Index shared = starts + inner.cols() + 1;
-    Columns all(shown.rows(), shared + shown.cols());
-    all << design.run->by_start, inner, design.run->residual_K, shown;
-    const Whitening whitening(*design.run, flux, design.noise);
-    whitening.apply(all);
-    Eigen::MatrixXd of_shared = all.leftCols(shared).transpose() * all.leftCols(shared);
-    const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
-    of_shared.topLeftCorner(starts, starts).diagonal() += precision;
-    of_shared.topRightCorner(starts, 1) += precision.cwiseProduct(design.start.mean_K);
-    of_shared(shared - 1, shared - 1) += design.start.mean_K.dot(precision.cwiseProduct(design.start.mean_K));
-    const Eigen::MatrixXd across = all.leftCols(shared).transpose() * all.rightCols(shown.cols());
+    const Eigen::Index shared = common.columns.cols();
+    const Eigen::MatrixXd across = common.columns.transpose() * shown;
     std::vector<RunEvidence> evidence;
     Eigen::Index at = 0;
     for (const Family& family : families) {
       const auto size = static_cast<Eigen::Index>(family.knots.size());
-      const auto hats = all.middleCols(shared + at, size);
+      const auto hats = shown.middleCols(at, size);
       const Eigen::Index before = shared - 1;
       Eigen::MatrixXd normal(shared + size, shared + size);
-      normal.topLeftCorner(before, before) = of_shared.topLeftCorner(before, before);
+      normal.topLeftCorner(before, before) = common.products.topLeftCorner(before, before);
       normal.block(0, before, before, size) = across.block(0, at, before, size);
       normal.block(before, before, size, size) = hats.transpose() * hats;
-      normal.block(0, before + size, before, 1) = of_shared.block(0, before, before, 1);
+      normal.block(0, before + size, before, 1) = common.products.block(0, before, before, 1);
       normal.block(before, before + size, size, 1) = across.block(before, at, 1, size).transpose();
-      normal(before + size, before + size) = of_shared(before, before);
+      normal(before + size, before + size) = common.products(before, before);
       // A hat that no sample reaches has an empty column.
       normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
       const Eigen::MatrixXd triangle = normal.selfadjointView<Eigen::Upper>().llt().matrixU();
-      const Eigen::Index rest = inner.cols() + size + 1;
+      const Eigen::Index rest = shared - starts + size;
       const double start_logs =
           triangle.topLeftCorner(starts, starts).diagonal().array().log().sum() + design.start.sd_K.array().log().sum();
-      evidence.push_back({triangle.bottomRightCorner(rest, rest), whitening.log_determinant() + 2.0 * start_logs, whitening.count()});
+      evidence.push_back(
+          {triangle.bottomRightCorner(rest, rest), common.whitening.log_determinant() + 2.0 * start_logs, common.whitening.count()});
       at += size;
     }
     return evidence;
   }
 
-  [[nodiscard]] Scored solve(const std::vector<RunEvidence>& evidence, const Family& family, Eigen::Index inner) const {
+  [[nodiscard]] Scored solve(const std::vector<RunEvidence>& evidence, const Family& family) const {
     const auto size = static_cast<Eigen::Index>(family.knots.size());
+    const auto inner = static_cast<Eigen::Index>(inner_.size());
     const ThetaPrior prior = table_.prior_of(base_.candidates);
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(inner + size);
     Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(inner + size, inner + size);
@@ -249,29 +314,26 @@ class Scanner {
             family.usual * family.usual * fit.covariance.bottomRightCorner(size, size)};
   }
 
-  /// To the unknown heat under which the term with its curve is best.
-  void climb(ScanResult& result) {
-    const Family own = family(result.term, result.term.driver);
-    const double base_nats = base_.evidence_nats;
-    const auto total = [&](const FluxGrid::Place& place, Scored& scored) {
-      scored = score({own}, place).front();
-      return scored.gain_nats + table_.score(base_.candidates, place).evidence_nats - base_nats;
-    };
-    Scored scored;
+  /// To the unknown heat under which the term with its curve is best; its gain is then over the base at the base's own best.
+  void climb(Climber& climber) {
+    const std::vector<Family> own{climber.family};
+    const std::vector<Columns> shown = responses(own, multipliers(climber.family.term));
     for (bool moved = true; moved;) {
       moved = false;
-      for (std::size_t axis = 0; axis < result.place.size(); ++axis) {
+      for (std::size_t axis = 0; axis < climber.place.size(); ++axis) {
         const auto count =
-            static_cast<int>(axis + 1 < result.place.size() ? table_.grid().rms_W.size() : table_.grid().time_scale_s.size());
+            static_cast<int>(axis + 1 < climber.place.size() ? table_.grid().rms_W.size() : table_.grid().time_scale_s.size());
         for (const int step : {-1, 1}) {
-          FluxGrid::Place place = result.place;
+          FluxGrid::Place place = climber.place;
           place[axis] += step;
           if (place[axis] < 0 || place[axis] >= count) {
             continue;
           }
-          const double gain_nats = total(place, scored);
-          if (gain_nats > result.gain_nats + 1e-6) {
-            result = this->result(own, scored, place, gain_nats);
+          Scored scored = score(own, shown, place).front();
+          scored.gain_nats += table_.score(base_.candidates, place).evidence_nats - base_.evidence_nats;
+          if (scored.gain_nats > climber.scored.gain_nats + 1e-6) {
+            climber.scored = std::move(scored);
+            climber.place = std::move(place);
             moved = true;
             break;
           }
@@ -280,17 +342,19 @@ class Scanner {
     }
   }
 
-  [[nodiscard]] ScanResult result(const Family& family, const Scored& scored, const FluxGrid::Place& place, double gain_nats) const {
-    ScanResult out{family.term, family.usual, gain_nats, family.knots, scored.curve, scored.covariance, 0.0, 0.0, place};
+  [[nodiscard]] ScanResult result(const Climber& climber) const {
+    const Family& family = climber.family;
+    const Scored& scored = climber.scored;
+    ScanResult out{family.term, family.usual, scored.gain_nats, family.knots, scored.curve, scored.covariance, 0.0, 0.0, climber.place};
     std::vector<double> magnitude_W;
     const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
-    for (std::size_t r = 0; r < input_.runs->size(); ++r) {
-      const Eigen::VectorXd multiplier = multiplier_along(family.term, *input_.model, (*input_.fitted)[r], (*input_.runs)[r]);
-      for (Eigen::Index k = 0; k < multiplier.size(); ++k) {
+    const std::vector<Eigen::VectorXd> multiplier = multipliers(family.term);
+    for (std::size_t r = 0; r < multiplier.size(); ++r) {
+      for (Eigen::Index k = 0; k < multiplier[r].size(); ++k) {
         const double value = driver.values[r][k];
         if (driver.kind == DriverKind::run ? value > 0.5 : !std::isnan(value)) {
           const double curve = driver.kind == DriverKind::run ? scored.curve[0] : scored.curve.dot(hats(family.knots, value));
-          magnitude_W.push_back(std::abs(curve * multiplier[k]));
+          magnitude_W.push_back(std::abs(curve * multiplier[r][k]));
         }
       }
     }
@@ -308,6 +372,8 @@ class Scanner {
   const ScanInput& input_;
   EvidenceTable& table_;
   const SetScore& base_;
+  std::vector<Eigen::Index> inner_;  ///< columns of the table that the base fits
+  std::map<FluxGrid::Place, std::vector<SharedRun>> shared_;
 };
 
 }  // namespace
@@ -380,17 +446,13 @@ Eigen::MatrixXd curve_precision(Eigen::Index knots) {
 
 Eigen::VectorXd hats(const std::vector<double>& knots, double value) {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(knots.size()));
-  if (knots.size() == 1 || value <= knots.front()) {
+  if (knots.size() == 1) {
     all[0] = 1.0;
-  } else if (value >= knots.back()) {
-    all[all.size() - 1] = 1.0;
-  } else {
-    const auto right = std::ranges::upper_bound(knots, value) - knots.begin();
-    const double share = (value - knots[static_cast<std::size_t>(right - 1)]) /
-                         (knots[static_cast<std::size_t>(right)] - knots[static_cast<std::size_t>(right - 1)]);
-    all[right - 1] = 1.0 - share;
-    all[right] = share;
+    return all;
   }
+  const HatsAt two = hats_at(knots, value);
+  all[two.left] = 1.0 - two.right_share;
+  all[two.left + 1] = two.right_share;
   return all;
 }
 

@@ -51,7 +51,9 @@ const EvidenceTable::Reduced& EvidenceTable::at(const FluxGrid::Place& place) {
   reduced.run.resize(runs_.size());
   in_parallel(runs_.size(), 0, [&](std::size_t i) {
     const DesignRun& design = runs_[i];
-    reduced.run[i] = run_evidence(*design.run, design.columns, Whitening(*design.run, flux, design.noise), design.start);
+    const Whitening whitening(*design.run, flux, design.noise);
+    reduced.run[i] = candidates_.empty() ? run_evidence(*design.run, design.columns, whitening, design.start)
+                                         : run_evidence_of_many(*design.run, design.columns, free_count(), whitening, design.start);
   });
   reduced.all.triangle = stacked(reduced.run);
   for (const RunEvidence& run : reduced.run) {

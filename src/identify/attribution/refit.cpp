@@ -72,7 +72,10 @@ class Fitter {
     linearise_all(now_);
     EvidenceTable table = table_of(now_);
     for (int step = 0; step < options_.most_steps; ++step) {
-      now_.place = table.best({}, now_.place).place;
+      // Far from the best fit its misfit would pass for unknown heat.
+      if (step > 0) {
+        now_.place = table.best({}, now_.place).place;
+      }
       const double misfit = table.misfit_now(now_.place);
       const LinearFit fit = bounded_step(table);
       const double promised = misfit - fit.misfit;

@@ -91,18 +91,12 @@ class Selector {
 
   /// True where a term was taken in.
   bool one_round() {
-    const CandidateList list = candidates_for(out_.after.model.model.network, input_.runs);
+    const CandidateList list = candidates_for(out_.after.model, input_.runs);
     out_.not_judged = list.not_judged;
-    std::vector<Candidate> candidates;
-    for (const Candidate& each : list.candidates) {
-      if (!has_sensor_term(each)) {
-        candidates.push_back(each);
-      }
-    }
+    const std::vector<Candidate>& candidates = list.candidates;
     std::vector<Columns> columns(input_.runs.size());
     in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
-      columns[r] = candidate_columns(candidates, out_.after.model.model.network, out_.after.model.values_in(input_.runs[r]),
-                                     out_.after.fitted[r], input_.runs[r]);
+      columns[r] = candidate_columns(candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]);
     });
     EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, columns), options_.grid, prior_here(out_.after.model),
                         column_rules(candidates));
@@ -120,11 +114,6 @@ class Selector {
     return taken;
   }
 
-  [[nodiscard]] bool has_sensor_term(const Candidate& candidate) const {
-    return candidate.sensor_type &&
-           std::ranges::any_of(out_.after.model.sensors, [&](const SensorTerm& term) { return term.type == candidate.sensor_type; });
-  }
-
   /// The best few candidates with their unknown heat re-maximised.
   std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
     const std::vector<double> gain_nats = table.single_gains_nats(base);
@@ -139,9 +128,13 @@ class Selector {
       }
       const std::vector<int> set{j};
       const SetScore best = table.best(set, base.place);
-      JudgedCandidate judged{candidates[static_cast<std::size_t>(j)], best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0};
+      JudgedCandidate judged;
+      judged.candidate = candidates[static_cast<std::size_t>(j)];
+      judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
       judged.visibility_ratio = table.visibility_ratio(base, j);
       judged.size_share = best.coefficient[table.free_count()];
+      judged.place = best.place;
+      judged.step = best.coefficient.head(table.free_count());
       const std::vector<double> left_out = table.left_out_gains_nats(base, best);
       const std::vector<SizeInRun> sizes = table.size_by_run(best, j);
       for (std::size_t r = 0; r < left_out.size(); ++r) {
@@ -195,9 +188,11 @@ class Selector {
     };
     std::vector<Tried> tried;
     const double least = rules_.least_gain_nats;
-    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.6 * round.ladder.front().gain_nats - 20.0);
+    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.8 * round.ladder.front().gain_nats - 20.0);
     for (JudgedCandidate& each : round.ladder) {
-      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats) {
+      // Shapes are free in a refit: of several variants of one effect the best leads to where the others would.
+      const bool is_variant = std::ranges::any_of(tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id; });
+      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats || is_variant) {
         continue;
       }
       const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
@@ -211,7 +206,7 @@ class Selector {
         }
         continue;
       }
-      RefitResult fit = try_term(each.candidate, each.size_share);
+      RefitResult fit = try_term(each);
       each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
@@ -224,6 +219,9 @@ class Selector {
         return true;
       }
       out_.open_curve = round.scan.front();
+    }
+    if (take_pair(round, candidates, table, base, best_nats)) {
+      return true;
     }
     if (best_nats < least) {
       return false;
@@ -245,10 +243,125 @@ class Selector {
     return true;
   }
 
-  RefitResult try_term(const Candidate& candidate, double size_share) const {
+  /// From where the linear fit has arrived already.
+  RefitResult try_term(const JudgedCandidate& judged) const {
+    return try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
+  }
+
+  RefitResult try_terms(const std::vector<Candidate>& added, const std::vector<double>& size_share, const Eigen::VectorXd& step,
+                        const FluxGrid::Place& place) const {
     RefitOptions options = options_;
-    options.place = out_.after.place;
-    return refit(with_candidate(out_.after.model, candidate, size_share), input_.runs, out_.after.start_C, options);
+    options.place = place;
+    ExtendedModel model = out_.after.model;
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      model = with_candidate(model, added[i], size_share[i]);
+    }
+    Eigen::VectorXd theta = model.theta();
+    const Eigen::Index inner = out_.after.model.model.free_count();
+    const auto sensors = static_cast<Eigen::Index>(out_.after.model.sensors.size());
+    const auto heat_shares = static_cast<Eigen::Index>(out_.after.model.heat_shares.size());
+    theta.head(inner) += step.head(inner);
+    theta.segment(model.model.free_count(), sensors) += step.segment(inner, sensors);
+    theta.segment(model.first_heat_share(), heat_shares) += step.tail(heat_shares);
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
+    }
+    model.set_theta(theta);
+    return refit(std::move(model), input_.runs, out_.after.start_C, options);
+  }
+
+  /// Two effects that hide each other: neither is seen while unknown heat stands in for the other. Asked only where that heat is much.
+  bool take_pair(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
+                 double best_single_nats) {
+    const LatentFlux flux = table.grid().at(base.place);
+    if (*std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W ||
+        static_cast<int>(out_.terms.size()) + 2 > rules_.most_terms) {
+      return false;
+    }
+    constexpr std::size_t kTried = 4;
+    const double least_nats = 2.0 * rules_.least_gain_nats;
+    std::vector<SetScore> pairs = best_pairs(round, candidates, table, base, kTried);
+    std::optional<RefitResult> best;
+    std::vector<int> chosen;
+    for (const SetScore& pair : pairs) {
+      const Eigen::Index own = table.free_count();
+      const std::vector<Candidate> added{candidates[static_cast<std::size_t>(pair.candidates[0])],
+                                         candidates[static_cast<std::size_t>(pair.candidates[1])]};
+      RefitResult fit = try_terms(added, {pair.coefficient[own], pair.coefficient[own + 1]}, pair.coefficient.head(own), pair.place);
+      const double gain_nats = fit.evidence_nats - out_.after.evidence_nats;
+      if (gain_nats >= std::max(least_nats, best_single_nats + rules_.least_gain_nats) && (!best || fit.evidence_nats > best->evidence_nats)) {
+        best = std::move(fit);
+        chosen = pair.candidates;
+      }
+    }
+    if (!best) {
+      return false;
+    }
+    const double gain_nats = best->evidence_nats - out_.after.evidence_nats;
+    auto name = best->model.model.network.effects().end() -
+                std::ranges::count_if(chosen, [&](int j) { return candidates[static_cast<std::size_t>(j)].type != nullptr; });
+    for (std::size_t i = 0; i < 2; ++i) {
+      AcceptedTerm term;
+      term.candidate = candidates[static_cast<std::size_t>(chosen[i])];
+      term.effect_name = term.candidate->type ? (name++)->name : std::string();
+      term.gain_nats = 0.5 * gain_nats;
+      term.visibility_ratio = table.visibility_ratio(base, chosen[i]);
+      tell_rivals(round, candidates, table, base, chosen, i, term);
+      out_.terms.push_back(std::move(term));
+    }
+    out_.after = std::move(*best);
+    return true;
+  }
+
+  /// Of effects that gain something by themselves and can be seen.
+  std::vector<SetScore> best_pairs(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
+                                   std::size_t most) const {
+    const std::vector<int> pool = visible_places(round, candidates);
+    std::vector<SetScore> pairs;
+    for (std::size_t a = 0; a < pool.size(); ++a) {
+      for (std::size_t b = a + 1; b < pool.size(); ++b) {
+        const std::vector<int> set{pool[a], pool[b]};
+        SetScore pair = table.best(set, base.place);
+        if (pair.is_allowed && pair.evidence_nats > base.evidence_nats + rules_.least_gain_nats) {
+          pairs.push_back(std::move(pair));
+        }
+      }
+    }
+    std::ranges::stable_sort(pairs, [](const SetScore& a, const SetScore& b) { return a.evidence_nats > b.evidence_nats; });
+    pairs.resize(std::min(pairs.size(), most));
+    return pairs;
+  }
+
+  [[nodiscard]] std::vector<int> visible_places(const Round& round, const std::vector<Candidate>& candidates) const {
+    std::vector<int> pool;
+    for (const JudgedCandidate& each : round.ladder) {
+      const auto found = std::ranges::find_if(
+          candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
+      if (each.visibility_ratio >= rules_.least_visibility_ratio) {
+        pool.push_back(static_cast<int>(found - candidates.begin()));
+      }
+    }
+    return pool;
+  }
+
+  /// What could stand in place of one of a pair.
+  void tell_rivals(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
+                   const std::vector<int>& chosen, std::size_t own, AcceptedTerm& term) const {
+    const double chosen_nats = table.best(chosen, base.place).evidence_nats;
+    for (const int j : visible_places(round, candidates)) {
+      const Candidate& rival = candidates[static_cast<std::size_t>(j)];
+      std::vector<int> set = chosen;
+      set[own] = j;
+      if (std::ranges::find(chosen, j) != chosen.end() || rival.id == term.candidate->id ||
+          std::ranges::find(term.confusable_with, rival.id) != term.confusable_with.end()) {
+        continue;
+      }
+      const SetScore with = table.best(set, base.place);
+      if (with.is_allowed && with.evidence_nats > chosen_nats - rules_.ambiguous_within_nats) {
+        term.confusable_with.push_back(rival.id);
+        term.experiments.emplace_back(rival.experiment());
+      }
+    }
   }
 
   /// The first curve that physics and the whole tool allow, refitted in the equations.
@@ -287,7 +400,13 @@ class Selector {
 
   /// Drops what the later terms have made superfluous.
   void check_backwards() {
+    bool has_dropped = false;
     for (std::size_t i = out_.terms.size(); i-- > 0;) {
+      if (i + 1 == out_.terms.size() && !has_dropped) {
+        // Without the last one the model is what it was a round before.
+        out_.terms[i].loss_without_nats = out_.terms[i].gain_nats;
+        continue;
+      }
       RefitOptions options = options_;
       options.place = out_.after.place;
       RefitResult without = refit(with_values_of(with_terms_except(i), out_.after.model), input_.runs, out_.before.start_C, options);
@@ -295,6 +414,8 @@ class Selector {
       if (out_.terms[i].loss_without_nats < rules_.least_gain_nats) {
         out_.after = std::move(without);
         out_.terms.erase(out_.terms.begin() + static_cast<std::ptrdiff_t>(i));
+        has_dropped = true;
+        i = out_.terms.size();
       }
     }
   }

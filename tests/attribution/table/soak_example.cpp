@@ -54,8 +54,7 @@ int main(int argc, char** argv) {
                        .copper_to_iron_K_per_W = 4.4,
                        .iron_to_air_K_per_W = 3.9,
                        .resistance_25C_ohm = 0.608,
-                       .copper_per_K = 0.0039,
-                       .steps_per_row = 60};
+                       .copper_per_K = 0.0039};
   const Missing missing = chassis();
   const Surprise surprise{
       .flux_W = 0.04, .flux_time_s = 200.0, .noise_K = 0.12, .step_K = 0.1, .outlier_probability = 0.002, .gap_probability = 0.0005};

@@ -1,0 +1,39 @@
+// One diagnosis as users run it: every effect of the catalogue, the driver scan and all that is told about the answer, on four
+// half-hour runs at 1 Hz.
+#include <benchmark/benchmark.h>
+
+#include "examination.h"
+#include "identify/attribution/diagnosis.h"
+#include "missing_effects.h"
+
+namespace heatsoak::truth {
+namespace {
+
+void diagnose_four_half_hours(benchmark::State& state, const char* missing) {
+  Case sealed;
+  sealed.seed = 20000;
+  const auto found = std::ranges::find(subjects(), missing, &Subject::name);
+  if (found != subjects().end()) {
+    sealed.missing = found->make(1.0);
+  }
+  const Runs runs = record(sealed);
+  DiagnosisInput input;
+  input.model = model_before(runs.make, sealed.seed);
+  for (const TrueRun& run : runs.training) {
+    input.train.push_back(measured(run));
+    input.free.push_back(free_signals(run.log, input.train.back()));
+  }
+  for (const TrueRun& run : runs.unseen) {
+    input.holdout.push_back(measured(run));
+  }
+  for (auto each : state) {
+    (void)each;
+    benchmark::DoNotOptimize(diagnose(input, {}));
+  }
+  state.counters["candidates"] = static_cast<double>(candidates_for(input.model.model.network, input.train).candidates.size());
+}
+BENCHMARK_CAPTURE(diagnose_four_half_hours, nothing_missing, "")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_four_half_hours, one_effect_missing, "iron_loss_eddy")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+}  // namespace
+}  // namespace heatsoak::truth
