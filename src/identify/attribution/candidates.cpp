@@ -391,9 +391,11 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
     const Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
-    const Eigen::VectorXd by_size = candidate.sensor_type->law.by_size(run.time_s, 0.0, true_C);
-    for (Eigen::Index k = 0; k < by_size.size(); ++k) {
-      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = candidate.typical_size() * by_size[k];
+    // The change at the typical size, not the slope at none: a lag is far from linear in its size.
+    Eigen::VectorXd shown_C = true_C;
+    candidate.sensor_type->law.apply(run.time_s, candidate.typical_size(), false, shown_C);
+    for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
+      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = shown_C[k] - true_C[k];
     }
   }
   return columns;

@@ -42,6 +42,7 @@ class Teller {
     for (const AcceptedTerm& term : out_.selection.terms) {
       out_.effects.push_back(found(term));
     }
+    out_.runs = input_.train;
     tell_errors();
     tell_flux();
     tell_balance();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -101,6 +102,8 @@ class Selector {
     EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, columns), options_.grid, prior_here(out_.after.model),
                         column_rules(candidates));
     const SetScore base = table.best({}, out_.after.place);
+    out_.after.evidence_nats = std::max(out_.after.evidence_nats, base.evidence_nats);
+    out_.after.place = base.place;
     Round round;
     round.evidence_nats = base.evidence_nats;
     round.ladder = judge(candidates, table, base);
@@ -220,7 +223,7 @@ class Selector {
       }
       out_.open_curve = round.scan.front();
     }
-    if (take_pair(round, candidates, table, base, best_nats)) {
+    if (take_set(round, candidates, table, base, best_nats)) {
       return true;
     }
     if (best_nats < least) {
@@ -270,41 +273,47 @@ class Selector {
     return refit(std::move(model), input_.runs, out_.after.start_C, options);
   }
 
-  /// Two effects that hide each other: neither is seen while unknown heat stands in for the other. Asked only where that heat is much.
-  bool take_pair(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
-                 double best_single_nats) {
+  /// What a set of so many terms must be ahead: every term has to be worth the least gain.
+  [[nodiscard]] double worth_nats(double gain_nats, std::size_t terms) const {
+    return gain_nats - static_cast<double>(terms) * rules_.least_gain_nats;
+  }
+
+  /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
+  bool take_set(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
+                double best_single_nats) {
     const LatentFlux flux = table.grid().at(base.place);
-    if (*std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W ||
-        static_cast<int>(out_.terms.size()) + 2 > rules_.most_terms) {
+    if (*std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W) {
       return false;
     }
-    constexpr std::size_t kTried = 4;
-    const double least_nats = 2.0 * rules_.least_gain_nats;
-    std::vector<SetScore> pairs = best_pairs(round, candidates, table, base, kTried);
     std::optional<RefitResult> best;
     std::vector<int> chosen;
-    for (const SetScore& pair : pairs) {
+    double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1));
+    for (const SetScore& set : best_sets(round, candidates, table, base)) {
       const Eigen::Index own = table.free_count();
-      const std::vector<Candidate> added{candidates[static_cast<std::size_t>(pair.candidates[0])],
-                                         candidates[static_cast<std::size_t>(pair.candidates[1])]};
-      RefitResult fit = try_terms(added, {pair.coefficient[own], pair.coefficient[own + 1]}, pair.coefficient.head(own), pair.place);
-      const double gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (gain_nats >= std::max(least_nats, best_single_nats + rules_.least_gain_nats) && (!best || fit.evidence_nats > best->evidence_nats)) {
+      std::vector<Candidate> added;
+      std::vector<double> size_share;
+      for (std::size_t i = 0; i < set.candidates.size(); ++i) {
+        added.push_back(candidates[static_cast<std::size_t>(set.candidates[i])]);
+        size_share.push_back(set.coefficient[own + static_cast<Eigen::Index>(i)]);
+      }
+      RefitResult fit = try_terms(added, size_share, set.coefficient.head(own), set.place);
+      const double set_worth_nats = worth_nats(fit.evidence_nats - out_.after.evidence_nats, added.size());
+      if (set_worth_nats > best_worth_nats) {
+        best_worth_nats = set_worth_nats;
         best = std::move(fit);
-        chosen = pair.candidates;
+        chosen = set.candidates;
       }
     }
     if (!best) {
       return false;
     }
-    const double gain_nats = best->evidence_nats - out_.after.evidence_nats;
     auto name = best->model.model.network.effects().end() -
                 std::ranges::count_if(chosen, [&](int j) { return candidates[static_cast<std::size_t>(j)].type != nullptr; });
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
       AcceptedTerm term;
       term.candidate = candidates[static_cast<std::size_t>(chosen[i])];
       term.effect_name = term.candidate->type ? (name++)->name : std::string();
-      term.gain_nats = 0.5 * gain_nats;
+      term.gain_nats = (best->evidence_nats - out_.after.evidence_nats) / static_cast<double>(chosen.size());
       term.visibility_ratio = table.visibility_ratio(base, chosen[i]);
       tell_rivals(round, candidates, table, base, chosen, i, term);
       out_.terms.push_back(std::move(term));
@@ -313,23 +322,46 @@ class Selector {
     return true;
   }
 
-  /// Of effects that gain something by themselves and can be seen.
-  std::vector<SetScore> best_pairs(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
-                                   std::size_t most) const {
+  /// Of effects that gain something by themselves and can be seen: sets that grow one by one from the best smaller ones.
+  std::vector<SetScore> best_sets(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table,
+                                  const SetScore& base) const {
+    constexpr std::size_t kKept = 6;
+    constexpr std::size_t kRefitted = 4;
+    const auto by_evidence = [](const SetScore& a, const SetScore& b) { return a.evidence_nats > b.evidence_nats; };
     const std::vector<int> pool = visible_places(round, candidates);
-    std::vector<SetScore> pairs;
-    for (std::size_t a = 0; a < pool.size(); ++a) {
-      for (std::size_t b = a + 1; b < pool.size(); ++b) {
-        const std::vector<int> set{pool[a], pool[b]};
-        SetScore pair = table.best(set, base.place);
-        if (pair.is_allowed && pair.evidence_nats > base.evidence_nats + rules_.least_gain_nats) {
-          pairs.push_back(std::move(pair));
+    std::vector<SetScore> all;
+    std::vector<SetScore> smaller{base};
+    for (std::size_t size = 1; out_.terms.size() + size <= static_cast<std::size_t>(rules_.most_terms); ++size) {
+      std::map<std::vector<int>, SetScore> larger;
+      for (const SetScore& from : smaller) {
+        for (const int j : pool) {
+          std::vector<int> set = from.candidates;
+          set.insert(std::ranges::lower_bound(set, j), j);
+          if (std::ranges::find(from.candidates, j) != from.candidates.end() || larger.contains(set)) {
+            continue;
+          }
+          SetScore score = table.best(set, from.place);
+          if (score.is_allowed) {
+            larger.emplace(std::move(set), std::move(score));
+          }
         }
       }
+      smaller.clear();
+      for (auto& [set, score] : larger) {
+        smaller.push_back(std::move(score));
+      }
+      std::ranges::stable_sort(smaller, by_evidence);
+      // Of single ones all go on: what they gain alone says little here.
+      smaller.resize(std::min(smaller.size(), size == 1 ? pool.size() : kKept));
+      if (size > 1) {
+        all.insert(all.end(), smaller.begin(), smaller.end());
+      }
     }
-    std::ranges::stable_sort(pairs, [](const SetScore& a, const SetScore& b) { return a.evidence_nats > b.evidence_nats; });
-    pairs.resize(std::min(pairs.size(), most));
-    return pairs;
+    std::ranges::stable_sort(all, [&](const SetScore& a, const SetScore& b) {
+      return worth_nats(a.evidence_nats, a.candidates.size()) > worth_nats(b.evidence_nats, b.candidates.size());
+    });
+    all.resize(std::min(all.size(), kRefitted));
+    return all;
   }
 
   [[nodiscard]] std::vector<int> visible_places(const Round& round, const std::vector<Candidate>& candidates) const {
@@ -344,7 +376,7 @@ class Selector {
     return pool;
   }
 
-  /// What could stand in place of one of a pair.
+  /// What could stand in place of one of a set.
   void tell_rivals(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
                    const std::vector<int>& chosen, std::size_t own, AcceptedTerm& term) const {
     const double chosen_nats = table.best(chosen, base.place).evidence_nats;
