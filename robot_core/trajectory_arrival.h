@@ -130,6 +130,29 @@ bool arrive_before_gap(const Families<Real>& f, bool& is_up, Arrival<Real>& foun
   return false;
 }
 
+/// One segment of full jerk from end to end, where that meets the target but for rounding errors: no change of acceleration
+/// is faster. Such ends lie on a corner of what can be reached; a rounding error beyond it the next arrival is far off.
+template <typename Real>
+bool arrive_in_one(const Problem<Real>& p, const Families<Real>& f, Arrival<Real>& found) {
+  const Real change = p.a1 - p.a0;
+  const Real time = absolute(change);
+  const Real speed = absolute(p.v0) + absolute(p.v1) + time * (absolute(p.a0) + absolute(p.a1));
+  const Real missed_velocity = p.v1 - p.v0 - time * (p.a0 + p.a1) / Real(2);
+  const Real missed_distance = p.distance - time * (p.v0 + time * (p.a0 / Real(2) + change / Real(6)));
+  if (!(time > Real(0)) || absolute(missed_velocity) > kRounding<Real> * speed ||
+      absolute(missed_distance) > kRounding<Real> * (p.distance_scale + Real(8) * time * speed)) {
+    return false;
+  }
+  const Real start_slope = larger(p.a0, p.a1);
+  Shape<Real> shape{};
+  shape.slope_low = f.up.low_is_start ? start_slope : -p.a1;
+  shape.slope_high = f.up.low_is_start ? -p.a1 : start_slope;
+  shape.fall = start_slope - p.a1;
+  shape.distance = f.up.goal;
+  found = {true, shape, time};
+  return true;
+}
+
 /// An arrival of a given duration, or the next one possible.
 template <typename Real>
 struct Timed {
@@ -198,6 +221,9 @@ struct Axis {  // NOLINT(cppcoreguidelines-pro-type-member-init): pose_axis() fi
   /// brake, of use only before their gap: in them the acceleration never changes its sign.
   bool may_be_early;
   Families<Real> early;
+  bool is_in_one;        ///< behind the brake, the first arrival takes one segment
+  bool is_early_in_one;  ///< the same of the early ones
+  Arrival<Real> in_one;
 };
 
 template <typename Real>
@@ -207,14 +233,17 @@ PlanResult pose_axis(const AxisState<Real>& start, const AxisState<Real>& target
     return result;
   }
   axis.may_be_early = false;
+  axis.is_early_in_one = false;
   Problem<Real>& p = axis.problem;
   const bool will_violate = violates_later(p);
   if (will_violate) {
     axis.early = families_of(p);
     axis.may_be_early = axis.early.up.has_gap && axis.early.down.has_gap;
+    axis.is_early_in_one = !(p.a0 * p.a1 < Real(0)) && arrive_in_one(p, axis.early, axis.in_one);
   }
   leave_violation(p);
   axis.families = families_of(p);
+  axis.is_in_one = !axis.is_early_in_one && arrive_in_one(p, axis.families, axis.in_one);
   return PlanResult::ok;
 }
 
@@ -231,9 +260,14 @@ void arrive_first(const Axis<Real>& axis, AxisArrival<Real>& arrival) {
   bool is_up = true;
   Timed<Real>& timed = arrival.timed;
   timed.is_extreme = true;
-  arrival.is_early = axis.may_be_early && arrive_before_gap(axis.early, is_up, timed.extreme);
-  if (!arrival.is_early && !arrive_before_gap(axis.families, is_up, timed.extreme)) {
-    timed.extreme = arrival_after_gap(axis.families, is_up);
+  if (axis.is_in_one || axis.is_early_in_one) {
+    arrival.is_early = axis.is_early_in_one;
+    timed.extreme = axis.in_one;
+  } else {
+    arrival.is_early = axis.may_be_early && arrive_before_gap(axis.early, is_up, timed.extreme);
+    if (!arrival.is_early && !arrive_before_gap(axis.families, is_up, timed.extreme)) {
+      timed.extreme = arrival_after_gap(axis.families, is_up);
+    }
   }
   timed.duration_s = timed.extreme.duration_s;
   arrival.duration_s = timed.duration_s + (arrival.is_early ? Real(0) : axis.problem.brake_s);

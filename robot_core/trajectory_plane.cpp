@@ -129,7 +129,8 @@ Real square_on_the_way(const Trajectory<Real> (&trajectories)[3], const Circle<R
 }
 
 /// Plans with the fastest split. Where that would leave the circle, because x and y of the start do not fit it, the split
-/// turns towards the start's own direction, no further than needed. `plan(t)` fills the trajectories.
+/// turns towards the start's own direction, no further than needed, and not where the motion would then hardly get on.
+/// `plan(t)` fills the trajectories.
 template <typename Real, typename Plan>
 PlanResult plan_inside(const Split<Real>& split, Real fastest, const AxisState<Real> (&start)[3], const Circle<Real>& circle,
                        const Trajectory<Real> (&trajectories)[3], const Plan& plan) {
@@ -141,9 +142,12 @@ PlanResult plan_inside(const Split<Real>& split, Real fastest, const AxisState<R
   Real best = fastest;
   Real last = fastest;
   Real least = square_on_the_way(trajectories, circle);
+  constexpr Real kMostDetour = 8;
+  const Real longest_s = kMostDetour * trajectories[0].duration_s;
   const auto square_at = [&](Real t) {
     last = t;
-    const Real square = plan(t) == PlanResult::ok ? square_on_the_way(trajectories, circle) : std::numeric_limits<Real>::max();
+    const bool gets_on = plan(t) == PlanResult::ok && trajectories[0].duration_s <= longest_s;
+    const Real square = gets_on ? square_on_the_way(trajectories, circle) : std::numeric_limits<Real>::max();
     if (square < least || square <= kInside) {
       least = square;
       best = t;
@@ -151,16 +155,22 @@ PlanResult plan_inside(const Split<Real>& split, Real fastest, const AxisState<R
     return square;
   };
   const Real own[2][2] = {{start[0].velocity, start[1].velocity}, {start[0].acceleration, start[1].acceleration}};
+  // The direction of next to nothing is noise.
+  constexpr Real kNoise = Real(1) / Real(128);
+  const Real limit[2] = {circle.speed, circle.acceleration};
   for (int i = 0; i < 2 && least > kInside; ++i) {
-    if (own[i][0] == Real(0) && own[i][1] == Real(0)) {
+    if (!(length(own[i][0], own[i][1]) > kNoise * limit[i])) {
       continue;
     }
     Real near = fastest;
     Real far = split.along(own[i][0], own[i][1]);
-    const Real enough = larger(square_at(far), kInside);
+    const Real square_of_far = square_at(far);
+    const bool is_too_far = square_of_far == std::numeric_limits<Real>::max();
+    const Real enough = is_too_far ? kInside : larger(square_of_far, kInside);
     for (int halving = 0; halving < kHalvings; ++halving) {
       const Real middle = (near + far) / Real(2);
-      (square_at(middle) <= enough ? far : near) = middle;
+      const Real square = square_at(middle);
+      (square <= enough || square == std::numeric_limits<Real>::max() ? far : near) = middle;
     }
   }
   return best == last ? PlanResult::ok : plan(best);

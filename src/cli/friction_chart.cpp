@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <optional>
 
 namespace heatsoak {
 namespace {
@@ -83,12 +85,152 @@ bool has_points(const ChartPanel& panel) {
   });
 }
 
+/// The legs that are drawn: those that turn a wheel and are used.
+class Drives {
+ public:
+  Drives(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const FitSettings& settings)
+      : fit_(fit), kinematics_(kinematics), numbers_(heading_numbers(steady.parts, settings)) {
+    for (std::size_t i = 0; i < steady.parts.size(); ++i) {
+      if (settings.use_return_legs || !steady.parts[i].is_return) {
+        parts_.emplace_back(&steady.parts[i], numbers_[i]);
+      }
+    }
+  }
+
+  /// Figure 4: the straight lines of the heading with the most legs on which all wheels turn.
+  [[nodiscard]] std::optional<ChartPanel> of_one_heading() const {
+    const int number = telling_heading();
+    if (number < 0) {
+      return std::nullopt;
+    }
+    ChartPanel panel;
+    panel.y_label = "voltage / V";
+    bool has_line = false;
+    for (std::size_t i = 0; i < fit_.wheels.size(); ++i) {
+      ChartCurve points = dots(i, wheel_name(i));
+      double heading_rad = 0.0;
+      for (const auto& [part, of_part] : parts_) {
+        if (of_part == number) {
+          points.x.push_back(part->wheel_speed_rad_per_s[i]);
+          points.y.push_back(part->voltage_V[i]);
+          heading_rad = part->heading_rad;
+        }
+      }
+      panel.title = fmt::format("Towards {:.0f}°: measured, and the line of each wheel; at 0 rad/s its static friction",
+                                heading_rad * kDegrees_per_rad);
+      panel.curves.push_back(points);
+      const auto line = std::ranges::find_if(fit_.lines[i], [&](const HeadingLine& each) {
+        return std::abs(std::remainder(each.heading_rad - heading_rad, 2.0 * std::numbers::pi)) < kSameHeading_rad;
+      });
+      if (line != fit_.lines[i].end() && std::isfinite(line->damping_V_s_per_rad.value)) {
+        const double end_rad_per_s = *std::ranges::max_element(points.x, {}, [](double speed) { return std::abs(speed); });
+        panel.curves.push_back({.x = {0.0, end_rad_per_s},
+                                .y = {line->offset_V.value, line->offset_V.value + line->damping_V_s_per_rad.value * end_rad_per_s},
+                                .color_index = static_cast<int>(i)});
+        has_line = true;
+      }
+    }
+    return has_line ? std::optional(panel) : std::nullopt;
+  }
+
+  /// Legs on the spot, with the lines d·ω ± c.
+  [[nodiscard]] std::optional<ChartPanel> of_rotation() const {
+    ChartPanel panel;
+    panel.title = "Turning on the spot: measured; lines: d ω + c sign(ω)";
+    panel.y_label = "voltage / V";
+    for (std::size_t i = 0; i < fit_.wheels.size(); ++i) {
+      const WheelFriction& wheel = fit_.wheels[i];
+      ChartCurve points = dots(i, wheel_name(i));
+      for (const auto& [part, number] : parts_) {
+        if (part->is_rotation) {
+          points.x.push_back(part->wheel_speed_rad_per_s[i]);
+          points.y.push_back(part->voltage_V[i]);
+        }
+      }
+      if (points.x.empty()) {
+        return std::nullopt;
+      }
+      if (wheel.is_learned()) {
+        const double slope = wheel.damping_V_s_per_rad.value;
+        const double offset_V = wheel.rotation_V.value;
+        for (const auto& [end_rad_per_s, side] : {std::pair(std::ranges::min(points.x), -1.0), {std::ranges::max(points.x), 1.0}}) {
+          if (side * end_rad_per_s > 0.0) {
+            panel.curves.push_back({.x = {0.0, end_rad_per_s},
+                                    .y = {side * offset_V, slope * end_rad_per_s + side * offset_V},
+                                    .color_index = static_cast<int>(i)});
+          }
+        }
+      }
+      panel.curves.push_back(points);
+    }
+    return panel;
+  }
+
+  /// All headings at once: what is left when the friction fitted is taken off is d·ω.
+  [[nodiscard]] ChartPanel less_friction() const {
+    ChartPanel panel;
+    panel.title = "All headings: voltage less the fitted friction; lines: d ω";
+    panel.y_label = "voltage less friction / V";
+    for (std::size_t i = 0; i < fit_.wheels.size(); ++i) {
+      const WheelFriction& wheel = fit_.wheels[i];
+      ChartCurve points = dots(i, wheel_name(i));
+      for (const auto& [part, number] : parts_) {
+        const double speed_rad_per_s = part->wheel_speed_rad_per_s[i];
+        if (part->is_rotation || !should_stand(kinematics_.wheels[i], part->heading_rad)) {
+          const double friction_V =
+              part->is_rotation ? wheel.rotation_V.value * (speed_rad_per_s > 0.0 ? 1.0 : -1.0)
+                                : wheel.voltage_V(part->heading_rad, speed_rad_per_s) - wheel.damping_V_s_per_rad.value * speed_rad_per_s;
+          points.x.push_back(speed_rad_per_s);
+          points.y.push_back(part->voltage_V[i] - friction_V);
+        }
+      }
+      if (wheel.is_learned() && !points.x.empty()) {
+        const auto [least, most] = std::ranges::minmax(points.x);
+        const double slope = wheel.damping_V_s_per_rad.value;
+        panel.curves.push_back({.x = {least, most}, .y = {slope * least, slope * most}, .color_index = static_cast<int>(i)});
+      }
+      panel.curves.push_back(points);
+    }
+    return panel;
+  }
+
+ private:
+  static constexpr double kSameHeading_rad = 2.5 / kDegrees_per_rad;
+
+  [[nodiscard]] int telling_heading() const {
+    std::map<int, std::pair<int, double>> worth;  // legs, and the share of its speed that the slowest wheel turns with
+    for (const auto& [part, number] : parts_) {
+      double least_share = 1.0;
+      for (int i = 0; i < kinematics_.wheel_count; ++i) {
+        least_share = std::min(least_share, std::abs(rolling_share(kinematics_.wheels[i], part->heading_rad)));
+      }
+      if (number >= 0) {
+        ++worth[number].first;
+        worth[number].second = least_share;
+      }
+    }
+    const auto best = std::ranges::max_element(worth, {}, [](const auto& each) { return each.second; });
+    return best == worth.end() ? -1 : best->first;
+  }
+
+  const FrictionFit& fit_;
+  const Kinematics& kinematics_;
+  std::vector<int> numbers_;
+  std::vector<std::pair<const SteadyPart*, int>> parts_;
+};
+
 }  // namespace
 
 Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std::string& subtitle) {
   Chart chart;
   chart.title = fmt::format("Friction of {} over the direction of travel", robot);
-  chart.subtitle = subtitle + "; upright lines: 95 % intervals of one heading by itself";
+  const bool has_intervals = std::ranges::any_of(fit.lines, [](const std::vector<HeadingLine>& lines) {
+    return std::ranges::any_of(lines, [](const HeadingLine& line) { return line.offset_V.is_known(); });
+  });
+  const bool is_given =
+      std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.is_learned() && wheel.damping_is_given; });
+  chart.subtitle = subtitle + (has_intervals ? "; upright lines: 95 % intervals of a heading by itself, by the scatter of all" : "") +
+                   (is_given ? "; all at one speed, so that the damping is the expected one" : "");
   chart.x_label = "direction of travel in the robot's frame / °";
   for (const bool of_damping : {false, true}) {
     if (ChartPanel panel = heading_panel(fit, of_damping); has_points(panel)) {
@@ -98,35 +240,21 @@ Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std
   return chart;
 }
 
-Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const std::string& robot, bool with_return_legs) {
+Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const std::string& robot,
+                    const FitSettings& settings) {
   Chart chart;
   chart.title = fmt::format("Voltage over wheel speed of {}", robot);
-  chart.subtitle = fmt::format("{} steady legs; lines: fitted damping with b on its side", steady.parts.size());
+  chart.subtitle = fmt::format("{} steady stretches; wheels that should stand are left out", steady.parts.size());
   chart.x_label = "wheel speed / rad/s";
-  ChartPanel panel;
-  panel.y_label = "voltage / V";
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    ChartCurve points = dots(i, wheel_name(i));
-    for (const SteadyPart& part : steady.parts) {
-      if (with_return_legs || !part.is_return) {
-        points.x.push_back(part.wheel_speed_rad_per_s[i]);
-        points.y.push_back(part.voltage_V[i]);
-      }
+  const Drives drives(steady, fit, kinematics, settings);
+  for (const std::optional<ChartPanel>& panel : {drives.of_one_heading(), drives.of_rotation()}) {
+    if (panel) {
+      chart.panels.push_back(*panel);
     }
-    const WheelFriction& wheel = fit.wheels[i];
-    if (wheel.is_learned() && !points.x.empty()) {
-      const auto [least, most] = std::ranges::minmax(points.x);
-      const double offset_V = std::isfinite(wheel.constant_V.value) ? wheel.constant_V.value : wheel.rotation_V.value;
-      const double slope = wheel.damping_V_s_per_rad.value;
-      panel.curves.push_back(
-          {.x = {std::min(0.0, least), 0.0, kNaN, 0.0, std::max(0.0, most)},
-           .y = {slope * std::min(0.0, least) - offset_V, -offset_V, kNaN, offset_V, slope * std::max(0.0, most) + offset_V},
-           .color_index = static_cast<int>(i)});
-    }
-    panel.curves.push_back(points);
   }
-  chart.panels.push_back(panel);
-  chart.panel_height_px = 480;
+  if (fit.headings > 0) {
+    chart.panels.push_back(drives.less_friction());
+  }
   return chart;
 }
 

@@ -12,7 +12,8 @@ namespace heatsoak {
 /// Offset of every heading with the fitted f(θ), and damping of every heading, over the direction of travel.
 Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std::string& subtitle);
 
-/// Voltage over wheel speed of every steady leg.
-Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const std::string& robot, bool with_return_legs);
+/// Voltage over wheel speed: one heading with the lines whose offsets are the static friction, and all of them less friction.
+Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const std::string& robot,
+                    const FitSettings& settings);
 
 }  // namespace heatsoak

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <set>
 
 #include "base/quantity.h"
 
@@ -33,6 +35,7 @@ TimeScale scale_for(double duration_s) {
 struct Group {
   std::string title;
   std::string y_label;
+  bool is_of_wheels = false;  ///< then a wheel has its colour and is named once
   std::vector<const Channel*> channels;
 };
 
@@ -60,7 +63,7 @@ std::vector<Group> groups_of(const Recording& recording) {
       if (found == names.end()) {
         names.push_back(name);
         const std::string unit = channel.quantity.unit.empty() ? "ratio" : unit_for_display(channel.quantity.unit);
-        groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, {&channel}});
+        groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, is_wheel, {&channel}});
       } else {
         groups[static_cast<std::size_t>(found - names.begin())].channels.push_back(&channel);
       }
@@ -92,9 +95,9 @@ class LogChart {
     chart.subtitle = subtitle();
     chart.x_label = scale_.label;
     chart.panel_height_px = 220;
-    bool is_named = false;
+    std::set<std::string> named;
     for (const Group& group : groups_of(recording_)) {
-      chart.panels.push_back(panel(group, is_named));
+      chart.panels.push_back(panel(group, named));
     }
     return chart;
   }
@@ -105,16 +108,22 @@ class LogChart {
     for (const auto& [key, condition] : recording_.conditions) {
       text += fmt::format("{}: {}; ", key, condition);
     }
-    return text + fmt::format("{} of {} rows in {} run{}; shaded: left out", report_.rows_kept, report_.rows_in_file,
-                              recording_.run_begins.size(), recording_.run_begins.size() == 1 ? "" : "s");
+    return text + fmt::format("{} of {} rows in {} run{}{}", report_.rows_kept, report_.rows_in_file, recording_.run_begins.size(),
+                              recording_.run_begins.size() == 1 ? "" : "s", report_.left_out.empty() ? "" : "; shaded: left out");
   }
 
-  ChartPanel panel(const Group& group, bool& is_named) const {
+  ChartPanel panel(const Group& group, std::set<std::string>& named) const {
     ChartPanel result{.title = group.title, .y_label = group.y_label, .curves = {}, .bands = {}, .levels = {}};
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t i = 0; i < group.channels.size(); ++i) {
-      result.curves.push_back(curve(*group.channels[i], static_cast<int>(i % kCurveColors), i >= kCurveColors, group.channels.size() == 1));
+      const std::string& key = group.channels[i]->quantity.key;
+      const std::size_t wheel =
+          group.is_of_wheels ? static_cast<std::size_t>(std::max(1, std::atoi(key.c_str() + stem_of(key).size() + 1))) - 1 : i;
+      const std::string name = group.is_of_wheels ? fmt::format("wheel {}", wheel + 1) : key;
+      const bool is_listed = (group.is_of_wheels || group.channels.size() > 1) && named.insert(name).second;
+      result.curves.push_back(
+          curve(*group.channels[i], is_listed ? name : "", static_cast<int>(wheel % kCurveColors), wheel >= kCurveColors));
       for (const double value : group.channels[i]->values) {
         low = std::isnan(value) ? low : std::min(low, value);
         high = std::isnan(value) ? high : std::max(high, value);
@@ -124,14 +133,13 @@ class LogChart {
     low -= margin;
     high += margin;
     for (const auto& [begin, end] : marks(group)) {
-      result.bands.push_back({is_named ? "" : "left out", {begin, end}, {low, low}, {high, high}, kLeftOutColor});
-      is_named = true;
+      result.bands.push_back({named.insert("left out").second ? "left out" : "", {begin, end}, {low, low}, {high, high}, kLeftOutColor});
     }
     return result;
   }
 
-  [[nodiscard]] ChartCurve curve(const Channel& channel, int color, bool dashed, bool is_alone) const {
-    ChartCurve result{is_alone ? "" : channel.quantity.key, {}, {}, color, dashed};
+  [[nodiscard]] ChartCurve curve(const Channel& channel, const std::string& name, int color, bool dashed) const {
+    ChartCurve result{name, {}, {}, color, dashed};
     for (const auto& [begin, end] : recording_.runs()) {
       for (std::size_t row = begin; row < end; ++row) {
         result.x.push_back(recording_.time_s[row] * scale_.factor);

@@ -22,7 +22,8 @@ std::string list_of(const std::vector<LineRange>& lines, std::size_t most) {
   std::vector<std::string> words;
   for (const LineRange& range : lines) {
     if (words.size() == most) {
-      words.push_back(fmt::format("and {} more stretches{}", lines.size() - most, lines.size() == LeftOut::kMostRanges ? " or so" : ""));
+      words.push_back(fmt::format("and {} more stretch{}{}", lines.size() - most, lines.size() - most == 1 ? "" : "es",
+                                  lines.size() == LeftOut::kMostRanges ? " or so" : ""));
       break;
     }
     words.push_back(range.first == range.last ? fmt::format("{}", range.first) : fmt::format("{}-{}", range.first, range.last));
@@ -72,7 +73,7 @@ std::string channel_table(const DataQuality& quality) {
     text += fmt::format("{:{}} {:9} {:9} {:>10} {:>10} {:>10} {:>10}  {}\n", channel.quantity.key, width, channel.samples, channel.left_out,
                         significant(channel.low, kDigits), significant(channel.high, kDigits),
                         channel.step > 0.0 ? significant(channel.step, 2) : "-", significant(channel.noise, 2),
-                        to_string(channel.quantity.kind));
+                        channel.quantity.key.starts_with("wheel_") ? "of a robot's wheel" : to_string(channel.quantity.kind));
   }
   return text;
 }

@@ -46,9 +46,10 @@ Played play(const MatchSimulation& wanted, Planner planner) {
   return played;
 }
 
-bool too_hot(const MatchSimulation& wanted, const DriveScore& score) {
+/// Too hot, or at an end before the match is.
+bool fails(const MatchSimulation& wanted, const DriveScore& score) {
   const MotorValues& limits = wanted.motor.nominal;
-  return score.winding_peak_C > limits.winding_limit_C || score.stator_peak_C > limits.stator_limit_C;
+  return score.battery_empty_s > 0.0 || score.winding_peak_C > limits.winding_limit_C || score.stator_peak_C > limits.stator_limit_C;
 }
 
 struct TableRow {
@@ -61,6 +62,7 @@ constexpr TableRow kRows[] = {
     {"slip of a mean wheel / mm per m", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.slip_m / s.distance_m); }},
     {"  of it sliding", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.sliding_m / s.distance_m); }},
     {"time in which a wheel slides / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
+    {"time in which a wheel is lifted / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.lifted_s); }},
     {"tracking error / mm rms", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
     {"  largest / mm", [](const DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
     {"overshoot / mm, mean of arrivals",
@@ -70,6 +72,7 @@ constexpr TableRow kRows[] = {
     {"rms current, hottest motor / A", [](const DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
     {"driver or battery falls short / s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
     {"lowest battery voltage / V", [](const DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
+    {"battery empty / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
     {"copper heat, all motors / kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
     {"  per metre / J", [](const DriveScore& s) { return fmt::format("{:.1f}", s.energy.copper_J / s.distance_m); }},
     {"  of it in duels / %", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
@@ -144,6 +147,7 @@ nlohmann::ordered_json json(const Played& played) {
           {"slip_m", rounded(s.slip_m, 4)},
           {"sliding_m", rounded(s.sliding_m, 4)},
           {"sliding_s", rounded(s.sliding_s, 3)},
+          {"lifted_s", rounded(s.lifted_s, 3)},
           {"tracking_rms_m", rounded(s.tracking_rms_m, 6)},
           {"tracking_most_m", rounded(s.tracking_most_m, 5)},
           {"arrivals", s.arrivals_count},
@@ -153,6 +157,7 @@ nlohmann::ordered_json json(const Played& played) {
           {"current_rms_A", rounded(s.current_rms_A, 4)},
           {"short_s", rounded(s.short_s, 3)},
           {"lowest_battery_V", rounded(s.lowest_battery_V, 3)},
+          {"battery_empty_s", rounded(s.battery_empty_s, 3)},
           {"winding_peak_C", rounded(s.winding_peak_C, 3)},
           {"stator_peak_C", rounded(s.stator_peak_C, 3)},
           {"duel_copper_share", rounded(s.duel_copper_share, 4)},
@@ -248,7 +253,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
   bool exceeded = false;
   for (const Planner planner : wanted.planners) {
     all.push_back(play(wanted, planner));
-    exceeded = exceeded || too_hot(wanted, all.back().run.score);
+    exceeded = exceeded || fails(wanted, all.back().run.score);
   }
   if (!wanted.out.empty()) {
     session.write(wanted.out, std::move(all.front().csv));
@@ -261,8 +266,14 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
       "{} on {}, {} as {}, seed {}: closed loop of {:.0f} min at 1 kHz, firmware at {:.0f} Hz, {} thermal data\nload: {}\n\n{}\n{}"
       "hottest: wheel {} at {:.1f} °C (limit {:.0f} °C): {}\n",
       wanted.motor.id, wanted.robot.id, wanted.duty.id, kRoleNames.at(static_cast<std::size_t>(wanted.inputs.role)), wanted.seed,
-      first.time_s / 60.0, wanted.robot.control_rate_Hz, data_quality(wanted.motor), wanted.duty.origin, table(all), energy_text(all),
-      first.hottest_wheel + 1, first.winding_peak_C, wanted.motor.nominal.winding_limit_C, exceeded ? "fail" : "pass"));
+      first.time_s / 60.0, 1.0 / control_period_s(wanted.robot), data_quality(wanted.motor), wanted.duty.origin, table(all),
+      energy_text(all), first.hottest_wheel + 1, first.winding_peak_C, wanted.motor.nominal.winding_limit_C, exceeded ? "fail" : "pass"));
+  for (const Played& each : all) {
+    if (each.run.score.battery_empty_s > 0.0) {
+      session.say(fmt::format("{}: the battery is empty after {:.0f} s; the rest of the match is a standstill\n", to_string(each.planner),
+                              each.run.score.time_s - each.run.score.battery_empty_s));
+    }
+  }
   for (const std::string& file : {wanted.out, wanted.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }

@@ -13,6 +13,8 @@ namespace heatsoak {
 namespace {
 
 constexpr double kRate_Hz = 1000.0;
+/// No break of a game is as long: the clock of the recording jumped.
+constexpr double kLongestAbsence_s = 3600.0;
 
 /// The robot that was asked for, or the one that worked most.
 std::optional<RobotName> choose(const ImportReport& survey, const std::string& player, const std::filesystem::path& log) {
@@ -63,8 +65,11 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   double time_s = motion.segments().front().front().time_s;
   double slip_s = 0.0;
   double unseen_s = 0.0;
+  int jumps = 0;
   motion.for_each(kRate_Hz, [&](const Motion& at, std::size_t /*segment*/) {
-    if (const double gap_s = at.time_s - time_s; gap_s > 2.0 / kRate_Hz) {
+    if (const double gap_s = at.time_s - time_s; gap_s > kLongestAbsence_s) {
+      ++jumps;
+    } else if (gap_s > 2.0 / kRate_Hz) {
       unseen_s += gap_s;
       for (DemandGatherer& each : gatherers) {
         each.add(gap_s, 0.0, 0.0);
@@ -82,6 +87,10 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   });
   for (DemandGatherer& each : gatherers) {
     result.wheels.push_back(each.finish());
+  }
+  if (jumps > 0) {
+    result.sentences.push_back(fmt::format("{}: the time jumps ahead by more than {:.0f} s {} times; these gaps are left out",
+                                           result.player, kLongestAbsence_s, jumps));
   }
   const double all_s = result.wheels.front().duration_s();
   result.sentences.push_back(fmt::format(

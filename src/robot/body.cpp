@@ -32,6 +32,19 @@ FrictionConfig make_friction(const Robot& robot, const Kinematics& kinematics) {
   return friction;
 }
 
+/// Whether wheels that only push can carry the robot at rest: their loads have the moment of its weight.
+bool stands(const WeightConfig& weight) {
+  const LoadMoment moment = load_moment(weight, {}, {}, 0.0);
+  LoadMoment carried;
+  const NormalLoads loads = normal_loads(weight, moment);
+  for (int i = 0; i < weight.wheel_count; ++i) {
+    carried.x_Nm += loads.force_N[i] * weight.contact_x_m[i];
+    carried.y_Nm += loads.force_N[i] * weight.contact_y_m[i];
+  }
+  const double rounding_Nm = 1e-9 * weight.mass_kg * kGravity_m_per_s2;
+  return std::abs(carried.x_Nm - moment.x_Nm) < rounding_Nm && std::abs(carried.y_Nm - moment.y_Nm) < rounding_Nm;
+}
+
 }  // namespace
 
 BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
@@ -44,6 +57,10 @@ BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
   body.kinematics = make_kinematics(robot);
   body.weight = make_weight(body.kinematics, robot.mass_kg, robot.center_of_gravity_height_m, given_or(robot.center_of_gravity_x_m, 0.0),
                             given_or(robot.center_of_gravity_y_m, 0.0));
+  if (!stands(body.weight)) {
+    throw bad_input({robot.file.string()}, "wheels.axis_angles",
+                    "put all wheels to one side of the centre of gravity: the robot tips over where it stands");
+  }
   body.friction = make_friction(robot, body.kinematics);
   body.traction.traction_ratio = robot.traction_ratio;
   body.traction.slip_speed_m_per_s = robot.slip_speed_m_per_s;

@@ -13,6 +13,8 @@ constexpr std::array<std::string_view, 2> kElectricTables{"drive", "battery"};
 constexpr int kFirstWheel = 7;
 constexpr int kSize = kFirstWheel + kMostWheels;
 using Vector = std::array<double, kSize>;
+/// In m, m/s, rad, rad/s or A s: far below what counts beside the grain of a double.
+constexpr double kRest = 1e-60;
 
 Vector packed(const PlantState& state) {
   Vector y{state.pose.x_m,           state.pose.y_m,           state.pose.yaw_rad,
@@ -94,22 +96,34 @@ Electrics sagging_bus(const PlantConfig& plant, const PlantState& state, const P
   return at;
 }
 
+/// Not even the drivers' own electronics run any more.
+Electrics nothing_runs(const PlantConfig& plant, const PlantState& state, const PlantInput& input) {
+  Electrics made = motors_at(plant, state, input, {}, 0.0);
+  made.power_W = 0.0;
+  for (MotorPoint& each : made.points) {
+    each.driver_W = each.input_W = 0.0;
+  }
+  return made;
+}
+
 /// Motors and battery at the voltage that they bring about together.
 std::array<MotorPoint, kMostWheels> settle_electrics(const PlantConfig& plant, const PlantState& state, const PlantInput& input,
                                                      PlantOutput& out) {
   const double source_V = open_circuit_V(plant.battery, state.battery_charge_A_s);
-  Electrics made = motors_at(plant, state, input, input.command, source_V);
+  const bool is_empty = state.battery_charge_A_s <= 0.0;
+  Electrics made = is_empty ? nothing_runs(plant, state, input) : motors_at(plant, state, input, input.command, source_V);
   BatteryLoad load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
   // With the bus found, what it limits is limited by it; else only whoever is between source and bus.
-  if (made.at_bus || made.highest_bridge_V >= load.terminal_V) {
+  if (!is_empty && (made.at_bus || made.highest_bridge_V >= load.terminal_V)) {
     made = sagging_bus(plant, state, input);
     load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
   }
   if (load.collapsed) {
-    out.undervoltage = true;
     made = motors_at(plant, state, input, {}, source_V);
     load = battery_load(plant.battery, state.battery_charge_A_s, made.power_W);
+    out.undervoltage = true;
   }
+  out.undervoltage = out.undervoltage || is_empty;
   out.battery_V = load.terminal_V;
   out.battery_current_A = load.current_A;
   out.battery_source_W = source_V * load.current_A;
@@ -351,6 +365,8 @@ PlantOutput step(const PlantConfig& plant, PlantState& state, const PlantInput& 
   Vector next;
   for (int j = 0; j < kSize; ++j) {
     next[j] = y[j] + h_s * (1.5 * k_1[j] + 0.5 * k_2[j]);
+    // What dies away is at rest in the end: arithmetic with the smallest of numbers takes a hundred times as long.
+    next[j] = std::abs(next[j]) < kRest ? 0.0 : next[j];
   }
   state = unpacked(next);
   return mean(first.output, second.output);

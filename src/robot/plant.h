@@ -68,7 +68,7 @@ struct PlantOutput {
   double external_W = 0.0;    ///< done on the robot
   bool limited = false;       ///< a motor got less than its command
   bool lifted = false;        ///< a wheel has left the ground
-  bool undervoltage = false;  ///< the battery broke down; the drivers have switched the motors off
+  bool undervoltage = false;  ///< the battery broke down or is empty; the motors are switched off
 };
 
 /// The heat of all losses but the battery's own.

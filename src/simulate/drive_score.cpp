@@ -36,6 +36,8 @@ void DriveScorer::take(const LoopMoment& moment) {
   score_.time_s += kStep_s;
   score_.sliding_s += slides ? kStep_s : 0.0;
   score_.short_s += out.limited || out.undervoltage ? kStep_s : 0.0;
+  score_.lifted_s += out.lifted ? kStep_s : 0.0;
+  score_.battery_empty_s += state.battery_charge_A_s <= 0.0 ? kStep_s : 0.0;
   score_.distance_m += std::hypot(state.velocity.x_m_per_s, state.velocity.y_m_per_s) * kStep_s;
   const Pose planned = moment.plan->pose();
   const double error_m = std::hypot(planned.x_m - state.pose.x_m, planned.y_m - state.pose.y_m);

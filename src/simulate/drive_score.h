@@ -22,6 +22,8 @@ struct DriveScore {
   double current_rms_A = 0.0;   ///< of the motor with the most
   double short_s = 0.0;         ///< time in which a driver or the battery gave less than was commanded
   double lowest_battery_V = 0.0;
+  double lifted_s = 0.0;         ///< time in which a wheel is off the ground
+  double battery_empty_s = 0.0;  ///< time with nothing left in the battery: the robot stands
   double winding_peak_C = 0.0;
   double stator_peak_C = 0.0;
   int hottest_wheel = 0;  ///< from 0

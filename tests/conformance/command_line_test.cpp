@@ -329,6 +329,10 @@ TEST(Json, of_friction_keeps_the_contract) {
   EXPECT_TRUE(answer.at("after").at("rmse").is_number());
   // The file that was written is a robot that every other verb takes.
   EXPECT_EQ(run({"lint", out}).exit_code, 0);
+  EXPECT_THAT(run({"describe", out}).out, HasSubstr("friction test, steady_state_test.csv"));
+  const std::string trace = (folder.path() / "trace.csv").string();
+  EXPECT_EQ(
+      run({"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", out, "--duty", "paper_intermittent", "--out", trace}).exit_code, 0);
   EXPECT_NE(
       run({"evaluate", "--robot", out, "--duty", "paper_intermittent", "--motors", "maxon_ec45_flat_70w_24v", "--samples", "3"}).exit_code,
       2);

@@ -81,6 +81,43 @@ TEST(SimulateMatch, same_seed_same_bytes) {
   EXPECT_NE(once, run(kMatch + Words{"--json", "-", "--seed", "2"}).out);
 }
 
+TEST(SimulateMatch, an_empty_battery_is_no_pass) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  std::string text = content_of(std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots/roboteam_twente_v2024.toml");
+  const std::size_t at = text.find("capacity = { value = \"1300 mA h\"");
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t end = text.find('\n', at);
+  text.replace(at, end - at, R"(capacity = { value = "20 mA h", origin = "estimated", derivation = "a battery that was not charged" })");
+  write(folder.path() / "flat.toml", text);
+  const ProgramRun result =
+      run({"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--robot", "flat.toml", "--duty", "division_b_match", "--json", "-"}, options);
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("the battery is empty after"));
+  const json answer = result.json();
+  EXPECT_EQ(answer.at("verdict"), "fail");
+  const json drive = answer.at("planners").at(0);
+  EXPECT_GT(drive.at("battery_empty_s").get<double>(), 60.0);
+  const json energy = drive.at("energy");
+  EXPECT_LT(std::abs(energy.at("residual_J").get<double>()), 1e-3 * energy.at("battery_J").get<double>());
+}
+
+TEST(DutyImport, says_why_no_robot_can_be_followed) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  std::string text = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
+  for (int i = 0; i < 200; ++i) {
+    text += std::to_string(0.01 * i) + ",blue,3,1500,-20,0\n";  // millimetres
+  }
+  write(folder.path() / "game.csv", text);
+  const ProgramRun result = run({"duty", "--import", "game.csv", "--robot", "tigers_v2020"}, options);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("no robot is seen long enough"));
+  EXPECT_THAT(result.err, HasSubstr("200 detections left out: no number, no such robot, outside any field"));
+}
+
 TEST(SimulateMatch, wrong_combinations_are_refused) {
   const Words robot{"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--robot", "roboteam_twente_v2024"};
   for (const auto& [words, said] : std::vector<std::pair<Words, std::string>>{

@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/diagnostic.h"
+#include "duty/game_to_demand.h"
 #include "duty/recorded_game.h"
 #include "ssl_log_writer.h"
 
@@ -76,6 +79,20 @@ TEST(ImportCsv, LeavesOutRowsThatGoBackInTimeAndSaysWhichOnes) {
   ASSERT_EQ(game.report.problems.size(), 1U);
   EXPECT_EQ(game.report.problems[0].at, 302U);
   EXPECT_THAT(sentences(game.report), Contains(HasSubstr("line 302: blue 7 at 101 s")));
+}
+
+TEST(ImportCsv, AJumpOfTheClockIsNoPause) {
+  std::string text = kHeader;
+  for (int i = 0; i < 2000; ++i) {
+    const double time_s = 0.01 * i + (i < 1000 ? 0.0 : 1e9) + (i < 1500 ? 0.0 : 120.0);
+    text += std::to_string(time_s) + ",blue,7," + std::to_string(0.5 * std::sin(0.02 * i)) + ",1.5,0\n";
+  }
+  const TemporaryFile file("game.csv", text);
+  const GameDemand demand = demand_of_game(
+      file.path(), "blue 7", read_robot(std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots/tigers_v2020.toml"), 0.01);
+  ASSERT_FALSE(demand.wheels.empty());
+  EXPECT_NEAR(demand.wheels.front().duration_s(), 20.0 + 120.0, 0.1);
+  EXPECT_THAT(demand.sentences, Contains(HasSubstr("jumps ahead by more than 3600 s 1 times")));
 }
 
 }  // namespace

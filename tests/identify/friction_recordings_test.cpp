@@ -110,7 +110,9 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
     ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
     EXPECT_FALSE(wheel.damping_is_given);
     EXPECT_GT(wheel.r2_ratio, 0.98);
-    EXPECT_GT(wheel.damping_V_s_per_rad.value, 0.0514 * 16.0);  // back-EMF is the least
+    // Back-EMF is the least, unless friction falls with speed; what is measured must not contradict it.
+    EXPECT_GT(wheel.damping_V_s_per_rad.high, 0.0514 * 16.0);
+    EXPECT_GT(wheel.damping_V_s_per_rad.value, 0.95 * 0.0514 * 16.0);
     EXPECT_LT(wheel.damping_V_s_per_rad.value, 1.5 * 0.0514 * 16.0);
   }
 }

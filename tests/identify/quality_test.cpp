@@ -109,6 +109,20 @@ TEST(Noise, WhiteNoiseOnASlope) {
   EXPECT_NEAR(noise_level(values, runs).noise, 0.5 / std::sqrt(12.0), 1e-9) << "no noise is seen below the resolution";
 }
 
+/// A fifth of the samples is anywhere: the counts of the encoder are seen all the same.
+TEST(Noise, ResolutionAmongBadSamples) {
+  Random random(4, 0);
+  std::vector<double> values;
+  for (int i = 0; i < 5000; ++i) {
+    values.push_back(random.uniform() < 0.2 ? 400.0 * random.uniform() - 200.0 : 0.0767 * std::round(200.0 * random.uniform()));
+  }
+  EXPECT_NEAR(resolution_of(values), 0.0767, 1e-9);
+  for (double& value : values) {
+    value = random.uniform();
+  }
+  EXPECT_EQ(resolution_of(values), 0.0);
+}
+
 TEST(Screening, PlantedOutliersAreFoundByLine) {
   const Read result = read(changed({}, [](int row, std::vector<double>& cells) {
     cells[winding] += row == 400 ? 5.0 : row == 880 || row == 881 ? -6.0 : 0.0;

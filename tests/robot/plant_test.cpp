@@ -245,6 +245,44 @@ TEST(Plant, too_much_torque_slips) {
   EXPECT_NEAR(out.slip_W[0], out.rolling_force_N[0] * out.slip_m_per_s[0], 1e-3);
 }
 
+/// What an empty battery cannot give goes nowhere: the robot rolls out, and the balance still closes.
+TEST(Plant, an_empty_battery_gives_nothing) {
+  Robot robot = lossy_robot();
+  robot.battery_capacity_A_s = 0.3;
+  const PlantConfig plant = make_plant(robot, lossy_motor(), 0.0002);
+  PlantState state = moving(plant, {0.5, -0.2, 1.0});
+  const double before_J =
+      kinetic_energy_J(plant.body, state.velocity, state.wheel_speed_rad_per_s) + stored_energy_J(plant.battery, state.battery_charge_A_s);
+  double heat_J = 0.0;
+  PlantOutput out;
+  for (int i = 0; i < 20'000; ++i) {
+    PlantInput input = lively(0.0002 * i);
+    input.external = {};
+    out = step(plant, state, input);
+    heat_J += (heat_W(out) + out.battery_loss_W) * plant.period_s;
+  }
+  EXPECT_TRUE(out.undervoltage);
+  EXPECT_EQ(out.battery_current_A, 0.0);
+  EXPECT_NEAR(state.battery_charge_A_s, 0.0, 0.01);
+  EXPECT_LT(std::hypot(state.velocity.x_m_per_s, state.velocity.y_m_per_s), 0.02);
+  const double after_J =
+      kinetic_energy_J(plant.body, state.velocity, state.wheel_speed_rad_per_s) + stored_energy_J(plant.battery, state.battery_charge_A_s);
+  EXPECT_NEAR(heat_J, before_J - after_J, 2e-3 * before_J);
+}
+
+TEST(Plant, a_robot_that_falls_over_is_refused) {
+  Robot robot = bare_robot();
+  robot.wheel_axis_rad = {-0.2, 0.0, 0.2};
+  EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), Failure);
+  robot.wheel_axis_rad = {-2.0, 0.0, 2.0};
+  EXPECT_NO_THROW(make_plant(robot, bare_motor(), 0.001));
+  robot.center_of_gravity_x_m = -0.05;
+  EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), Failure);
+  robot = bare_robot();
+  robot.center_of_gravity_x_m = 0.03;  // one wheel of four may hang, three carry
+  EXPECT_NO_THROW(make_plant(robot, bare_motor(), 0.001));
+}
+
 TEST(Plant, contacts_sum_up_to_the_weight_in_motion) {
   const PlantConfig plant = make_plant(lossy_robot(), lossy_motor(), 0.001);
   PlantState state = plant_at_rest(plant);

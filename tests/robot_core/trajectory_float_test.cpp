@@ -166,5 +166,34 @@ TEST(TrajectoryFloat, SynchronisedAndInThePlane) {
   }
 }
 
+TEST(TrajectoryFloat, ReplannedEveryMillisecondARobotIsNotSentAround) {
+  std::mt19937_64 random(27);
+  const auto uniform = [&random](double low, double high) {
+    return static_cast<float>(std::uniform_real_distribution<double>(low, high)(random));
+  };
+  constexpr float kPeriod_s = 1e-3F;
+  for (int i = 0; i < 10 + problem_count() / 500; ++i) {
+    const PlaneLimits<float> plane{uniform(1, 3.5), uniform(1, 5), uniform(5, 60)};
+    const AxisLimits<float> yaw = AxisLimits<float>::symmetric(uniform(5, 20), uniform(20, 60), uniform(100, 600));
+    AxisState<float> state[3] = {{uniform(-6, 6), 0, 0}, {uniform(-4, 4), 0, 0}, {uniform(-3, 3), 0, 0}};
+    const AxisState<float> target[3] = {{uniform(-6, 6), 0, 0}, {uniform(-4, 4), 0, 0}, {uniform(-3, 3), 0, 0}};
+    double first_s = -1.0;
+    double left_s = 1.0;
+    for (int tick = 0; left_s > 2 * static_cast<double>(kPeriod_s); ++tick) {
+      Trajectory<float> motions[3];
+      ASSERT_EQ(plan_plane(state, target, plane, yaw, motions), PlanResult::ok);
+      left_s = static_cast<double>(motions[0].duration_s);
+      first_s = first_s < 0.0 ? left_s : first_s;
+      ASSERT_LE(tick * static_cast<double>(kPeriod_s) + left_s, 1.05 * first_s + 0.05) << i << " in tick " << tick;
+      for (int axis = 0; axis < 3; ++axis) {
+        state[axis] = motions[axis].at(kPeriod_s);
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(state[axis].position, target[axis].position, 2e-3F);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace robot_core::reference

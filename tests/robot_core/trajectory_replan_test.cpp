@@ -83,6 +83,28 @@ TEST(TrajectoryReplan, CasesThatWentWrong) {
   }
 }
 
+TEST(TrajectoryReplan, ASegmentOfFullJerkIsFoundFromAnywhere) {
+  // Nothing changes an acceleration faster, and next to nothing else arrives as early: rounding must not hide it.
+  std::mt19937_64 random(26);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int found = 0;
+  for (int i = 0; i < problem_count(); ++i) {
+    Task task = random_task(random);
+    const double jerk = i % 2 == 0 ? task.limits.jerk_max : -task.limits.jerk_max;
+    const double limit = i % 2 == 0 ? task.limits.acceleration_max : task.limits.acceleration_min;
+    const double time_s = uniform(random) * (limit - task.start.acceleration) / jerk;
+    task.target = Motion::advanced(task.start, jerk, time_s);
+    Motion motion;
+    if (plan_position(task.start, task.target, task.limits, motion) != PlanResult::ok) {
+      continue;  // it ends too fast, or no one gets there who kept the limits
+    }
+    ++found;
+    ASSERT_LE(motion.duration_s, time_s * (1 + 1e-9) + 1e-12) << text(task);
+    expect_flawless(motion, task);
+  }
+  EXPECT_GT(found, problem_count() / 4);
+}
+
 TEST(TrajectoryReplan, EveryTickTowardsARestingTarget) {
   std::mt19937_64 random(7);
   constexpr double kPeriod_s = 0.01;

@@ -7,6 +7,7 @@
 
 #include "base/quantity.h"
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "duty/duty.h"
 #include "motor/datasheet_network.h"
 #include "robot/robot.h"
@@ -41,7 +42,10 @@ Json figure_json(std::string_view key, std::string_view unit, const Figure& figu
 
 std::string figure_text(std::string_view key, std::string_view unit, const Figure& figure) {
   std::string text = fmt::format("  {:36} {:>22}  {:12}", key, figure.printed, to_string(figure.origin));
-  if (figure.spread && unit != "degC") {
+  if (figure.spread && unit == "rad") {
+    text += fmt::format(" {} … {} °", significant(convert(figure.spread->low, "rad", "deg"), 3),
+                        significant(convert(figure.spread->high, "rad", "deg"), 3));
+  } else if (figure.spread && unit != "degC") {
     text += fmt::format(" {:+.0f} … {:+.0f} %", 100.0 * (figure.spread->low / figure.value - 1.0),
                         100.0 * (figure.spread->high / figure.value - 1.0));
   } else if (figure.spread) {
@@ -88,6 +92,16 @@ Description describe_motor(const Motor& motor) {
   return result;
 }
 
+/// Of "table.key"; of a wheel's figure "friction.heading.wheel[0].key".
+std::string_view robot_unit(std::string_view key) {
+  const std::string_view last = key.substr(key.rfind('.') + 1);
+  if (key.find('[') != std::string_view::npos) {
+    return std::ranges::find(wheel_figure_specs(), last, [](const auto& each) { return each.spec.key; })->spec.unit;
+  }
+  const auto is_it = [&](const auto& each) { return each.spec.key == last && key.starts_with(each.table); };
+  return std::ranges::find_if(robot_figure_specs(), is_it)->spec.unit;
+}
+
 Description describe_robot(const Robot& robot) {
   std::string limits =
       std::isfinite(robot.voltage_limit_V) ? fmt::format(", command at most {} V", significant(robot.voltage_limit_V, 4)) : "";
@@ -97,7 +111,7 @@ Description describe_robot(const Robot& robot) {
   for (const double angle_rad : robot.wheel_axis_rad) {
     angles.push_back(significant(convert(angle_rad, "rad", "deg"), 4));
   }
-  return {
+  Description result{
       fmt::format(
           "{}: {}\n  mass {} kg, wheel radius {} mm, contact radius {} mm, wheel axes at {} °\n  motor {}, gear {}:1, {} commutation\n"
           "  battery {} V{}\n  source: {}\n",
@@ -113,6 +127,12 @@ Description describe_robot(const Robot& robot) {
        {"gear_ratio", robot.gear_ratio},
        {"available_V", robot.available_V()},
        {"source", robot.source}}};
+  result.text += robot.figures.empty() ? "" : "\nfigures (value, origin, range, source)\n";
+  for (const auto& [key, figure] : robot.figures) {
+    result.text += figure_text(key, robot_unit(key), figure);
+    result.json["figures"].push_back(figure_json(key, robot_unit(key), figure));
+  }
+  return result;
 }
 
 Description describe_duty(const Duty& duty) {
@@ -233,8 +253,23 @@ Description describe_effect(const EffectType& effect) {
   return result;
 }
 
+Description describe_file(const std::filesystem::path& file) {
+  switch (file_kind(file)) {
+    case FileKind::duty:
+      return describe_duty(read_duty(file));
+    case FileKind::robot:
+      return describe_robot(read_robot(file));
+    case FileKind::motor:
+      break;
+  }
+  return describe_motor(read_motor(file));
+}
+
 /// Names are unique across kinds; a path is looked into by what it holds.
 Description describe(const std::string& name, const DataFolders& folders) {
+  if (name.ends_with(".toml")) {
+    return describe_file(name);
+  }
   if (const EffectType* effect = find_effect(name)) {
     return describe_effect(*effect);
   }
@@ -274,7 +309,7 @@ Command describe() {
           .example = "heatsoak describe maxon_ecx_flat_32l_48v",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto name = std::make_shared<std::string>();
-            app.add_option("name", *name, "id, as `heatsoak list` shows it")->required();
+            app.add_option("name", *name, "id, as `heatsoak list` shows it, or a motor, robot or duty file")->required();
             session.add_data_option(app);
             session.add_json_option(app);
             return [name, &session] {

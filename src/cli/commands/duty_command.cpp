@@ -125,10 +125,11 @@ ExitCode import(const Options& options, const Robot& robot, Session& session) {
   for (const std::string& line : game.sentences) {
     text += line + "\n";
   }
-  session.say(text);
   if (game.wheels.empty()) {
-    throw Failure(ExitCode::cannot_answer, fmt::format("{}: no robot is seen long enough to follow its motion", options.log));
+    throw Failure(ExitCode::cannot_answer,
+                  fmt::format("{}: no robot is seen long enough to follow its motion\n{}", options.log, text.substr(0, text.rfind('\n'))));
   }
+  session.say(text);
   const std::string summary =
       fmt::format("{} of {}, driven by {}", game.player, std::filesystem::path(options.log).filename().string(), robot.name);
   write_duty(options, game.wheels, summary, "measured motion of a recorded game, wheel torques computed from the robot's file", session);

@@ -12,9 +12,11 @@
 #include "cli/friction_chart.h"
 #include "cli/quantity_option.h"
 #include "identify/friction/expected_voltage.h"
+#include "identify/friction/friction_suspicions.h"
 #include "identify/friction/read_friction_log.h"
 #include "identify/friction/robot_file.h"
 #include "identify/friction/roll_out.h"
+#include "identify/measurement/quality.h"
 #include "identify/measurement/read_recording.h"
 
 namespace heatsoak::commands {
@@ -42,6 +44,7 @@ struct Input {
   std::string motor_id;
   std::vector<FrictionLog> logs;
   Findings findings;
+  std::vector<std::string> suspicions;
 };
 
 /// The robot's own motor may be in no data base: modulation teaches without it.
@@ -59,8 +62,12 @@ void find_motor(const Options& options, const DataFolders& folders, Input& input
 
 Input read_input(const Options& options, const Session& session) {
   const DataFolders folders = session.folders();
-  Input input{
-      .robot = read_robot(file_of(folders.robots, "robot", options.robot)), .motor = {}, .motor_id = {}, .logs = {}, .findings = {}};
+  Input input{.robot = read_robot(file_of(folders.robots, "robot", options.robot)),
+              .motor = {},
+              .motor_id = {},
+              .logs = {},
+              .findings = {},
+              .suspicions = {}};
   find_motor(options, folders, input);
   FrictionLogNeeds needs;
   needs.voltage = options.method == "steady_state";
@@ -76,6 +83,9 @@ Input read_input(const Options& options, const Session& session) {
     RecordingReport report;
     const Recording recording = read_recording(options.logs[i], mapping_for(options.logs[i], options.map), report);
     input.logs.push_back(friction_log(recording, input.robot, needs, input.findings));
+    for (const std::string& suspicion : assess(recording, report).suspicions) {
+      input.suspicions.push_back(fmt::format("{}: {}", recording.name, suspicion));
+    }
     if (progress) {
       progress(i + 1, options.logs.size());
     }
@@ -102,6 +112,15 @@ std::string findings_text(const Findings& findings) {
     lines += finding + "\n";
   }
   return lines;
+}
+
+std::string suspicions_text(const std::vector<std::string>& suspicions) {
+  constexpr std::size_t kMost = 8;
+  std::string lines;
+  for (std::size_t i = 0; i < std::min(kMost, suspicions.size()); ++i) {
+    lines += fmt::format("suspicious: {}\n", suspicions[i]);
+  }
+  return suspicions.size() > kMost ? lines + fmt::format("suspicious: {} more of the like\n", suspicions.size() - kMost) : lines;
 }
 
 std::string source_of(const Options& options) {
@@ -133,6 +152,16 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
     if (std::isfinite(fit.wheels[i].rotation_V.value)) {
       lines += fmt::format("wheel {} turning on the spot: {} V\n", i + 1, text(fit.wheels[i].rotation_V, 3));
     }
+  }
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (fit.wheels[i].phase_is_bounded) {
+      lines += fmt::format(
+          "wheel {}: past this phase it would have to turn another way than it did; its friction hardly follows a sin(θ+φ) + b sign\n",
+          i + 1);
+    }
+  }
+  if (std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
+    lines += "below 0 V is no friction: the voltage is not in proportion to the modulation, or not to the battery's taken\n";
   }
   return lines;
 }
@@ -167,6 +196,7 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
                       {"legs_outlying", wheel.parts_outlying},
                       {"damping_given", wheel.damping_is_given},
                       {"phase_given", wheel.phase_is_given},
+                      {"phase_bounded", wheel.phase_is_bounded},
                       {"before_rmse_V", number(error.before_of_wheel_V[i])},
                       {"after_rmse_V", number(error.after_of_wheel_V[i])},
                       {"problem", wheel.problem}});
@@ -174,7 +204,8 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
   return wheels;
 }
 
-void draw(const Options& options, const Input& input, const SteadyParts& steady, const FrictionFit& fit, Session& session) {
+void draw(const Options& options, const Input& input, const SteadyParts& steady, const FrictionFit& fit, const FitSettings& settings,
+          Session& session) {
   const std::string of_headings = fmt::format("{} legs on {} headings", steady.parts.size(), fit.headings);
   std::filesystem::path voltage = options.plot;
   voltage.replace_filename(voltage.stem().string() + "_voltage.svg");
@@ -184,7 +215,7 @@ void draw(const Options& options, const Input& input, const SteadyParts& steady,
     session.say(fmt::format("written: {}\n", options.plot));
   }
   session.write(chart.panels.empty() ? std::filesystem::path(options.plot) : voltage,
-                draw_svg(voltage_chart(steady, fit, input.robot.name, options.return_legs == "use")));
+                draw_svg(voltage_chart(steady, fit, make_kinematics(input.robot), input.robot.name, settings)));
   session.say(fmt::format("written: {}\n", (chart.panels.empty() ? std::filesystem::path(options.plot) : voltage).string()));
 }
 
@@ -203,7 +234,8 @@ void answer(const Input& input, const SteadyParts& steady, const FrictionFit& fi
                   {"rows_steady", steady.rows_steady},
                   {"legs", steady.legs},
                   {"return_legs", steady.return_legs},
-                  {"findings", input.findings}});
+                  {"findings", input.findings},
+                  {"suspicions", input.suspicions}});
 }
 
 ExitCode steady_state(const Options& options, Input& input, Session& session) {
@@ -217,13 +249,19 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
     settings.known_damping_V_s_per_rad = before.damping_V_s_per_rad;
   }
   const FrictionFit fit = fit_friction(steady.parts, kinematics, settings);
+  for (const std::string& suspicion : friction_suspicions(
+           steady, fit, kinematics, input.motor ? std::optional(drive_constants(input.robot, *input.motor)) : std::nullopt)) {
+    input.suspicions.push_back(suspicion);
+  }
   if (!fit.is_learned()) {
+    session.say(suspicions_text(input.suspicions));
     throw nothing_learned(steady, fit);
   }
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, before.voltages);
   session.say(fmt::format("{}: {} logs, {} rows, {} of them steady in {} legs on {} headings; {} return legs {}\n{}{}", input.robot.id,
                           input.logs.size(), steady.rows, steady.rows_steady, steady.legs, fit.headings, steady.return_legs,
                           settings.use_return_legs ? "used too" : "left out", findings_text(input.findings), table(fit, steady.rows)));
+  session.say(suspicions_text(input.suspicions));
   if (std::isfinite(error.after_V)) {
     session.say(fmt::format("error on {} of {} headings, left out of a fit for this: {}{:.3f} V after it\n", error.headings,
                             error.all_headings, before.voltages ? fmt::format("{:.3f} V by {}, ", error.before_V, before.from) : "",
@@ -239,7 +277,7 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
     write_robot(options, content, notes, session);
   }
   if (!options.plot.empty()) {
-    draw(options, input, steady, fit, session);
+    draw(options, input, steady, fit, settings, session);
   }
   answer(input, steady, fit, error, before.from, session);
   return ExitCode::done;
@@ -268,7 +306,7 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
   drive.drag_torque_Nm = 0.0;
   Json wheels = Json::array();
   session.say(fmt::format("{}: {} roll-outs in {} logs, motors taken as open\n{}", input.robot.id, result.runs.size(), input.logs.size(),
-                          findings_text(input.findings)));
+                          findings_text(input.findings) + suspicions_text(input.suspicions)));
   for (const RollOutRun& run : result.runs) {
     session.say(run_text(run));
   }
@@ -305,7 +343,8 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
                   {"wheels", wheels},
                   {"before", {{"rmse", Json()}}},
                   {"after", {{"rmse", Json()}}},
-                  {"findings", input.findings}});
+                  {"findings", input.findings},
+                  {"suspicions", input.suspicions}});
   return ExitCode::done;
 }
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/file_kind.h"
 #include "duty/duty.h"
-#include "input/document.h"
 #include "motor/lint.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
@@ -16,15 +16,15 @@ namespace {
 
 /// Reads the file as what its keys say it is; the findings of a motor's figures are the lint proper.
 std::vector<LintFinding> look_into(const std::filesystem::path& file) {
-  const Value root = read_toml(file);
-  const auto names_a_shape = [&](const ShapeType& shape) { return root.find(shape.name) != nullptr; };
-  if (root.find("shape") || std::ranges::any_of(all_shapes(), names_a_shape)) {
-    read_duty(file);
-    return {};
-  }
-  if (root.find("wheels") || root.find("drive")) {
-    read_robot(file);
-    return {};
+  switch (file_kind(file)) {
+    case FileKind::duty:
+      read_duty(file);
+      return {};
+    case FileKind::robot:
+      read_robot(file);
+      return {};
+    case FileKind::motor:
+      break;
   }
   return lint(read_motor(file));
 }

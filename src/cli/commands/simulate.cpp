@@ -113,7 +113,14 @@ ExitCode run(const Options& options, Session& session) {
   const Motor motor =
       under(read_motor(options.model.empty() ? file_of(folders.motors, "motor", options.motor) : std::filesystem::path(options.model)),
             options.conditions);
+  const auto needs_a_plant = [&motor] {
+    if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {
+      throw bad_input({motor.file.string()}, "figures.rotor_inertia",
+                      "is missing: without it no acceleration of a wheel can be calculated");
+    }
+  };
   if (options.jerk_sweep) {
+    needs_a_plant();
     if (!options.out.empty()) {
       throw Failure(ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
     }
@@ -124,6 +131,7 @@ ExitCode run(const Options& options, Session& session) {
   if (!match) {
     return run_load(options, robot, motor, duty, session);
   }
+  needs_a_plant();
   std::vector<Planner> planners;
   if (options.planner != "bang_bang") {
     planners.push_back(Planner::jerk_limited);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "identify/friction/robust_fit.h"
+#include "identify/measurement/noise.h"
 
 namespace heatsoak {
 namespace {
@@ -55,20 +56,6 @@ double top_of(const Eigen::RowVectorXd& values) {
 }
 
 }  // namespace
-
-double resolution_of(const std::vector<double>& values) {
-  std::vector<double> sorted;
-  std::ranges::copy_if(values, std::back_inserter(sorted), [](double value) { return std::isfinite(value); });
-  std::ranges::sort(sorted);
-  // Steps as large as rounding are not the sensor's.
-  const double rounding = sorted.empty() ? 0.0 : 1e-9 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    const double step = sorted[i] - sorted[i - 1];
-    least = step > rounding ? std::min(least, step) : least;
-  }
-  return std::isfinite(least) ? least : 0.0;
-}
 
 BlockMedians block_medians(const FrictionLog& log, int wheel_count, std::size_t begin, std::size_t end) {
   BlockMedians blocks;

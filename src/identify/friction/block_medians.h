@@ -17,7 +17,7 @@ struct BlockMedians {
   std::vector<double> duration_s;
   Eigen::MatrixXd raw;         ///< signals × blocks; NaN where fewer than three rows have a value
   Eigen::MatrixXd values;      ///< the same with the odd block out replaced: median of three neighbours
-  Eigen::VectorXd resolution;  ///< per signal: smallest step between two values
+  Eigen::VectorXd resolution;  ///< per signal: of the sensor; 0 where none is seen
   Eigen::VectorXd top;         ///< per signal: 95 % of the blocks' sizes lie below
 };
 
@@ -27,8 +27,5 @@ BlockMedians block_medians(const FrictionLog& log, int wheel_count, std::size_t 
 /// Standard deviation of the blocks [begin, end) of a signal by their second differences, in which a steady rise does not
 /// count as noise; at least half the resolution.
 double block_deviation(const BlockMedians& blocks, Eigen::Index signal, Eigen::Index begin, Eigen::Index end);
-
-/// The smallest difference between two values: the quantum of a digital sensor; tiny for others. 0 of constants.
-double resolution_of(const std::vector<double>& values);
 
 }  // namespace heatsoak

@@ -6,16 +6,17 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "robot/friction.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr double kStanding_share = 0.1;
 constexpr double kIndependent_share = 0.05;
 constexpr double kSameHeading_rad = 2.5 * std::numbers::pi / 180.0;
 constexpr double kSpeedLevels_share = 0.15;
+constexpr std::size_t kLegsPerTerm = 3;
 constexpr double kPi = std::numbers::pi;
 
 /// One steady part seen by one wheel.
@@ -46,7 +47,7 @@ WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& ki
     if (!part.is_rotation) {
       point.sine = std::sin(part.heading_rad + phase_rad);
       point.cosine = std::cos(part.heading_rad + phase_rad);
-      expected = std::abs(point.sine) < kStanding_share ? 0.0 : point.sine;
+      expected = should_stand(kinematics.wheels[wheel], part.heading_rad) ? 0.0 : point.sine;
     }
     // A mean that its own noise could have turned round says nothing about the side either.
     const double doubt_rad_per_s = 3.0 * part.speed_noise_rad_per_s[wheel] / std::sqrt(std::max(1, part.rows_kept[wheel]));
@@ -166,31 +167,42 @@ struct SineAndPhase {
   Estimate offset_rad;  ///< φ − φ_0
 };
 
+Estimate moved(const Estimate& estimate, double value) {
+  return {value, value + estimate.low - estimate.value, value + estimate.high - estimate.value};
+}
+
+/// a along a direction of the plane of A and B, φ by Fieller; both may be cut off by the bounds.
 SineAndPhase sine_and_phase(const RobustFit& fit, Eigen::Index sine, Eigen::Index cosine, std::pair<double, double> bounds_rad) {
-  const double A = fit.coefficients(sine);
-  const double B = fit.coefficients(cosine);
+  const Eigen::Vector2d both_V(fit.coefficients(sine), fit.coefficients(cosine));
   Eigen::Matrix2d covariance;
   covariance << fit.covariance(sine, sine), fit.covariance(sine, cosine), fit.covariance(cosine, sine), fit.covariance(cosine, cosine);
   const double t = fit.quantile_factor();
-  SineAndPhase found;
-  // On the bounds: the best a at that φ, its covariance with B taken into account.
-  double offset_rad = std::atan2(B, A);
+  double offset_rad = std::atan2(both_V.y(), both_V.x());
   if (std::abs(offset_rad) > kPi / 2.0) {
     offset_rad -= std::copysign(kPi, offset_rad);  // a < 0
   }
-  offset_rad = std::clamp(offset_rad, bounds_rad.first, bounds_rad.second);
-  const Eigen::Vector2d along(std::cos(offset_rad), std::sin(offset_rad));
-  const Eigen::Vector2d across(-std::sin(offset_rad), std::cos(offset_rad));
-  const double across_V = across.dot(Eigen::Vector2d(A, B));
-  const double across_variance = across.dot(covariance * across);
-  const double shared = across_variance > 0.0 ? along.dot(covariance * across) / across_variance : 0.0;
-  const double sine_V = along.dot(Eigen::Vector2d(A, B)) - shared * across_V;
+  const double value_rad = std::clamp(offset_rad, bounds_rad.first, bounds_rad.second);
+  const Eigen::Vector2d along(std::cos(value_rad), std::sin(value_rad));
   const double half_V = t * std::sqrt(along.dot(covariance * along));
-  found.sine_V = {sine_V, sine_V - half_V, sine_V + half_V};
-  const auto interval_rad = fieller_rad(A, B, covariance, t).value_or(bounds_rad);
-  found.offset_rad = {offset_rad, std::clamp(interval_rad.first, bounds_rad.first, offset_rad),
-                      std::clamp(interval_rad.second, offset_rad, bounds_rad.second)};
-  return found;
+  const double sine_V = along.dot(both_V);
+  const auto interval_rad = fieller_rad(both_V.x(), both_V.y(), covariance, t).value_or(bounds_rad);
+  // Past a bound the interval goes along, so that it does not shrink to nothing there.
+  const double past_rad = value_rad - offset_rad;
+  const double low_rad = std::min(interval_rad.first, interval_rad.first + past_rad);
+  const double high_rad = std::max(interval_rad.second, interval_rad.second + past_rad);
+  return {{sine_V, sine_V - half_V, sine_V + half_V},
+          {value_rad, std::clamp(low_rad, bounds_rad.first, value_rad), std::clamp(high_rad, value_rad, bounds_rad.second)}};
+}
+
+/// The best a and b with φ held and everything else as fitted.
+Eigen::Vector2d sine_and_constant_at(const Eigen::MatrixXd& X, const Eigen::VectorXd& voltage_V, std::span<const int> legs,
+                                     const RobustFit& fit, std::array<Eigen::Index, 3> sine_cosine_constant, double offset_rad) {
+  const auto [sine, cosine, constant] = sine_cosine_constant;
+  Eigen::MatrixXd both(X.rows(), 2);
+  both << std::cos(offset_rad) * X.col(sine) + std::sin(offset_rad) * X.col(cosine), X.col(constant);
+  Eigen::VectorXd others = fit.coefficients;
+  others(sine) = others(cosine) = others(constant) = 0.0;
+  return robust_fit(both, voltage_V - X * others, legs).coefficients;
 }
 
 double wrapped_rad(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
@@ -244,35 +256,52 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinem
     voltage_V(static_cast<Eigen::Index>(i)) = part.voltage_V[wheel] - given * part.wheel_speed_rad_per_s[wheel];
     legs.push_back(part.leg);
   }
+  // Of a few long legs the scatter from leg to leg is not known; then stretches stand for themselves.
+  if (std::set<int>(legs.begin(), legs.end()).size() < kLegsPerTerm * chosen.terms.size()) {
+    std::iota(legs.begin(), legs.end(), 0);
+  }
   const RobustFit fit = robust_fit(X, voltage_V, legs);
   weights = fit.weights;
   const auto place = [&](Term term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
   const auto has = [&](Term term) { return place(term) < std::ssize(chosen.terms); };
   found.damping_V_s_per_rad = has(Term::damping) ? fit.estimate(place(Term::damping)) : Estimate{.value = given};
-  if (has(Term::rotation)) {
-    found.rotation_V = fit.estimate(place(Term::rotation));
-  }
-  if (has(Term::sine)) {
-    found.constant_V = fit.estimate(place(Term::constant));
-    const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
-    if (has(Term::cosine)) {
-      const SineAndPhase both = sine_and_phase(fit, place(Term::sine), place(Term::cosine), phase_bounds_rad(points, fit.weights));
-      found.sine_V = both.sine_V;
-      const double value_rad = wrapped_rad(phase_rad + both.offset_rad.value);
-      found.phase_rad = {value_rad, value_rad + both.offset_rad.low - both.offset_rad.value,
-                         value_rad + both.offset_rad.high - both.offset_rad.value};
-    } else {
-      found.sine_V = fit.estimate(place(Term::sine));
-      found.phase_rad.value = wrapped_rad(phase_rad);
+  found.rotation_V = has(Term::rotation) ? fit.estimate(place(Term::rotation)) : Estimate{};
+  found.constant_V = has(Term::constant) ? fit.estimate(place(Term::constant)) : Estimate{};
+  const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
+  if (has(Term::cosine)) {
+    const Eigen::Index sine = place(Term::sine);
+    const Eigen::Index cosine = place(Term::cosine);
+    const std::pair<double, double> bounds_rad = phase_bounds_rad(points, fit.weights);
+    SineAndPhase both = sine_and_phase(fit, sine, cosine, bounds_rad);
+    const double offset_rad = both.offset_rad.value;
+    found.phase_is_bounded = offset_rad <= bounds_rad.first || offset_rad >= bounds_rad.second;
+    if (found.phase_is_bounded) {
+      // The intervals stay those that do not know of the bound.
+      const Eigen::Vector2d held_V = sine_and_constant_at(X, voltage_V, legs, fit, {sine, cosine, place(Term::constant)}, offset_rad);
+      both.sine_V = moved(both.sine_V, held_V.x());
+      found.constant_V = moved(found.constant_V, held_V.y());
     }
+    found.sine_V = both.sine_V;
+    found.phase_rad = moved(both.offset_rad, wrapped_rad(phase_rad + offset_rad));
+  } else if (has(Term::sine)) {
+    found.sine_V = fit.estimate(place(Term::sine));
+    found.phase_rad.value = wrapped_rad(phase_rad);
   }
   judge(points, fit.weights, wheel, found);
   return found;
 }
 
-/// A line through the parts of one heading; its offset alone where they have one speed.
-HeadingLine line_of(const std::vector<const SteadyPart*>& parts, int wheel, const WheelFriction& found) {
-  HeadingLine line;
+/// Voltage over speed on one heading: offset and slope, or the offset alone where the heading has one speed.
+struct StraightLine {
+  double heading_rad = 0.0;
+  RobustFit fit;            ///< plain least squares: what is gross has been left out by the fit over all headings
+  Eigen::MatrixXd inverse;  ///< (XᵀX)⁻¹
+  double error_V2 = 0.0;    ///< Σ of squared residuals
+  double freedom_count = 0.0;
+};
+
+StraightLine straight_line(const std::vector<const SteadyPart*>& parts, int wheel, const WheelFriction& found) {
+  StraightLine line;
   double x = 0.0;
   double y = 0.0;
   std::vector<double> speeds_rad_per_s;
@@ -283,31 +312,24 @@ HeadingLine line_of(const std::vector<const SteadyPart*>& parts, int wheel, cons
   }
   line.heading_rad = std::atan2(y, x);
   const auto [slowest, fastest] = std::ranges::minmax(speeds_rad_per_s, {}, [](double speed) { return std::abs(speed); });
-  const bool is_line = parts.size() >= 3 && std::abs(fastest) - std::abs(slowest) > kSpeedLevels_share * std::abs(fastest);
-  Eigen::MatrixXd X = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(parts.size()), is_line ? 2 : 1);
+  const bool has_slope = std::abs(fastest) - std::abs(slowest) > kSpeedLevels_share * std::abs(fastest);
+  Eigen::MatrixXd X = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(parts.size()), has_slope ? 2 : 1);
   Eigen::VectorXd voltage_V(X.rows());
   for (Eigen::Index i = 0; i < X.rows(); ++i) {
     const SteadyPart& part = *parts[static_cast<std::size_t>(i)];
-    voltage_V(i) = part.voltage_V[wheel] - (is_line ? 0.0 : found.damping_V_s_per_rad.value * part.wheel_speed_rad_per_s[wheel]);
-    if (is_line) {
+    voltage_V(i) = part.voltage_V[wheel] - (has_slope ? 0.0 : found.damping_V_s_per_rad.value * part.wheel_speed_rad_per_s[wheel]);
+    if (has_slope) {
       X(i, 1) = part.wheel_speed_rad_per_s[wheel];
     }
   }
-  // Few points of one heading: plain least squares; what is gross has been left out by the fit over all headings.
-  RobustFit fit;
-  const Eigen::MatrixXd spread = (X.transpose() * X).inverse();
-  fit.coefficients = spread * X.transpose() * voltage_V;
-  fit.freedom_count = static_cast<double>(X.rows() - X.cols());
-  if (fit.freedom_count > 0.0) {
-    fit.covariance = spread * (voltage_V - X * fit.coefficients).squaredNorm() / fit.freedom_count;
-    line.offset_V = fit.estimate(0);
-    line.damping_V_s_per_rad = is_line ? fit.estimate(1) : Estimate{};
-  } else {
-    line.offset_V.value = fit.coefficients(0);
-  }
+  line.inverse = (X.transpose() * X).inverse();
+  line.fit.coefficients = line.inverse * X.transpose() * voltage_V;
+  line.error_V2 = (voltage_V - X * line.fit.coefficients).squaredNorm();
+  line.freedom_count = static_cast<double>(X.rows() - X.cols());
   return line;
 }
 
+/// A heading has too few legs to tell their scatter; it is that of all headings of the wheel.
 std::vector<HeadingLine> lines_of(const std::vector<Point>& points, const Eigen::VectorXd& weights, const std::vector<SteadyPart>& parts,
                                   const std::vector<int>& numbers, int wheel, const WheelFriction& found) {
   std::map<int, std::vector<const SteadyPart*>> by_heading;
@@ -317,9 +339,27 @@ std::vector<HeadingLine> lines_of(const std::vector<Point>& points, const Eigen:
       by_heading[number].push_back(points[i].part);
     }
   }
-  std::vector<HeadingLine> lines;
+  std::vector<StraightLine> straight;
+  double error_V2 = 0.0;
+  double freedom_count = 0.0;
   for (const auto& [number, members] : by_heading) {
-    lines.push_back(line_of(members, wheel, found));
+    straight.push_back(straight_line(members, wheel, found));
+    error_V2 += straight.back().error_V2;
+    freedom_count += straight.back().freedom_count;
+  }
+  std::vector<HeadingLine> lines;
+  for (StraightLine& line : straight) {
+    HeadingLine& made = lines.emplace_back(HeadingLine{.heading_rad = line.heading_rad, .offset_V = {}, .damping_V_s_per_rad = {}});
+    const bool has_slope = line.fit.coefficients.size() == 2;
+    if (freedom_count > 0.0) {
+      line.fit.covariance = line.inverse * error_V2 / freedom_count;
+      line.fit.freedom_count = freedom_count;
+      made.offset_V = line.fit.estimate(0);
+      made.damping_V_s_per_rad = has_slope ? line.fit.estimate(1) : Estimate{};
+    } else {
+      made.offset_V.value = line.fit.coefficients(0);
+      made.damping_V_s_per_rad.value = has_slope ? line.fit.coefficients(1) : made.damping_V_s_per_rad.value;
+    }
   }
   std::ranges::sort(lines, {}, [](const HeadingLine& line) { return line.heading_rad; });
   return lines;
@@ -333,17 +373,18 @@ double WheelFriction::friction_V(double heading_rad) const {
 }
 
 double WheelFriction::voltage_V(double heading_rad, double wheel_speed_rad_per_s) const {
-  return damping_V_s_per_rad.value * wheel_speed_rad_per_s + friction_V(heading_rad);
+  const double size_V = std::copysign(1.0, std::sin(heading_rad + phase_rad.value)) * friction_V(heading_rad);
+  return damping_V_s_per_rad.value * wheel_speed_rad_per_s + (wheel_speed_rad_per_s < 0.0 ? -size_V : size_V);
 }
 
 bool FrictionFit::is_learned() const {
   return std::ranges::any_of(wheels, [](const WheelFriction& wheel) { return wheel.is_learned(); });
 }
 
-std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts) {
+std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings) {
   std::vector<std::size_t> order(parts.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::erase_if(order, [&](std::size_t i) { return parts[i].is_rotation; });
+  std::erase_if(order, [&](std::size_t i) { return parts[i].is_rotation || !is_used(parts[i], settings); });
   const auto turn_rad = [&](std::size_t i) { return wrapped_rad(parts[i].heading_rad + kSameHeading_rad / 2.0); };  // 0° and −0° stay one
   std::ranges::stable_sort(order, {}, turn_rad);
   std::vector<int> numbers(parts.size(), -1);
@@ -361,7 +402,7 @@ std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts) {
 
 FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings) {
   FrictionFit found;
-  const std::vector<int> numbers = heading_numbers(parts);
+  const std::vector<int> numbers = heading_numbers(parts, settings);
   found.headings = parts.empty() ? 0 : *std::ranges::max_element(numbers) + 1;
   for (int wheel = 0; wheel < kinematics.wheel_count; ++wheel) {
     const WheelPoints points = points_of(parts, kinematics, wheel, settings);
@@ -375,7 +416,7 @@ FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics&
 HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings,
                                         const ExpectedVoltages& before) {
   HeldOutError error;
-  const std::vector<int> numbers = heading_numbers(parts);
+  const std::vector<int> numbers = heading_numbers(parts, settings);
   std::vector<SteadyPart> taught;
   std::vector<SteadyPart> held_out;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -12,7 +12,7 @@
 namespace heatsoak {
 
 // In steady motion  V_i = d_i·ω_i + f_i(θ),  f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)).
-// A wheel that should stand by geometry, |t_i·v| < 0.1·|v|, carries no information and is left out, as the paper does.
+// A wheel that should stand by geometry carries no information and is left out, as the paper does.
 // The others turn the way their rolling direction says, so the sign is known; with S = sin(θ + φ_0), C = cos(θ + φ_0),
 // φ_0 that of the rolling direction, the law is linear:  V = d·ω + A·S + B·C + b·sign S  (+ c·sign ω in rotation),
 // a = ±√(A² + B²) and φ = φ_0 + atan(B/A). Fitted robustly over all parts of a wheel (robust_fit.h), legs as clusters.
@@ -26,6 +26,7 @@ struct WheelFriction {
   Estimate rotation_V;                                         ///< c; NaN without legs of rotation
   bool damping_is_given = false;                               ///< not found, taken from what is known of the robot
   bool phase_is_given = false;                                 ///< too few headings: that of the rolling direction
+  bool phase_is_bounded = false;                               ///< beyond it the wheel would turn another way than it did
   double r2_ratio = std::numeric_limits<double>::quiet_NaN();  ///< share of the voltage's variance that is explained
   double rmse_V = std::numeric_limits<double>::quiet_NaN();
   int parts_used = 0;
@@ -35,8 +36,10 @@ struct WheelFriction {
   std::string problem;  ///< why it was not learned; empty where it was
 
   [[nodiscard]] bool is_learned() const { return problem.empty(); }
-  /// Of the driver in steady motion; `side` is the sign of the wheel's speed.
+  /// Of the driver in steady motion, the friction against the wheel's speed: near a heading on which the wheel stands the
+  /// sign of sin(θ + φ) need not be that.
   [[nodiscard]] double voltage_V(double heading_rad, double wheel_speed_rad_per_s) const;
+  /// f(θ)
   [[nodiscard]] double friction_V(double heading_rad) const;
 };
 
@@ -60,8 +63,8 @@ struct FitSettings {
   double known_damping_V_s_per_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Headings within 2.5° of each other are one; which of them each part has, −1 for rotation.
-std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts);
+/// Headings within 2.5° of each other are one; which of them each part has, −1 for rotation and for legs that are not used.
+std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings);
 
 FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings);
 

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace heatsoak {
 namespace {
@@ -149,7 +150,8 @@ RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::sp
   }
   const Eigen::VectorXd residuals = y - scaled * fit.coefficients;
   fit.weights = (residuals / deviation).unaryExpr(&bisquare_weight);
-  fit.freedom_count = fit.weights.sum() - static_cast<double>(X.cols());
+  const auto clusters = static_cast<double>(std::set<int>(cluster.begin(), cluster.end()).size());
+  fit.freedom_count = std::min(fit.weights.sum(), clusters) - static_cast<double>(X.cols());
   fit.covariance = sandwich(scaled, residuals, fit, deviation, cluster);
   fit.coefficients = fit.coefficients.cwiseQuotient(size);
   fit.covariance = size.cwiseInverse().asDiagonal() * fit.covariance * size.cwiseInverse().asDiagonal();

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 namespace heatsoak {
 namespace {
@@ -13,14 +15,17 @@ constexpr double kOff_share = 0.02;
 constexpr double kEnd_share = 0.15;
 constexpr double kMoving_share = 0.3;
 constexpr std::size_t kLeastRows = 15;
+constexpr std::size_t kReach = 4;
+constexpr double kTrusted_share = 0.1;
+constexpr int kMostRounds = 5;
 
-/// Median of each value and its two neighbours on both sides: single bad rows vanish.
+/// Median of each value and its four neighbours on both sides: single bad rows vanish.
 std::vector<double> without_spikes(const std::vector<double>& values) {
   std::vector<double> smooth(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t begin = i < 2 ? 0 : i - 2;
+    const std::size_t begin = i < kReach ? 0 : i - kReach;
     std::vector<double> near(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                             values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), i + 3)));
+                             values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), i + kReach + 1)));
     smooth[i] = median(near);
   }
   return smooth;
@@ -49,11 +54,16 @@ std::vector<bool> rows_off(const FrictionLog& log, int wheel_count) {
   return is_known ? off : std::vector<bool>{};
 }
 
-/// One coordinate of a log that rolls out.
-struct Coordinate {
+/// What rolls out, row by row.
+struct Rolling {
   RollOutRun run;
-  std::vector<double> speed;   ///< as measured, m/s or rad/s
-  std::vector<double> smooth;  ///< the same without spikes
+  std::vector<double> speed;                ///< without spikes, m/s of the contact points or rad/s of a lifted wheel
+  std::vector<double> energy_J;             ///< as measured
+  std::vector<double> smooth_energy_J;      ///< of speeds without spikes
+  std::vector<double> turning_rad_per_s;    ///< Σ|ω_i|, as measured
+  std::vector<double> turning_rad2_per_s2;  ///< Σω_i²
+  explicit Rolling(std::size_t rows)
+      : speed(rows), energy_J(rows), smooth_energy_J(rows), turning_rad_per_s(rows), turning_rad2_per_s2(rows) {}
 };
 
 struct Stretch {
@@ -61,7 +71,7 @@ struct Stretch {
   std::size_t end = 0;
 };
 
-/// Where the drivers are off and the coordinate still moves, each to the end of its roll-out.
+/// Where the drivers are off and the speed is not yet gone, each to the end of its roll-out.
 std::vector<Stretch> stretches(const FrictionLog& log, const std::vector<bool>& off, const std::vector<double>& speed) {
   std::vector<Stretch> found;
   double top = 0.0;
@@ -97,103 +107,141 @@ std::vector<Stretch> stretches(const FrictionLog& log, const std::vector<bool>& 
   return found;
 }
 
-/// ω over time and way: offset, −(τ/J), −(D/J).
-/// `torques`: Σ|ω_i| of the wheels per speed, `dampings`: Σω_i² per speed².
-std::optional<RollOutRun> fitted(const FrictionLog& log, const Coordinate& coordinate, const Stretch& stretch, double inertia,
-                                 double torques, double dampings) {
-  const auto size = static_cast<Eigen::Index>(stretch.end - stretch.begin);
-  std::vector<Eigen::Index> rows;
-  Eigen::MatrixXd X(size, 3);
-  Eigen::VectorXd speed(size);
-  double way = 0.0;
-  Eigen::Index used = 0;
-  const double side = coordinate.smooth[stretch.begin] > 0.0 ? 1.0 : -1.0;
+/// What the wheels have turned since the stretch began, over the rows that are trusted.
+struct Turned {
+  std::vector<double> sum_rad;         ///< Σ∫|ω_i| dt
+  std::vector<double> sum_rad2_per_s;  ///< Σ∫ω_i² dt
+};
+
+Turned turned_by(const FrictionLog& log, const Rolling& rolling, const Stretch& stretch, const std::vector<bool>& trusted) {
+  Turned turned{std::vector<double>(trusted.size()), std::vector<double>(trusted.size())};
+  std::optional<std::size_t> last;
   for (std::size_t row = stretch.begin; row < stretch.end; ++row) {
-    if (row > stretch.begin) {
-      way += side * 0.5 * (coordinate.smooth[row] + coordinate.smooth[row - 1]) * (log.time_s[row] - log.time_s[row - 1]);
+    const std::size_t i = row - stretch.begin;
+    if (i > 0) {
+      turned.sum_rad[i] = turned.sum_rad[i - 1];
+      turned.sum_rad2_per_s[i] = turned.sum_rad2_per_s[i - 1];
     }
-    if (std::isfinite(coordinate.speed[row]) && std::isfinite(way)) {
-      X.row(used) << 1.0, -(log.time_s[row] - log.time_s[stretch.begin]), -way;
-      speed(used++) = side * coordinate.speed[row];
+    if (trusted[i] && last) {
+      const double half_s = 0.5 * (log.time_s[row] - log.time_s[*last]);
+      turned.sum_rad[i] += half_s * (rolling.turning_rad_per_s[row] + rolling.turning_rad_per_s[*last]);
+      turned.sum_rad2_per_s[i] += half_s * (rolling.turning_rad2_per_s2[row] + rolling.turning_rad2_per_s2[*last]);
+    }
+    last = trusted[i] ? row : last;
+  }
+  return turned;
+}
+
+struct EnergyFit {
+  RobustFit fit;  ///< E_0, τ, D
+  Eigen::MatrixXd X;
+  Eigen::VectorXd energy;
+};
+
+/// Rows count by 1/√E, so that the noise of the speed is the same in all.
+std::optional<EnergyFit> energy_fit(const Rolling& rolling, const Stretch& stretch, const Turned& turned,
+                                    const std::vector<bool>& trusted) {
+  const double least_J = kEnd_share * kEnd_share * rolling.smooth_energy_J[stretch.begin];
+  EnergyFit made{{}, Eigen::MatrixXd(trusted.size(), 3), Eigen::VectorXd(trusted.size())};
+  Eigen::Index used = 0;
+  for (std::size_t i = 0; i < trusted.size(); ++i) {
+    const std::size_t row = stretch.begin + i;
+    if (trusted[i]) {
+      const double weight = 1.0 / std::sqrt(std::max(rolling.energy_J[row], least_J));
+      made.X.row(used) << weight, -weight * turned.sum_rad[i], -weight * turned.sum_rad2_per_s[i];
+      made.energy(used++) = weight * rolling.energy_J[row];
     }
   }
   if (used < static_cast<Eigen::Index>(kLeastRows)) {
     return std::nullopt;
   }
-  X.conservativeResize(used, 3);
-  speed.conservativeResize(used);
+  made.X.conservativeResize(used, 3);
+  made.energy.conservativeResize(used);
   std::vector<int> cluster(static_cast<std::size_t>(used));
-  for (std::size_t i = 0; i < cluster.size(); ++i) {
-    cluster[i] = static_cast<int>(i);
+  std::iota(cluster.begin(), cluster.end(), 0);
+  made.fit = robust_fit(made.X, made.energy, cluster);
+  return made;
+}
+
+/// Rows whose speed is within a tenth of the first one of what is expected; the others take no part.
+template <typename Expected>
+std::vector<bool> trusted_rows(const Rolling& rolling, const Stretch& stretch, Expected expected_J) {
+  std::vector<bool> trusted(stretch.end - stretch.begin);
+  const double most = kTrusted_share * std::sqrt(std::max(0.0, expected_J(0)));
+  for (std::size_t i = 0; i < trusted.size(); ++i) {
+    const double found_J = rolling.energy_J[stretch.begin + i];
+    trusted[i] = found_J > 0.0 && std::abs(std::sqrt(found_J) - std::sqrt(std::max(0.0, expected_J(i)))) <= most;
   }
-  const RobustFit fit = robust_fit(X, speed, cluster);
-  RollOutRun run = coordinate.run;
-  run.wheel_torque_Nm = fit.coefficients(1) * inertia / torques;
-  run.force_N = run.kind == RollOut::translation ? fit.coefficients(1) * inertia : 0.0;
-  run.wheel_damping_Nm_s_per_rad = fit.coefficients(2) * inertia / dampings;
-  const Eigen::VectorXd residuals = speed - X * fit.coefficients;
-  const double mean = fit.weights.dot(speed) / fit.weights.sum();
-  run.r2_ratio = 1.0 - fit.weights.dot(residuals.cwiseAbs2()) / fit.weights.dot((speed.array() - mean).square().matrix());
+  return trusted;
+}
+
+std::optional<RollOutRun> fitted(const FrictionLog& log, const Rolling& rolling, const Stretch& stretch) {
+  std::vector<bool> trusted = trusted_rows(rolling, stretch, [&](std::size_t i) { return rolling.smooth_energy_J[stretch.begin + i]; });
+  std::optional<EnergyFit> found;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Turned turned = turned_by(log, rolling, stretch, trusted);
+    found = energy_fit(rolling, stretch, turned, trusted);
+    if (!found) {
+      return std::nullopt;
+    }
+    const auto expected_J = [&](std::size_t i) {
+      return found->fit.coefficients.dot(Eigen::Vector3d(1.0, -turned.sum_rad[i], -turned.sum_rad2_per_s[i]));
+    };
+    std::vector<bool> now = trusted_rows(rolling, stretch, expected_J);
+    if (std::exchange(trusted, now) == now) {
+      break;
+    }
+  }
+  RollOutRun run = rolling.run;
+  const RobustFit& fit = found->fit;
+  run.wheel_torque_Nm = fit.coefficients(1);
+  run.wheel_damping_Nm_s_per_rad = fit.coefficients(2);
+  const Eigen::VectorXd residuals = found->energy - found->X * fit.coefficients;
+  const double mean = fit.weights.dot(found->energy) / fit.weights.sum();
+  run.r2_ratio = 1.0 - fit.weights.dot(residuals.cwiseAbs2()) / fit.weights.dot((found->energy.array() - mean).square().matrix());
   run.rows_used = static_cast<int>((fit.weights.array() > 0.0).count());
   return run;
 }
 
-/// Σ s_i² and Σ |s_i| over the wheels, per radius: wheel speed per speed of the coordinate.
-struct Shares {
-  double squares = 0.0;
-  double sizes = 0.0;
-};
-
-Shares shares(const Kinematics& kinematics, const BodyVelocity& unit) {
-  Shares found;
-  for (const double speed : wheel_speeds_rad_per_s(kinematics, unit)) {
-    found.squares += speed * speed;
-    found.sizes += std::abs(speed);
+PerWheel wheel_speeds(const std::array<std::vector<double>, kMostWheels>& columns, int wheel_count, std::size_t row) {
+  PerWheel speed_rad_per_s{};
+  for (int i = 0; i < wheel_count; ++i) {
+    speed_rad_per_s[i] = columns[static_cast<std::size_t>(i)][row];
   }
-  return found;
+  return speed_rad_per_s;
 }
 
 void add_robot(const FrictionLog& log, const BodyConfig& body, RollOutResult& result) {
-  const std::vector<bool> off = rows_off(log, body.kinematics.wheel_count);
+  const Kinematics& kinematics = body.kinematics;
+  std::array<std::vector<double>, kMostWheels> smooth;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    smooth[static_cast<std::size_t>(i)] = without_spikes(log.wheel_speed_rad_per_s[static_cast<std::size_t>(i)]);
+  }
+  Rolling rolling(log.rows());
   std::vector<BodyVelocity> velocity(log.rows());
   for (std::size_t row = 0; row < log.rows(); ++row) {
-    PerWheel speed_rad_per_s{};
-    for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-      speed_rad_per_s[i] = log.wheel_speed_rad_per_s[static_cast<std::size_t>(i)][row];
-    }
-    velocity[row] = body_velocity(body.kinematics, speed_rad_per_s);
-  }
-  std::vector<double> moving, turning;
-  for (const BodyVelocity& each : velocity) {
-    moving.push_back(std::hypot(each.x_m_per_s, each.y_m_per_s));
-    turning.push_back(each.yaw_rad_per_s);
-  }
-  const Coordinate translation{{.kind = RollOut::translation}, moving, without_spikes(moving)};
-  const Coordinate rotation{{.kind = RollOut::rotation}, turning, without_spikes(turning)};
-  for (const Stretch& stretch : stretches(log, off, translation.smooth)) {
-    std::vector<double> x, y;
-    for (std::size_t row = stretch.begin; row < stretch.end; ++row) {
-      x.push_back(velocity[row].x_m_per_s);
-      y.push_back(velocity[row].y_m_per_s);
-    }
-    Coordinate along = translation;
-    along.run.heading_rad = std::atan2(median(y), median(x));
-    if (std::abs(rotation.smooth[stretch.begin]) * body.kinematics.contact_radius_m > translation.smooth[stretch.begin]) {
-      continue;
-    }
-    const Shares share = shares(body.kinematics, {std::cos(along.run.heading_rad), std::sin(along.run.heading_rad), 0.0});
-    const double mass_kg = body.weight.mass_kg + body.wheel_inertia_kg_m2 * share.squares;
-    if (std::optional<RollOutRun> run = fitted(log, along, stretch, mass_kg, share.sizes, share.squares)) {
-      result.runs.push_back(*run);
+    const PerWheel measured = wheel_speeds(log.wheel_speed_rad_per_s, kinematics.wheel_count, row);
+    rolling.energy_J[row] = kinetic_energy_J(body, body_velocity(kinematics, measured), measured);
+    const PerWheel speeds = wheel_speeds(smooth, kinematics.wheel_count, row);
+    velocity[row] = body_velocity(kinematics, speeds);
+    rolling.smooth_energy_J[row] = kinetic_energy_J(body, velocity[row], speeds);
+    rolling.speed[row] =
+        std::hypot(velocity[row].x_m_per_s, velocity[row].y_m_per_s, kinematics.contact_radius_m * velocity[row].yaw_rad_per_s);
+    for (int i = 0; i < kinematics.wheel_count; ++i) {
+      rolling.turning_rad_per_s[row] += std::abs(measured[i]);
+      rolling.turning_rad2_per_s2[row] += measured[i] * measured[i];
     }
   }
-  for (const Stretch& stretch : stretches(log, off, rotation.smooth)) {
-    if (std::abs(rotation.smooth[stretch.begin]) * body.kinematics.contact_radius_m <= translation.smooth[stretch.begin]) {
-      continue;
-    }
-    const Shares share = shares(body.kinematics, {0.0, 0.0, 1.0});
-    const double inertia_kg_m2 = body.yaw_inertia_kg_m2 + body.wheel_inertia_kg_m2 * share.squares;
-    if (std::optional<RollOutRun> run = fitted(log, rotation, stretch, inertia_kg_m2, share.sizes, share.squares)) {
+  for (const Stretch& stretch : stretches(log, rows_off(log, kinematics.wheel_count), rolling.speed)) {
+    const BodyVelocity& first = velocity[stretch.begin];
+    const double moving_m_per_s = std::hypot(first.x_m_per_s, first.y_m_per_s);
+    const bool turns = kinematics.contact_radius_m * std::abs(first.yaw_rad_per_s) > moving_m_per_s;
+    rolling.run = {.kind = turns ? RollOut::rotation : RollOut::translation};
+    if (std::optional<RollOutRun> run = fitted(log, rolling, stretch)) {
+      if (!turns) {
+        run->heading_rad = std::atan2(first.y_m_per_s, first.x_m_per_s);
+        run->force_N = run->wheel_torque_Nm * rolling.turning_rad_per_s[stretch.begin] / moving_m_per_s;
+      }
       result.runs.push_back(*run);
     }
   }
@@ -202,10 +250,18 @@ void add_robot(const FrictionLog& log, const BodyConfig& body, RollOutResult& re
 void add_lifted(const FrictionLog& log, const BodyConfig& body, RollOutResult& result) {
   const std::vector<bool> off = rows_off(log, body.kinematics.wheel_count);
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    const std::vector<double>& speed = log.wheel_speed_rad_per_s[static_cast<std::size_t>(i)];
-    const Coordinate wheel{{.kind = RollOut::lifted_wheel, .wheel = i}, speed, without_spikes(speed)};
-    for (const Stretch& stretch : stretches(log, off, wheel.smooth)) {
-      if (std::optional<RollOutRun> run = fitted(log, wheel, stretch, body.wheel_inertia_kg_m2, 1.0, 1.0)) {
+    const std::vector<double>& speed_rad_per_s = log.wheel_speed_rad_per_s[static_cast<std::size_t>(i)];
+    Rolling rolling(log.rows());
+    rolling.run = {.kind = RollOut::lifted_wheel, .wheel = i};
+    rolling.speed = without_spikes(speed_rad_per_s);
+    for (std::size_t row = 0; row < log.rows(); ++row) {
+      rolling.turning_rad_per_s[row] = std::abs(speed_rad_per_s[row]);
+      rolling.turning_rad2_per_s2[row] = speed_rad_per_s[row] * speed_rad_per_s[row];
+      rolling.energy_J[row] = 0.5 * body.wheel_inertia_kg_m2 * rolling.turning_rad2_per_s2[row];
+      rolling.smooth_energy_J[row] = 0.5 * body.wheel_inertia_kg_m2 * rolling.speed[row] * rolling.speed[row];
+    }
+    for (const Stretch& stretch : stretches(log, off, rolling.speed)) {
+      if (std::optional<RollOutRun> run = fitted(log, rolling, stretch)) {
         result.runs.push_back(*run);
       }
     }

@@ -10,13 +10,13 @@
 
 namespace heatsoak {
 
-// With open motors a wheel has a torque τ and a damping D against it, and what rolls out obeys
-//   J·dω/dt = −τ − D·ω,  so  ω(t) = ω_0 − (τ/J)·t − (D/J)·∫ω dt :
-// a line over time and the way covered, without a derivative. On the floor ω is the robot's own speed along its heading
-// (or its turning rate), J what moves with it, wheels and rotors included, and every wheel takes its part: with the
-// share s_i of rolling, v = ω_i·r/s_i, the sum D·Σ s_i²/r² damps the robot. Lifted, every wheel rolls out by itself.
-// A stretch counts where every driver is off (or, in a log without voltages, from the greatest speed on) and ends at
-// 15 % of its first speed, where the sign of the friction is no longer sure.
+// With open motors a wheel has a torque τ and a damping D against its turning, and the kinetic energy of what rolls out,
+// body, wheels and rotors, falls by what they take:
+//   E(t) = E_0 − τ·Σ∫|ω_i| dt − D·Σ∫ω_i² dt,
+// linear in τ and D, without a derivative, and true whichever way the robot turns aside while it rolls (a dry torque of
+// all wheels does not point against the travel). Lifted, every wheel rolls out by itself. What the rollers take counts
+// to τ. A stretch counts where every driver is off (or, in a log without voltages, from the greatest speed on) and ends
+// at 15 % of its first speed.
 
 enum class RollOut { translation, rotation, lifted_wheel };
 

@@ -15,7 +15,7 @@ constexpr Eigen::Index kLeastBlocks = 5;
 constexpr double kCusumLimit_factor = 1.95;
 constexpr double kRelevant_share = 0.005;
 constexpr double kSameLevel_share = 0.1;
-constexpr double kStanding_share = 0.03;
+constexpr double kAtRest_share = 0.03;
 constexpr double kRestless_share = 0.3;
 constexpr double kTurn_rad = 30.0 * std::numbers::pi / 180.0;
 
@@ -50,7 +50,7 @@ std::vector<Block> classified(const BlockMedians& medians, const Kinematics& kin
     block.direction_rad = std::atan2(block.velocity.y_m_per_s, block.velocity.x_m_per_s);
     if (!std::isfinite(moving_m_per_s + turning_m_per_s)) {
       block.kind = Kind::unknown;
-    } else if (std::max(moving_m_per_s, turning_m_per_s) <= kStanding_share * rim_m_per_s) {
+    } else if (std::max(moving_m_per_s, turning_m_per_s) <= kAtRest_share * rim_m_per_s) {
       block.kind = Kind::standing;
     } else {
       block.kind = turning_m_per_s > moving_m_per_s ? Kind::rotating : Kind::translating;
@@ -113,11 +113,34 @@ struct Change {
   double sum_ratio = 0.0;  ///< of the largest cumulative sum over what noise explains
 };
 
+/// Per signal, whether it belongs to a wheel that turns in this leg: one that should stand sticks and slips as it likes.
+std::vector<bool> turning_signals(const BlockMedians& medians, const std::vector<Block>& blocks, const Leg& leg,
+                                  const Kinematics& kinematics) {
+  std::vector<bool> turns(static_cast<std::size_t>(medians.values.rows()), true);
+  if (leg.kind != Kind::translating) {
+    return turns;
+  }
+  std::vector<double> x, y;
+  for (Eigen::Index k = leg.begin; k < leg.end; ++k) {
+    x.push_back(std::cos(blocks[static_cast<std::size_t>(k)].direction_rad));
+    y.push_back(std::sin(blocks[static_cast<std::size_t>(k)].direction_rad));
+  }
+  const double heading_rad = std::atan2(median(y), median(x));
+  for (std::size_t signal = 0; signal < turns.size(); ++signal) {
+    const std::size_t wheel = signal % static_cast<std::size_t>(kinematics.wheel_count);
+    turns[signal] = !should_stand(kinematics.wheels[wheel], heading_rad);
+  }
+  return turns;
+}
+
 /// The most significant change of a mean within [begin, end) that matters.
-std::optional<Change> change_within(const BlockMedians& blocks, Eigen::Index begin, Eigen::Index end) {
+std::optional<Change> change_within(const BlockMedians& blocks, const std::vector<bool>& counts, Eigen::Index begin, Eigen::Index end) {
   std::optional<Change> found;
   const Eigen::Index size = end - begin;
   for (Eigen::Index signal = 0; signal < blocks.values.rows(); ++signal) {
+    if (!counts[static_cast<std::size_t>(signal)]) {
+      continue;
+    }
     const Eigen::RowVectorXd values = blocks.values.row(signal).segment(begin, size);
     const double limit = kCusumLimit_factor * block_deviation(blocks, signal, begin, end) * std::sqrt(static_cast<double>(size));
     const double mean = values.mean();
@@ -147,7 +170,8 @@ std::optional<Change> change_within(const BlockMedians& blocks, Eigen::Index beg
 }
 
 /// The undivided stretches of a leg.
-std::vector<std::pair<Eigen::Index, Eigen::Index>> steady_stretches(const BlockMedians& blocks, const Leg& leg) {
+std::vector<std::pair<Eigen::Index, Eigen::Index>> steady_stretches(const BlockMedians& blocks, const std::vector<bool>& counts,
+                                                                    const Leg& leg) {
   std::vector<std::pair<Eigen::Index, Eigen::Index>> open{{leg.begin, leg.end}};
   std::vector<std::pair<Eigen::Index, Eigen::Index>> steady;
   while (!open.empty()) {
@@ -156,7 +180,7 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> steady_stretches(const BlockM
     if (end - begin < kLeastBlocks || !blocks.values.middleCols(begin, end - begin).allFinite()) {
       continue;
     }
-    if (const std::optional<Change> change = change_within(blocks, begin, end)) {
+    if (const std::optional<Change> change = change_within(blocks, counts, begin, end)) {
       open.emplace_back(change->at, end);
       open.emplace_back(begin, change->at);
     } else {
@@ -241,7 +265,7 @@ void add_run(const FrictionLog& log, const Kinematics& kinematics, std::size_t b
   mark_returns(legs, blocks, medians, log);
   for (const Leg& leg : legs) {
     std::vector<SteadyPart> parts;
-    for (const auto& [first, last] : steady_stretches(medians, leg)) {
+    for (const auto& [first, last] : steady_stretches(medians, turning_signals(medians, blocks, leg, kinematics), leg)) {
       SteadyPart part;
       part.leg = found.legs;
       part.is_return = leg.is_return;
@@ -265,6 +289,12 @@ void add_run(const FrictionLog& log, const Kinematics& kinematics, std::size_t b
 }
 
 }  // namespace
+
+double rolling_share(const WheelDirections& wheel, double heading_rad) {
+  return wheel.rolling_x_share * std::cos(heading_rad) + wheel.rolling_y_share * std::sin(heading_rad);
+}
+
+bool should_stand(const WheelDirections& wheel, double heading_rad) { return std::abs(rolling_share(wheel, heading_rad)) < 0.1; }
 
 SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const Kinematics& kinematics) {
   SteadyParts found;

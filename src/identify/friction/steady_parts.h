@@ -14,8 +14,8 @@ namespace heatsoak {
 // signal about its mean tells whether the mean changes (Page 1954): where the largest sum exceeds what the noise
 // explains, 1.95·σ·√n (Brownian bridge, 0.1 %), and the means on both sides differ by more than 0.5 %, the leg is parted
 // there and both sides are asked again. What is left undivided over at least five medians is steady; of several such
-// stretches at one speed the longest counts, because the others settle towards it. σ comes from
-// second differences, so that a slow change does not count as noise.
+// stretches at one speed the longest counts, because the others settle towards it. σ comes from second differences, so
+// that a slow change does not count as noise. A wheel that should stand does not part a leg.
 
 /// One steady stretch at one heading and speed (or turning on the spot).
 struct SteadyPart {
@@ -40,6 +40,11 @@ struct SteadyParts {
   int legs = 0;
   int return_legs = 0;
 };
+
+/// t_i·v/|v|: with it a wheel turns on this heading.
+double rolling_share(const WheelDirections& wheel, double heading_rad);
+/// By geometry, as the paper has it: |t_i·v| < 0.1·|v|. Such a wheel tells nothing.
+bool should_stand(const WheelDirections& wheel, double heading_rad);
 
 /// The parts of several logs in their order.
 SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const Kinematics& kinematics);

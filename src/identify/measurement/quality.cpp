@@ -133,6 +133,12 @@ Fitness drive_fitness(const Recording& recording, const DataQuality& quality) {
   if (!has("wheel_speed_rad_per_s_")) {
     fitness.lacks.emplace_back("it has no speeds of wheels (wheel_speed_rad_per_s_1, …)");
   }
+  const auto turns = [](const ChannelQuality& each) {
+    return each.quantity.key.starts_with("wheel_speed_rad_per_s_") && each.high - each.low > 10.0 * each.noise;
+  };
+  if (has("wheel_speed_rad_per_s_") && std::ranges::none_of(quality.channels, turns)) {
+    fitness.lacks.emplace_back("no wheel changes its speed beyond the noise");
+  }
   if (!has("wheel_pwm_ratio_") && !has("wheel_voltage_V_") && !has("wheel_current_A_")) {
     fitness.lacks.emplace_back("it has no effort of wheels (wheel_pwm_ratio_1, wheel_voltage_V_1 or wheel_current_A_1, …)");
   }

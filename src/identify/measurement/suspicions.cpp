@@ -55,6 +55,7 @@ class Suspector {
     currents();
     speeds();
     angles();
+    wheels();
     clock();
     limits();
     return std::move(found_);
@@ -85,8 +86,9 @@ class Suspector {
       const double from_kelvin_C = start - 273.15;
       const double from_fahrenheit_C = (start - 32.0) / 1.8;
       const bool is_room = channel.quantity.key == "ambient_C";
+      constexpr double kAlike_K = 6.0;  // a winding warms by that in the first seconds
       const auto agrees = [&](double value_C) {
-        return std::ranges::any_of(starts_C, [&](double other_C) { return other_C != start && std::abs(other_C - value_C) < 4.0; });
+        return std::ranges::any_of(starts_C, [&](double other_C) { return other_C != start && std::abs(other_C - value_C) < kAlike_K; });
       };
       constexpr double kApart_K = 15.0;
       const bool stands_apart =
@@ -288,8 +290,29 @@ class Suspector {
   void angles() {
     for (const ChannelQuality& channel : channels_) {
       const double span = channel.high - channel.low;
-      if (channel.quantity.unit == "rad" && channel.quantity.key.starts_with("yaw") && span > 100.0 && span <= 361.0) {
+      const bool is_angle = channel.quantity.key.starts_with("yaw") || channel.quantity.key.starts_with("heading");
+      if (channel.quantity.unit == "rad" && is_angle && span > 100.0 && span <= 721.0) {
         found_.push_back(fmt::format("{} spans {} rad: is it in degrees?", channel.quantity.key, significant(span, 3)));
+      }
+    }
+  }
+
+  /// By the 98 % of the sizes, so that single wild rows do not count.
+  void wheels() {
+    constexpr double kLargestBattery_V = 1000.0;
+    constexpr double kLargestCurrent_A = 300.0;
+    for (const Channel& channel : recording_.channels) {
+      const std::string& key = channel.quantity.key;
+      std::vector<double> sizes(channel.values.size());
+      std::ranges::transform(channel.values, sizes.begin(), [](double value) { return std::abs(value); });
+      const double top = percentile(sizes, 0.98);
+      if (key.starts_with("wheel_pwm_ratio") && top > 1.5) {
+        found_.push_back(fmt::format("{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage", key,
+                                     significant(top, 3)));
+      } else if ((key == "battery_V" || key.starts_with("wheel_voltage_V")) && top > kLargestBattery_V) {
+        found_.push_back(fmt::format("{} reaches {} V: is it in millivolts?", key, significant(top, 3)));
+      } else if (key.starts_with("wheel_current_A") && top > kLargestCurrent_A) {
+        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, significant(top, 3)));
       }
     }
   }

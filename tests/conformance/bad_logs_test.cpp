@@ -1,0 +1,177 @@
+// Drives and runs with one thing wrong: what is said, and the exit code.
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "../identify/synthetic_log.h"
+#include "../identify/test_drive.h"
+#include "motor/motor.h"
+#include "program_run.h"
+#include "robot/robot.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kSource = HEATSOAK_SOURCE_DIR;
+
+const std::vector<DriveRow>& driven_rows() {
+  static const std::vector<DriveRow> rows = [] {
+    TestDrive drive;
+    for (int i = 0; i < 12; ++i) {
+      drive.headings_rad.push_back(0.1 + i * std::numbers::pi / 6.0);
+    }
+    drive.speeds_m_per_s = {0.5, 1.0};
+    const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+    const Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+    return DriveOnPlant(make_plant(robot, motor.nominal, 0.001), drive, 3).rows();
+  }();
+  return rows;
+}
+
+struct BadDrive {
+  std::string name;
+  std::function<void(std::vector<DriveRow>&)> spoil;
+  int friction_exit = 0;
+  std::string friction_says;
+  int inspect_exit = 0;
+  std::string inspect_says = {};
+};
+
+void PrintTo(const BadDrive& drive, std::ostream* out) { *out << drive.name; }
+
+template <class Change>
+std::function<void(std::vector<DriveRow>&)> of_each(Change change) {
+  return [change](std::vector<DriveRow>& rows) { std::ranges::for_each(rows, change); };
+}
+
+class BadDrives : public testing::TestWithParam<BadDrive> {};
+
+TEST_P(BadDrives, are_told) {
+  const BadDrive& bad = GetParam();
+  const TemporaryFolder folder;
+  const fs::path log = folder.path() / "drive.csv";
+  std::vector<DriveRow> rows = driven_rows();
+  bad.spoil(rows);
+  write(log, csv_of(rows, 4));
+  const ProgramRun friction = run({"friction", "--robot", "roboteam_twente_v2024", log.string()});
+  EXPECT_EQ(friction.exit_code, bad.friction_exit) << friction.err;
+  EXPECT_THAT(friction.out + friction.err, testing::HasSubstr(bad.friction_says));
+  const ProgramRun inspect = run({"log", "inspect", log.string()});
+  EXPECT_EQ(inspect.exit_code, bad.inspect_exit) << inspect.err;
+  EXPECT_THAT(inspect.out + inspect.err, testing::HasSubstr(bad.inspect_says));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    One, BadDrives,
+    testing::Values(BadDrive{"percent",
+                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 0,
+                             "wheel_pwm_ratio_1 reaches", 0, "is it in percent"},
+                    BadDrive{"millivolts", of_each([](DriveRow& row) { row.battery_V *= 1000.0; }), 0, "is it in millivolts?", 0,
+                             "is it in millivolts?"},
+                    BadDrive{"degrees", of_each([](DriveRow& row) {
+                               row.command_heading_rad *= 180.0 / std::numbers::pi;
+                               row.yaw_rad *= 180.0 / std::numbers::pi;
+                             }),
+                             0, "off what the wheels' speeds amount to", 0, "heading_field_rad spans"},
+                    BadDrive{"revolutions_per_minute", of_each([](DriveRow& row) {
+                               std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
+                             }),
+                             0, "times the motor's back-EMF"},
+                    BadDrive{"other_sign",
+                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 0,
+                             "have the wrong sign?"},
+                    BadDrive{"other_order", of_each([](DriveRow& row) {
+                               std::swap(row.wheel_speed_rad_per_s[0], row.wheel_speed_rad_per_s[1]);
+                               std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);
+                             }),
+                             0, "are they in another order"},
+                    BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
+                             "time does not increase"},
+                    BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3,
+                             "in no stretch do the wheels turn steadily", 3, "it has 8 rows; at least 20 are needed"},
+                    BadDrive{"no_number", of_each([](DriveRow& row) {
+                               row.battery_V = row.command_heading_rad = row.yaw_rad = std::nan("");
+                               row.wheel_speed_rad_per_s.fill(std::nan(""));
+                               row.pwm_ratio.fill(std::nan(""));
+                             }),
+                             3, "no quantity beside the time holds a number", 3, "no quantity beside the time holds a number"},
+                    BadDrive{"standing", of_each([](DriveRow& row) {
+                               row.wheel_speed_rad_per_s.fill(0.0);
+                               row.pwm_ratio.fill(0.0);
+                             }),
+                             3, "in no stretch do the wheels turn steadily", 3, "no wheel changes its speed beyond the noise"},
+                    BadDrive{"one_heading", [](std::vector<DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing can be learned",
+                             0, "can tell about wheels: yes"}),
+    [](const auto& each) { return each.param.name; });
+
+/// A run of a motor, cell by cell: time, winding, stator, ambient, current.
+using Cells = std::vector<double>;
+struct BadRun {
+  std::string name;
+  std::function<void(std::vector<Cells>&)> spoil;
+  int exit_code = 0;
+  std::string says;
+};
+
+void PrintTo(const BadRun& each, std::ostream* out) { *out << each.name; }
+
+std::string run_text(const std::function<void(std::vector<Cells>&)>& spoil) {
+  const SyntheticLog log;
+  std::vector<Cells> rows;
+  for (const auto& [winding_C, stator_C] : log.temperatures_C()) {
+    const double time_s = static_cast<double>(rows.size()) * log.period_s;
+    rows.push_back({time_s, winding_C, stator_C, 22.0, log.current_A(time_s)});
+  }
+  spoil(rows);
+  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A\n";
+  for (const Cells& row : rows) {
+    text += fmt::format("{:.4f}\n", fmt::join(row, ","));
+  }
+  return text;
+}
+
+class BadRuns : public testing::TestWithParam<BadRun> {};
+
+TEST_P(BadRuns, are_told_by_log_inspect) {
+  const TemporaryFolder folder;
+  const fs::path log = folder.path() / "run.csv";
+  write(log, run_text(GetParam().spoil));
+  const ProgramRun result = run({"log", "inspect", log.string()});
+  EXPECT_EQ(result.exit_code, GetParam().exit_code) << result.err;
+  EXPECT_THAT(result.out + result.err, testing::HasSubstr(GetParam().says));
+}
+
+std::function<void(std::vector<Cells>&)> cells(std::function<void(Cells&)> change) {
+  return [change](std::vector<Cells>& rows) { std::ranges::for_each(rows, change); };
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    One, BadRuns,
+    testing::Values(BadRun{"sound", [](std::vector<Cells>&) {}, 0, "can tell about heat: yes"},
+                    BadRun{"fahrenheit", cells([](Cells& row) { row[1] = 32.0 + 1.8 * row[1]; }), 0, "is it in degrees Fahrenheit"},
+                    BadRun{"fahrenheit_of_a_motor_that_heats_at_once",
+                           [](std::vector<Cells>& rows) {
+                             rows.erase(rows.begin());
+                             std::ranges::for_each(rows, [](Cells& row) { row[1] = 32.0 + 1.8 * row[1]; });
+                           },
+                           0, "is it in degrees Fahrenheit"},
+                    BadRun{"milliamperes", cells([](Cells& row) { row[4] *= 1000.0; }), 0, "is it in milliamperes?"},
+                    BadRun{"swapped", cells([](Cells& row) { std::swap(row[1], row[2]); }), 0, "are the two swapped?"},
+                    BadRun{"constant", cells([](Cells& row) {
+                             row = {row[0], 22.0, 22.0, 22.0, 0.0};
+                           }),
+                           3, "winding_C is constant, 22 °C"},
+                    BadRun{"too_short", [](std::vector<Cells>& rows) { rows.resize(12); }, 3, "it has 12 rows; at least 20 are needed"},
+                    BadRun{"unexcited", cells([](Cells& row) { row[4] = 0.0; }), 3, "no heat goes in: current_A is 0 throughout"},
+                    BadRun{"no_number", cells([](Cells& row) {
+                             row = {row[0], std::nan(""), std::nan(""), std::nan(""), std::nan("")};
+                           }),
+                           3, "no quantity beside the time holds a number"},
+                    BadRun{"unsorted", [](std::vector<Cells>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase"}),
+    [](const auto& each) { return each.param.name; });
+
+}  // namespace
+}  // namespace heatsoak
