@@ -20,7 +20,7 @@ void finish(std::vector<RowInputs>& rows, Dice& dice, bool drives) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     RowInputs& row = rows[k];
     const double share = static_cast<double>(k) / static_cast<double>(rows.size());
-    row.acceleration_rad_per_s2 = k > 0 ? row.speed_rad_per_s - rows[k - 1].speed_rad_per_s : 0.0;
+    row.next_acceleration_rad_per_s2 = k + 1 < rows.size() ? rows[k + 1].speed_rad_per_s - row.speed_rad_per_s : 0.0;
     row.ambient_C = air_C + air_rise_K * share + 0.4 * std::sin(0.004 * static_cast<double>(k));
     row.bus_V = battery_V - 2.5 * share - 0.08 * std::abs(row.current_A);
     const double motor_V = kVoltage_V_s_per_rad * row.speed_rad_per_s + kResistance_ohm * row.current_A;

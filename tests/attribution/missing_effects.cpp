@@ -241,6 +241,35 @@ const std::vector<Outsider> kOutsiders{
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) { to_air(m, q, m.time_s > 700.0 && m.time_s < 1200.0 ? 0.12 * s : 0.0); });
      }},
+    {"heat with every change of speed",
+     "stator",
+     {"acceleration"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { into_iron(q, 0.03 * s * std::abs(m.in.next_acceleration_rad_per_s2)); });
+     }},
+    {"copper that hums at 200 rad/s",
+     "winding",
+     {"speed", "modulation"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         const double off = (std::abs(m.in.speed_rad_per_s) - 200.0) / 50.0;
+         into_copper(q, 1.2 * s * m.copper_loss_W * std::exp(-0.5 * off * off));
+       });
+     }},
+    {"electronics that heat below 22.5 V",
+     "stator",
+     {"bus_voltage"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 3.0 * s * smooth_step((22.5 - m.in.bus_V) / 0.3)); }); }},
+    {"air that reaches the motor above 1.2 m/s only",
+     "stator",
+     {"vehicle_speed"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.15 * s * smooth_step((m.in.vehicle_speed_m_per_s - 1.2) / 0.1)); });
+     }},
+    {"winding that lifts off the iron when it is hot",
+     "winding",
+     {"winding_temperature", "winding_excess", "winding_above_stator"},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, -0.3 * s * smooth_step((m.copper_C - 50.0) / 2.0)); }); }},
 };
 
 }  // namespace

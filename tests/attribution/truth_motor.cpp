@@ -124,10 +124,10 @@ class Machine {
 class Sensor {
  public:
   Sensor(const Surprise& surprise, double offset_K, double gain_ratio, double lag_s, double start_C)
-      : surprise_(surprise), offset_K_(offset_K), gain_ratio_(gain_ratio), lag_s_(lag_s), felt_C_(start_C) {}
+      : surprise_(surprise), offset_K_(offset_K), gain_ratio_(gain_ratio), lag_s_(lag_s), felt_C_(start_C), last_C_(start_C) {}
 
   double read(double true_C, Dice& dice) {
-    felt_C_ = lag_s_ > 0.0 ? true_C + (felt_C_ - true_C) * std::exp(-1.0 / lag_s_) : true_C;
+    feel(true_C);
     double shown_C = 25.0 + gain_ratio_ * (felt_C_ - 25.0) + offset_K_ + drift_K_ + surprise_.noise_K * dice.normal();
     if (surprise_.drift_K > 0.0) {
       const double kept = std::exp(-1.0 / surprise_.drift_time_s);
@@ -140,8 +140,19 @@ class Sensor {
   }
 
  private:
+  /// The second since the last reading in small steps of the sensor's own equation, along a straight line of temperature.
+  void feel(double true_C) {
+    constexpr int kSteps = 100;
+    for (int i = 0; i < kSteps && lag_s_ > 0.0; ++i) {
+      const double near_C = last_C_ + (true_C - last_C_) * (i + 0.5) / kSteps;
+      felt_C_ += (near_C - felt_C_) / (lag_s_ * kSteps);
+    }
+    felt_C_ = lag_s_ > 0.0 ? felt_C_ : true_C;
+    last_C_ = true_C;
+  }
+
   const Surprise& surprise_;
-  double offset_K_, gain_ratio_, lag_s_, felt_C_;
+  double offset_K_, gain_ratio_, lag_s_, felt_C_, last_C_;
   double drift_K_ = 0.0;
   int gap_rows_ = 0;
 };

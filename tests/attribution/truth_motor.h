@@ -21,7 +21,7 @@ using PerPart = std::array<double, part_count>;
 struct RowInputs {
   double current_A = 0.0;
   double speed_rad_per_s = 0.0;
-  double acceleration_rad_per_s2 = 0.0;
+  double next_acceleration_rad_per_s2 = 0.0;  ///< in the second that begins with this row
   double ambient_C = 25.0;
   double bus_V = 24.0;
   double duty_ratio = 0.0;

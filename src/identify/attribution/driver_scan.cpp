@@ -14,15 +14,16 @@ constexpr int kKnots = 7;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
-std::vector<double> knots_of(const Driver& driver) {
-  if (driver.kind == DriverKind::run) {
-    return {1.0};
-  }
+std::vector<double> knots_between(double low, double high) {
   std::vector<double> knots(kKnots);
   for (int i = 0; i < kKnots; ++i) {
-    knots[static_cast<std::size_t>(i)] = driver.low + (driver.high - driver.low) * i / (kKnots - 1.0);
+    knots[static_cast<std::size_t>(i)] = low + (high - low) * i / (kKnots - 1.0);
   }
   return knots;
+}
+
+std::vector<double> knots_of(const Driver& driver) {
+  return driver.kind == DriverKind::run ? std::vector<double>{1.0} : knots_between(driver.low, driver.high);
 }
 
 /// How the sensors answer to heats held over the intervals: `heat_W` (intervals × c) into the node with place `flux`, out of `other`.
@@ -314,10 +315,25 @@ class Scanner {
             family.usual * family.usual * fit.covariance.bottomRightCorner(size, size)};
   }
 
-  /// To the unknown heat under which the term with its curve is best; its gain is then over the base at the base's own best.
+  /// To the unknown heat under which the term with its curve is best, and to the knots that show the curve best.
   void climb(Climber& climber) {
+    const std::vector<Eigen::VectorXd> multiplier = multipliers(climber.family.term);
+    climb(climber, multiplier);
+    for (const auto& [low, high] : (*input_.drivers)[static_cast<std::size_t>(climber.family.term.driver)].inner) {
+      Climber inner = climber;
+      inner.family.knots = knots_between(low, high);
+      const std::vector<Family> own{inner.family};
+      inner.scored = gained(own, responses(own, multiplier), inner.place);
+      if (inner.scored.gain_nats > climber.scored.gain_nats) {
+        climb(inner, multiplier);
+        climber = std::move(inner);
+      }
+    }
+  }
+
+  void climb(Climber& climber, const std::vector<Eigen::VectorXd>& multiplier) {
     const std::vector<Family> own{climber.family};
-    const std::vector<Columns> shown = responses(own, multipliers(climber.family.term));
+    const std::vector<Columns> shown = responses(own, multiplier);
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t axis = 0; axis < climber.place.size(); ++axis) {
@@ -329,8 +345,7 @@ class Scanner {
           if (place[axis] < 0 || place[axis] >= count) {
             continue;
           }
-          Scored scored = score(own, shown, place).front();
-          scored.gain_nats += table_.score(base_.candidates, place).evidence_nats - base_.evidence_nats;
+          Scored scored = gained(own, shown, place);
           if (scored.gain_nats > climber.scored.gain_nats + 1e-6) {
             climber.scored = std::move(scored);
             climber.place = std::move(place);
@@ -340,6 +355,13 @@ class Scanner {
         }
       }
     }
+  }
+
+  /// Its gain over the base at the base's own best place.
+  Scored gained(const std::vector<Family>& own, const std::vector<Columns>& shown, const FluxGrid::Place& place) {
+    Scored scored = score(own, shown, place).front();
+    scored.gain_nats += table_.score(base_.candidates, place).evidence_nats - base_.evidence_nats;
+    return scored;
   }
 
   [[nodiscard]] ScanResult result(const Climber& climber) const {

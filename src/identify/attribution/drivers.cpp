@@ -68,6 +68,15 @@ class Collector {
     if (!(driver.high - driver.low > 1e-6 * size) || is_copy(driver)) {
       return;
     }
+    double width = driver.high - driver.low;
+    for (const std::size_t part : {10, 4}) {
+      const double low = known[known.size() / part];
+      const double high = known[known.size() - 1 - known.size() / part];
+      if (high - low < 0.8 * width && high - low > 0.02 * (driver.high - driver.low)) {
+        driver.inner.emplace_back(low, high);
+        width = high - low;
+      }
+    }
     kept_.push_back(std::move(driver));
   }
 
@@ -185,7 +194,7 @@ std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedR
   Collector all(model, fitted, runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
-  all.add(driver_of("time", "s", DriverKind::log_only),
+  all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only),
           [&](std::size_t r, Eigen::Index k) { return runs[r].time_s[static_cast<std::size_t>(k)] - runs[r].time_s.front(); });
   std::set<std::string> names;
   for (const FreeSignals& of_run : free) {

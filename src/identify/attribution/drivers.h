@@ -21,11 +21,15 @@ struct Driver {
   std::vector<Eigen::VectorXd> values;           ///< per run one per interval, in the driver's unit; NaN: not known there
   double low = 0.0;                              ///< 1 % of the time is below
   double high = 0.0;                             ///< 1 % of the time is above
+  std::vector<std::pair<double, double>> inner;  ///< ranges of the middle 80 % and 50 %, where a curve may need its knots
   std::map<std::string, std::string> condition;  ///< of kind run: what the runs have in common that others lack
   std::string choice;                            ///< what the effect `tabulated` calls it; empty where it cannot follow it
   std::string watched;                           ///< node that a temperature is of
   std::string reference;                         ///< node that it is above
 };
+
+/// Seconds since a run's begin.
+inline constexpr std::string_view kTimeDriver = "time";
 
 /// Quantities of a log that are no operating point, brought to the intervals of a run: by name.
 using FreeSignals = std::map<std::string, Eigen::VectorXd>;

@@ -232,9 +232,9 @@ std::vector<double> EvidenceTable::left_out_gains_nats(const SetScore& base, con
   return gain_nats;
 }
 
-Eigen::MatrixXd EvidenceTable::unabsorbed(const SetScore& base, const std::vector<int>& candidates) {
-  const Eigen::MatrixXd& triangle = at(base.place).all.triangle;
-  const Eigen::MatrixXd absorbing = triangle(Eigen::all, columns_of(base.candidates));
+Eigen::MatrixXd EvidenceTable::unabsorbed(std::span<const int> base, const FluxGrid::Place& place, const std::vector<int>& candidates) {
+  const Eigen::MatrixXd& triangle = at(place).all.triangle;
+  const Eigen::MatrixXd absorbing = triangle(Eigen::all, columns_of(base));
   std::vector<Eigen::Index> places;
   for (const int candidate : candidates) {
     places.push_back(free_count() + candidate);
@@ -243,13 +243,13 @@ Eigen::MatrixXd EvidenceTable::unabsorbed(const SetScore& base, const std::vecto
   return absorbing.cols() == 0 ? columns : columns - absorbing * absorbing.colPivHouseholderQr().solve(columns);
 }
 
-double EvidenceTable::visibility_ratio(const SetScore& base, int candidate) {
-  const double all = at(base.place).all.triangle.col(free_count() + candidate).squaredNorm();
-  return all > 0.0 ? unabsorbed(base, {candidate}).squaredNorm() / all : 0.0;
+double EvidenceTable::visibility_ratio(std::span<const int> base, const FluxGrid::Place& place, int candidate) {
+  const double all = at(place).all.triangle.col(free_count() + candidate).squaredNorm();
+  return all > 0.0 ? unabsorbed(base, place, {candidate}).squaredNorm() / all : 0.0;
 }
 
 double EvidenceTable::cosine_ratio(const SetScore& base, int a, int b) {
-  const Eigen::MatrixXd left = unabsorbed(base, {a, b});
+  const Eigen::MatrixXd left = unabsorbed(base.candidates, base.place, {a, b});
   return left.col(0).dot(left.col(1)) / (left.col(0).norm() * left.col(1).norm());
 }
 

@@ -81,8 +81,8 @@ class EvidenceTable {
 
   /// Predictive gain of `set` over `base` on each run with all that is fitted on the other runs.
   [[nodiscard]] std::vector<double> left_out_gains_nats(const SetScore& base, const SetScore& set);
-  /// Share of a candidate's whitened column that θ and the set's other members do not absorb: 1 − R².
-  [[nodiscard]] double visibility_ratio(const SetScore& base, int candidate);
+  /// Share of a candidate's whitened column that θ and the members of `base` do not absorb: 1 − R².
+  [[nodiscard]] double visibility_ratio(std::span<const int> base, const FluxGrid::Place& place, int candidate);
   /// Of the whitened columns of two candidates, after removal of what θ and `base` absorb.
   [[nodiscard]] double cosine_ratio(const SetScore& base, int a, int b);
   /// What each run alone says of a member's size while everything else is as the set has it.
@@ -111,7 +111,7 @@ class EvidenceTable {
   [[nodiscard]] LinearFit fit(std::span<const RunEvidence> runs, std::span<const int> set) const;
   [[nodiscard]] RunEvidence selected(const RunEvidence& run, std::span<const int> set) const;
   /// What is left of candidates' columns once θ and the set's members have absorbed what they can.
-  Eigen::MatrixXd unabsorbed(const SetScore& base, const std::vector<int>& candidates);
+  Eigen::MatrixXd unabsorbed(std::span<const int> base, const FluxGrid::Place& place, const std::vector<int>& candidates);
 
   std::vector<DesignRun> runs_;
   FluxGrid grid_;

@@ -8,42 +8,16 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 
 namespace heatsoak {
 namespace {
 
-double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
-  const auto nodes = static_cast<std::size_t>(model.network.node_count());
-  std::vector<double> heat_W(model.network.effects().size() * nodes);
-  double energy_J = 0.0;
-  double time_s = 0.0;
-  for (const MeasuredRun& run : runs) {
-    const std::vector<double> state_C = measured_start_C(model.network, run);
-    for (std::size_t k = 0; k < run.at.size(); ++k) {
-      const double duration_s = run.time_s[k + 1] - run.time_s[k];
-      model.network.balance_W(run.at[k], model.values, state_C, heat_W);
-      time_s += duration_s;
-      for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
-        const auto row = std::span(heat_W).subspan(e * nodes, nodes);
-        // What a flow takes out of one node it brings into another: only sources have a sum.
-        energy_J += duration_s * std::abs(std::accumulate(row.begin(), row.end(), 0.0));
-      }
-    }
-  }
-  return time_s > 0.0 ? energy_J / time_s : 0.0;
-}
-
-double longest_s(const std::vector<MeasuredRun>& runs) {
-  double longest = 0.0;
-  for (const MeasuredRun& run : runs) {
-    longest = std::max(longest, run.time_s.back() - run.time_s.front());
-  }
-  return longest;
-}
-
 /// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
 constexpr double kMuchUnknown_share = 0.05;
+
+constexpr int kMostCurvesTried = 3;
 
 class Selector {
  public:
@@ -54,6 +28,7 @@ class Selector {
     options_.grid = flux_grid(std::max(0.05, out_.mean_heat_W), longest_s(input_.runs) / 2.0);
     options_.place.assign(input_.model.model.flux_nodes.size(), 3);
     options_.place.push_back(static_cast<int>(options_.grid.time_scale_s.size()) / 2);
+    first_place_ = options_.place;
     std::vector<std::vector<double>> start_C;
     for (const MeasuredRun& run : input_.runs) {
       start_C.push_back(measured_start_C(input_.model.model.network, run));
@@ -134,7 +109,7 @@ class Selector {
       JudgedCandidate judged;
       judged.candidate = candidates[static_cast<std::size_t>(j)];
       judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
-      judged.visibility_ratio = table.visibility_ratio(base, j);
+      judged.visibility_ratio = table.visibility_ratio(base.candidates, best.place, j);
       judged.size_share = best.coefficient[table.free_count()];
       judged.place = best.place;
       judged.step = best.coefficient.head(table.free_count());
@@ -209,19 +184,28 @@ class Selector {
         }
         continue;
       }
-      RefitResult fit = try_term(each);
+      RefitResult fit = try_term(each, 0.5 * each.gain_nats);
       each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
     std::ranges::stable_sort(tried, [](const Tried& a, const Tried& b) { return a.gain_nats > b.gain_nats; });
     const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
     const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
-    if (best_scan_nats >= least && best_scan_nats > best_nats + rules_.outside_beyond_nats &&
-        best_scan_nats > catalogue_gain_nats(round, candidates, table, base) + rules_.outside_beyond_nats) {
-      if (take_curve(round)) {
+    const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
+    if (best_scan_nats >= least && best_scan_nats > best_nats + beyond_nats &&
+        best_scan_nats > catalogue_gain_nats(round, candidates, table, base) + beyond_nats) {
+      if (take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
         return true;
       }
-      out_.open_curve = round.scan.front();
+      const ScanResult& front = round.scan.front();
+      const Driver& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)];
+      if (!with_curve(out_.after.model, front, driver)) {
+        out_.open_curve = front;
+        // Heat that goes by the clock, better than by any law, is none of theirs.
+        if (driver.name == kTimeDriver) {
+          return false;
+        }
+      }
     }
     if (take_set(round, candidates, table, base, best_nats)) {
       return true;
@@ -246,9 +230,19 @@ class Selector {
     return true;
   }
 
-  /// From where the linear fit has arrived already.
-  RefitResult try_term(const JudgedCandidate& judged) const {
-    return try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
+  /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
+  /// where the promise is not kept, once more from what was known beforehand.
+  RefitResult try_term(const JudgedCandidate& judged, double promised_nats) const {
+    RefitResult fit = try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
+    if (fit.evidence_nats > out_.after.evidence_nats + promised_nats) {
+      return fit;
+    }
+    RefitOptions options = options_;
+    options.place = first_place_;
+    const double sign = judged.size_share < 0.0 ? -1.0 : 1.0;
+    RefitResult afresh = refit(with_candidate(with_values_of(out_.after.model, input_.model), judged.candidate, sign), input_.runs,
+                               out_.before.start_C, options);
+    return afresh.evidence_nats > fit.evidence_nats ? std::move(afresh) : std::move(fit);
   }
 
   RefitResult try_terms(const std::vector<Candidate>& added, const std::vector<double>& size_share, const Eigen::VectorXd& step,
@@ -396,10 +390,11 @@ class Selector {
     }
   }
 
-  /// The first curve that physics and the whole tool allow, refitted in the equations.
-  bool take_curve(const Round& round) {
+  /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.
+  bool take_curve(const Round& round, double least_nats) {
+    int tries = 0;
     for (const ScanResult& each : round.scan) {
-      if (each.gain_nats < round.scan.front().gain_nats - rules_.ambiguous_within_nats) {
+      if (each.gain_nats < least_nats || tries == kMostCurvesTried) {
         break;
       }
       const std::optional<ExtendedModel> with =
@@ -407,13 +402,14 @@ class Selector {
       if (!with) {
         continue;
       }
+      ++tries;
       RefitOptions options = options_;
       options.place = each.place;
       RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options);
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < rules_.least_gain_nats) {
+      if (term.gain_nats < least_nats) {
         continue;
       }
       term.effect_name = std::string(fit.model.model.network.effects().back().name);
@@ -468,6 +464,7 @@ class Selector {
   const SelectionInput& input_;
   const SelectionRules& rules_;
   RefitOptions options_;
+  FluxGrid::Place first_place_;
   Selection out_;
 };
 

@@ -21,7 +21,8 @@ struct SelectionInput {
 struct SelectionRules {
   double least_gain_nats = 7.0;
   double ambiguous_within_nats = 5.0;
-  double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue
+  double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue, and
+  double outside_beyond_share = 0.2;  ///< of its own evidence: laws are never exact, and much data sees the least difference of shape
   double least_visibility_ratio = 0.02;
   int refitted = 6;
   int most_terms = 4;

@@ -81,40 +81,33 @@ std::string_view form_of(Multiplier multiplier) {
 }
 
 /// The curve with what passivity asks: nowhere negative. The constant part of a conductance is the base network's own.
-/// Nothing where a source were negative beyond its uncertainty.
-std::optional<Eigen::VectorXd> passive(const ScanResult& curve) {
-  if (curve.term.multiplier == Multiplier::excess || curve.term.multiplier == Multiplier::difference) {
-    return curve.curve.array() - curve.curve.minCoeff();
-  }
-  for (Eigen::Index i = 0; i < curve.curve.size(); ++i) {
-    if (curve.curve[i] < -3.0 * std::sqrt(curve.covariance(i, i)) && -curve.curve[i] > 0.1 * curve.curve.maxCoeff()) {
-      return std::nullopt;
-    }
-  }
-  return curve.curve.cwiseMax(0.0);
+Eigen::VectorXd passive(const ScanResult& curve) {
+  const bool is_conductance = curve.term.multiplier == Multiplier::excess || curve.term.multiplier == Multiplier::difference;
+  const double shift = is_conductance ? curve.curve.minCoeff() : 0.0;
+  return (curve.curve.array() - shift).cwiseMax(0.0);
 }
 
 std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Driver& driver) {
   const EffectType& type = *find_effect("tabulated");
   const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
-  const std::optional<Eigen::VectorXd> values = passive(curve);
-  if (!choice || !form || !values) {
+  if (!choice || !form) {
     return std::nullopt;
   }
+  const Eigen::VectorXd values = passive(curve);
   const std::string ambient(Network::kAmbient);
   const std::string cold = curve.term.other.empty() ? ambient : curve.term.other;
   const std::string watched = driver.watched.empty() ? curve.term.node : driver.watched;
   const std::string reference = driver.reference.empty() ? ambient : driver.reference;
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
-  parameters.insert(parameters.end(), values->begin(), values->end());
+  parameters.insert(parameters.end(), values.begin(), values.end());
   ExtendedModel out = model;
   const EffectInPlace effect = add(out.model, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name), type,
                                    {curve.term.node, cold, watched, reference}, parameters);
-  for (Eigen::Index knot = 0; knot < values->size(); ++knot) {
+  for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
     set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
   }
-  out.model.prior.precision.bottomRightCorner(values->size(), values->size()) = curve_precision(values->size());
+  out.model.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size());
   return out;
 }
 

@@ -12,7 +12,7 @@ namespace heatsoak {
 ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share);
 
 /// The curve as an effect of the network, its values free: a table over the driver, or a conductance or source in certain runs only.
-/// Nothing where physics forbids it (a loss below zero) or no operating point has the driver.
+/// What physics forbids (a loss below zero) is cut off; nothing where no operating point has the driver, or nothing would be left.
 std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver);
 
 /// `model` with the values that parameters and sensors of the same name have in `other`.

@@ -5,13 +5,12 @@ namespace heatsoak::effects {
 namespace {
 
 enum Node { winding };
-enum Parameter { excess, knee_current };
+enum Parameter { excess, knee_current, knee_width };
 
 struct Saturation {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    constexpr double kStepsPerCurrent = 10.0;
-    const S saturated = soft_step(kStepsPerCurrent * (x.at.current_rms_A / x.parameter(knee_current) - 1.0));
+    const S saturated = soft_step((x.at.current_rms_A / x.parameter(knee_current) - 1.0) / x.parameter(knee_width));
     heat.source(winding, x.parameter(excess) * x.at.copper_loss_W * saturated);
   }
 };
@@ -22,24 +21,25 @@ EffectType saturation() {
   return {
       .name = {},
       .summary = "Above the knee of the iron an ampere makes less torque: where a torque is asked for, more current flows than K_t says.",
-      .equation = "P_winding = P_copper · k / (1 + e^(−10·(I/I_knee − 1))): a step as wide as a tenth of the knee current",
+      .equation = "P_winding = P_copper · k / (1 + e^(−(I/I_knee − 1)/w))",
       .reference = "J. R. Hendershot, T. J. E. Miller, Design of Brushless Permanent-Magnet Machines: torque constant over current",
       .nodes = {{"winding", "winding"}},
       .parameters = {{"excess", "", Range::between(0.0, 5.0), "extra copper loss per copper loss, well above the knee"},
-                     {"knee_current", "A", Range::between(0.01, 1e4), "equivalent DC current at which half of it is there"}},
+                     {"knee_current", "A", Range::between(0.01, 1e4), "equivalent DC current at which half of it is there"},
+                     {"knee_width", "", Range::between(0.01, 1.0), "share of the knee current over which it comes; an ordinary knee: 0.1"}},
       .typical = "0.1 to 0.5 above two to four times the nominal current",
       .look_alike =
           "A temperature coefficient of the resistance that is too low: both act where the current is high. Where the current was measured "
           "it is in the measurement already.",
       // at the knee half of it: 0.5 · 0.4 · 30 W = 6 W
-      .example = {.parameters = {0.4, 12.0},
+      .example = {.parameters = {0.4, 12.0, 0.1},
                   .at = {.current_rms_A = 12.0, .copper_loss_W = 30.0},
                   .temperature_C = {60.0},
                   .expected_heat_W = {6.0}},
       .laws = laws<Saturation>(),
       .needs = {Signal::current},
       .candidacy = {.size_parameter = excess,
-                    .variants = {{0.3, 6.0}, {0.3, 10.0}, {0.3, 16.0}},
+                    .variants = {{0.3, 6.0, 0.1}, {0.3, 10.0, 0.1}, {0.3, 16.0, 0.1}},
                     .family = "extra copper loss",
                     .experiment = "short stalls at rising currents with torque and current both measured"},
   };

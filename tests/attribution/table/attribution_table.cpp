@@ -55,7 +55,8 @@ void say(const std::string& label, std::uint64_t seed, const Answer& answer, boo
   std::fflush(stdout);
 }
 
-double size_of(Dice& dice) { return 0.3 * std::pow(5.0, dice.uniform(0.0, 1.0)); }
+/// Typical within a factor of 1.4.
+double size_of(Dice& dice) { return 0.7 * std::pow(2.0, dice.uniform(0.0, 1.0)); }
 
 Answer examined(Marks& marks, const Case& sealed) {
   Answer answer = examine(sealed);
