@@ -9,7 +9,6 @@
 #include "base/diagnostic.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "identify/flux_search.h"
 #include "identify/least_squares.h"
 
 namespace heatsoak {
@@ -40,14 +39,40 @@ std::size_t place_of(const std::vector<std::string>& nodes, const std::string& n
   return static_cast<std::size_t>(std::ranges::find(nodes, node) - nodes.begin());
 }
 
+/// `ratio` and `wander_K` per place in `nodes`.
 SensorNoise noise_with(const MeasuredRun& run, const std::vector<std::string>& nodes, std::span<const double> ratio,
-                       const Eigen::VectorXd& weight) {
+                       std::span<const double> wander_K, double wander_time_scale_s, const Eigen::VectorXd& weight) {
   SensorNoise noise;
   for (const Sensor& sensor : run.sensors) {
-    noise.noise_K.push_back(sensor.noise_K * ratio[place_of(nodes, sensor.node)]);
+    const std::size_t kind = place_of(nodes, sensor.node);
+    noise.noise_K.push_back(sensor.noise_K * ratio[kind]);
+    if (!wander_K.empty()) {
+      noise.wander_K.push_back(wander_K[kind]);
+    }
   }
+  noise.wander_time_scale_s = wander_time_scale_s;
   noise.weight = weight;
   return noise;
+}
+
+/// How far the temperatures of each kind of sensor move.
+std::vector<double> travel_K(const std::vector<std::string>& nodes, std::span<const MeasuredRun> runs) {
+  std::vector<double> low_C(nodes.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> high_C(nodes.size(), -std::numeric_limits<double>::infinity());
+  for (const MeasuredRun& run : runs) {
+    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+      const std::size_t kind = place_of(nodes, run.sensors[sensor].node);
+      for (const double shown_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
+        low_C[kind] = std::fmin(low_C[kind], shown_C);
+        high_C[kind] = std::fmax(high_C[kind], shown_C);
+      }
+    }
+  }
+  constexpr double kLeast_K = 1.0;
+  for (std::size_t kind = 0; kind < nodes.size(); ++kind) {
+    high_C[kind] = std::max(kLeast_K, high_C[kind] - low_C[kind]);
+  }
+  return high_C;
 }
 
 /// Mean over time of the heat that the model makes or leads away, whichever is more: what unknown heat is measured by.
@@ -95,9 +120,12 @@ class Fitting {
       longest_s = std::max(longest_s, run.time_s.back() - run.time_s.front());
       usual_step_s = std::max(usual_step_s, (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size()));
     }
-    range_.count = model.flux_nodes.size();
+    range_.fluxes = model.flux_nodes.size();
+    range_.wander_unit_K = travel_K(fit_.sensor_nodes, runs);
     range_.shortest_s = std::max(20.0, 4.0 * usual_step_s);
     range_.longest_s = std::max(4.0 * range_.shortest_s, longest_s);
+    range_.wander_shortest_s = 4.0 * usual_step_s;
+    range_.wander_longest_s = std::max(4.0 * range_.wander_shortest_s, 100.0);
     for (const FreeParameter& parameter : model.free) {
       wanted_.push_back(parameter.place);
     }
@@ -109,12 +137,12 @@ class Fitting {
     linearise_all();
     constexpr int kMostRounds = 10;
     // The level of the noise first, under a flux that is not absurd: what is taken for flux hangs on it.
-    flux_ = {std::vector<double>(range_.count, options_.with_flux ? 0.02 * range_.unit_W : 0.0), std::max(range_.shortest_s, 160.0)};
+    best_.flux = {std::vector<double>(range_.fluxes, options_.with_flux ? 0.02 * range_.unit_W : 0.0), std::max(range_.shortest_s, 160.0)};
     look_at_innovations();
     look_at_innovations();
-    flux_ = {};
+    best_ = {};
     for (fit_.iterations = 1; fit_.iterations <= kMostRounds && !fit_.has_converged; ++fit_.iterations) {
-      seek_flux();
+      seek_supposition();
       constexpr int kLooks = 2;
       for (int look = 0; look < kLooks; ++look) {
         look_at_innovations();
@@ -199,63 +227,65 @@ class Fitting {
     });
   }
 
-  [[nodiscard]] SensorNoise noise(std::size_t r) const {
-    return noise_with(runs_[r], fit_.sensor_nodes, fit_.noise_ratio, fit_.weights[r]);
+  [[nodiscard]] Whitening whitening(std::size_t r, const Supposition& supposed) const {
+    return {linearised_[r], supposed.flux,
+            noise_with(runs_[r], fit_.sensor_nodes, fit_.noise_ratio, supposed.wander_K, supposed.wander_time_scale_s, fit_.weights[r])};
   }
   [[nodiscard]] StartPrior start_prior(std::size_t r) const { return {starts_[r].prior_C - starts_[r].state_C, starts_[r].prior_sd_K}; }
 
-  /// Every flux with every run is a job of its own.
-  std::vector<LinearFit> fits(const std::vector<LatentFlux>& fluxes) const {
-    std::vector<RunEvidence> all(fluxes.size() * runs_.size());
+  /// Every supposition with every run is a job of its own.
+  std::vector<LinearFit> fits(const std::vector<Supposition>& suppositions) const {
+    std::vector<RunEvidence> all(suppositions.size() * runs_.size());
     in_parallel(all.size(), options_.threads, [&](std::size_t job) {
       const std::size_t r = job % runs_.size();
-      const Whitening whitening(linearised_[r], fluxes[job / runs_.size()], noise(r));
-      all[job] = run_evidence(linearised_[r], columns_[r], whitening, start_prior(r));
+      all[job] = run_evidence(linearised_[r], columns_[r], whitening(r, suppositions[job / runs_.size()]), start_prior(r));
     });
     std::vector<LinearFit> results;
-    for (std::size_t f = 0; f < fluxes.size(); ++f) {
+    for (std::size_t i = 0; i < suppositions.size(); ++i) {
       results.push_back(
-          linear_fit(std::span(all).subspan(f * runs_.size(), runs_.size()), model_.prior.mean - theta_, model_.prior.precision));
+          linear_fit(std::span(all).subspan(i * runs_.size(), runs_.size()), model_.prior.mean - theta_, model_.prior.precision));
     }
     return results;
   }
-  std::vector<double> evidences(const std::vector<LatentFlux>& fluxes) const {
+  std::vector<double> evidences(const std::vector<Supposition>& suppositions) const {
     std::vector<double> all;
-    for (const LinearFit& each : fits(fluxes)) {
+    for (const LinearFit& each : fits(suppositions)) {
       all.push_back(each.log_evidence);
     }
     return all;
   }
 
-  [[nodiscard]] std::vector<Whitening> whitenings() const {
-    std::vector<Whitening> all;
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
-      all.emplace_back(linearised_[r], flux_, noise(r));
+  /// Sensors are supposed to wander where the heat to explain it otherwise would be much, and the data clearly prefer it.
+  void seek_supposition() {
+    if (!options_.with_flux) {
+      best_.flux = {std::vector<double>(range_.fluxes, 0.0), range_.longest_s};
+      return;
     }
-    return all;
-  }
-
-  void seek_flux() {
-    if (options_.with_flux) {
-      flux_ = most_probable_flux([&](const auto& fluxes) { return evidences(fluxes); }, range_, flux_);
-    } else {
-      flux_ = {std::vector<double>(range_.count, 0.0), range_.longest_s};
+    const Evidence evidence = [&](const auto& suppositions) { return evidences(suppositions); };
+    best_ = most_probable(evidence, range_, best_);
+    constexpr double kMuch_share = 0.05;
+    const bool is_much = *std::ranges::max_element(best_.flux.rms_W) > kMuch_share * range_.unit_W;
+    if (best_.wander_K.empty() && is_much && options_.with_wander) {
+      const Supposition wandering = most_probable(evidence, range_, with_wander(range_, best_));
+      const std::vector<double> values = evidences({best_, wandering});
+      constexpr double kClearly_nats = 10.0;
+      best_ = values[1] > values[0] + kClearly_nats ? wandering : best_;
     }
   }
 
   /// The noise level of each kind of sensor, and which samples are outliers, from the innovations of the best linear correction.
   void look_at_innovations() {
-    const Eigen::VectorXd coefficients = fits({flux_}).front().coefficients;
+    const Eigen::VectorXd coefficients = fits({best_}).front().coefficients;
     std::vector<double> weight_sum(fit_.sensor_nodes.size(), 0.0);
     std::vector<double> square_sum(fit_.sensor_nodes.size(), 0.0);
     std::size_t rejected = 0;
     std::size_t counted = 0;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const LinearisedRun& run = linearised_[r];
-      const Whitening whitening(run, flux_, noise(r));
-      const Eigen::VectorXd start_K = start_correction_K(run, columns_[r], coefficients, whitening, start_prior(r));
+      const Whitening whitened = whitening(r, best_);
+      const Eigen::VectorXd start_K = start_correction_K(run, columns_[r], coefficients, whitened, start_prior(r));
       const Eigen::VectorXd residual_K = run.residual_K - columns_[r] * coefficients - run.by_start * start_K;
-      const Innovations found = whitening.innovations(residual_K);
+      const Innovations found = whitened.innovations(residual_K);
       std::size_t hopeless = 0;
       for (Eigen::Index row = 0; row < residual_K.size(); ++row) {
         const double size = std::abs(found.standardised[row]);
@@ -271,7 +301,7 @@ class Fitting {
           square_sum[kind] += found.noise_share[row] * size * size / kInsideSquare;
         }
       }
-      if (options_.is_robust && static_cast<double>(hopeless) < kMostRejected_share * static_cast<double>(whitening.count())) {
+      if (options_.is_robust && static_cast<double>(hopeless) < kMostRejected_share * static_cast<double>(whitened.count())) {
         for (Eigen::Index row = 0; row < residual_K.size(); ++row) {
           if (std::abs(found.standardised[row]) > kHopeless) {
             fit_.weights[r][row] = 0.0;
@@ -282,16 +312,19 @@ class Fitting {
     }
     for (std::size_t kind = 0; kind < weight_sum.size(); ++kind) {
       const double change = weight_sum[kind] > 0.0 ? std::sqrt(square_sum[kind] / weight_sum[kind]) : 1.0;
-      fit_.noise_ratio[kind] = std::clamp(fit_.noise_ratio[kind] * std::clamp(change, 0.5, 2.0), 0.2, 20.0);
+      fit_.noise_ratio[kind] = std::clamp(fit_.noise_ratio[kind] * std::clamp(change, 0.5, 3.0), 0.2, 1000.0);
     }
     fit_.rejected_share = counted > 0 ? static_cast<double>(rejected) / static_cast<double>(counted) : 0.0;
   }
 
   /// To the minimum under the present whitening: by Ceres first, with the linear steps that are known anyway once they are small.
   void move() {
-    const LinearFit linear = fits({flux_}).front();
+    const LinearFit linear = fits({best_}).front();
     const double size = linear.coefficients.cwiseQuotient(linear.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
-    const std::vector<Whitening> all = whitenings();
+    std::vector<Whitening> all;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      all.push_back(whitening(r, best_));
+    }
     constexpr double kFar = 3.0;
     constexpr double kFar_theta = 0.1;
     if (size > kFar && linear.coefficients.cwiseAbs().maxCoeff() > kFar_theta) {
@@ -312,15 +345,15 @@ class Fitting {
   }
 
   void conclude() {
-    std::vector<WeightedFlux> around{{flux_, 1.0}};
+    std::vector<WeightedSupposition> around{{best_, 1.0}};
     if (options_.with_flux) {
-      around = hypotheses_around([&](const auto& fluxes) { return evidences(fluxes); }, range_, flux_);
+      around = suppositions_around([&](const auto& suppositions) { return evidences(suppositions); }, range_, best_);
     }
-    std::vector<LatentFlux> fluxes;
-    for (const WeightedFlux& each : around) {
-      fluxes.push_back(each.flux);
+    std::vector<Supposition> suppositions;
+    for (const WeightedSupposition& each : around) {
+      suppositions.push_back(each.supposition);
     }
-    const std::vector<LinearFit> all = fits(fluxes);
+    const std::vector<LinearFit> all = fits(suppositions);
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(theta_.size());
     for (std::size_t h = 0; h < all.size(); ++h) {
       mean += around[h].weight * all[h].coefficients;
@@ -329,15 +362,18 @@ class Fitting {
     for (std::size_t h = 0; h < all.size(); ++h) {
       const Eigen::VectorXd off = all[h].coefficients - mean;
       fit_.covariance += around[h].weight * (all[h].covariance + off * off.transpose());
-      fit_.hypotheses.push_back({fluxes[h], around[h].weight, theta_ + all[h].coefficients, all[h].covariance});
+      fit_.hypotheses.push_back({suppositions[h], around[h].weight, theta_ + all[h].coefficients, all[h].covariance});
     }
     fit_.theta = theta_;
-    fit_.flux = flux_;
+    fit_.flux = best_.flux;
+    fit_.usual_heat_W = range_.unit_W;
+    fit_.wander_K = best_.wander_K;
+    fit_.wander_time_scale_s = best_.wander_time_scale_s;
     fit_.starts = starts_;
-    fit_.log_evidence = fits({flux_}).front().log_evidence;
+    fit_.log_evidence = fits({best_}).front().log_evidence;
     std::vector<RunEvidence> data;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      data.push_back(run_evidence(linearised_[r], columns_[r], Whitening(linearised_[r], flux_, noise(r)), start_prior(r)));
+      data.push_back(run_evidence(linearised_[r], columns_[r], whitening(r, best_), start_prior(r)));
     }
     fit_.data_triangle = stacked(data);
   }
@@ -349,105 +385,18 @@ class Fitting {
   Eigen::VectorXd theta_;
   std::vector<RunStart> starts_;
   std::vector<int> wanted_;
-  FluxRange range_;
-  LatentFlux flux_;
+  SuppositionRange range_;
+  Supposition best_;
   std::vector<LinearisedRun> linearised_;
   std::vector<Columns> columns_;
 };
 
 }  // namespace
 
-RunStart start_of(const Network& network, const MeasuredRun& run) {
-  const Eigen::Index states = network.state_count();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kSensed_K = 5.0;
-  /// All of two or more sensors this close to the surroundings: everything rests, what is unseen too.
-  constexpr double kRest_K = 2.0;
-  const double ambient_C = run.at.front().ambient_C;
-  RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
-  double sum_C = 0.0;
-  double farthest_K = 0.0;
-  int seen = 0;
-  for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
-    const auto shown_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
-    const auto first = std::ranges::find_if(shown_C, [](double value_C) { return !std::isnan(value_C); });
-    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != shown_C.end()) {
-      start.state_C[node] = *first;
-      sum_C += *first;
-      farthest_K = std::max(farthest_K, std::abs(*first - ambient_C));
-      ++seen;
-    }
-  }
-  const bool rests = seen > 1 && farthest_K < kRest_K;
-  if (rests) {
-    start.prior_sd_K.setConstant(1.0);
-  }
-  for (Eigen::Index node = 0; node < states; ++node) {
-    if (std::isnan(start.state_C[node])) {
-      // Unseen and perhaps just used: it may be as far from what is seen as that is from the surroundings.
-      start.state_C[node] = seen > 0 ? sum_C / seen : ambient_C;
-      start.prior_sd_K[node] = (rests ? 1.0 : kSensed_K) + std::abs(start.state_C[node] - ambient_C);
-    }
-  }
-  start.prior_C = start.state_C;
-  return start;
-}
-
 Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options) { return Fitting(model, runs, options).run(); }
 
 SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index) {
-  return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.weights[run_index]);
-}
-
-Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
-  constexpr Eigen::Index kDeciding = 5;
-  const std::vector<int> none;
-  RunStart start = start_of(network, run);
-  LinearisedRun free_run;
-  for (int pass = 0; pass < 2; ++pass) {
-    free_run = linearise(network, parameters, none, none, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
-    Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
-    Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
-    for (Eigen::Index row = 0; row < std::min(kDeciding * free_run.sensors(), free_run.residual_K.size()); ++row) {
-      if (!std::isnan(free_run.residual_K[row])) {
-        const double noise_K = run.sensors[static_cast<std::size_t>(row % free_run.sensors())].noise_K;
-        normal += free_run.by_start.row(row).transpose() * free_run.by_start.row(row) / (noise_K * noise_K);
-        right += free_run.by_start.row(row).transpose() * free_run.residual_K[row] / (noise_K * noise_K);
-      }
-    }
-    if (pass == 0) {
-      start.state_C += normal.ldlt().solve(right);
-    }
-  }
-  Eigen::MatrixXd shown_C(run.samples(), free_run.sensors());
-  for (Eigen::Index sensor = 0; sensor < free_run.sensors(); ++sensor) {
-    shown_C.col(sensor) = free_run.state_C.row(free_run.sensor_node[static_cast<std::size_t>(sensor)]).transpose();
-  }
-  return shown_C;
-}
-
-std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {
-  std::vector<SignalError> errors;
-  for (const MeasuredRun& run : runs) {
-    const Eigen::MatrixXd off_K = run.measured_C - open_loop_C(network, parameters, run);
-    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
-      auto found = std::ranges::find(errors, run.sensors[sensor].signal, &SignalError::signal);
-      if (found == errors.end()) {
-        found = errors.insert(errors.end(), {run.sensors[sensor].signal});
-      }
-      for (const double each_K : off_K.col(static_cast<Eigen::Index>(sensor))) {
-        if (!std::isnan(each_K)) {
-          found->rmse_K += each_K * each_K;
-          found->max_abs_K = std::max(found->max_abs_K, std::abs(each_K));
-          ++found->samples;
-        }
-      }
-    }
-  }
-  for (SignalError& each : errors) {
-    each.rmse_K = each.samples > 0 ? std::sqrt(each.rmse_K / static_cast<double>(each.samples)) : 0.0;
-  }
-  return errors;
+  return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.wander_K, fit.wander_time_scale_s, fit.weights[run_index]);
 }
 
 }  // namespace heatsoak

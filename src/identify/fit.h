@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "identify/evidence.h"
+#include "identify/flux_search.h"
 #include "identify/measured_run.h"
 #include "identify/model.h"
+#include "identify/open_loop.h"
 
 namespace heatsoak {
 
@@ -20,18 +22,12 @@ struct FitOptions {
   int threads = 0;            ///< 0: all cores; the result does not depend on it
   bool is_robust = true;      ///< outliers count less or not at all
   bool with_flux = true;      ///< false: the heat is all known, for comparison
+  bool with_wander = true;    ///< false: sensors have no slow errors of their own
 };
 
-/// Where a run starts; the standard deviation says how well its first samples tell.
-struct RunStart {
-  Eigen::VectorXd state_C;  ///< fitted
-  Eigen::VectorXd prior_C;  ///< first samples
-  Eigen::VectorXd prior_sd_K;
-};
-
-/// One supposition about the unknown heat, how probable it is, and what follows from it.
-struct FluxHypothesis {
-  LatentFlux flux;
+/// One supposition about what is not known, how probable it is, and what follows from it.
+struct Hypothesis {
+  Supposition supposition;
   double weight = 0.0;  ///< sum over all is 1
   Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;
@@ -39,11 +35,14 @@ struct FluxHypothesis {
 
 struct Fit {
   Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;       ///< of θ, over all hypotheses about the unknown heat
-  LatentFlux flux;                  ///< the most probable
+  Eigen::MatrixXd covariance;    ///< of θ, over all hypotheses
+  LatentFlux flux;               ///< the most probable
+  std::vector<double> wander_K;  ///< per place in sensor_nodes, the most probable; empty: no sensor wanders
+  double wander_time_scale_s = 0.0;
+  double usual_heat_W = 0.0;        ///< mean over the runs of what the model makes or leads away, whichever is more
   std::vector<double> noise_ratio;  ///< per place in sensor_nodes: noise that the fit finds over the model-free one
   std::vector<std::string> sensor_nodes;
-  std::vector<FluxHypothesis> hypotheses;
+  std::vector<Hypothesis> hypotheses;
   std::vector<RunStart> starts;          ///< per run
   std::vector<Eigen::VectorXd> weights;  ///< per run: of each sample, 1 unless it is an outlier
   double rejected_share = 0.0;           ///< of the samples
@@ -60,24 +59,5 @@ Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions&
 
 /// Noise of a run's sensors as a fit has it.
 SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index);
-
-/// The open-loop prediction: the model run from its fitted (or, for `starts` of other runs, first measured) temperatures through the
-/// measured inputs.
-struct SignalError {
-  std::string signal;
-  double rmse_K = 0.0;
-  double max_abs_K = 0.0;
-  Eigen::Index samples = 0;
-};
-
-/// Temperatures at the start that serve best without any fit: first samples, and where a node has no sensor, what its neighbour shows.
-RunStart start_of(const Network& network, const MeasuredRun& run);
-
-/// What the sensors would show (n × sensors) if the model ran free from the run's start. The start is decided by the first five samples
-/// only: a model that lacks heat must not hide it there.
-Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run);
-
-/// Errors of the free-running model over all runs, by signal.
-std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs);
 
 }  // namespace heatsoak

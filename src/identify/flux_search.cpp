@@ -9,60 +9,95 @@ namespace heatsoak {
 namespace {
 
 constexpr double kLeastShare = 1e-3;
-constexpr double kMostShare = 2.0;
+constexpr double kMostShare = kMostFlux_share;
+constexpr double kLeastWander_share = 1e-4;
+constexpr double kMostWander_share = 0.2;
 constexpr double kReference_s = 160.0;
+constexpr double kWanderReference_s = 10.0;
 /// Beyond this a coordinate is not told by the data, and a standard deviation says nothing.
 constexpr double kWidest = 1.2;
 
-/// Coordinates: the logarithm of the time scale in s, and for each flux that of its size, in units of the mean heat, over the root of the
-/// time scale in kReference_s: what a flux does within a time that is short against its own scale hangs on this ratio alone.
+/// Coordinates: for each flux the logarithm of its size, in units of the mean heat, over the root of the time scale in kReference_s, then
+/// that of the time scale in s: what a flux does within a time that is short against its own scale hangs on this ratio alone. Then the
+/// same for the wander of each kind of sensor, where they wander.
 class Space {
  public:
-  explicit Space(const FluxRange& range) : range_(range) {}
+  Space(const SuppositionRange& range, bool wanders)
+      : range_(range),
+        fluxes_(static_cast<Eigen::Index>(range.fluxes)),
+        kinds_(wanders ? static_cast<Eigen::Index>(range.wander_unit_K.size()) : 0) {}
 
-  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(range_.count) + 1; }
+  [[nodiscard]] Eigen::Index size() const { return fluxes_ + 1 + (kinds_ > 0 ? kinds_ + 1 : 0); }
   [[nodiscard]] Eigen::VectorXd inside(Eigen::VectorXd x) const {
-    double& time_scale = x[size() - 1];
-    time_scale = std::clamp(time_scale, std::log(range_.shortest_s), std::log(range_.longest_s));
-    for (Eigen::Index i = 0; i + 1 < size(); ++i) {
-      const double half = shift(time_scale);
-      x[i] = std::clamp(x[i], std::log(kLeastShare) - half, std::log(kMostShare) - half);
+    clamp(x.head(fluxes_ + 1), {kLeastShare, kMostShare}, {range_.shortest_s, range_.longest_s}, kReference_s);
+    if (kinds_ > 0) {
+      clamp(x.tail(kinds_ + 1), {kLeastWander_share, kMostWander_share}, {range_.wander_shortest_s, range_.wander_longest_s},
+            kWanderReference_s);
     }
     return x;
   }
-  [[nodiscard]] LatentFlux flux(const Eigen::VectorXd& x) const {
-    LatentFlux flux;
-    flux.time_scale_s = std::exp(x[size() - 1]);
-    for (Eigen::Index i = 0; i + 1 < size(); ++i) {
-      flux.rms_W.push_back(range_.unit_W * std::exp(x[i] + shift(x[size() - 1])));
+  [[nodiscard]] Supposition supposition(const Eigen::VectorXd& x) const {
+    Supposition all;
+    all.flux.time_scale_s = std::exp(x[fluxes_]);
+    for (Eigen::Index i = 0; i < fluxes_; ++i) {
+      all.flux.rms_W.push_back(range_.unit_W * std::exp(x[i] + shift(x[fluxes_], kReference_s)));
     }
-    return flux;
+    if (kinds_ > 0) {
+      const double time_scale = x[size() - 1];
+      all.wander_time_scale_s = std::exp(time_scale);
+      for (Eigen::Index i = 0; i < kinds_; ++i) {
+        const double unit_K = range_.wander_unit_K[static_cast<std::size_t>(i)];
+        all.wander_K.push_back(unit_K * std::exp(x[fluxes_ + 1 + i] + shift(time_scale, kWanderReference_s)));
+      }
+    }
+    return all;
   }
-  [[nodiscard]] Eigen::VectorXd point(const LatentFlux& flux) const {
+  [[nodiscard]] Eigen::VectorXd point(const Supposition& supposition) const {
     Eigen::VectorXd x(size());
-    x[size() - 1] = std::log(flux.time_scale_s);
-    for (Eigen::Index i = 0; i + 1 < size(); ++i) {
-      x[i] = std::log(std::max(flux.rms_W[static_cast<std::size_t>(i)] / range_.unit_W, kLeastShare)) - shift(x[size() - 1]);
+    x[fluxes_] = std::log(supposition.flux.time_scale_s);
+    for (Eigen::Index i = 0; i < fluxes_; ++i) {
+      const double share = supposition.flux.rms_W[static_cast<std::size_t>(i)] / range_.unit_W;
+      x[i] = std::log(std::max(share, kLeastShare)) - shift(x[fluxes_], kReference_s);
+    }
+    if (kinds_ > 0) {
+      const double time_scale = x[size() - 1] = std::log(supposition.wander_time_scale_s);
+      for (Eigen::Index i = 0; i < kinds_; ++i) {
+        const auto kind = static_cast<std::size_t>(i);
+        const double share = supposition.wander_K[kind] / range_.wander_unit_K[kind];
+        x[fluxes_ + 1 + i] = std::log(std::max(share, kLeastWander_share)) - shift(time_scale, kWanderReference_s);
+      }
     }
     return inside(x);
   }
 
  private:
-  static double shift(double log_time_scale) { return 0.5 * (log_time_scale - std::log(kReference_s)); }
+  static double shift(double log_time_scale, double reference_s) { return 0.5 * (log_time_scale - std::log(reference_s)); }
+  /// Sizes first, the time scale last.
+  static void clamp(Eigen::Ref<Eigen::VectorXd> x, std::pair<double, double> share, std::pair<double, double> time_scale_s,
+                    double reference_s) {
+    double& time_scale = x[x.size() - 1];
+    time_scale = std::clamp(time_scale, std::log(time_scale_s.first), std::log(time_scale_s.second));
+    const double half = shift(time_scale, reference_s);
+    for (Eigen::Index i = 0; i + 1 < x.size(); ++i) {
+      x[i] = std::clamp(x[i], std::log(share.first) - half, std::log(share.second) - half);
+    }
+  }
 
-  const FluxRange& range_;
+  const SuppositionRange& range_;
+  Eigen::Index fluxes_;
+  Eigen::Index kinds_;
 };
 
-std::vector<double> at(const FluxEvidence& evidence, const Space& space, const std::vector<Eigen::VectorXd>& points) {
-  std::vector<LatentFlux> fluxes;
+std::vector<double> at(const Evidence& evidence, const Space& space, const std::vector<Eigen::VectorXd>& points) {
+  std::vector<Supposition> all;
   for (const Eigen::VectorXd& x : points) {
-    fluxes.push_back(space.flux(x));
+    all.push_back(space.supposition(x));
   }
-  return evidence(fluxes);
+  return evidence(all);
 }
 
 /// Steps of ±width along one coordinate at a time, all tried at once, the best one taken; together with it the best of the others.
-double ascend(const FluxEvidence& evidence, const Space& space, double width, double value, Eigen::VectorXd& x) {
+double ascend(const Evidence& evidence, const Space& space, double width, double value, Eigen::VectorXd& x) {
   constexpr int kMostMoves = 20;
   for (int move = 0; move < kMostMoves; ++move) {
     std::vector<Eigen::VectorXd> tried;
@@ -104,7 +139,7 @@ struct Curvature {
 };
 
 /// By differences of `width`.
-Curvature curvature(const FluxEvidence& evidence, const Space& space, double width, double value, const Eigen::VectorXd& x) {
+Curvature curvature(const Evidence& evidence, const Space& space, double width, double value, const Eigen::VectorXd& x) {
   const Eigen::Index n = space.size();
   std::vector<Eigen::VectorXd> points;
   const auto add = [&](Eigen::Index i, double by_i, Eigen::Index j, double by_j) {
@@ -141,11 +176,32 @@ Curvature curvature(const FluxEvidence& evidence, const Space& space, double wid
   return all;
 }
 
+/// Of a cube; of cubes beyond four dimensions the fraction in which no pair of coordinates is another coordinate's copy (resolution IV
+/// and more: the fifth is the product of the first four or three, the sixth of the second to fourth).
+std::vector<Eigen::VectorXd> corners(Eigen::Index n) {
+  std::vector<Eigen::VectorXd> all;
+  const Eigen::Index full = std::min<Eigen::Index>(n, 4);
+  for (unsigned corner = 0; corner < (1U << full); ++corner) {
+    Eigen::VectorXd z(n);
+    for (Eigen::Index i = 0; i < full; ++i) {
+      z[i] = (corner >> i) & 1U ? 1.0 : -1.0;
+    }
+    if (n == 5) {
+      z[4] = z.head(4).prod();
+    } else if (n > 5) {
+      z[4] = z.head(3).prod();
+      z[5] = z.segment(1, 3).prod();
+    }
+    all.push_back(z);
+  }
+  return all;
+}
+
 }  // namespace
 
-LatentFlux most_probable_flux(const FluxEvidence& evidence, const FluxRange& range, const LatentFlux& start) {
-  const Space space(range);
-  const bool is_warm = !start.rms_W.empty();
+Supposition most_probable(const Evidence& evidence, const SuppositionRange& range, const Supposition& start) {
+  const Space space(range, !start.wander_K.empty());
+  const bool is_warm = !start.flux.rms_W.empty();
   Eigen::VectorXd x(space.size());
   if (is_warm) {
     x = space.point(start);
@@ -166,11 +222,27 @@ LatentFlux most_probable_flux(const FluxEvidence& evidence, const FluxRange& ran
   Eigen::VectorXd step = solver.eigenvectors() * (solver.eigenvectors().transpose() * here.slope).cwiseQuotient(strength);
   step = step.cwiseMax(-0.5).cwiseMin(0.5);
   const Eigen::VectorXd next = space.inside(x + step);
-  return space.flux(at(evidence, space, {next}).front() > value ? next : x);
+  return space.supposition(at(evidence, space, {next}).front() > value ? next : x);
 }
 
-std::vector<WeightedFlux> hypotheses_around(const FluxEvidence& evidence, const FluxRange& range, const LatentFlux& best) {
-  const Space space(range);
+Supposition with_wander(const SuppositionRange& range, const Supposition& start) {
+  Supposition all = start;
+  constexpr double kUsualWander_share = 0.01;
+  constexpr double kUsualFlux_share = 0.02;
+  for (double& rms_W : all.flux.rms_W) {
+    rms_W = std::min(rms_W, kUsualFlux_share * range.unit_W);
+  }
+  all.flux.time_scale_s = std::clamp(kReference_s, range.shortest_s, range.longest_s);
+  all.wander_K = range.wander_unit_K;
+  for (double& wander_K : all.wander_K) {
+    wander_K *= kUsualWander_share;
+  }
+  all.wander_time_scale_s = kWanderReference_s;
+  return all;
+}
+
+std::vector<WeightedSupposition> suppositions_around(const Evidence& evidence, const SuppositionRange& range, const Supposition& best) {
+  const Space space(range, !best.wander_K.empty());
   const Eigen::Index n = space.size();
   const Eigen::VectorXd centre = space.point(best);
   const double value = at(evidence, space, {centre}).front();
@@ -187,26 +259,22 @@ std::vector<WeightedFlux> hypotheses_around(const FluxEvidence& evidence, const 
       points.push_back(space.inside(centre + sign * radius * axes.col(i)));
     }
   }
-  for (unsigned corner = 0; corner < (1U << n); ++corner) {
-    Eigen::VectorXd z(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      z[i] = (corner >> i) & 1U ? kReach : -kReach;
-    }
-    points.push_back(space.inside(centre + axes * z));
+  for (const Eigen::VectorXd& z : corners(n)) {
+    points.push_back(space.inside(centre + kReach * axes * z));
   }
   const std::vector<double> values = at(evidence, space, points);
   const double most = *std::ranges::max_element(values);
   const auto outer = static_cast<double>(points.size() - 1);
   // So that a Gaussian keeps its mass and its variances; the centre weighs 1.
   const double outer_weight = std::exp(0.5 * radius * radius) / (outer * (kReach * kReach - 1.0));
-  std::vector<WeightedFlux> all;
+  std::vector<WeightedSupposition> all;
   double sum = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double area = i == 0 ? 1.0 : outer_weight;
-    all.push_back({space.flux(points[i]), area * std::exp(values[i] - most)});
+    all.push_back({space.supposition(points[i]), area * std::exp(values[i] - most)});
     sum += all.back().weight;
   }
-  for (WeightedFlux& each : all) {
+  for (WeightedSupposition& each : all) {
     each.weight /= sum;
   }
   return all;

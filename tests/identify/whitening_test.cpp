@@ -77,6 +77,20 @@ Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flu
     }
     covariance += response * memory * response.transpose();
   }
+  for (std::size_t sensor = 0; sensor < noise.wander_K.size(); ++sensor) {
+    std::vector<double> at_s{0.0};
+    for (const double duration_s : run.duration_s) {
+      at_s.push_back(at_s.back() + duration_s);
+    }
+    for (Eigen::Index i = 0; i < samples; ++i) {
+      for (Eigen::Index j = 0; j < samples; ++j) {
+        const double apart_s = std::abs(at_s[static_cast<std::size_t>(i)] - at_s[static_cast<std::size_t>(j)]);
+        const auto offset = static_cast<Eigen::Index>(sensor);
+        covariance(i * run.sensors() + offset, j * run.sensors() + offset) +=
+            std::pow(noise.wander_K[sensor], 2) * std::exp(-apart_s / noise.wander_time_scale_s);
+      }
+    }
+  }
   for (Eigen::Index row = 0; row < rows; ++row) {
     covariance(row, row) += std::pow(noise.noise_K[static_cast<std::size_t>(row % run.sensors())], 2);
   }
@@ -102,9 +116,14 @@ Dense dense(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise&
 }
 
 TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_the_covariance_written_out) {
-  for (const LatentFlux& flux : {LatentFlux{{0.3, 0.7}, 90.0}, LatentFlux{{0.0, 0.0}, 90.0}, LatentFlux{{2.0, 0.0}, 20.0}}) {
+  struct Unknown {
+    LatentFlux flux;
+    std::vector<double> wander_K;
+  };
+  for (const auto& [flux, wander_K] : {Unknown{{{0.3, 0.7}, 90.0}, {}}, Unknown{{{0.0, 0.0}, 90.0}, {}}, Unknown{{{2.0, 0.0}, 20.0}, {}},
+                                       Unknown{{{0.3, 0.7}, 90.0}, {0.5, 0.2}}, Unknown{{{0.0, 0.4}, 90.0}, {0.0, 0.3}}}) {
     const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(3, 100));
-    const SensorNoise noise{{0.15, 0.1}, {}};
+    const SensorNoise noise{{0.15, 0.1}, {}, wander_K, 7.0};
     const Dense reference = dense(run, flux, noise);
     const Eigen::LDLT<Eigen::MatrixXd> decomposed(reference.covariance);
     const Eigen::MatrixXd expected = reference.columns.transpose() * decomposed.solve(Eigen::MatrixXd(reference.columns));
@@ -123,23 +142,24 @@ TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_
   }
 }
 
-TEST(Whitening, smoothed_flux_is_the_conditional_mean) {
+class SmoothedFlux : public testing::TestWithParam<std::vector<double>> {};
+
+TEST_P(SmoothedFlux, is_the_conditional_mean) {
   const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 60));
   const LatentFlux flux{{0.3, 0.7}, 90.0};
-  const SensorNoise noise{{0.15, 0.1}, {}};
+  const SensorNoise noise{{0.15, 0.1}, {}, GetParam(), 7.0};
   const Dense reference = dense(run, flux, noise);
-  // The response to the conditional mean of the flux is what V does not call noise: (V − σ²)·V⁻¹·y.
+  // The response to the conditional mean of the flux is what V does not call an error of the sensors: V_flux·V⁻¹·y.
   const Eigen::VectorXd residual = reference.columns.rightCols(1);
   const Eigen::VectorXd weighted = reference.covariance.ldlt().solve(residual);
-  const Eigen::VectorXd explained = reference.covariance * weighted;
+  const Eigen::VectorXd explained = dense(run, flux, {{0.0, 0.0}, {}}).covariance * weighted;
   const Eigen::MatrixXd flux_W = Whitening(run, flux, noise).smoothed_flux_W(run.residual_K);
   Eigen::VectorXd state = Eigen::VectorXd::Zero(2);
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < run.samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < 2; ++sensor) {
       if (!std::isnan(run.residual_K[k * 2 + sensor])) {
-        const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
-        EXPECT_NEAR(state[sensor], explained[kept] - noise_K * noise_K * weighted[kept], 1e-8) << k;
+        EXPECT_NEAR(state[sensor], explained[kept], 1e-8) << k;
         ++kept;
       }
     }
@@ -154,6 +174,9 @@ TEST(Whitening, smoothed_flux_is_the_conditional_mean) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Whitening, SmoothedFlux, testing::Values(std::vector<double>{}, std::vector<double>{0.4, 0.2}),
+                         [](const auto& instance) { return instance.param.empty() ? "steady_sensors" : "wandering_sensors"; });
 
 TEST(Whitening, a_common_factor_of_heat_capacities_conductances_and_sources_changes_no_temperature) {
   const MeasuredRun run = random_run(7, 200);

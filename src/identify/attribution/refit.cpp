@@ -7,7 +7,7 @@
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
-#include "identify/fit.h"
+#include "identify/open_loop.h"
 
 namespace heatsoak {
 namespace {

@@ -79,18 +79,47 @@ class Calibrating {
     all_.runs = runs_of(recordings_, how, all_.notes);
     all_.holdout = runs_of(holdout_, how, all_.notes);
     all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
+    warn();
     all_.open = open_directions(all_.motor_model, all_.fit, all_.runs);
     figures();
     all_.fit_error = errors(all_.motor_model, all_.fit, all_.runs);
     all_.holdout_error = errors(all_.motor_model, all_.fit, all_.holdout);
     if (!all_.open.empty()) {
-      all_.next_experiment = all_.open.back().experiment;
+      all_.next_experiment = std::ranges::min_element(all_.open, {}, &OpenDirection::experiment_min)->experiment;
     }
     refuse_where_nothing_was_learned();
     return std::move(all_);
   }
 
  private:
+  /// What the fit says about itself.
+  void warn() {
+    const Fit& fit = all_.fit;
+    const double most_W = *std::ranges::max_element(fit.flux.rms_W);
+    constexpr double kAlmost = 0.95;
+    constexpr double kMuch_share = 0.1;
+    if (most_W > kAlmost * kMostFlux_share * fit.usual_heat_W) {
+      all_.notes.push_back(fmt::format(
+          "the model lacks something large: it would take more unknown heat than {} % of the {} W that pass through on average; "
+          "`heatsoak diagnose` looks for what it is",
+          significant(100.0 * kMostFlux_share, 2), significant(fit.usual_heat_W, 2)));
+    } else if (most_W > kMuch_share * fit.usual_heat_W) {
+      all_.notes.push_back(
+          fmt::format("the model lacks something: unknown heat is {} % of the {} W that pass through on average; `heatsoak diagnose` "
+                      "looks for what it is",
+                      significant(100.0 * most_W / fit.usual_heat_W, 2), significant(fit.usual_heat_W, 2)));
+    }
+    for (std::size_t kind = 0; kind < fit.wander_K.size(); ++kind) {
+      all_.notes.push_back(
+          fmt::format("the sensor at the {} seems to wander by {} K (standard deviation) over some {} s: errors of its own, or "
+                      "of a model with two temperatures",
+                      fit.sensor_nodes[kind], significant(fit.wander_K[kind], 2), significant(fit.wander_time_scale_s, 1)));
+    }
+    if (!fit.has_converged) {
+      all_.notes.emplace_back("the fit still moved a little when it was stopped: figures are good to some tenths of their intervals");
+    }
+  }
+
   void figures() {
     const MotorModel& motor = all_.motor_model;
     const Model& model = motor.model;

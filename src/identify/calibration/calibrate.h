@@ -33,9 +33,10 @@ struct CalibratedFigure {
 
 /// A combination of parameters that the data leave open.
 struct OpenDirection {
-  std::string what;        ///< in words, with the parameters
-  std::string why;         ///< in words
-  std::string experiment;  ///< the cheapest that would settle it
+  std::string what;             ///< in words, with the parameters
+  std::string why;              ///< in words
+  std::string experiment;       ///< the cheapest that would settle it
+  double experiment_min = 0.0;  ///< rough time of work that it takes, minutes
 };
 
 struct ErrorBeforeAfter {

@@ -91,17 +91,19 @@ std::string movement(const Model& model, const Eigen::VectorXd& direction) {
 
 OpenDirection in_words(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
   const Roles roles = roles_of(motor.model);
-  OpenDirection open{.what = movement(motor.model, direction), .why = {}, .experiment = {}};
+  OpenDirection open{.what = movement(motor.model, direction), .why = {}, .experiment = {}, .experiment_min = 0.0};
   constexpr double kAlike = 0.9;
   if (likeness_to_scale(direction, roles) > kAlike) {
     if (!seen.has_heat) {
       open.why = "no heat goes in during these runs: cooling tells time constants, never watts";
       open.experiment = "one run with a constant current at standstill, 10 minutes, current and terminal voltage measured";
+      open.experiment_min = 20.0;
     } else {
       open.why =
           "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale rests on the stated "
           "terminal resistance";
       open.experiment = "measure the terminal resistance at a known temperature with four wires (minutes, no run needed)";
+      open.experiment_min = 5.0;
     }
     return open;
   }
@@ -110,20 +112,24 @@ OpenDirection in_words(const MotorModel& motor, const Eigen::VectorXd& direction
     open.why = "only the stator is sensed: a larger winding behind a smaller resistance to the stator looks the same from there";
     open.experiment =
         "a thermocouple at the winding, or the winding's resistance from voltage and current right after switching off, during one warm-up";
+    open.experiment_min = 45.0;
     return open;
   }
   if (!seen.stator_is_sensed && std::hypot(component(direction, roles.stator_capacity), component(direction, roles.stator_ambient)) > 0.7) {
     open.why = "only the winding is sensed and the runs are short against the stator's time constant, or never cool down";
     open.experiment = "a thermocouple on the housing, or one long warm-up with its cool-down to ambient";
+    open.experiment_min = 60.0;
     return open;
   }
   if (std::abs(component(direction, roles.drag)) > 0.7) {
     open.why = seen.is_ever_at_speed ? "the loss at speed hardly shows beside the copper loss" : "the motor hardly turns in these runs";
     open.experiment = "10 minutes at no load and full speed";
+    open.experiment_min = 15.0;
     return open;
   }
   open.why = "the runs do not excite it: what they measure hardly changes when these parameters move together";
   open.experiment = "one run from cold with a constant current until the temperatures level out, then the cool-down";
+  open.experiment_min = 90.0;
   return open;
 }
 

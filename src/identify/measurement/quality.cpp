@@ -115,7 +115,12 @@ Fitness thermal_fitness(const Recording& recording, const DataQuality& quality) 
                                 : fmt::format("no temperature moves beyond its noise: {} from {} to {}, noise {} K", one.quantity.key,
                                               shown(one.low, one.quantity), shown(one.high, one.quantity), significant(one.noise, 2)));
   }
-  if (!inputs.empty() && heat_input_of(recording) == nullptr &&
+  // Without heat a motor that cools down still tells its time constants.
+  const bool cools_down = std::ranges::any_of(temperatures, [](const ChannelQuality* channel) {
+    constexpr double kPlainly = 20.0;
+    return channel->high - channel->low > kPlainly * channel->noise;
+  });
+  if (!inputs.empty() && !cools_down && heat_input_of(recording) == nullptr &&
       std::ranges::all_of(inputs, [](const ChannelQuality* channel) { return channel->high == 0.0 && channel->low == 0.0; })) {
     fitness.lacks.push_back(fmt::format("no heat goes in: {} is 0 throughout", inputs.front()->quantity.key));
   }

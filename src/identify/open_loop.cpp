@@ -1,0 +1,101 @@
+#include "identify/open_loop.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/linearised_run.h"
+
+namespace heatsoak {
+
+RunStart start_of(const Network& network, const MeasuredRun& run) {
+  const Eigen::Index states = network.state_count();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kSensed_K = 5.0;
+  /// All of two or more sensors this close to the surroundings: everything rests, what is unseen too.
+  constexpr double kRest_K = 2.0;
+  const double ambient_C = run.at.front().ambient_C;
+  RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
+  double sum_C = 0.0;
+  double farthest_K = 0.0;
+  int seen = 0;
+  for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+    const auto shown_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
+    const auto first = std::ranges::find_if(shown_C, [](double value_C) { return !std::isnan(value_C); });
+    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != shown_C.end()) {
+      start.state_C[node] = *first;
+      sum_C += *first;
+      farthest_K = std::max(farthest_K, std::abs(*first - ambient_C));
+      ++seen;
+    }
+  }
+  const bool rests = seen > 1 && farthest_K < kRest_K;
+  if (rests) {
+    start.prior_sd_K.setConstant(1.0);
+  }
+  for (Eigen::Index node = 0; node < states; ++node) {
+    if (std::isnan(start.state_C[node])) {
+      // Unseen and perhaps just used: it may be as far from what is seen as that is from the surroundings.
+      start.state_C[node] = seen > 0 ? sum_C / seen : ambient_C;
+      start.prior_sd_K[node] = (rests ? 1.0 : kSensed_K) + std::abs(start.state_C[node] - ambient_C);
+    }
+  }
+  start.prior_C = start.state_C;
+  return start;
+}
+
+Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
+  constexpr Eigen::Index kDeciding = 5;
+  // No model follows the first seconds better than this, and a node that is not sensed must not pay for it.
+  constexpr double kLeastNoise_K = 0.3;
+  const std::vector<int> none;
+  RunStart start = start_of(network, run);
+  LinearisedRun free_run;
+  for (int pass = 0; pass < 2; ++pass) {
+    free_run = linearise(network, parameters, none, none, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
+    Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
+    Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
+    for (Eigen::Index row = 0; row < std::min(kDeciding * free_run.sensors(), free_run.residual_K.size()); ++row) {
+      if (!std::isnan(free_run.residual_K[row])) {
+        const double noise_K = std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(row % free_run.sensors())].noise_K);
+        normal += free_run.by_start.row(row).transpose() * free_run.by_start.row(row) / (noise_K * noise_K);
+        right += free_run.by_start.row(row).transpose() * free_run.residual_K[row] / (noise_K * noise_K);
+      }
+    }
+    if (pass == 0) {
+      start.state_C += normal.ldlt().solve(right);
+    }
+  }
+  Eigen::MatrixXd shown_C(run.samples(), free_run.sensors());
+  for (Eigen::Index sensor = 0; sensor < free_run.sensors(); ++sensor) {
+    shown_C.col(sensor) = free_run.state_C.row(free_run.sensor_node[static_cast<std::size_t>(sensor)]).transpose();
+  }
+  return shown_C;
+}
+
+std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {
+  std::vector<SignalError> errors;
+  for (const MeasuredRun& run : runs) {
+    const Eigen::MatrixXd off_K = run.measured_C - open_loop_C(network, parameters, run);
+    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+      auto found = std::ranges::find(errors, run.sensors[sensor].signal, &SignalError::signal);
+      if (found == errors.end()) {
+        found = errors.insert(errors.end(), {run.sensors[sensor].signal});
+      }
+      for (const double each_K : off_K.col(static_cast<Eigen::Index>(sensor))) {
+        if (!std::isnan(each_K)) {
+          found->rmse_K += each_K * each_K;
+          found->max_abs_K = std::max(found->max_abs_K, std::abs(each_K));
+          ++found->samples;
+        }
+      }
+    }
+  }
+  for (SignalError& each : errors) {
+    each.rmse_K = each.samples > 0 ? std::sqrt(each.rmse_K / static_cast<double>(each.samples)) : 0.0;
+  }
+  return errors;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,37 @@
+// A model that runs free through measured inputs, and how far off it is.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identify/measured_run.h"
+
+namespace heatsoak {
+
+/// Where a run starts; the standard deviation says how well its first samples tell.
+struct RunStart {
+  Eigen::VectorXd state_C;  ///< fitted
+  Eigen::VectorXd prior_C;  ///< first samples
+  Eigen::VectorXd prior_sd_K;
+};
+
+/// Temperatures at the start that serve best without any fit: first samples, and where a node has no sensor, what its neighbour shows.
+RunStart start_of(const Network& network, const MeasuredRun& run);
+
+/// What the sensors would show (n × sensors) if the model ran free from the run's start. The start is decided by the first five samples
+/// only: a model that lacks heat must not hide it there.
+Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run);
+
+struct SignalError {
+  std::string signal;
+  double rmse_K = 0.0;
+  double max_abs_K = 0.0;
+  Eigen::Index samples = 0;
+};
+
+/// Errors of the free-running model over all runs, by signal.
+std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs);
+
+}  // namespace heatsoak

@@ -1,0 +1,86 @@
+// How the calibration does on motors of which everything is known: tables.
+//   heatsoak_calibration_table [CASES [both|stator|resistance [FIRST_SEED]]]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/beta.hpp>
+#include <map>
+#include <string>
+
+#include "base/parallel.h"
+#include "study.h"
+
+namespace {
+
+using namespace heatsoak;
+using namespace heatsoak::study;
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// 95 % interval of a share (Clopper and Pearson 1934).
+std::pair<double, double> bounds_of(int hits, int count) {
+  const auto quantile = [](double a, double b, double p) { return boost::math::quantile(boost::math::beta_distribution<>(a, b), p); };
+  return {hits == 0 ? 0.0 : quantile(hits, count - hits + 1.0, 0.025), hits == count ? 1.0 : quantile(hits + 1.0, count - hits, 0.975)};
+}
+
+void tabulate(const std::string& title, const Sheet& sheet, const Case& like, int cases, std::uint64_t first_seed) {
+  std::vector<CaseResult> results(static_cast<std::size_t>(cases));
+  in_parallel(results.size(), 0, [&](std::size_t i) {
+    Case one = like;
+    one.seed = first_seed + i;
+    results[i] = calibrate_case(sheet, one);
+  });
+  fmt::print("\n{}: {} cases of {} runs\n{:36} {:>8} {:>13} {:>10} {:>10} {:>9} {:>9}\n", title, cases, like.runs, "figure", "covered",
+             "95 % of that", "median err", "90 % err", "rms z", "half width");
+  std::vector<double> seconds_s;
+  for (std::size_t f = 0; f < results.front().marks.size(); ++f) {
+    std::vector<double> errors, widths;
+    int covered = 0;
+    double squares = 0.0;
+    for (const CaseResult& each : results) {
+      const Mark& mark = each.marks[f];
+      covered += mark.is_covered() ? 1 : 0;
+      errors.push_back(std::abs(mark.error_ratio()));
+      const double half = 0.5 * std::log(mark.figure.high / mark.figure.low);
+      widths.push_back(half);
+      squares += std::pow(std::log(mark.figure.value / mark.truth) / (half / 1.96), 2);
+    }
+    const auto [low, high] = bounds_of(covered, cases);
+    std::ranges::sort(errors);
+    fmt::print("{:36} {:7.1f}% {:5.1f} …{:5.1f}% {:9.2f}% {:9.2f}% {:9.2f} {:9.2f}%\n", results.front().marks[f].name,
+               100.0 * covered / cases, 100.0 * low, 100.0 * high, 100.0 * median(errors),
+               100.0 * errors[static_cast<std::size_t>(0.9 * cases)], std::sqrt(squares / cases), 100.0 * median(widths));
+  }
+  std::vector<double> flux_W, time_s;
+  for (const CaseResult& each : results) {
+    seconds_s.push_back(each.seconds_s);
+    flux_W.push_back(each.calibration.fit.flux.rms_W.front());
+    time_s.push_back(each.calibration.fit.flux.time_scale_s);
+  }
+  fmt::print("median time of a calibration {:.2f} s; unknown heat found: median {:.3f} W over {:.0f} s\n", median(seconds_s),
+             median(flux_W), median(time_s));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int cases = argc > 1 ? std::stoi(argv[1]) : 300;
+  const std::string which = argc > 2 ? argv[2] : "";
+  const std::uint64_t first_seed = argc > 3 ? std::stoull(argv[3]) : 1;
+  if (which.empty() || which == "both") {
+    tabulate("winding and stator sensed", {}, {}, cases, first_seed);
+  }
+  if (which.empty() || which == "stator") {
+    Case like;
+    like.making.winding_is_sensed = false;
+    tabulate("only the stator sensed", {}, like, cases, first_seed);
+  }
+  if (which.empty() || which == "resistance") {
+    tabulate("resistance to 5 %", {.truth = {}, .resistance_spread = ", tolerance = \"5 %\""}, {}, cases, first_seed);
+  }
+  return 0;
+}
