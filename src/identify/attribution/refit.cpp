@@ -85,7 +85,8 @@ class Fitter {
       if (now_.converged && step > 0) {
         break;
       }
-      if (!take(fit, misfit, table)) {
+      // What no step improves at first may move once the unknown heat is what the misfit asks for.
+      if (!take(fit, misfit, table) && step > 0) {
         break;
       }
     }

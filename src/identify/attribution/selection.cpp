@@ -55,6 +55,9 @@ class Selector {
     options_.place = fit.place;
     options_.errors = with_wander(fit, input_.runs, options_.grid, kMuchUnknown_share * out_.mean_heat_W, options_.errors);
     options_.errors.weights = outlier_weights(fit, input_.runs, options_.grid, options_.errors);
+    if (!options_.errors.wander_K.empty()) {
+      options_.place = first_place_;
+    }
   }
 
   [[nodiscard]] std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) const {
@@ -308,7 +311,7 @@ class Selector {
       term.candidate = candidates[static_cast<std::size_t>(chosen[i])];
       term.effect_name = term.candidate->type ? (name++)->name : std::string();
       term.gain_nats = (best->evidence_nats - out_.after.evidence_nats) / static_cast<double>(chosen.size());
-      term.visibility_ratio = table.visibility_ratio(base, chosen[i]);
+      term.visibility_ratio = table.visibility_ratio(base.candidates, base.place, chosen[i]);
       tell_rivals(round, candidates, table, base, chosen, i, term);
       out_.terms.push_back(std::move(term));
     }
@@ -363,7 +366,10 @@ class Selector {
     for (const JudgedCandidate& each : round.ladder) {
       const auto found = std::ranges::find_if(
           candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
-      if (each.visibility_ratio >= rules_.least_visibility_ratio) {
+      // Shapes are free in a refit: one variant stands for all.
+      const bool is_variant =
+          std::ranges::any_of(pool, [&](int j) { return candidates[static_cast<std::size_t>(j)].id == each.candidate.id; });
+      if (each.visibility_ratio >= rules_.least_visibility_ratio && !is_variant) {
         pool.push_back(static_cast<int>(found - candidates.begin()));
       }
     }

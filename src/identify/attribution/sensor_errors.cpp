@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
 
 #include "identify/attribution/refit.h"
 
@@ -14,20 +14,11 @@ constexpr double kLongestWander_s = 64.0;
 /// So much more probable must a model be with errors of the sensors than without.
 constexpr double kClearly_nats = 10.0;
 
-std::set<std::string> signals_of_sensors(const std::vector<MeasuredRun>& runs) {
-  std::set<std::string> signals;
-  for (const MeasuredRun& run : runs) {
-    for (const Sensor& sensor : run.sensors) {
-      signals.insert(sensor.signal);
-    }
-  }
-  return signals;
-}
-
 /// The evidence of the model at the fit, at the unknown heat that is best then.
 class Trial {
  public:
-  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid) : fit_(fit), runs_(runs), grid_(grid), place_(fit.place) {}
+  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, FluxGrid::Place begin)
+      : fit_(fit), runs_(runs), grid_(grid), place_(std::move(begin)) {}
 
   double evidence_nats(const SensorErrors& errors) {
     EvidenceTable table(design(fit_.model.model.network, fit_.fitted, runs_, errors, {}), grid_, prior_here(fit_.model), {});
@@ -114,21 +105,28 @@ SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>&
   if (known.wander_K.empty() && *std::ranges::max_element(flux.rms_W) <= tolerable_W) {
     return known;
   }
-  Trial trial(fit, runs, grid);
-  const double without_nats = known.wander_K.empty() ? trial.evidence_nats(known) : -std::numeric_limits<double>::infinity();
-  SensorErrors wandering = known;
-  if (known.wander_K.empty()) {
-    for (const std::string& signal : signals_of_sensors(runs)) {
-      for (const MeasuredRun& run : runs) {
-        for (const Sensor& sensor : run.sensors) {
-          if (sensor.signal == signal) {
-            wandering.wander_K[signal] = std::max(wandering.wander_K[signal], 2.0 * sensor.noise_K);
-          }
-        }
+  const double without_nats = known.wander_K.empty() ? Trial(fit, runs, grid, fit.place).evidence_nats(known)
+                                                    : -std::numeric_limits<double>::infinity();
+  // Little unknown heat beside it to begin with: much of it has taken the place of what is looked for.
+  FluxGrid::Place little = fit.place;
+  std::ranges::fill(little.begin(), little.end() - 1, std::min(3, static_cast<int>(grid.rms_W.size()) - 1));
+  SensorErrors best = known;
+  double best_nats = without_nats + kClearly_nats;
+  for (const double noises : {2.0, 10.0}) {
+    SensorErrors wandering = known;
+    for (const MeasuredRun& run : runs) {
+      for (const Sensor& sensor : run.sensors) {
+        double& wander_K = wandering.wander_K[sensor.signal];
+        wander_K = known.wander_K.empty() ? std::max(wander_K, noises * sensor.noise_K) : wander_K;
       }
     }
+    Trial trial(fit, runs, grid, little);
+    if (const double nats = climb(trial, wandering); nats > best_nats) {
+      best_nats = nats;
+      best = wandering;
+    }
   }
-  return climb(trial, wandering) > without_nats + kClearly_nats ? wandering : known;
+  return best;
 }
 
 }  // namespace heatsoak
