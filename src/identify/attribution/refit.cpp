@@ -40,13 +40,16 @@ LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eig
         inside.push_back(i);
       }
     }
-    if (inside.size() == moving.size()) {
+    const bool has_settled = inside.size() == moving.size() || inside.empty();
+    moving = std::move(inside);
+    if (has_settled) {
       break;
     }
-    moving = std::move(inside);
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  covariance(moving, moving) = fit.covariance;
+  if (!moving.empty()) {
+    covariance(moving, moving) = fit.covariance;
+  }
   fit.covariance = std::move(covariance);
   fit.coefficients = std::move(step);
   return fit;
