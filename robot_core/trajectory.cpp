@@ -1,10 +1,21 @@
 #include "robot_core/trajectory.h"
 
+#include <limits>
+
 #include "robot_core/trajectory_arrival.h"
 
 namespace robot_core {
 namespace detail {
 namespace {
+
+/// Arrivals that are this close are one. Rounding of a start moves the time of an arrival by much more than its own size, and a corner of
+/// what can be reached has no second chance: an axis that flies by its target would have to come back. The target is missed by a part of
+/// 1e-9 of what the limits reach.
+template <typename Real>
+Real same_time_s(const Problem<Real>& p) {
+  constexpr Real kTogether = std::numeric_limits<Real>::digits > 32 ? Real(1e-9) : Real(1e-4);
+  return kTogether * smaller(p.acceleration_max + p.acceleration_min, square_root(p.velocity_max + p.velocity_min)) / Real(2);
+}
 
 template <typename Real>
 PlanResult finish(const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
@@ -62,10 +73,17 @@ PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const
   for (int delay = 0, agreed = 0; agreed < axis_count && delay < kMostDelays; ++delay) {
     for (agreed = 0; agreed < axis_count; ++agreed) {
       AxisArrival<Real>& arrival = arrivals[agreed];
-      if (arrival.duration_s != duration_s) {
-        arrive_from(axes[agreed], duration_s, arrival);
+      const Real same_s = same_time_s(axes[agreed].problem);
+      if (absolute(duration_s - arrival.duration_s) <= same_s) {
+        continue;
+      }
+      arrive_from(axes[agreed], duration_s, arrival);
+      if (arrival.duration_s > duration_s + same_s) {
+        // The end of a span of time with arrival is a corner as well.
+        const Real later_s = arrival.duration_s;
+        arrive_from(axes[agreed], duration_s - same_s, arrival);
         if (arrival.duration_s > duration_s) {
-          duration_s = arrival.duration_s;
+          duration_s = later_s;
           break;
         }
       }

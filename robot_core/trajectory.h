@@ -125,6 +125,8 @@ PlanResult plan_bang_bang(const AxisState<Real>& start, const AxisState<Real>& t
 /// Several axes that arrive together, as early as that is possible. The slowest moves as plan_position has it; the
 /// others use the time: each blends its widest motion of that duration up and down, so that one with symmetric limits
 /// and at rest at both ends keeps the shape of its fastest motion. At most kMostAxes axes.
+/// Where the target has a velocity at a fixed place, follow a plan to its end: one of a later tick may find that rounding has made the
+/// arrival impossible, and come back for it. Targets at rest and Target::moving_on can be planned anew at every tick.
 /// `failed_axis`, if given, is set to the axis that a result other than ok is about.
 inline constexpr int kMostAxes = 6;
 template <typename Real>

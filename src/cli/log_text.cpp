@@ -160,7 +160,13 @@ std::string log_text(const Recording& recording, const RecordingReport& report, 
   for (const std::string& note : report.notes) {
     text += "note: " + note + "\n";
   }
-  return text + fitness_text("can tell about heat", quality.thermal) + fitness_text("can tell about wheels", quality.drive);
+  // A log of the one without a trace of the other is not told that it is none of the other.
+  const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };
+  const bool has_wheels = has([](const Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
+  const bool has_temperatures = has([](const Channel& channel) { return channel.quantity.kind == QuantityKind::temperature; });
+  text += has_temperatures || !quality.drive.is_good() ? fitness_text("can tell about heat", quality.thermal) : "";
+  text += has_wheels || !quality.thermal.is_good() ? fitness_text("can tell about wheels", quality.drive) : "";
+  return text;
 }
 
 Json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality) {

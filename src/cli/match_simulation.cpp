@@ -183,7 +183,7 @@ std::vector<ChartPanel> detail(const MatchSimulation& wanted, const Played& play
   ChartPanel heat{.title = "Windings and stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
   for (std::size_t i = 0; i < wanted.robot.wheel_axis_rad.size(); ++i) {
     heat.curves.push_back(
-        curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const MatchRow& row) { return row.winding_C[i]; }));
+        curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const MatchRow& row) { return row.winding_peak_C[i]; }));
   }
   heat.curves.push_back(curve(fmt::format("stator {}", hottest + 1), 4, [&](const MatchRow& row) { return row.stator_C[hottest]; }));
   heat.levels.push_back({fmt::format("limit {:.0f} °C", wanted.motor.nominal.winding_limit_C), wanted.motor.nominal.winding_limit_C});
@@ -213,7 +213,7 @@ std::vector<ChartPanel> comparison(const MatchSimulation& wanted, const std::vec
     double sum_kJ = 0.0;
     const int color = static_cast<int>(p);
     panels[0].curves.push_back(
-        {name, minutes, column(played.rows, [&](const MatchRow& row) { return row.winding_C[hottest]; }), color, false});
+        {name, minutes, column(played.rows, [&](const MatchRow& row) { return row.winding_peak_C[hottest]; }), color, false});
     panels[1].curves.push_back({"", minutes,
                                 column(played.rows,
                                        [&](const MatchRow& row) {

@@ -10,6 +10,7 @@ namespace heatsoak {
 
 MatchRows::MatchRows(double every_s, double ambient_C, std::function<void(const MatchRow&)> row) : every_s_(every_s), row_(std::move(row)) {
   open_.winding_C.fill(ambient_C);
+  open_.winding_peak_C.fill(ambient_C);
   open_.stator_C.fill(ambient_C);
 }
 
@@ -25,6 +26,7 @@ void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& pl
   open_.tracking_error_m = std::hypot(plan.x_m - open_.pose.x_m, plan.y_m - open_.pose.y_m);
   for (int i = 0; i < robot.wheel_count(); ++i) {
     open_.winding_C[i] = robot.winding_C(i);
+    open_.winding_peak_C[i] = open_.winding_C[i];
     open_.stator_C[i] = robot.stator_C(i);
   }
   current_squared_A2_ = {};
@@ -47,6 +49,9 @@ void MatchRows::take(const LoopMoment& moment) {
     open_.slip_m_per_s[i] += out.slip_m_per_s[i];
     open_.normal_N[i] += out.normal_force_N[i];
     open_.copper_W[i] += out.copper_W[i];
+  }
+  for (int i = 0; i < moment.robot->wheel_count(); ++i) {
+    open_.winding_peak_C[i] = std::max(open_.winding_peak_C[i], moment.robot->winding_C(i));
   }
   open_.battery_V += out.battery_V;
   open_.battery_A += out.battery_current_A;

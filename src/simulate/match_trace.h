@@ -18,6 +18,7 @@ struct MatchRow {
   Pose pose;
   BodyVelocity velocity;  ///< global frame
   PerWheel winding_C{};
+  PerWheel winding_peak_C{};  ///< the highest from time_s to the next row, for pictures: a duel heats for less than a row
   PerWheel stator_C{};
   PerWheel current_A{};
   PerWheel motor_V{};

@@ -117,7 +117,8 @@ const std::vector<Subject> kSubjects{
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.08 * s * std::pow(m.in.vehicle_speed_m_per_s / 3.0, 0.58)); });
      }},
-    {"third_node", Visibility::visible, {}, third_node},
+    // A body behind the stator and air that warms around it are one equation: only the share that the base keeps differs.
+    {"third_node", Visibility::visible, {"enclosure_warm_up"}, third_node},
     {"neighbour_coupling",
      Visibility::visible,
      {},

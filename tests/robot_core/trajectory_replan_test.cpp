@@ -125,6 +125,43 @@ TEST(TrajectoryReplan, EveryTickTowardsARestingTarget) {
   }
 }
 
+/// Passing through a fixed place at speed leaves little room near the arrival: whoever is late by a rounding error has to come back. That
+/// befell one run in four before arrivals that are next to each other counted as one; a few remain.
+TEST(TrajectoryReplan, AxesThatFlyByAFixedPlaceSeldomLoseTheirArrival) {
+  std::mt19937_64 random(5);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  constexpr double kTick_s = 0.01;
+  constexpr int kRuns = 300;
+  int lost = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    AxisLimits<double> limits[3];
+    AxisState<double> now[3];
+    AxisState<double> target[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      limits[axis] = AxisLimits<double>::symmetric(between(1.0, 3.0), between(1.0, 5.0), between(5.0, 60.0));
+      now[axis] = {between(-6.0, 6.0), 0.0, 0.0};
+      target[axis] = {between(-6.0, 6.0), axis < 2 ? between(-0.6, 0.6) * limits[axis].velocity_max : 0.0, 0.0};
+    }
+    Trajectory<double> trajectories[3];
+    double passed_s = 0.0;
+    double arrival_s = 0.0;
+    do {
+      ASSERT_EQ(plan_synchronised(3, now, target, limits, trajectories), PlanResult::ok);
+      const double expected_s = passed_s + trajectories[0].duration_s;
+      if (passed_s > 0.0 && expected_s > arrival_s + 0.01) {
+        ++lost;
+        break;
+      }
+      arrival_s = expected_s;
+      for (int axis = 0; axis < 3; ++axis) {
+        now[axis] = trajectories[axis].at(kTick_s);
+      }
+      passed_s += kTick_s;
+    } while (arrival_s - passed_s > 1.5 * kTick_s);
+  }
+  EXPECT_LE(lost, kRuns / 20);
+}
+
 TEST(TrajectoryReplan, ConvergesOnAMovingTarget) {
   std::mt19937_64 random(8);
   constexpr double kPeriod_s = 0.01;

@@ -122,5 +122,35 @@ TEST(TrajectorySynchronised, FromRestToRestIsStraight) {
   }
 }
 
+TEST(TrajectorySynchronised, AxesThatArriveTogetherButForRoundingStayTogether) {
+  // Each is one segment of full jerk, which has no second chance soon; scaled in time so that all last as long.
+  std::mt19937_64 random(28);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int tried = 0;
+  int late = 0;
+  for (int i = 0; i < problem_count() / 10; ++i) {
+    std::vector<Task> tasks;
+    double common_s = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      Task task = random_task(random);
+      const double time_s = (0.1 + 0.9 * uniform(random)) * (task.limits.acceleration_max - task.start.acceleration) / task.limits.jerk_max;
+      task.target = Motion::advanced(task.start, task.limits.jerk_max, time_s);
+      common_s = axis == 0 ? time_s : common_s;
+      tasks.push_back(scaled(task, 1.0, common_s / time_s));
+    }
+    Motion motions[3];
+    const State start[3] = {tasks[0].start, tasks[1].start, tasks[2].start};
+    const State target[3] = {tasks[0].target, tasks[1].target, tasks[2].target};
+    const Limits limits[3] = {tasks[0].limits, tasks[1].limits, tasks[2].limits};
+    if (plan_synchronised(3, start, target, limits, motions) != PlanResult::ok) {
+      continue;
+    }
+    ++tried;
+    late += motions[0].duration_s > common_s * (1 + 1e-9) ? 1 : 0;
+  }
+  EXPECT_GT(tried, problem_count() / 100);
+  EXPECT_LE(late, tried / 1000) << tried;
+}
+
 }  // namespace
 }  // namespace robot_core::reference

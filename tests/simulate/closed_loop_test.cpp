@@ -1,6 +1,7 @@
 // The closed loop against conservation, the inverse dynamics (which knows nothing of it), and its own limits.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -51,6 +52,7 @@ struct Driven {
   std::string csv;
   double heat_to_air_J = 0.0;  ///< of all stators
   double stored_J = 0.0;       ///< in all windings and stators
+  double peak_of_rows_C = 0.0;
 };
 
 Driven drive(const Robot& robot, const Motor& motor, const std::vector<ScheduledCommand>& script, double end_s,
@@ -64,10 +66,14 @@ Driven drive(const Robot& robot, const Motor& motor, const std::vector<Scheduled
   Driven driven;
   DriveScorer scorer;
   MatchRows rows(0.1, kAmbient_C, [&](const MatchRow& row) { append_csv(driven.csv, row, wheels, kAmbient_C); });
+  MatchRows coarse_rows(2.0, kAmbient_C, [&](const MatchRow& row) {
+    driven.peak_of_rows_C = std::max(driven.peak_of_rows_C, *std::ranges::max_element(row.winding_peak_C));
+  });
   const MotorValues& values = motor.nominal;
   drive_script(simulated, *controller, *plan, script, end_s, period_s, [&](const LoopMoment& moment) {
     scorer.take(moment);
     rows.take(moment);
+    coarse_rows.take(moment);
     for (int i = 0; i < wheels; ++i) {
       driven.heat_to_air_J +=
           SimulatedRobot::kPeriod_s * (simulated.stator_C(i) - kAmbient_C) / values.thermal_resistance_stator_ambient_K_per_W;
@@ -81,6 +87,7 @@ Driven drive(const Robot& robot, const Motor& motor, const std::vector<Scheduled
     const double stator_J_per_K = values.thermal_time_constant_stator_s / values.thermal_resistance_stator_ambient_K_per_W;
     driven.stored_J += winding_J_per_K * (simulated.winding_C(i) - kAmbient_C) + stator_J_per_K * (simulated.stator_C(i) - kAmbient_C);
   }
+  coarse_rows.finish();
   driven.score = scorer.finish();
   return driven;
 }
@@ -105,6 +112,7 @@ TEST(ClosedLoop, the_motors_losses_warm_windings_and_stators) {
   const double lost_J = driven.score.energy.copper_J + driven.score.energy.motor_drag_J;
   EXPECT_NEAR(driven.stored_J + driven.heat_to_air_J, lost_J, 2e-3 * lost_J);
   EXPECT_GT(driven.score.winding_peak_C, 25.5);
+  EXPECT_NEAR(driven.peak_of_rows_C, driven.score.winding_peak_C, 1e-2);
 }
 
 // Without rise of resistance, drag and rotor, a robot that tracks well needs the currents of the inverse dynamics.

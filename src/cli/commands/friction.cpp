@@ -318,7 +318,8 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
     for (const RollOutRun& run : result.runs) {
       used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
     }
-    session.say(fmt::format("wheel {}: d = {} V s/rad with the back-EMF\n", i + 1, text(damping, 4)));
+    session.say(fmt::format("wheel {}: {} mN m and {} mN m s/rad without the motor's back-EMF, d = {} V s/rad with it\n", i + 1,
+                            text(result.wheel_torque_Nm[i], 2, 1e3), text(mechanical, 4, 1e3), text(damping, 4)));
     wheels.push_back({{"index", i + 1},
                       {"damping_V_s_per_rad", json(damping)},
                       {"a_V", json(Estimate{})},

@@ -83,7 +83,7 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
   return run;
 }
 
-/// Of ½‖φ·(column − its part along θ and the rival)‖².
+/// Of ½‖φ·(column − its part along θ and the rival)‖², θ as known as the fit knows it.
 double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
                        const MeasuredRun& run) {
   const std::vector<MeasuredRun> runs{run};
@@ -99,8 +99,13 @@ double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std
     absorbing.push_back(i);
   }
   absorbing.push_back(own + 1);
-  const Eigen::MatrixXd others = triangle(Eigen::all, absorbing);
-  const Eigen::VectorXd column = size_share * triangle.col(own);
+  // What the runs so far have said of the parameters holds: they absorb only what it leaves them free to.
+  const Eigen::MatrixXd precision = (fit.covariance + 1e-12 * Eigen::MatrixXd::Identity(own, own)).inverse();
+  Eigen::MatrixXd others = Eigen::MatrixXd::Zero(triangle.rows() + own, own + 1);
+  others.topRows(triangle.rows()) = triangle(Eigen::all, absorbing);
+  others.bottomLeftCorner(own, own) = precision.llt().matrixU();
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(others.rows());
+  column.head(triangle.rows()) = size_share * triangle.col(own);
   return 0.5 * (column - others * others.colPivHouseholderQr().solve(column)).squaredNorm();
 }
 
@@ -124,7 +129,7 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
       best.rivals = fmt::format("{} or {}", term.candidate->id, found->candidate.id);
       best.what = term.experiments[rival];
       for (const Primitive& primitive : menu()) {
-        const double nats = separation_nats(selection.before, selection.grid.at(selection.before.place), pair,
+        const double nats = separation_nats(selection.before, selection.grid.at(selection.after.place), pair,
                                             own == ladder.end() ? 1.0 : own->size_share, planned(primitive, levels, runs.front()));
         if (nats > best.expected_nats) {
           best.expected_nats = nats;

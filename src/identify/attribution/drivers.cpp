@@ -73,7 +73,7 @@ class Collector {
       const double low = known[known.size() / part];
       const double high = known[known.size() - 1 - known.size() / part];
       if (high - low < 0.8 * width && high - low > 0.02 * (driver.high - driver.low)) {
-        driver.inner.emplace_back(low, high);
+        driver.inner.push_back({low, high});
         width = high - low;
       }
     }

@@ -18,10 +18,14 @@ struct Driver {
   std::string name;  ///< "speed", "stator_excess", "time", "thrust_N", "run4"
   std::string unit;  ///< UDUNITS text, "" for pure numbers and for runs
   DriverKind kind = DriverKind::operating_point;
-  std::vector<Eigen::VectorXd> values;           ///< per run one per interval, in the driver's unit; NaN: not known there
-  double low = 0.0;                              ///< 1 % of the time is below
-  double high = 0.0;                             ///< 1 % of the time is above
-  std::vector<std::pair<double, double>> inner;  ///< ranges of the middle 80 % and 50 %, where a curve may need its knots
+  std::vector<Eigen::VectorXd> values;  ///< per run one per interval, in the driver's unit; NaN: not known there
+  double low = 0.0;                     ///< 1 % of the time is below
+  double high = 0.0;                    ///< 1 % of the time is above
+  struct Range {
+    double low = 0.0;
+    double high = 0.0;
+  };
+  std::vector<Range> inner;                      ///< where it is in the middle 80 % and 50 % of the time: a curve may need its knots there
   std::map<std::string, std::string> condition;  ///< of kind run: what the runs have in common that others lack
   std::string choice;                            ///< what the effect `tabulated` calls it; empty where it cannot follow it
   std::string watched;                           ///< node that a temperature is of

@@ -171,8 +171,9 @@ class Selector {
     const double least = rules_.least_gain_nats;
     const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.8 * round.ladder.front().gain_nats - 20.0);
     for (JudgedCandidate& each : round.ladder) {
-      // Shapes are free in a refit: of several variants of one effect the best leads to where the others would.
-      const bool is_variant = std::ranges::any_of(tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id; });
+      // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
+      const bool is_variant = std::ranges::any_of(
+          tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id && t.gain_nats >= each.gain_nats; });
       if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats || is_variant) {
         continue;
       }
@@ -192,22 +193,22 @@ class Selector {
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
     std::ranges::stable_sort(tried, [](const Tried& a, const Tried& b) { return a.gain_nats > b.gain_nats; });
+    out_.open_curve.reset();
     const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
     const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
     const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
-    if (best_scan_nats >= least && best_scan_nats > best_nats + beyond_nats &&
-        best_scan_nats > catalogue_gain_nats(round, candidates, table, base) + beyond_nats) {
+    const bool is_ahead = best_scan_nats >= least && best_scan_nats > best_nats + beyond_nats;
+    const double catalogue_nats = is_ahead ? catalogue_gain_nats(round, candidates, table, base) : 0.0;
+    if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
       if (take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
         return true;
       }
       const ScanResult& front = round.scan.front();
-      const Driver& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)];
-      if (!with_curve(out_.after.model, front, driver)) {
-        out_.open_curve = front;
-        // Heat that goes by the clock, better than by any law, is none of theirs.
-        if (driver.name == kTimeDriver) {
-          return false;
-        }
+      const std::string& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)].name;
+      out_.open_curve = front;
+      // Heat that goes by the clock, or of which all laws together explain less than half, is none of theirs.
+      if (driver == kTimeDriver || front.gain_nats > 2.0 * std::max(best_nats, catalogue_nats)) {
+        return false;
       }
     }
     if (take_set(round, candidates, table, base, best_nats)) {
@@ -412,6 +413,9 @@ class Selector {
       RefitOptions options = options_;
       options.place = each.place;
       RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options);
+      if (fit.evidence_nats < out_.after.evidence_nats + least_nats) {
+        fit = refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options);
+      }
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;

@@ -13,6 +13,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSizeSpread_share = 2.0;
 /// Of a shape parameter's logarithm before anything is measured.
 constexpr double kShapeSpread = 0.3;
+/// The same where the effect brings a body: anything may be screwed to a motor.
+constexpr double kBodySpread = 1.0;
 /// A conductance that is not there, as a resistance.
 constexpr double kNoContact_K_per_W = 1e9;
 
@@ -127,7 +129,9 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   const Range& range = candidate.size_spec().range;
   double& size = parameters[static_cast<std::size_t>(candidate.size_parameter())];
   size = std::clamp(size_share * size, range.low, range.high);
+  bool brings_body = false;
   for (const NodeRole& role : candidate.type->nodes) {
+    brings_body = brings_body || role.own_capacity >= 0;
     if (role.own_capacity >= 0) {
       parameters[static_cast<std::size_t>(role.own_capacity)] *= std::max(0.05, size_share);
     }
@@ -142,7 +146,7 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
                           .scale = 1.0,
                           .low = std::max(spec.range.low, parameters[p] / 20.0),
                           .high = std::min(spec.range.high, parameters[p] * 20.0)},
-                         kShapeSpread);
+                         brings_body ? kBodySpread : kShapeSpread);
     }
   }
   set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(),

@@ -74,19 +74,22 @@ void examine_nothing(Marks& marks, int number) {
   }
 }
 
-/// Whether the interval that users are shown holds the true size.
-void cover(Marks& marks, const Answer& answer, const Subject& subject, double size) {
+/// Whether the interval that users are shown holds the true size, in words; nothing where both laws are not of one form.
+std::string cover(Marks& marks, const Answer& answer, const Subject& subject, double size) {
   if (subject.true_value == 0.0 || answer.diagnosis.effects.size() != 1 || answer.named.front() != subject.name) {
-    return;
+    return "";
   }
   const AcceptedTerm& term = answer.diagnosis.selection.terms.front();
   const std::string_view key = term.candidate->size_spec().key;
   for (const FittedParameter& parameter : answer.diagnosis.effects.front().parameters) {
     if (parameter.name == key) {
       const double truth = size * subject.true_value;
-      marks.interval_covers.add(parameter.low <= truth && truth <= parameter.high);
+      const bool holds = parameter.low <= truth && truth <= parameter.high;
+      marks.interval_covers.add(holds);
+      return fmt::format("; {:.3g} {} in {:.3g} to {:.3g}", truth, holds ? "is" : "is not", parameter.low, parameter.high);
     }
   }
+  return "";
 }
 
 void examine_single(Marks& marks, const Subject& subject, double size, std::uint64_t seed) {
@@ -104,11 +107,11 @@ void examine_single(Marks& marks, const Subject& subject, double size, std::uint
   if (!is_right) {
     ++marks.named_instead[std::string(subject.name)][answer.named.empty() ? "nothing" : fmt::format("{}", fmt::join(answer.named, " + "))];
   }
-  cover(marks, answer, subject, size);
+  const std::string covered = cover(marks, answer, subject, size);
   const double floor = floor_K(sealed);
   marks.after_over_floor.push_back(answer.after_K / floor);
   marks.near_floor.add(answer.after_K <= 1.1 * floor);
-  say(fmt::format("{} x {:.2f} (floor {:.3f} K)", subject.name, size, floor), seed, answer, is_right);
+  say(fmt::format("{} x {:.2f} (floor {:.3f} K{})", subject.name, size, floor, covered), seed, answer, is_right);
 }
 
 void examine_singles(Marks& marks, int number) {
