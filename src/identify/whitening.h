@@ -74,10 +74,10 @@ class Whitening {
   Eigen::Index size_ = 0;                    ///< of the filter's state: temperatures, fluxes, slow errors of the sensors
   std::vector<double> forget_ratio_;         ///< per interval: what is left of a flux
   std::vector<double> wander_forget_ratio_;  ///< per interval: what is left of a sensor's slow error
-  std::vector<double> gain_;              ///< per row: size_ numbers
-  std::vector<double> inverse_sd_per_K_;  ///< per row; 0 where masked
-  std::vector<double> expected_K2_;       ///< per row: variance of the prediction, without noise
-  std::vector<double> noise_K_;           ///< per sensor, at weight 1
+  std::vector<double> gain_;                 ///< per row: size_ numbers
+  std::vector<double> inverse_sd_per_K_;     ///< per row; 0 where masked
+  std::vector<double> expected_K2_;          ///< per row: variance of the prediction, without noise
+  std::vector<double> noise_K_;              ///< per sensor, at weight 1
   double log_determinant_ = 0.0;
   Eigen::Index count_ = 0;
 };

@@ -14,7 +14,8 @@ namespace {
 /// Heat capacity of the motors that the catalogue's typical sizes are of.
 constexpr double kUsualCapacity_J_per_K = 120.0;
 const ParameterSpec& heat_share_spec() {
-  static const ParameterSpec spec{"deviation", "", Range::between(-0.9, 3.0), "of the heat that goes in from what the log says, as a share of it"};
+  static const ParameterSpec spec{"deviation", "", Range::between(-0.9, 3.0),
+                                  "of the heat that goes in from what the log says, as a share of it"};
   return spec;
 }
 
@@ -144,7 +145,8 @@ std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
   return conditions;
 }
 
-/// What may be different in some of the runs without any signal of it: air that is moved, heat from outside, heat that the log does not tell.
+/// What may be different in some of the runs without any signal of it: air that is moved, heat from outside, heat that the log does not
+/// tell.
 void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
   const Network& network = model.model.network;
   for (const Condition& condition : conditions_of(runs)) {
@@ -154,7 +156,8 @@ void add_conditional_candidates(const ExtendedModel& model, const std::vector<Me
         if (network.find_node(node) < 0) {
           continue;
         }
-        Candidate candidate{&type, nullptr, fmt::format("{}@{} in {}", name, node, in_words(condition)), {std::string(node)}, {}, 0, condition};
+        Candidate candidate{&type, nullptr,  fmt::format("{}@{} in {}", name, node, in_words(condition)), {std::string(node)}, {},
+                            0,     condition};
         for (std::size_t role = 1; role < type.nodes.size(); ++role) {
           candidate.nodes.emplace_back(type.nodes[role].default_node);
         }
@@ -166,7 +169,8 @@ void add_conditional_candidates(const ExtendedModel& model, const std::vector<Me
     }
     const bool is_there = std::ranges::any_of(model.heat_shares, [&](const HeatShareTerm& term) { return term.condition == condition; });
     if (!is_there && !heat_input_parameters(network).empty()) {
-      list.candidates.push_back({nullptr, nullptr, fmt::format("heat_share in {}", in_words(condition)), {}, {kUsualHeatShare}, 0, condition});
+      list.candidates.push_back(
+          {nullptr, nullptr, fmt::format("heat_share in {}", in_words(condition)), {}, {kUsualDeviation_share}, 0, condition});
     }
   }
 }

@@ -14,7 +14,7 @@ namespace heatsoak {
 struct ExtendedModel;
 
 /// Usual deviation of the heat that goes in from what the log says, as a share of it.
-inline constexpr double kUsualHeatShare = 0.1;
+inline constexpr double kUsualDeviation_share = 0.1;
 
 /// What runs have in common that others lack: "cooling" -> "fan", or "run" -> "run4".
 using Condition = std::map<std::string, std::string>;

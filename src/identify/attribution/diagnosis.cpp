@@ -124,11 +124,12 @@ class Teller {
     const auto place = std::ranges::find(terms, candidate.condition, &HeatShareTerm::condition) - terms.begin();
     const Eigen::Index own = after().model.first_heat_share() + place;
     const double value = terms[static_cast<std::size_t>(place)].deviation_share;
-    const double sd = kUsualHeatShare * std::sqrt(after().covariance(own, own));
+    const double sd = kUsualDeviation_share * std::sqrt(after().covariance(own, own));
     effect.id = "heat_share";
     effect.node = "winding";
     effect.condition = candidate.condition;
-    effect.description = "More or less heat goes in than the log says: another phase carries the current, or the driver takes another share.";
+    effect.description =
+        "More or less heat goes in than the log says: another phase carries the current, or the driver takes another share.";
     effect.parameters.push_back(
         {std::string(candidate.size_spec().key), "", value, std::max(value - kInterval_sd * sd, -1.0), value + kInterval_sd * sd});
     effect.p_value = p_of(value, sd);

@@ -52,7 +52,7 @@ Eigen::VectorXd ExtendedModel::theta() const {
     all[model.free_count() + static_cast<Eigen::Index>(i)] = sensors[i].value / sensors[i].type->typical_size;
   }
   for (std::size_t i = 0; i < heat_shares.size(); ++i) {
-    all[first_heat_share() + static_cast<Eigen::Index>(i)] = heat_shares[i].deviation_share / kUsualHeatShare;
+    all[first_heat_share() + static_cast<Eigen::Index>(i)] = heat_shares[i].deviation_share / kUsualDeviation_share;
   }
   return all;
 }
@@ -63,7 +63,7 @@ void ExtendedModel::set_theta(const Eigen::VectorXd& theta) {
     sensors[i].value = sensors[i].type->typical_size * theta[model.free_count() + static_cast<Eigen::Index>(i)];
   }
   for (std::size_t i = 0; i < heat_shares.size(); ++i) {
-    heat_shares[i].deviation_share = kUsualHeatShare * theta[first_heat_share() + static_cast<Eigen::Index>(i)];
+    heat_shares[i].deviation_share = kUsualDeviation_share * theta[first_heat_share() + static_cast<Eigen::Index>(i)];
   }
 }
 
@@ -78,7 +78,7 @@ Prior ExtendedModel::prior() const {
   }
   for (std::size_t i = 0; i < heat_shares.size(); ++i) {
     const Eigen::Index own = first_heat_share() + static_cast<Eigen::Index>(i);
-    all.precision(own, own) = std::pow(kUsualHeatShare / heat_shares[i].spread_sd_share, 2);
+    all.precision(own, own) = std::pow(kUsualDeviation_share / heat_shares[i].spread_sd_share, 2);
   }
   return all;
 }
@@ -89,7 +89,7 @@ double ExtendedModel::low(Eigen::Index coordinate) const {
     return free.by_log && free.low <= 0.0 ? -kInfinity : model.theta_of(coordinate, free.low);
   }
   if (coordinate >= first_heat_share()) {
-    return kLeastHeatShare / kUsualHeatShare;
+    return kLeastHeatShare / kUsualDeviation_share;
   }
   const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
   return term.type->size.range.low / term.type->typical_size;
@@ -100,7 +100,7 @@ double ExtendedModel::high(Eigen::Index coordinate) const {
     return model.theta_of(coordinate, model.free[static_cast<std::size_t>(coordinate)].high);
   }
   if (coordinate >= first_heat_share()) {
-    return kMostHeatShare / kUsualHeatShare;
+    return kMostHeatShare / kUsualDeviation_share;
   }
   const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
   return term.type->size.range.high / term.type->typical_size;
@@ -159,7 +159,7 @@ LinearisedRun linearise(const ExtendedModel& model, std::span<const double> star
     const double whole_share = 1.0 + model.heat_shares[i].deviation_share;
     for (std::size_t input = 0; has_condition(run, model.heat_shares[i].condition) && input < inputs.size(); ++input) {
       by_theta.col(model.first_heat_share() + static_cast<Eigen::Index>(i)) +=
-          kUsualHeatShare * values[static_cast<std::size_t>(inputs[input])] / whole_share *
+          kUsualDeviation_share * values[static_cast<std::size_t>(inputs[input])] / whole_share *
           out.by_parameter.col(model.model.free_count() + static_cast<Eigen::Index>(input));
     }
   }

@@ -31,7 +31,8 @@ struct HeatShareTerm {
   double spread_sd_share = 0.2;  ///< known before, around 0
 };
 
-/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes, then the deviations of heat in units of the usual one.
+/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes, then the deviations of heat in units of the
+/// usual one.
 struct ExtendedModel {
   Model model;
   std::vector<ConditionalTerm> conditional;

@@ -150,8 +150,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
     const int size = effect.type->candidacy.size_parameter;
     if (!effect.condition.empty() && size >= 0) {
       const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
-      out.model.conditional.push_back(
-          {effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
+      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
     }
   }
   set_needed(out, motor, recordings);
@@ -196,9 +195,9 @@ Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnos
       result.effects.push_back(motor_effect(effect, diagnosis.selection.after));
     } else if (!effect.parameters.empty()) {
       const FittedParameter& size = effect.parameters.front();
-      result.notes.push_back(fmt::format("{} at the {}{}: {} {:.3g} {}; found in measurements, no property of the motor", effect.id, effect.node,
-                                         effect.condition.empty() ? "" : fmt::format(" in {}", effect.condition.begin()->second), size.name,
-                                         size.value, size.unit));
+      result.notes.push_back(fmt::format(
+          "{} at the {}{}: {} {:.3g} {}; found in measurements, no property of the motor", effect.id, effect.node,
+          effect.condition.empty() ? "" : fmt::format(" in {}", effect.condition.begin()->second), size.name, size.value, size.unit));
     }
   }
   refresh_values(result);

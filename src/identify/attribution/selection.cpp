@@ -74,11 +74,10 @@ class Selector {
     out_.not_judged = list.not_judged;
     const std::vector<Candidate>& candidates = list.candidates;
     std::vector<Columns> columns(input_.runs.size());
-    in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
-      columns[r] = candidate_columns(candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]);
-    });
-    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, columns), options_.grid, prior_here(out_.after.model),
-                        column_rules(candidates));
+    in_parallel(input_.runs.size(), 0,
+                [&](std::size_t r) { columns[r] = candidate_columns(candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]); });
+    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, columns), options_.grid,
+                        prior_here(out_.after.model), column_rules(candidates));
     const SetScore base = table.best({}, out_.after.place);
     out_.after.evidence_nats = std::max(out_.after.evidence_nats, base.evidence_nats);
     out_.after.place = base.place;

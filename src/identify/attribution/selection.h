@@ -71,7 +71,7 @@ struct Selection {
   std::optional<ScanResult> open_curve;  ///< that nothing in the network can follow, or physics forbids as it stands
   FluxGrid grid;
   SensorErrors errors;
-  std::vector<std::string> refused;      ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
+  std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
 };
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);

@@ -105,8 +105,8 @@ SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>&
   if (known.wander_K.empty() && *std::ranges::max_element(flux.rms_W) <= tolerable_W) {
     return known;
   }
-  const double without_nats = known.wander_K.empty() ? Trial(fit, runs, grid, fit.place).evidence_nats(known)
-                                                    : -std::numeric_limits<double>::infinity();
+  const double without_nats =
+      known.wander_K.empty() ? Trial(fit, runs, grid, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
   // Little unknown heat beside it to begin with: much of it has taken the place of what is looked for.
   FluxGrid::Place little = fit.place;
   std::ranges::fill(little.begin(), little.end() - 1, std::min(3, static_cast<int>(grid.rms_W.size()) - 1));

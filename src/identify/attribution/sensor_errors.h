@@ -15,8 +15,8 @@ struct FluxGrid;
 
 struct SensorErrors {
   std::vector<Eigen::VectorXd> weights;  ///< per run: of each sample, 0 for an outlier; empty: all count
-  /// By signal: standard deviation of an error that comes and goes within seconds and heats nothing, as where a probe sits at one phase of a
-  /// motor that creeps. Empty: none.
+  /// By signal: standard deviation of an error that comes and goes within seconds and heats nothing, as where a probe sits at one phase of
+  /// a motor that creeps. Empty: none.
   std::map<std::string, double> wander_K;
   double wander_time_scale_s = 10.0;
 };

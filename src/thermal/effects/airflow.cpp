@@ -18,14 +18,16 @@ struct Airflow {
 EffectType airflow() {
   return {
       .name = {},
-      .summary = "Air that something else moves past the motor, a fan, a draught, the way it is mounted: heat leaves in proportion to the excess.",
+      .summary =
+          "Air that something else moves past the motor, a fan, a draught, the way it is mounted: heat leaves in proportion to the excess.",
       .equation = "P_hot→cold = G · (T_hot − T_cold)",
       .reference = "Newton's law of cooling; VDI Heat Atlas, forced convection at a constant speed of the air",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "beside what still air leads away"}},
       .typical = "0.05 to 0.3 W/K for a motor of 0.1 kg; a fan on a large one some W/K",
       .look_alike =
-          "The resistance to ambient itself: only runs with and without the air, all else equal, tell. At the winding: winding_through_flow, where "
+          "The resistance to ambient itself: only runs with and without the air, all else equal, tell. At the winding: "
+          "winding_through_flow, where "
           "the rotor moves the air.",
       // 0.2 W/K · (60 − 25) K = 7 W
       .example = {.parameters = {0.2}, .at = {}, .temperature_C = {60.0, 25.0}, .expected_heat_W = {-7.0, 7.0}},
