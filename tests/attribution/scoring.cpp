@@ -48,10 +48,10 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
     const std::string& driver = selection.drivers[static_cast<std::size_t>(curve.term.driver)].name;
     return curve.term.node == outsider.node && std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
   };
-  const bool has_curve =
-      (selection.open_curve && is_right(*selection.open_curve)) ||
-      std::ranges::any_of(selection.terms, [&](const AcceptedTerm& term) { return term.curve && is_right(*term.curve); });
-  return has_curve && answer.diagnosis.verdict == DiagnosisVerdict::unexplained;
+  // What is said first is the answer; what else remains may follow.
+  const bool leads = selection.terms.empty() ? selection.open_curve && is_right(*selection.open_curve)
+                                             : selection.terms.front().curve && is_right(*selection.terms.front().curve);
+  return leads && answer.diagnosis.verdict == DiagnosisVerdict::unexplained;
 }
 
 bool mentions(const Answer& answer, const Subject& subject) {

@@ -20,7 +20,7 @@ std::string in_words(const Share& share);
 bool names(const std::vector<std::string>& named, const Subject& subject);
 /// The first name is right, and there is no other.
 bool names_only(const std::vector<std::string>& named, const std::vector<const Subject*>& subjects);
-/// The verdict is "unexplained", with a curve at the right node over one of the right drivers and no effect of the catalogue.
+/// The verdict is "unexplained", first a curve at the right node over one of the right drivers, and no effect of the catalogue.
 bool names_outsider(const Answer& answer, const Outsider& outsider);
 /// The subject is named, or stands among the look-alikes of what is named.
 bool mentions(const Answer& answer, const Subject& subject);

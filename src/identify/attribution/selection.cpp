@@ -413,6 +413,7 @@ class Selector {
       options.place = each.place;
       RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options);
       if (fit.evidence_nats < out_.after.evidence_nats + least_nats) {
+        options.place = first_place_;
         fit = refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options);
       }
       AcceptedTerm term;

@@ -15,8 +15,9 @@ namespace heatsoak {
 // A wheel that should stand by geometry carries no information and is left out, as the paper does.
 // The others turn the way their rolling direction says, so the sign is known; with S = sin(θ + φ_0), C = cos(θ + φ_0),
 // φ_0 that of the rolling direction, the law is linear:  V = d·ω + A·S + B·C + b·sign S  (+ c·sign ω in rotation),
-// a = ±√(A² + B²) and φ = φ_0 + atan(B/A). Fitted robustly over all parts of a wheel (robust_fit.h), legs as clusters.
-// The interval of φ is Fieller's, cut off where a wheel that was seen turning one way would have to turn the other.
+// a = ±√(A² + B²) and φ = φ_0 + atan(B/A). Fitted robustly over all parts of a wheel (robust_fit.h), legs as clusters
+// where there are three per term. The interval of φ is Fieller's, cut off where a wheel that was seen turning one way would
+// have to turn the other; there a and b are the best at that φ.
 
 struct WheelFriction {
   Estimate damping_V_s_per_rad;                                ///< d
@@ -46,7 +47,7 @@ struct WheelFriction {
 /// One wheel on one heading: the straight line of voltage over speed (Figs. 4, 6, 8 of the paper).
 struct HeadingLine {
   double heading_rad = 0.0;
-  Estimate offset_V;             ///< at no speed: the static friction
+  Estimate offset_V;             ///< at no speed: the static friction; intervals by the scatter of all headings
   Estimate damping_V_s_per_rad;  ///< NaN where the heading has one speed
 };
 

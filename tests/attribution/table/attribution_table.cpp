@@ -1,5 +1,6 @@
 // How the diagnosis does on motors of which everything is known: one table.
-//   heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [hard N] [effect NAME SIZE SEED]
+//   heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [hard N] [effect NAME SIZE SEED]; NAME also of an outsider,
+//   whose size is 1
 // One line per case, wrong ones marked with X, with what the tool weighed; then the table.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -154,14 +155,17 @@ void examine_pairs(Marks& marks, int number) {
   }
 }
 
+void examine_outsider(Marks& marks, const Outsider& outsider, std::uint64_t seed) {
+  const Answer answer = examined(marks, sealed_case(outsider.make(1.0), seed));
+  const bool is_right = names_outsider(answer, outsider);
+  marks.outsiders_right.add(is_right);
+  say(std::string(outsider.name), seed, answer, is_right);
+}
+
 void examine_outsiders(Marks& marks, int number) {
   for (int i = 0; i < number; ++i) {
     for (std::size_t o = 0; o < outsiders().size(); ++o) {
-      const auto seed = static_cast<std::uint64_t>(40000 + 100 * i) + o;
-      const Answer answer = examined(marks, sealed_case(outsiders()[o].make(1.0), seed));
-      const bool is_right = names_outsider(answer, outsiders()[o]);
-      marks.outsiders_right.add(is_right);
-      say(std::string(outsiders()[o].name), seed, answer, is_right);
+      examine_outsider(marks, outsiders()[o], static_cast<std::uint64_t>(40000 + 100 * i) + o);
     }
   }
 }
@@ -247,6 +251,11 @@ int main(int argc, char** argv) {
       for (const Subject& subject : subjects()) {
         if (subject.name == argv[i + 1]) {
           examine_single(marks, subject, std::atof(argv[i + 2]), static_cast<std::uint64_t>(std::atoi(argv[i + 3])));
+        }
+      }
+      for (const Outsider& outsider : outsiders()) {
+        if (outsider.name == argv[i + 1]) {
+          examine_outsider(marks, outsider, static_cast<std::uint64_t>(std::atoi(argv[i + 3])));
         }
       }
       i += 2;
