@@ -47,12 +47,12 @@ Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
   for (const ErrorBeforeAfter& each : calibration.fit_error) {
     const std::string what = each.signal.substr(0, each.signal.rfind('_'));
     Traces trace;
-    trace.panel.title = what;
+    trace.panel.title =
+        fmt::format("{}: {:.2f} K rms with the file's figures, {:.2f} K fitted", what, each.before.rmse_K, each.after.rmse_K);
     trace.panel.y_label = what + " temperature / °C";
     trace.signal = each.signal;
-    trace.panel.curves = {{.name = "measured", .color_index = 0},
-                          {.name = fmt::format("fit, {:.2f} K rms", each.after.rmse_K), .color_index = 1},
-                          {.name = fmt::format("file, {:.2f} K rms", each.before.rmse_K), .color_index = 2, .dashed = true}};
+    trace.panel.curves = {
+        {.name = "measured", .color_index = 0}, {.name = "fit", .color_index = 1}, {.name = "file", .color_index = 2, .dashed = true}};
     traces.push_back(std::move(trace));
   }
   double offset_s = 0.0;
@@ -64,7 +64,8 @@ Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
     }
   }
   Chart chart{.title = fmt::format("{}: calibration", motor.name), .subtitle = {}, .x_label = "time, runs one after the other / min"};
-  chart.subtitle = fmt::format("{} runs fitted{}; the model runs free from the start of each", calibration.runs.size(),
+  chart.subtitle = fmt::format("{} fitted{}; the model runs free from the start of each",
+                               calibration.runs.size() == 1 ? "1 run" : fmt::format("{} runs", calibration.runs.size()),
                                calibration.holdout.empty() ? "" : fmt::format(", then {} held out", calibration.holdout.size()));
   for (Traces& each : traces) {
     chart.panels.push_back(std::move(each.panel));

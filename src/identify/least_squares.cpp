@@ -1,6 +1,7 @@
 #include "identify/least_squares.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <limits>
 #include <memory>
@@ -169,6 +170,8 @@ LeastSquaresResult minimise(const LeastSquaresProblem& problem, Eigen::VectorXd&
   options.parameter_tolerance = 1e-7;
   options.logging_type = ceres::SILENT;
   options.minimizer_progress_to_stdout = false;
+  // A start that cannot be run is an answer here, no event for the log of Ceres.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);
   if (summary.termination_type == ceres::FAILURE) {

@@ -43,6 +43,16 @@ bool has_values(const Channel* channel) {
   return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
 }
 
+bool is_stuck(const Channel& channel) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const double value : channel.values) {
+    low = std::fmin(low, value);
+    high = std::fmax(high, value);
+  }
+  return low == high;
+}
+
 bool is_there(const Recording& recording, Signal signal) {
   const auto* const found = std::ranges::find(kSignalChannels, signal, &SignalChannel::signal);
   const bool is_recorded = has_values(recording.find(found->key));
@@ -215,7 +225,9 @@ class Builder {
     for (const SensorPlace& place : kSensorPlaces) {
       const Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();
-      if (has_values(channel) && !is_taken) {
+      if (has_values(channel) && !is_taken && is_stuck(*channel)) {
+        all_.notes.push_back(fmt::format("{}: {} shows the same value throughout and is taken as no sensor", recording.name, place.key));
+      } else if (has_values(channel) && !is_taken) {
         sensors_.push_back({std::string(place.key), std::string(place.node)});
         sensor_values_.push_back(&channel->values);
       }

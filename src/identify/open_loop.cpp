@@ -45,8 +45,28 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
   return start;
 }
 
+namespace {
+
+/// Five, where every node that stores heat is sensed; how hot another one is shows only after a while.
+Eigen::Index deciding_samples(const Network& network, const MeasuredRun& run) {
+  constexpr Eigen::Index kFew = 5;
+  bool all_are_sensed = true;
+  for (int node = 0; node < network.state_count(); ++node) {
+    all_are_sensed = all_are_sensed && run.sensor_at(network.node_name(node)) >= 0;
+  }
+  if (all_are_sensed) {
+    return kFew;
+  }
+  constexpr double kAWhile_s = 60.0;
+  constexpr double kMost_share = 0.1;
+  const double until_s = run.time_s.front() + std::min(kAWhile_s, kMost_share * (run.time_s.back() - run.time_s.front()));
+  return std::max<Eigen::Index>(kFew, std::ranges::upper_bound(run.time_s, until_s) - run.time_s.begin());
+}
+
+}  // namespace
+
 Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
-  constexpr Eigen::Index kDeciding = 5;
+  const Eigen::Index deciding = deciding_samples(network, run);
   // No model follows the first seconds better than this, and a node that is not sensed must not pay for it.
   constexpr double kLeastNoise_K = 0.3;
   const std::vector<int> none;
@@ -56,7 +76,7 @@ Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> para
     free_run = linearise(network, parameters, none, none, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
     Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
     Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
-    for (Eigen::Index row = 0; row < std::min(kDeciding * free_run.sensors(), free_run.residual_K.size()); ++row) {
+    for (Eigen::Index row = 0; row < std::min(deciding * free_run.sensors(), free_run.residual_K.size()); ++row) {
       if (!std::isnan(free_run.residual_K[row])) {
         const double noise_K = std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(row % free_run.sensors())].noise_K);
         normal += free_run.by_start.row(row).transpose() * free_run.by_start.row(row) / (noise_K * noise_K);

@@ -21,7 +21,7 @@ struct RunStart {
 RunStart start_of(const Network& network, const MeasuredRun& run);
 
 /// What the sensors would show (n × sensors) if the model ran free from the run's start. The start is decided by the first five samples
-/// only: a model that lacks heat must not hide it there.
+/// only, or the first minute (at most a tenth of the run) where a node has no sensor: a model that lacks heat must not hide it there.
 Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run);
 
 struct SignalError {

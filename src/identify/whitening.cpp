@@ -172,8 +172,11 @@ void Whitening::apply_to_strip(Eigen::Ref<Columns> columns) const {
         moved[static_cast<std::size_t>(i)] = sum;
       }
       std::copy_n(moved.begin(), x, state.begin());
-      for (Eigen::Index j = x; j < size_; ++j) {
-        state[static_cast<std::size_t>(j)] *= (j < x + q ? forget_ratio_ : wander_forget_ratio_)[static_cast<std::size_t>(k)];
+      for (Eigen::Index j = x; j < x + q; ++j) {
+        state[static_cast<std::size_t>(j)] *= forget_ratio_[static_cast<std::size_t>(k)];
+      }
+      for (Eigen::Index j = x + q; j < size_; ++j) {
+        state[static_cast<std::size_t>(j)] *= wander_forget_ratio_[static_cast<std::size_t>(k)];
       }
     }
   }

@@ -23,8 +23,8 @@ struct LatentFlux {
 /// Per sensor and sample: standard deviation of the noise in K is noise_K[sensor] / √weight.
 struct SensorNoise {
   std::vector<double> noise_K;
-  Eigen::VectorXd weight;        ///< n·s, 0 … 1; empty: all 1. 0 leaves the sample out
-  std::vector<double> wander_K;  ///< per sensor: standard deviation of its slow error; empty: none wanders
+  Eigen::VectorXd weight;             ///< n·s, 0 … 1; empty: all 1. 0 leaves the sample out
+  std::vector<double> wander_K = {};  ///< per sensor: standard deviation of its slow error; empty: none wanders
   double wander_time_scale_s = 10.0;
 };
 
@@ -56,8 +56,6 @@ class Whitening {
  private:
   template <int Size>
   void build(const SensorNoise& noise);
-  template <bool IsWhole>
-  void apply_to_strip(Eigen::Ref<Columns> columns) const;
   template <class Matrix>
   void set_transition(Eigen::Index interval, Matrix& transition) const;
   /// What fluxes and slow errors gain in variance before interval `interval` ends; −1: all of it, at the start.
@@ -66,6 +64,8 @@ class Whitening {
   [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }
   /// Of a sensor's slow error in the filter's state.
   [[nodiscard]] Eigen::Index wander_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }
+  template <bool IsWhole>
+  void apply_to_strip(Eigen::Ref<Columns> columns) const;
 
   const LinearisedRun* run_;
   LatentFlux flux_;

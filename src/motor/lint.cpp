@@ -48,6 +48,7 @@ namespace {
 struct NamedCheck {
   std::string_view name;
   void (*run)(const Motor&, lint_checks::Findings&);
+  bool is_of_values = true;  ///< false: of how the file is written
 };
 
 constexpr std::array kChecks = {
@@ -70,10 +71,10 @@ constexpr std::array kChecks = {
     NamedCheck{"density", lint_checks::density},
     NamedCheck{"rotor_inertia", lint_checks::rotor_inertia},
     NamedCheck{"limits", lint_checks::limits},
-    NamedCheck{"sources", lint_checks::sources},
-    NamedCheck{"confirmations", lint_checks::confirmations},
-    NamedCheck{"estimates", lint_checks::estimates},
-    NamedCheck{"spreads", lint_checks::spreads},
+    NamedCheck{"sources", lint_checks::sources, false},
+    NamedCheck{"confirmations", lint_checks::confirmations, false},
+    NamedCheck{"estimates", lint_checks::estimates, false},
+    NamedCheck{"spreads", lint_checks::spreads, false},
 };
 
 }  // namespace
@@ -94,7 +95,12 @@ std::vector<LintFinding> lint(const Motor& motor) {
   std::vector<LintFinding> list;
   for (const NamedCheck& check : kChecks) {
     lint_checks::Findings findings(motor, check.name, list);
+    const std::size_t before = list.size();
     check.run(motor, findings);
+    // What was fitted is of one motor, its other figures are of the sheet: that they differ is no fault of the file.
+    for (std::size_t i = before; i < list.size() && motor.fit && check.is_of_values; ++i) {
+      list[i].level = std::max(list[i].level, LintFinding::Level::warning);
+    }
   }
   return list;
 }

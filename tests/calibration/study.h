@@ -44,6 +44,7 @@ struct Case {
   int runs = 4;
   std::uint64_t seed = 1;
   int threads = 1;
+  bool with_flux = true;
 };
 
 /// One figure of one case.

@@ -182,6 +182,8 @@ Command calibrate_command() {
         add_picture(app, options->plot, "picture of measured and fitted temperatures");
         add_quantity(app, "--ambient", options->calibration.ambient_C,
                      {"ambient", "degC", Range::between(-60.0, 100.0), "of the surroundings, where a log has no such column"});
+        app.add_flag("--as-is", options->calibration.takes_logs_as_they_are,
+                     "go on where units or sensors of a log look wrong: they are right");
         app.add_option("--seed", options->calibration.fit.seed, "of the starting points; same seed, same bytes")
             ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
             ->capture_default_str();

@@ -167,7 +167,10 @@ class Selector {
       double gain_nats;
     };
     std::vector<Tried> tried;
-    const double least = rules_.least_gain_nats;
+    double least = rules_.least_gain_nats;
+    for (const AcceptedTerm& term : out_.terms) {
+      least = std::max(least, term.curve ? rules_.beside_curve_share * term.gain_nats : 0.0);
+    }
     const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.8 * round.ladder.front().gain_nats - 20.0);
     for (JudgedCandidate& each : round.ladder) {
       // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.

@@ -23,6 +23,7 @@ struct SelectionRules {
   double ambiguous_within_nats = 5.0;
   double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue, and
   double outside_beyond_share = 0.2;  ///< of its own evidence: laws are never exact, and much data sees the least difference of shape
+  double beside_curve_share = 0.05;   ///< of a curve's evidence: less than that beside it is what seven knots leave of its shape
   double least_visibility_ratio = 0.02;
   int refitted = 6;
   int most_terms = 4;

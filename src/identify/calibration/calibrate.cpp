@@ -60,13 +60,7 @@ class Calibrating {
       : recordings_(recordings), holdout_(holdout), options_(options) {}
 
   Calibration run(const Motor& motor) {
-    for (const Recording& recording : recordings_) {
-      const DataQuality quality = assess(recording, {});
-      require_thermal(recording, quality);
-      for (const std::string& each : quality.suspicions) {
-        all_.notes.push_back(fmt::format("{}: {}", recording.name, each));
-      }
-    }
+    check(motor);
     all_.motor_model = motor_model(motor, heat_input_for(recordings_), all_have_speed(recordings_));
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     MeasuredRunOptions how;
@@ -88,10 +82,84 @@ class Calibrating {
       all_.next_experiment = std::ranges::min_element(all_.open, {}, &OpenDirection::experiment_min)->experiment;
     }
     refuse_where_nothing_was_learned();
+    refuse_where_nothing_is_explained();
     return std::move(all_);
   }
 
  private:
+  void check(const Motor& motor) {
+    refuse_repeated();
+    std::vector<Diagnostic> wrong;
+    for (const Recording& recording : recordings_) {
+      const DataQuality quality = assess(recording, {});
+      require_thermal(recording, quality);
+      look_wrong(motor, recording, quality, wrong);
+    }
+    for (const Recording& recording : holdout_) {
+      look_wrong(motor, recording, assess(recording, {}), wrong);
+    }
+    if (!wrong.empty() && !options_.takes_logs_as_they_are) {
+      throw Failure(ExitCode::bad_input,
+                    "units or sensors of the logs look wrong; correct them in a mapping (--map), or if they are right go on with --as-is",
+                    std::move(wrong));
+    }
+  }
+
+  /// A run that counts twice makes intervals narrower than they are; one held out that was fitted tests nothing.
+  void refuse_repeated() const {
+    std::vector<const Recording*> seen;
+    std::vector<Diagnostic> repeated;
+    for (const auto& recordings : {recordings_, holdout_}) {
+      for (const Recording& recording : recordings) {
+        const auto is_same = [&](const Recording* other) {
+          return other->time_s == recording.time_s &&
+                 std::ranges::equal(other->channels, recording.channels, [](const auto& a, const auto& b) {
+                   return a.quantity.key == b.quantity.key && std::ranges::equal(a.values, b.values, [](double x, double y) {
+                            return x == y || (std::isnan(x) && std::isnan(y));
+                          });
+                 });
+        };
+        if (const auto found = std::ranges::find_if(seen, is_same); found != seen.end()) {
+          repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", (*found)->file.string())});
+        }
+        seen.push_back(&recording);
+      }
+    }
+    if (!repeated.empty()) {
+      throw Failure(ExitCode::bad_input, "a log is given twice", std::move(repeated));
+    }
+  }
+
+  void look_wrong(const Motor& motor, const Recording& recording, const DataQuality& quality, std::vector<Diagnostic>& wrong) {
+    for (const std::string& each : quality.suspicions) {
+      all_.notes.push_back(fmt::format("{}: {}", recording.name, each));
+    }
+    std::vector<std::string> spoiling = quality.spoiling;
+    if (std::string too_much = current_beyond(motor, quality); spoiling.empty() && !too_much.empty()) {
+      spoiling.push_back(std::move(too_much));
+    }
+    for (const std::string& each : spoiling) {
+      wrong.push_back({{recording.file.string()}, {}, each});
+    }
+  }
+
+  /// More than the winding lets through at thrice the nominal voltage is another unit.
+  static std::string current_beyond(const Motor& motor, const DataQuality& quality) {
+    const auto found = std::ranges::find_if(quality.channels, [](const ChannelQuality& each) { return each.quantity.key == "current_A"; });
+    if (found == quality.channels.end()) {
+      return {};
+    }
+    constexpr double kMostVoltage_ratio = 3.0;
+    const double most_A = kMostVoltage_ratio * motor.nominal.nominal_voltage_V / motor.nominal.terminal_resistance_ohm;
+    const double reached_A = std::max(std::abs(found->low), std::abs(found->high));
+    return reached_A > most_A
+               ? fmt::format(
+                     "current_A reaches {} A; through {} ohm at three times the nominal voltage flow {} A: is it in "
+                     "milliamperes, or is it another motor?",
+                     significant(reached_A, 3), significant(motor.nominal.terminal_resistance_ohm, 3), significant(most_A, 3))
+               : std::string();
+  }
+
   /// What the fit says about itself.
   void warn() {
     const Fit& fit = all_.fit;
@@ -114,6 +182,11 @@ class Calibrating {
           fmt::format("the sensor at the {} seems to wander by {} K (standard deviation) over some {} s: errors of its own, or "
                       "of a model with two temperatures",
                       fit.sensor_nodes[kind], significant(fit.wander_K[kind], 2), significant(fit.wander_time_scale_s, 1)));
+    }
+    if (std::ranges::find(fit.sensor_nodes, "winding") == fit.sensor_nodes.end()) {
+      all_.notes.emplace_back(
+          "only the stator is sensed: heat that follows the current but reaches the stator directly (iron loss, driver, connections) would "
+          "pass for a faster winding, beyond what the intervals say");
     }
     if (!fit.has_converged) {
       all_.notes.emplace_back("the fit still moved a little when it was stopped: figures are good to some tenths of their intervals");
@@ -166,6 +239,45 @@ class Calibrating {
       why += fmt::format("\n  open: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
     }
     throw Failure(ExitCode::cannot_answer, why);
+  }
+
+  /// Figures of a model that does not follow the runs mean nothing, however narrow their intervals.
+  void refuse_where_nothing_is_explained() const {
+    std::string why;
+    for (const ErrorBeforeAfter& each : all_.fit_error) {
+      const double moves_K = standard_deviation_K(each.signal);
+      if (each.after.rmse_K > moves_K) {
+        why += fmt::format("\n  {} is {} K rms off, more than it moves (standard deviation {} K)", each.signal,
+                           significant(each.after.rmse_K, 2), significant(moves_K, 2));
+      }
+    }
+    if (!why.empty()) {
+      throw Failure(
+          ExitCode::cannot_answer,
+          fmt::format("no figures of this motor make the model follow these logs{}\n  is it another motor, a wrong unit, a sensor "
+                      "elsewhere, or heat that no column tells of? `heatsoak log inspect` shows each channel",
+                      why));
+    }
+  }
+
+  [[nodiscard]] double standard_deviation_K(const std::string& signal) const {
+    double sum_K = 0.0;
+    double squares_K2 = 0.0;
+    double count = 0.0;
+    for (const MeasuredRun& run : all_.runs) {
+      const auto sensor = std::ranges::find(run.sensors, signal, &Sensor::signal);
+      if (sensor == run.sensors.end()) {
+        continue;
+      }
+      for (const double each_C : run.measured_C.col(sensor - run.sensors.begin())) {
+        if (!std::isnan(each_C)) {
+          sum_K += each_C;
+          squares_K2 += each_C * each_C;
+          count += 1.0;
+        }
+      }
+    }
+    return std::sqrt(std::max(0.0, squares_K2 / count - sum_K * sum_K / (count * count)));
   }
 
   std::span<const Recording> recordings_;

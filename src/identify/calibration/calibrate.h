@@ -17,6 +17,7 @@ namespace heatsoak {
 struct CalibrationOptions {
   FitOptions fit;
   double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
+  bool takes_logs_as_they_are = false;                  ///< true: units or sensors that look wrong are said, not refused
 };
 
 struct CalibratedFigure {

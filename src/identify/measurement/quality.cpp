@@ -85,6 +85,17 @@ std::string shown(double value, const Quantity& quantity) {
   return fmt::format("{} {}", significant(value, 4), unit_for_display(quantity.unit));
 }
 
+/// Every temperature is highest within the first third of the log, and plainly lower at its end.
+bool cools_down(const Recording& recording, const std::vector<const ChannelQuality*>& temperatures) {
+  return !temperatures.empty() && std::ranges::all_of(temperatures, [&](const ChannelQuality* each) {
+    const std::vector<double>& values = recording.find(each->quantity.key)->values;
+    const auto highest = static_cast<std::size_t>(std::ranges::find(values, each->high) - values.begin());
+    const auto last = std::ranges::find_if(values.rbegin(), values.rend(), [](double value) { return !std::isnan(value); });
+    constexpr double kPlainly = 20.0;
+    return highest < values.size() / 3 && last != values.rend() && each->high - *last > kPlainly * each->noise;
+  });
+}
+
 Fitness thermal_fitness(const Recording& recording, const DataQuality& quality) {
   Fitness fitness;
   if (recording.rows() < kFewestRows) {
@@ -116,11 +127,7 @@ Fitness thermal_fitness(const Recording& recording, const DataQuality& quality) 
                                               shown(one.low, one.quantity), shown(one.high, one.quantity), significant(one.noise, 2)));
   }
   // Without heat a motor that cools down still tells its time constants.
-  const bool cools_down = std::ranges::any_of(temperatures, [](const ChannelQuality* channel) {
-    constexpr double kPlainly = 20.0;
-    return channel->high - channel->low > kPlainly * channel->noise;
-  });
-  if (!inputs.empty() && !cools_down && heat_input_of(recording) == nullptr &&
+  if (!inputs.empty() && !cools_down(recording, temperatures) && heat_input_of(recording) == nullptr &&
       std::ranges::all_of(inputs, [](const ChannelQuality* channel) { return channel->high == 0.0 && channel->low == 0.0; })) {
     fitness.lacks.push_back(fmt::format("no heat goes in: {} is 0 throughout", inputs.front()->quantity.key));
   }
@@ -192,7 +199,9 @@ DataQuality assess(const Recording& recording, const RecordingReport& report) {
       }
     }
   }
-  quality.suspicions = suspicions(recording, quality.channels);
+  Suspicions suspected = suspicions(recording, quality.channels);
+  quality.suspicions = std::move(suspected.all);
+  quality.spoiling = std::move(suspected.spoiling);
   quality.thermal = thermal_fitness(recording, quality);
   quality.drive = drive_fitness(recording, quality);
   return quality;

@@ -58,6 +58,7 @@ struct DataQuality {
   std::vector<ChannelQuality> channels;
   std::vector<ClockOffset> clock_offsets;
   std::vector<std::string> suspicions;  ///< said, not acted on
+  std::vector<std::string> spoiling;    ///< of them: units, signs and sensors with which nothing can be fitted, were it so
   Fitness thermal;                      ///< to fit a thermal network
   Fitness drive;                        ///< to fit friction of wheels
 };

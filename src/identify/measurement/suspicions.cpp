@@ -48,17 +48,18 @@ class Suspector {
  public:
   Suspector(const Recording& recording, std::span<const ChannelQuality> channels) : recording_(recording), channels_(channels) {}
 
-  std::vector<std::string> run() {
+  Suspicions run() {
     scales_of_temperature();
     ambient_against_motor();
     answer_to_heat();
     currents();
     speeds();
+    clock();
+    std::vector<std::string> spoiling = found_;
     angles();
     wheels();
-    clock();
     limits();
-    return std::move(found_);
+    return {std::move(found_), std::move(spoiling)};
   }
 
  private:
@@ -93,18 +94,34 @@ class Suspector {
       constexpr double kApart_K = 15.0;
       const bool stands_apart =
           std::ranges::none_of(starts_C, [&](double other_C) { return other_C != start && std::abs(other_C - start) < kApart_K; });
+      // Where the others start warm too, this one may as well.
+      const bool others_are_alike = std::ranges::all_of(starts_C, [&](double one_C) {
+        return std::ranges::all_of(
+            starts_C, [&](double other_C) { return one_C == start || other_C == start || std::abs(one_C - other_C) < kApart_K; });
+      });
       const bool all_are_alike =
           starts_C.size() > 1 && std::ranges::all_of(starts_C, [start](double other_C) { return std::abs(other_C - start) < 10.0; });
       const auto in_a_room = [](double value_C) { return value_C > 12.0 && value_C < 40.0; };
       if (start > 250.0 && from_kelvin_C > -25.0 && from_kelvin_C < 60.0) {
         found_.push_back(fmt::format("{} starts at {} °C: is it in kelvin ({} °C)?", channel.quantity.key, significant(start, 4),
                                      significant(from_kelvin_C, 3)));
-      } else if ((stands_apart && agrees(from_fahrenheit_C)) ||
+      } else if ((stands_apart && others_are_alike && (agrees(from_fahrenheit_C) || is_never_cool(channel, from_fahrenheit_C, starts_C))) ||
                  ((is_room || all_are_alike) && start > 55.0 && start < 105.0 && in_a_room(from_fahrenheit_C))) {
         found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", channel.quantity.key,
                                      significant(start, 3), significant(from_fahrenheit_C, 3)));
       }
     }
+  }
+
+  /// Fahrenheit of a winding that starts a little warmer than the rest, and never comes down to where a room's temperatures are.
+  static bool is_never_cool(const Channel& channel, double from_fahrenheit_C, std::span<const double> starts_C) {
+    constexpr double kRoom_F = 55.0;
+    const double start_C = at_start(channel);
+    constexpr double kWarmer_K = 12.0;
+    constexpr double kColder_K = 4.0;
+    return percentile(channel.values, 0.02) > kRoom_F && std::ranges::all_of(starts_C, [&](double other_C) {
+             return other_C == start_C || (from_fahrenheit_C > other_C - kColder_K && from_fahrenheit_C < other_C + kWarmer_K);
+           });
   }
 
   void ambient_against_motor() {
@@ -360,8 +377,6 @@ class Suspector {
 
 }  // namespace
 
-std::vector<std::string> suspicions(const Recording& recording, std::span<const ChannelQuality> channels) {
-  return Suspector(recording, channels).run();
-}
+Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels) { return Suspector(recording, channels).run(); }
 
 }  // namespace heatsoak

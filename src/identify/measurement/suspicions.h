@@ -10,6 +10,10 @@
 
 namespace heatsoak {
 
-std::vector<std::string> suspicions(const Recording& recording, std::span<const ChannelQuality> channels);
+struct Suspicions {
+  std::vector<std::string> all;
+  std::vector<std::string> spoiling;  ///< of them: units, signs and sensors with which nothing can be fitted, were it so
+};
+Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels);
 
 }  // namespace heatsoak

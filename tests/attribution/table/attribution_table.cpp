@@ -230,6 +230,18 @@ void print_table(Marks& marks) {
   }
 }
 
+/// Of the scores that have cases; the exit code is 1 where one misses its target.
+bool meets_targets(const Marks& marks) {
+  const auto is_within = [](const Share& share, double low, double high) {
+    const double reached = share.of > 0 ? static_cast<double>(share.right) / share.of : low;
+    return low <= reached && reached <= high;
+  };
+  const double middle = at_share(marks.after_over_floor, 0.5);
+  return is_within(marks.false_alarm, 0.0, 0.02) && is_within(marks.right_of_detected, 0.98, 1.0) &&
+         is_within(marks.right_of_visible, 0.95, 1.0) && is_within(marks.pairs_right, 0.9, 1.0) &&
+         is_within(marks.outsiders_right, 0.9, 1.0) && is_within(marks.interval_covers, 0.93, 0.97) && !(middle > 1.1);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -262,4 +274,5 @@ int main(int argc, char** argv) {
     }
   }
   print_table(marks);
+  return meets_targets(marks) ? 0 : 1;
 }

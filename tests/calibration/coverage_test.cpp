@@ -1,0 +1,69 @@
+// Short form of what heatsoak_calibration_table prints: do intervals hold the truth, and does unknown heat fool them?
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "study.h"
+
+namespace heatsoak::study {
+namespace {
+
+std::vector<CaseResult> cases(const Case& like, std::size_t count) {
+  std::vector<CaseResult> results(count);
+  in_parallel(count, 0, [&](std::size_t i) {
+    Case one = like;
+    one.seed = 5000 + i;
+    results[i] = calibrate_case({}, one);
+  });
+  return results;
+}
+
+TEST(Calibration, IntervalsHoldTheTruthAndAreNoWiderThanTheyMustBe) {
+  constexpr std::size_t kCases = 20;
+  Case like;
+  like.making.duration_s = 1200.0;
+  const std::vector<CaseResult> results = cases(like, kCases);
+  for (std::size_t f = 0; f < results.front().marks.size(); ++f) {
+    const std::string& name = results.front().marks[f].name;
+    int covered = 0;
+    double squares = 0.0;
+    std::vector<double> errors;
+    for (const CaseResult& each : results) {
+      const Mark& mark = each.marks[f];
+      covered += mark.is_covered() ? 1 : 0;
+      errors.push_back(std::abs(mark.error_ratio()));
+      squares += std::pow(std::log(mark.figure.value / mark.truth) / (0.5 * std::log(mark.figure.high / mark.figure.low) / 1.96), 2);
+      EXPECT_TRUE(mark.figure.is_identifiable) << name;
+    }
+    std::ranges::sort(errors);
+    // Of 20 intervals that hold with 95 %, fewer than 16 do once in 400 times; χ² with 20 degrees of freedom as rarely leaves these.
+    EXPECT_GE(covered, 16) << name;
+    EXPECT_GT(std::sqrt(squares / kCases), 0.6) << name;
+    EXPECT_LT(std::sqrt(squares / kCases), 1.45) << name;
+    EXPECT_LT(errors[kCases / 2], 0.01) << name;
+  }
+}
+
+TEST(Calibration, UnknownHeatDoesNotFoolIt) {
+  constexpr std::size_t kCases = 6;
+  Case like;
+  like.making.duration_s = 1200.0;
+  like.making.flux_rms_W = 0.5;
+  const auto covered = [&](bool with_flux) {
+    like.with_flux = with_flux;
+    int count = 0;
+    for (const CaseResult& each : cases(like, kCases)) {
+      count += static_cast<int>(std::ranges::count_if(each.marks, &Mark::is_covered));
+    }
+    return count;
+  };
+  constexpr int kAll = kCases * 6;
+  EXPECT_GE(covered(true), kAll * 3 / 4);
+  // Least squares that takes the measured heat for all heat claims far narrower ones, and is wrong most of the time.
+  EXPECT_LE(covered(false), kAll / 2);
+}
+
+}  // namespace
+}  // namespace heatsoak::study

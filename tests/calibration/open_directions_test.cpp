@@ -1,0 +1,180 @@
+// What runs leave open, in words; profile intervals; the file that a calibration writes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/diagnostic.h"
+#include "identify/calibration/profile.h"
+#include "motor/write_motor.h"
+#include "study.h"
+
+namespace heatsoak::study {
+namespace {
+
+using testing::Contains;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const CalibratedFigure& figure(const Calibration& calibration, std::string_view name) {
+  return *std::ranges::find(calibration.figures, name, &CalibratedFigure::name);
+}
+
+Case short_case() {
+  Case one;
+  one.making.duration_s = 1200.0;
+  one.runs = 2;
+  return one;
+}
+
+TEST(OpenDirections, NoneWhereBothNodesAreSensedAndTheResistanceIsKnown) {
+  EXPECT_THAT(calibrate_case({}, short_case()).calibration.open, IsEmpty());
+}
+
+TEST(OpenDirections, CommonScaleOfAllHeatRestsOnTheStatedResistance) {
+  const CaseResult result = calibrate_case({.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}, short_case());
+  EXPECT_THAT(result.calibration.open, Contains(Field(&OpenDirection::why, HasSubstr("common factor on all heat"))));
+  EXPECT_THAT(result.calibration.next_experiment, HasSubstr("four wires"));
+  EXPECT_FALSE(figure(result.calibration, "terminal_resistance").is_identifiable);
+  EXPECT_TRUE(figure(result.calibration, "thermal_time_constant_winding").is_identifiable);
+}
+
+TEST(OpenDirections, WindingCapacityWhereOnlyTheStatorIsSensed) {
+  Case one = short_case();
+  one.making.winding_is_sensed = false;
+  const CaseResult result = calibrate_case({}, one);
+  EXPECT_THAT(result.calibration.open, Contains(Field(&OpenDirection::why, HasSubstr("only the stator is sensed"))));
+  EXPECT_THAT(result.calibration.next_experiment, HasSubstr("winding"));
+  EXPECT_FALSE(figure(result.calibration, "winding_heat_capacity").is_identifiable);
+  EXPECT_TRUE(figure(result.calibration, "thermal_resistance_stator_ambient").is_identifiable);
+}
+
+/// A log without heat in which the motor cools down.
+Recording cool_down(const TwoNodeTruth& truth) {
+  LogMaking making;
+  making.duration_s = 1500.0;
+  making.largest_current_A = 14.0;
+  Recording log = generated_log(truth, making, 7, 0);
+  // The second half of the log made anew from where the first ends: currents of 0 leave the equations of the truth as they are.
+  double winding_C = 90.0;
+  double stator_C = 75.0;
+  Random random(7, 9);
+  for (Channel& channel : log.channels) {
+    if (channel.quantity.key == "current_A") {
+      std::ranges::fill(channel.values, 0.0);
+    }
+  }
+  for (std::size_t row = 0; row < log.rows(); ++row) {
+    for (Channel& channel : log.channels) {
+      if (channel.quantity.key == "winding_C") {
+        channel.values[row] = winding_C + 0.1 * standard_normal(random);
+      } else if (channel.quantity.key == "stator_C") {
+        channel.values[row] = stator_C + 0.1 * standard_normal(random);
+      } else if (channel.quantity.key == "ambient_C") {
+        channel.values[row] = 25.0;
+      }
+    }
+    for (int part = 0; part < 100; ++part) {
+      const double across_W = (winding_C - stator_C) / truth.winding_stator_K_per_W;
+      winding_C -= 0.01 * across_W / truth.winding_J_per_K;
+      stator_C += 0.01 * (across_W - (stator_C - 25.0) / truth.stator_ambient_K_per_W) / truth.stator_J_per_K;
+    }
+  }
+  return log;
+}
+
+TEST(OpenDirections, CoolingTellsTimeConstantsAndNeverWatts) {
+  const Folder folder;
+  TwoNodeTruth truth;
+  truth.stator_J_per_K *= 1.1;
+  const std::vector<Recording> logs{read_log(write_log(cool_down(truth), folder.path() / "cooling.csv"))};
+  const Calibration result = calibrate(Sheet{}.motor(folder), logs, {}, {});
+  EXPECT_THAT(result.open, Contains(Field(&OpenDirection::why, HasSubstr("cooling tells time constants, never watts"))));
+  EXPECT_FALSE(figure(result, "thermal_resistance_stator_ambient").is_identifiable);
+  const CalibratedFigure& stator = figure(result, "thermal_time_constant_stator");
+  EXPECT_TRUE(stator.is_identifiable);
+  EXPECT_NEAR(stator.value, truth.stator_J_per_K * truth.stator_ambient_K_per_W, 0.03 * stator.value);
+}
+
+TEST(OpenDirections, WhereNothingIsLearnedTheAnswerIsThatAndTheExperiment) {
+  // Two noisy minutes against a sheet that is good to 1 %.
+  Case one = short_case();
+  one.runs = 1;
+  one.making.duration_s = 120.0;
+  one.making.noise_K = 0.5;
+  try {
+    calibrate_case({.truth = {}, .resistance_spread = {}, .thermal_spread = ", tolerance = \"1 %\""}, one);
+    FAIL() << "learned something";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
+    EXPECT_THAT(failure.what(), HasSubstr("nothing can be learned"));
+    EXPECT_THAT(failure.what(), HasSubstr("experiment"));
+  }
+}
+
+TEST(Profile, IsTheCurvatureWhereThatHoldsAndLopsidedWhereItDoesNot) {
+  const CaseResult both = calibrate_case({}, short_case());
+  const Calibration& sharp = both.calibration;
+  for (const int place : {0, 3}) {
+    const auto [low, high] = profile_interval(sharp.motor_model.model, sharp.runs, sharp.fit, place, 1);
+    const double sd = std::sqrt(sharp.fit.hypotheses.front().covariance(place, place));
+    EXPECT_NEAR((sharp.fit.theta[place] - low) / (1.96 * sd), 1.0, 0.05) << place;
+    EXPECT_NEAR((high - sharp.fit.theta[place]) / (1.96 * sd), 1.0, 0.05) << place;
+  }
+  Case one = short_case();
+  one.making.winding_is_sensed = false;
+  const CaseResult stator_only = calibrate_case({}, one);
+  const CalibratedFigure& capacity = figure(stator_only.calibration, "winding_heat_capacity");
+  EXPECT_TRUE(capacity.by_profile);
+  EXPECT_LT(capacity.low, capacity.value);
+  EXPECT_GT(capacity.high, capacity.value);
+}
+
+TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
+  const Folder folder;
+  const Motor motor = Sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}.motor(folder);
+  const CaseResult result = calibrate_case({.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}, short_case());
+  const Motor written = calibrated_motor(motor, result.calibration);
+  const std::filesystem::path file = folder.path() / "model.toml";
+  std::ofstream(file) << to_toml(written);
+  const Motor read = read_motor(file);
+  ASSERT_TRUE(read.fit);
+  EXPECT_EQ(read.fit->figures, written.fit->figures);
+  EXPECT_LT((read.fit->correlation - written.fit->correlation).cwiseAbs().maxCoeff(), 1e-4);
+  for (const auto& [key, each] : written.figures) {
+    EXPECT_NEAR(read.figures.at(key).value, each.value, 1e-5 * std::abs(each.value)) << key;
+  }
+  // What hangs together in the fit does so in what is drawn from the file.
+  Random random(3, 0);
+  double product = 0.0;
+  double squares_a = 0.0;
+  double squares_b = 0.0;
+  const double mean_a = std::log(written.nominal.thermal_resistance_stator_ambient_K_per_W);
+  const double mean_b = std::log(written.nominal.thermal_resistance_winding_stator_K_per_W);
+  for (int i = 0; i < 4000; ++i) {
+    const MotorValues values = draw_sample(read, random).values;
+    const double a = std::log(values.thermal_resistance_stator_ambient_K_per_W) - mean_a;
+    const double b = std::log(values.thermal_resistance_winding_stator_K_per_W) - mean_b;
+    product += a * b;
+    squares_a += a * a;
+    squares_b += b * b;
+  }
+  const auto place = [&](const char* key) { return std::ranges::find(written.fit->figures, key) - written.fit->figures.begin(); };
+  const double expected = written.fit->correlation(place("thermal_resistance_stator_ambient"), place("thermal_resistance_winding_stator"));
+  EXPECT_GT(expected, 0.8);
+  EXPECT_NEAR(product / std::sqrt(squares_a * squares_b), expected, 0.08);
+}
+
+TEST(CalibratedMotor, IsTheSameWhateverTheNumberOfThreads) {
+  Case one = short_case();
+  const Folder folder;
+  const Motor motor = Sheet{}.motor(folder);
+  const std::string with_one = to_toml(calibrated_motor(motor, calibrate_case({}, one).calibration));
+  one.threads = 5;
+  EXPECT_EQ(to_toml(calibrated_motor(motor, calibrate_case({}, one).calibration)), with_one);
+}
+
+}  // namespace
+}  // namespace heatsoak::study

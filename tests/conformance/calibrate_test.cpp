@@ -1,0 +1,225 @@
+// `heatsoak calibrate` as a user meets it: shipped logs, spoilt logs, and the file it writes in every other verb.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <sstream>
+
+#include "program_run.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const fs::path kSoak = fs::path(HEATSOAK_SOURCE_DIR) / "reports/soak";
+constexpr const char* kMotor = "maxon_ec45_flat_70w_24v";
+
+using Cells = std::vector<std::string>;
+
+/// A shipped log with its rows changed: time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s.
+std::string spoilt(const std::function<void(std::vector<Cells>&)>& change) {
+  std::istringstream lines(content_of(kSoak / "match_1.csv"));
+  std::string line;
+  std::getline(lines, line);
+  std::string text = line + '\n';
+  std::vector<Cells> rows;
+  while (std::getline(lines, line)) {
+    Cells cells;
+    std::istringstream in(line + ',');
+    for (std::string cell; std::getline(in, cell, ',');) {
+      cells.push_back(cell);
+    }
+    rows.push_back(std::move(cells));
+  }
+  change(rows);
+  for (const Cells& cells : rows) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      text += (i > 0 ? "," : "") + cells[i];
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::function<void(std::vector<Cells>&)> each_cell(std::size_t column, const std::function<std::string(double)>& change) {
+  return [=](std::vector<Cells>& rows) {
+    for (Cells& cells : rows) {
+      cells[column] = cells[column].empty() ? "" : change(std::stod(cells[column]));
+    }
+  };
+}
+
+struct BadLog {
+  const char* name;
+  std::function<void(std::vector<Cells>&)> change;
+  int exit_code;
+  const char* message;
+};
+
+RunOptions in(const fs::path& folder) {
+  RunOptions options;
+  options.folder = folder;
+  return options;
+}
+
+class BadLogs : public testing::TestWithParam<BadLog> {};
+
+TEST_P(BadLogs, AreRefusedWithTheReason) {
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", spoilt(GetParam().change));
+  const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path()));
+  EXPECT_EQ(found.exit_code, GetParam().exit_code) << found.err;
+  EXPECT_THAT(found.err, HasSubstr("log.csv"));
+  EXPECT_THAT(found.err, HasSubstr(GetParam().message));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"log.csv"});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadLogs,
+    testing::Values(BadLog{"FahrenheitColumn", each_cell(1, [](double winding_C) { return std::to_string(1.8 * winding_C + 32.0); }), 2,
+                           "in degrees Fahrenheit"},
+                    BadLog{"Kelvin", each_cell(2, [](double stator_C) { return std::to_string(stator_C + 273.15); }), 2, "in kelvin"},
+                    BadLog{"Milliamps", each_cell(4, [](double current_A) { return std::to_string(1e3 * current_A); }), 2,
+                           "in milliamperes"},
+                    BadLog{"SmallMilliamps", each_cell(4, [](double current_A) { return std::to_string(30.0 * current_A); }), 2,
+                           "is it in milliamperes"},
+                    BadLog{"SwappedSensors",
+                           [](std::vector<Cells>& rows) {
+                             for (Cells& cells : rows) {
+                               std::swap(cells[1], cells[2]);
+                             }
+                           },
+                           2, "are the two swapped?"},
+                    BadLog{"AllConstant",
+                           [](std::vector<Cells>& rows) {
+                             for (Cells& cells : rows) {
+                               std::copy(rows.front().begin() + 1, rows.front().end(), cells.begin() + 1);
+                             }
+                           },
+                           3, "winding_C is constant"},
+                    BadLog{"TooShort", [](std::vector<Cells>& rows) { rows.resize(12); }, 3, "12 rows; at least 20"},
+                    BadLog{"Unexcited",
+                           [](std::vector<Cells>& rows) {
+                             for (std::size_t row = 0; row < rows.size(); ++row) {
+                               rows[row][1] = std::to_string(22.0 + 0.1 * static_cast<double>(row * 7 % 5));
+                               rows[row][2] = std::to_string(22.0 + 0.1 * static_cast<double>(row * 11 % 5));
+                               rows[row][4] = rows[row][5] = "0";
+                             }
+                           },
+                           3, "no heat goes in"},
+                    BadLog{"NothingButNan",
+                           [](std::vector<Cells>& rows) {
+                             for (Cells& cells : rows) {
+                               std::fill(cells.begin() + 1, cells.end(), "NaN");
+                             }
+                           },
+                           3, "holds a number"},
+                    BadLog{"NoTemperatures",
+                           [](std::vector<Cells>& rows) {
+                             for (Cells& cells : rows) {
+                               cells[1] = cells[2] = "";
+                             }
+                           },
+                           3, "no temperature of the motor"},
+                    BadLog{"Unsorted", [](std::vector<Cells>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase"}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(Calibrate, LogsThatLookWrongAreTakenAsTheyAreWhereAsked) {
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", spoilt(each_cell(5, [](double speed) { return std::to_string(9.55 * speed); })));
+  EXPECT_EQ(run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path())).exit_code, 2);
+  const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml", "--as-is"}, in(folder.path()));
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("note: log: speed_rad_per_s reaches"));
+}
+
+TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
+  const TemporaryFolder folder;
+  const std::string log = (kSoak / "match_1.csv").string();
+  write(folder.path() / "copy.csv", content_of(log));
+  for (const std::vector<std::string>& logs :
+       {std::vector<std::string>{log, "copy.csv"}, std::vector<std::string>{log, "--holdout", "copy.csv"}}) {
+    std::vector<std::string> arguments{"calibrate", "--motor", kMotor, "--out", "model.toml"};
+    arguments.insert(arguments.end(), logs.begin(), logs.end());
+    const ProgramRun found = run(arguments, in(folder.path()));
+    EXPECT_EQ(found.exit_code, 2);
+    EXPECT_THAT(found.err, HasSubstr("copy.csv: error: holds the same rows as"));
+  }
+}
+
+TEST(Calibrate, HeldOutLogsAreLookedAtToo) {
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", spoilt(each_cell(4, [](double current_A) { return std::to_string(1e3 * current_A); })));
+  const ProgramRun found = run(
+      {"calibrate", "--motor", kMotor, (kSoak / "bench.csv").string(), "--holdout", "log.csv", "--out", "model.toml"}, in(folder.path()));
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.err, HasSubstr("in milliamperes"));
+}
+
+/// The example of the README.
+class CalibratedModel : public testing::Test {
+ protected:
+  ProgramRun calibrate(const std::string& more) const {
+    const std::string logs =
+        (kSoak / "bench.csv").string() + ' ' + (kSoak / "match_1.csv").string() + ' ' + (kSoak / "match_2.csv").string();
+    return run_line("heatsoak calibrate --motor " + std::string(kMotor) + ' ' + logs + " --holdout " + (kSoak / "match_3.csv").string() +
+                        " --out measured_motor.toml " + more,
+                    in(folder_.path()));
+  }
+  ProgramRun line(const std::string& text) const { return run_line("heatsoak " + text, in(folder_.path())); }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(CalibratedModel, AnswersAsTheInterfaceSays) {
+  const nlohmann::json answer = calibrate("--json -").json();
+  EXPECT_EQ(answer["schema"], "heatsoak.calibration/1");
+  ASSERT_GE(answer["parameters"].size(), 6U);
+  for (const nlohmann::json& each : answer["parameters"]) {
+    EXPECT_TRUE(each["name"].is_string());
+    EXPECT_TRUE(each["unit"].is_string());
+    EXPECT_TRUE(each["identifiable"].is_boolean());
+    EXPECT_LE(each["ci95"][0].get<double>(), each["value"].get<double>());
+    EXPECT_GE(each["ci95"][1].get<double>(), each["value"].get<double>());
+  }
+  for (const char* where : {"error", "error_before", "holdout_error", "holdout_error_before"}) {
+    for (const char* signal : {"winding_C", "stator_C"}) {
+      EXPECT_GT(answer[where][signal]["rmse_K"].get<double>(), 0.0) << where;
+      EXPECT_GE(answer[where][signal]["max_abs_K"].get<double>(), answer[where][signal]["rmse_K"].get<double>()) << where;
+    }
+  }
+  for (const char* signal : {"winding_C", "stator_C"}) {
+    EXPECT_LT(answer["holdout_error"][signal]["rmse_K"].get<double>(),
+              0.6 * answer["holdout_error_before"][signal]["rmse_K"].get<double>());
+  }
+}
+
+TEST_F(CalibratedModel, IsTheSameForOneSeedWhateverTheNumberOfThreads) {
+  ASSERT_EQ(calibrate("--seed 5 --threads 1").exit_code, 0);
+  const std::string one = content_of(folder_.path() / "measured_motor.toml");
+  ASSERT_EQ(calibrate("--seed 5 --threads 3").exit_code, 0);
+  EXPECT_EQ(content_of(folder_.path() / "measured_motor.toml"), one);
+}
+
+TEST_F(CalibratedModel, IsReadByEveryOtherVerb) {
+  ASSERT_EQ(calibrate("").exit_code, 0);
+  const std::string motor = "measured_motor.toml";
+  EXPECT_EQ(line("lint " + motor).exit_code, 0) << line("lint " + motor).out;
+  EXPECT_THAT(line("describe " + motor).out, HasSubstr("fit to measured temperatures"));
+  EXPECT_EQ(line("steady --motor " + motor + " --current-on 3A --time-on 10s --time-off 20s").exit_code, 0);
+  EXPECT_LE(line("evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors " + motor + " --samples 50").exit_code, 1);
+  const ProgramRun evaluated =
+      line("evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --model " + motor + " --samples 50 --json -");
+  EXPECT_LE(evaluated.exit_code, 1) << evaluated.err;
+  EXPECT_EQ(evaluated.json()["schema"], "heatsoak.evaluate/1");
+  EXPECT_EQ(line("simulate --motor " + motor + " --robot roboteam_twente_v2024 --duty paper_intermittent --out trace.csv").exit_code, 0);
+  const std::string logs = (kSoak / "bench.csv").string() + ' ' + (kSoak / "match_1.csv").string();
+  const ProgramRun diagnosed =
+      line("diagnose --model " + motor + " --train " + logs + " --holdout " + (kSoak / "match_3.csv").string() + " --out diagnosis");
+  EXPECT_EQ(diagnosed.exit_code, 0) << diagnosed.err;
+}
+
+}  // namespace
+}  // namespace heatsoak
