@@ -25,7 +25,7 @@ struct Axis {
 
 ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before, const ExtendedModel& after,
                           const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them, const std::string& title) {
-  ChartPanel panel{title, "measured − model / K", {}, {}, {{"", 0.0}}};
+  ChartPanel panel{title, "measured − model / K", {}, {}, {}};
   ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
   Axis axis;
   for (const MeasuredRun& run : runs) {
@@ -70,7 +70,7 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
               "time / min",
               {}};
   for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {
-    ChartPanel panel{"into the " + node, "heat / W", {}, {}, {{"", 0.0}}};
+    ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
     ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
     ChartBand band{"usual", {}, {}, {}, 0};
     double begin_min = 0.0;

@@ -13,22 +13,32 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
   const Eigen::Index states = network.state_count();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kSensed_K = 5.0;
+  /// All of two or more sensors this close to the surroundings: everything rests, what is unseen too.
+  constexpr double kRest_K = 2.0;
   const double ambient_C = run.at.front().ambient_C;
   RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
-  double hottest_C = nan;
+  double sum_C = 0.0;
+  double farthest_K = 0.0;
+  int seen = 0;
   for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
     const auto shown_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
-    const auto* const first = std::find_if(shown_C.begin(), shown_C.end(), [](double value) { return !std::isnan(value); }).operator->();
-    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != shown_C.end().operator->()) {
+    const auto first = std::ranges::find_if(shown_C, [](double value_C) { return !std::isnan(value_C); });
+    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != shown_C.end()) {
       start.state_C[node] = *first;
-      hottest_C = std::fmax(hottest_C, *first);
+      sum_C += *first;
+      farthest_K = std::max(farthest_K, std::abs(*first - ambient_C));
+      ++seen;
     }
+  }
+  const bool rests = seen > 1 && farthest_K < kRest_K;
+  if (rests) {
+    start.prior_sd_K.setConstant(1.0);
   }
   for (Eigen::Index node = 0; node < states; ++node) {
     if (std::isnan(start.state_C[node])) {
       // Unseen and perhaps just used: it may be as far from what is seen as that is from the surroundings.
-      start.state_C[node] = std::isnan(hottest_C) ? ambient_C : hottest_C;
-      start.prior_sd_K[node] = kSensed_K + std::abs(start.state_C[node] - ambient_C);
+      start.state_C[node] = seen > 0 ? sum_C / seen : ambient_C;
+      start.prior_sd_K[node] = (rests ? 1.0 : kSensed_K) + std::abs(start.state_C[node] - ambient_C);
     }
   }
   start.prior_C = start.state_C;

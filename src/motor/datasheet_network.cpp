@@ -1,5 +1,7 @@
 #include "motor/datasheet_network.h"
 
+#include "motor/conditions.h"
+
 namespace heatsoak {
 
 double drag_torque_Nm(const MotorValues& motor) { return motor.torque_constant_Nm_per_A * motor.no_load_current_A; }
@@ -20,7 +22,7 @@ Network datasheet_network(const Motor& motor, const MotorSample& sample) {
   network.limit_current_by(copper);
   for (std::size_t i = 0; i < motor.effects.size(); ++i) {
     const MotorEffect& effect = motor.effects[i];
-    if (!effect.condition.empty()) {
+    if (!effect.condition.empty() && !acts_by_default(effect, sample.effect_parameters[i])) {
       continue;
     }
     network.add_effect(effect.name, *effect.type, effect.nodes, sample.effect_parameters[i]);

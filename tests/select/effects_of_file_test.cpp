@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "given_demand.h"
+#include "motor/conditions.h"
 #include "select/evaluate.h"
 #include "select/trace.h"
 
@@ -142,6 +143,40 @@ TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncerta
   const MotorEvaluation result = evaluation(motor, 8);
   EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 2e-3);
   EXPECT_NEAR(result.stator_peak_C.p50, result.stator_peak_C.nominal, 2e-3);
+}
+
+std::string under_a_condition(const std::string& name, const std::string& type, const std::string& size) {
+  return "\n[effects." + name + "]\ntype = \"" + type + "\"\n" + size + "[effects." + name + ".condition]\ncooling = \"fan\"\n";
+}
+
+TEST_F(EffectsOfAFile, cooling_under_a_condition_counts_only_where_the_condition_is_declared) {
+  const Motor plain = MotorFile("").read();
+  const Motor fan = MotorFile(under_a_condition("fan", "airflow", estimated("conductance", "1 W/K"))).read();
+  EXPECT_EQ(evaluation(fan, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal);
+  EXPECT_EQ(booked_W(trace(fan), "fan", "stator"), 0.0);
+  const Motor declared = under(fan, {{"cooling", "fan"}});
+  EXPECT_LT(evaluation(declared, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal - 1.0);
+  EXPECT_LT(booked_W(trace(declared), "fan", "stator"), 0.0);
+}
+
+TEST_F(EffectsOfAFile, heat_under_a_condition_counts_unless_the_condition_is_declared_otherwise) {
+  const Motor plain = MotorFile("").read();
+  const Motor lamp = MotorFile(under_a_condition("lamp", "constant_heat", estimated("power", "3 W"))).read();
+  EXPECT_GT(evaluation(lamp, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal + 1.0);
+  EXPECT_NEAR(booked_W(trace(lamp), "lamp", "stator"), 3.0, 1e-9);
+  const Motor without = under(lamp, {{"cooling", "still air"}});
+  EXPECT_EQ(evaluation(without, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal);
+}
+
+TEST_F(EffectsOfAFile, a_condition_that_no_effect_has_is_an_error_that_says_what_there_is) {
+  const Motor fan = MotorFile(under_a_condition("fan", "airflow", estimated("conductance", "1 W/K"))).read();
+  try {
+    under(fan, {{"colour", "red"}});
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(failure.what()).find("cooling=fan"), std::string::npos) << failure.what();
+  }
 }
 
 }  // namespace

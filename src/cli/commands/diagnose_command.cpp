@@ -1,16 +1,15 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "cli/command.h"
 #include "cli/diagnosis_answer.h"
 #include "cli/quantity_option.h"
 #include "identify/attribution/model_file.h"
 #include "identify/measurement/read_recording.h"
+#include "motor/write_motor.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -83,14 +82,7 @@ std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const
   return all;
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-void hand_out(const Options& options, const Motor& motor, const Diagnosis& diagnosis, const DiagnosisInput& input, Session& session) {
+void hand_out(const Options& options, const Motor& extended, const Diagnosis& diagnosis, const DiagnosisInput& input, Session& session) {
   const std::filesystem::path folder(options.out);
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
@@ -102,7 +94,7 @@ void hand_out(const Options& options, const Motor& motor, const Diagnosis& diagn
     svg.emplace_back(picture.name, draw_svg(picture.chart));
     session.write(folder / (picture.name + ".svg"), svg.back().second);
   }
-  session.write(folder / (motor.id + ".toml"), extended_motor_file(text_of(motor.file), motor, diagnosis));
+  session.write(folder / (extended.id + ".toml"), to_toml(extended));
   session.write(folder / "diagnosis.json", diagnosis_json(diagnosis, input).dump(2) + "\n");
   session.write(folder / "diagnosis.html", diagnosis_page(diagnosis, input, svg));
 }
@@ -123,14 +115,14 @@ ExitCode run(const Options& options, Session& session) {
   how.needed = model.needed;
   how.ambient_C = options.ambient_C;
   DiagnosisInput input;
-  input.model = std::move(model.model);
+  input.model = model.model;
   input.train = runs_of(logs.train, how, &input.free, notes);
   input.holdout = runs_of(logs.holdout, how, nullptr, notes);
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   diagnosis.notes = notes;
   session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), diagnosis.description));
   if (!options.out.empty()) {
-    hand_out(options, motor, diagnosis, input, session);
+    hand_out(options, extended_motor(motor, model, diagnosis), diagnosis, input, session);
     session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
   }
   session.answer(diagnosis_json(diagnosis, input));

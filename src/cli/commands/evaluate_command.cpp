@@ -8,11 +8,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "cli/command.h"
+#include "cli/condition_option.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
 #include "duty/duty.h"
+#include "motor/conditions.h"
 #include "motor/motor.h"
 #include "report/chart.h"
 #include "robot/robot.h"
@@ -27,15 +30,17 @@ struct Options {
   std::vector<std::string> motors;
   std::string model;
   std::string plot;
+  std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
 };
 
 /// A model takes the place of the motor that its fit began with, or stands alone where no motors are named.
-std::vector<Motor> read_motors(const std::vector<std::string>& names, const std::string& model, const DataFolders& folders) {
+std::vector<Motor> read_motors(const Options& options, const DataFolders& folders) {
+  const auto& [names, model] = std::tie(options.motors, options.model);
   const bool all = (names.empty() && model.empty()) || (names.size() == 1 && names.front() == "all");
   std::vector<Motor> motors;
   if (!model.empty()) {
-    motors.push_back(read_motor(model));
+    motors.push_back(under(read_motor(model), options.conditions));
   }
   std::set<std::filesystem::path> taken;
   for (const std::string& name : all ? ids_in(folders.motors) : names) {
@@ -43,6 +48,9 @@ std::vector<Motor> read_motors(const std::vector<std::string>& names, const std:
     const bool is_replaced = !model.empty() && motors.front().fit && motors.front().fit->motor == file.stem();
     if (!is_replaced && taken.insert(file).second) {
       motors.push_back(read_motor(file));
+      if (model.empty()) {
+        motors.back() = under(std::move(motors.back()), options.conditions);
+      }
     }
   }
   if (motors.empty()) {
@@ -157,7 +165,7 @@ ExitCode run(Options& options, Session& session) {
   const DataFolders folders = session.folders();
   const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
-  const std::vector<Motor> motors = read_motors(options.motors, options.model, folders);
+  const std::vector<Motor> motors = read_motors(options, folders);
   options.evaluate.with_curves = !options.plot.empty();
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
   const std::vector<std::vector<WheelDemand>> draws =
@@ -209,6 +217,7 @@ Command evaluate_command() {
         app.add_option("--model", options->model,
                        "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
             ->type_name("FILE.toml");
+        add_conditions(app, options->conditions);
         app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
             ->check(whole_number(1'000'000))
             ->capture_default_str();

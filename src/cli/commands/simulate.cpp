@@ -8,10 +8,12 @@
 
 #include "base/files.h"
 #include "cli/command.h"
+#include "cli/condition_option.h"
 #include "cli/jerk_sweep.h"
 #include "cli/match_simulation.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
+#include "motor/conditions.h"
 #include "report/chart.h"
 #include "select/trace.h"
 
@@ -29,6 +31,7 @@ struct Options {
   bool jerk_sweep = false;
   double every_s = 1.0;
   std::uint64_t seed = 1;
+  std::map<std::string, std::string> conditions;
 };
 
 /// Mean heat of every effect at every node it books into, the largest first in the sense of the network.
@@ -108,7 +111,8 @@ ExitCode run(const Options& options, Session& session) {
     throw Failure(ExitCode::bad_input, "expected one of --motor M and --model FILE");
   }
   const Motor motor =
-      read_motor(options.model.empty() ? file_of(folders.motors, "motor", options.motor) : std::filesystem::path(options.model));
+      under(read_motor(options.model.empty() ? file_of(folders.motors, "motor", options.motor) : std::filesystem::path(options.model)),
+            options.conditions);
   const auto needs_a_plant = [&motor] {
     if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {
       throw bad_input({motor.file.string()}, "figures.rotor_inertia",
@@ -153,6 +157,7 @@ Command simulate() {
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
             app.add_option("--model", options->model, "a calibrated motor (`heatsoak calibrate --out FILE`) in its place")
                 ->type_name("FILE.toml");
+            add_conditions(app, options->conditions);
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file; a match is driven in a closed loop")
                 ->type_name("D");

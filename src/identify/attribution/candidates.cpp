@@ -6,8 +6,18 @@
 #include <array>
 #include <cmath>
 
+#include "identify/attribution/extended_model.h"
+
 namespace heatsoak {
 namespace {
+
+/// Heat capacity of the motors that the catalogue's typical sizes are of.
+constexpr double kUsualCapacity_J_per_K = 120.0;
+const ParameterSpec& heat_share_spec() {
+  static const ParameterSpec spec{"deviation", "", Range::between(-0.9, 3.0),
+                                  "of the heat that goes in from what the log says, as a share of it"};
+  return spec;
+}
 
 struct SignalName {
   Signal signal;
@@ -34,13 +44,18 @@ std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const st
   return names;
 }
 
-bool is_in(const Network& network, const EffectType& type, const std::vector<std::string>& nodes) {
+bool is_in(const ExtendedModel& model, const Candidate& candidate) {
+  const Network& network = model.model.network;
   return std::ranges::any_of(network.effects(), [&](const EffectInPlace& effect) {
-    if (effect.type->name != type.name) {
+    if (effect.type->name != candidate.type->name) {
       return false;
     }
-    for (std::size_t role = 0; role < nodes.size(); ++role) {
-      if (type.nodes[role].own_capacity < 0 && network.node_name(effect.node_index[role]) != nodes[role]) {
+    const auto term = std::ranges::find(model.conditional, effect.name, &ConditionalTerm::effect_name);
+    if ((term == model.conditional.end() ? Condition{} : term->condition) != candidate.condition) {
+      return false;
+    }
+    for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
+      if (candidate.type->nodes[role].own_capacity < 0 && network.node_name(effect.node_index[role]) != candidate.nodes[role]) {
         return false;
       }
     }
@@ -80,6 +95,86 @@ std::vector<std::vector<std::string>> placements(const Network& network, const E
   return all;
 }
 
+/// Of a motor of that size: what is typical in W, W/K and J/K grows with it.
+std::vector<double> scaled(const EffectType& type, std::vector<double> parameters, double scale) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const std::string_view unit = unit_of(type.parameters, p, parameters);
+    if (type.parameters[p].choices.empty() && (unit.starts_with("W") || unit == "J/K")) {
+      parameters[p] *= scale;
+    }
+  }
+  return parameters;
+}
+
+double scale_of(const Model& model) {
+  double capacity_J_per_K = 0.0;
+  for (int node = 0; node < model.network.state_count(); ++node) {
+    capacity_J_per_K += model.values[static_cast<std::size_t>(model.network.capacity_index(node))];
+  }
+  return std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K);
+}
+
+std::string in_words(const Condition& condition) {
+  std::string text;
+  for (const auto& [key, value] : condition) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", key == "run" ? value : fmt::format("{}={}", key, value));
+  }
+  return text;
+}
+
+/// Every way in which what is said of the runs parts them in two; a stated condition comes before the name of the only run that has it.
+std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
+  std::vector<Condition> conditions;
+  std::vector<std::vector<bool>> known;
+  for (const bool named : {false, true}) {
+    for (const MeasuredRun& each : runs) {
+      for (const auto& [key, value] : each.conditions) {
+        const Condition condition{{key, value}};
+        std::vector<bool> has;
+        for (const MeasuredRun& run : runs) {
+          has.push_back(has_condition(run, condition));
+        }
+        const bool parts = std::ranges::find(has, false) != has.end();
+        if ((key == "run") == named && parts && std::ranges::find(known, has) == known.end()) {
+          known.push_back(std::move(has));
+          conditions.push_back(condition);
+        }
+      }
+    }
+  }
+  return conditions;
+}
+
+/// What may be different in some of the runs without any signal of it: air that is moved, heat from outside, heat that the log does not
+/// tell.
+void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
+  const Network& network = model.model.network;
+  for (const Condition& condition : conditions_of(runs)) {
+    for (const std::string_view name : {"airflow", "constant_heat"}) {
+      const EffectType& type = *find_effect(name);
+      for (const std::string_view node : {"stator", "winding"}) {
+        if (network.find_node(node) < 0) {
+          continue;
+        }
+        Candidate candidate{&type, nullptr,  fmt::format("{}@{} in {}", name, node, in_words(condition)), {std::string(node)}, {},
+                            0,     condition};
+        for (std::size_t role = 1; role < type.nodes.size(); ++role) {
+          candidate.nodes.emplace_back(type.nodes[role].default_node);
+        }
+        candidate.parameters = scaled(type, type.candidacy.variants.front(), scale);
+        if (!is_in(model, candidate)) {
+          list.candidates.push_back(std::move(candidate));
+        }
+      }
+    }
+    const bool is_there = std::ranges::any_of(model.heat_shares, [&](const HeatShareTerm& term) { return term.condition == condition; });
+    if (!is_there && !heat_input_parameters(network).empty()) {
+      list.candidates.push_back(
+          {nullptr, nullptr, fmt::format("heat_share in {}", in_words(condition)), {}, {kUsualDeviation_share}, 0, condition});
+    }
+  }
+}
+
 std::string id_of(const EffectType& type, const std::vector<std::string>& nodes) {
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (type.nodes[role].own_capacity < 0 && nodes[role] != type.nodes[role].default_node) {
@@ -89,7 +184,7 @@ std::string id_of(const EffectType& type, const std::vector<std::string>& nodes)
   return std::string(type.name);
 }
 
-void add_network_candidates(const Network& network, const std::vector<MeasuredRun>& runs, CandidateList& list) {
+void add_network_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
   for (const EffectType& type : all_effects()) {
     if (type.candidacy.size_parameter < 0) {
       continue;
@@ -98,13 +193,13 @@ void add_network_candidates(const Network& network, const std::vector<MeasuredRu
       list.not_judged.push_back(fmt::format("{}: not every log has {}", type.name, fmt::join(names, " and ")));
       continue;
     }
-    for (std::vector<std::string>& nodes : placements(network, type)) {
-      if (is_in(network, type, nodes)) {
-        continue;
-      }
+    for (const std::vector<std::string>& nodes : placements(model.model.network, type)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
-        list.candidates.push_back({&type, nullptr, id_of(type, nodes), nodes, parameters, variant++});
+        Candidate candidate{&type, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, scale), variant++, {}};
+        if (!is_in(model, candidate)) {
+          list.candidates.push_back(std::move(candidate));
+        }
       }
     }
   }
@@ -220,46 +315,91 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
 int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter : 0; }
 
 const ParameterSpec& Candidate::size_spec() const {
+  if (is_heat_share()) {
+    return heat_share_spec();
+  }
   return type ? type->parameters[static_cast<std::size_t>(size_parameter())] : sensor_type->size;
 }
 
-std::string_view Candidate::family() const { return type ? type->candidacy.family : std::string_view("error of a sensor"); }
+std::string_view Candidate::family() const {
+  if (is_heat_share()) {
+    return "heat that the log does not tell";
+  }
+  return type ? type->candidacy.family : std::string_view("error of a sensor");
+}
 
-std::string_view Candidate::experiment() const { return type ? type->candidacy.experiment : sensor_type->experiment; }
+std::string_view Candidate::experiment() const {
+  if (is_heat_share()) {
+    return "current and voltage measured at the motor's own terminals, with the rotor turned by a sixth of an electrical turn between runs";
+  }
+  return type ? type->candidacy.experiment : sensor_type->experiment;
+}
 
-CandidateList candidates_for(const Network& network, const std::vector<MeasuredRun>& runs) {
+bool has_condition(const MeasuredRun& run, const Condition& condition) {
+  return std::ranges::all_of(condition, [&](const auto& part) {
+    const auto found = run.conditions.find(part.first);
+    return found != run.conditions.end() && found->second == part.second;
+  });
+}
+
+std::vector<int> heat_input_parameters(const Network& network) {
+  std::vector<int> places;
+  for (const EffectInPlace& effect : network.effects()) {
+    if (effect.type->name == "copper_loss" || effect.type->name == "input_power_loss") {
+      places.push_back(effect.parameter_index.front());
+    }
+  }
+  return places;
+}
+
+CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs) {
   CandidateList list;
-  add_network_candidates(network, runs, list);
+  const double scale = scale_of(model.model);
+  add_network_candidates(model, runs, scale, list);
+  add_conditional_candidates(model, runs, scale, list);
   for (const SensorEffectType& type : all_sensor_effects()) {
-    if (is_measured(runs, type.signal)) {
-      list.candidates.push_back({nullptr, &type, std::string(type.name), {}, {type.typical_size}, 0});
+    const bool is_there = std::ranges::find(model.sensors, &type, &SensorTerm::type) != model.sensors.end();
+    if (!is_there && is_measured(runs, type.signal)) {
+      list.candidates.push_back({nullptr, &type, std::string(type.name), {}, {type.typical_size}, 0, {}});
     }
   }
   return list;
 }
 
-Columns candidate_columns(const std::vector<Candidate>& candidates, const Network& network, std::span<const double> parameters,
-                          const LinearisedRun& fitted, const MeasuredRun& run) {
-  Extended extended{network, {}, {}, {}, {}};
+Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
+                          const MeasuredRun& run) {
+  const std::vector<double> parameters = model.values_in(run);
+  Extended extended{model.model.network, {}, {}, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
   extended.state_C.assign(start_C.begin(), start_C.end());
   for (std::size_t j = 0; j < candidates.size(); ++j) {
+    if (!has_condition(run, candidates[j].condition)) {
+      continue;
+    }
     if (candidates[j].type) {
       extend(extended, candidates[j], j, run.at.front().ambient_C);
+    } else if (candidates[j].is_heat_share()) {
+      for (const int place : heat_input_parameters(model.model.network)) {
+        extended.wanted.push_back(place);
+        extended.slope.push_back(candidates[j].typical_size() * parameters[static_cast<std::size_t>(place)]);
+        extended.own.push_back(j);
+      }
     }
   }
   Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
   add_network_columns(extended, parameters, fitted, run, columns);
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
-    if (candidate.type) {
+    if (!candidate.sensor_type) {
       continue;
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
     const Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
-    const Eigen::VectorXd by_size = candidate.sensor_type->law.by_size(run.time_s, 0.0, true_C);
-    for (Eigen::Index k = 0; k < by_size.size(); ++k) {
-      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = candidate.typical_size() * by_size[k];
+    // The change at the typical size, not the slope at none: a lag is far from linear in its size.
+    Eigen::VectorXd shown_C = true_C;
+    candidate.sensor_type->law.apply(run.time_s, candidate.typical_size(), false, shown_C);
+    for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
+      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = shown_C[k] - true_C[k];
     }
   }
   return columns;

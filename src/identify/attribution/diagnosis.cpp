@@ -42,6 +42,7 @@ class Teller {
     for (const AcceptedTerm& term : out_.selection.terms) {
       out_.effects.push_back(found(term));
     }
+    out_.runs = input_.train;
     tell_errors();
     tell_flux();
     tell_balance();
@@ -77,8 +78,12 @@ class Teller {
       tell_sensor(*term.candidate->sensor_type, effect);
       return effect;
     }
+    if (term.candidate && term.candidate->is_heat_share()) {
+      tell_heat_share(*term.candidate, effect);
+      return effect;
+    }
     const EffectInPlace& in_place = *effect_named(term.effect_name);
-    effect.id = term.candidate ? term.candidate->id : std::string(in_place.type->name);
+    effect.id = term.candidate ? term.candidate->id.substr(0, term.candidate->id.find(" in ")) : std::string(in_place.type->name);
     effect.node = after().model.model.network.node_name(in_place.node_index.front());
     effect.description = in_place.type->summary;
     for (const ConditionalTerm& conditional : after().model.conditional) {
@@ -112,6 +117,22 @@ class Teller {
         effect.p_value = p_of(value, sd);
       }
     }
+  }
+
+  void tell_heat_share(const Candidate& candidate, FoundEffect& effect) const {
+    const auto& terms = after().model.heat_shares;
+    const auto place = std::ranges::find(terms, candidate.condition, &HeatShareTerm::condition) - terms.begin();
+    const Eigen::Index own = after().model.first_heat_share() + place;
+    const double value = terms[static_cast<std::size_t>(place)].deviation_share;
+    const double sd = kUsualDeviation_share * std::sqrt(after().covariance(own, own));
+    effect.id = "heat_share";
+    effect.node = "winding";
+    effect.condition = candidate.condition;
+    effect.description =
+        "More or less heat goes in than the log says: another phase carries the current, or the driver takes another share.";
+    effect.parameters.push_back(
+        {std::string(candidate.size_spec().key), "", value, std::max(value - kInterval_sd * sd, -1.0), value + kInterval_sd * sd});
+    effect.p_value = p_of(value, sd);
   }
 
   static double p_of(double value, double sd) {
@@ -184,7 +205,7 @@ class Teller {
   /// Smoothed unknown heat of every run: fluxes × samples.
   [[nodiscard]] std::vector<Eigen::MatrixXd> smoothed_W(const RefitResult& fit) const {
     std::vector<Eigen::MatrixXd> all;
-    const std::vector<DesignRun> designs = design(fit.fitted, input_.train, out_.selection.weights, {});
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       all.push_back(Whitening(fit.fitted[r], flux_at(fit), designs[r].noise).smoothed_flux_W(fit.fitted[r].residual_K));
     }
@@ -244,11 +265,11 @@ class Teller {
   [[nodiscard]] std::vector<InnovationTests> tests_of(const RefitResult& fit) const {
     std::map<std::string, Eigen::VectorXd> innovations;
     std::map<std::string, std::vector<NamedInput>> inputs;
-    const std::vector<DesignRun> designs = design(fit.fitted, input_.train, out_.selection.weights, {});
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       const LinearisedRun& path = fit.fitted[r];
       const Eigen::VectorXd standardised = Whitening(path, flux_at(fit), designs[r].noise).innovations(path.residual_K).standardised;
-      const Eigen::VectorXd& weight = out_.selection.weights[r];
+      const Eigen::VectorXd& weight = out_.selection.errors.weights[r];
       for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
         Eigen::VectorXd& all = innovations[signal];

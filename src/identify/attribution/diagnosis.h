@@ -27,8 +27,8 @@ struct ErrorOfSignal {
 /// By signal, "winding_C".
 using Errors = std::map<std::string, ErrorOfSignal>;
 
-/// The model run freely from the first measured temperatures. A run that goes on where one of `before_them` ends begins with
-/// its last temperatures where no sensor is.
+/// The model run freely from the first measured temperatures. A run that goes on where one of `before_them` ends begins where the model's
+/// free run of that one has arrived: nothing but the beginning of the log is looked at.
 Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
 /// Predictions of one run, n × sensors.
 Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);
@@ -99,6 +99,7 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;
   std::vector<Unexplained> unexplained;
   Errors before_train, before_holdout, after_train, after_holdout;
+  std::vector<MeasuredRun> runs;  ///< of the training
   std::vector<InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;
   std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< by node

@@ -239,7 +239,12 @@ class Scanner {
       columns << design.run->by_start, design.columns(Eigen::all, inner_), design.run->residual_K;
       shared[r].whitening.apply(columns);
       shared[r].products = columns.transpose() * columns;
-      shared[r].products.topLeftCorner(starts, starts).diagonal() += design.start.sd_K.cwiseAbs2().cwiseInverse();
+      const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
+      Eigen::MatrixXd& products = shared[r].products;
+      const Eigen::Index last = columns.cols() - 1;
+      products.topLeftCorner(starts, starts).diagonal() += precision;
+      products.topRightCorner(starts, 1) += precision.cwiseProduct(design.start.mean_K);
+      products(last, last) += design.start.mean_K.dot(precision.cwiseProduct(design.start.mean_K));
     });
     return shared_.emplace(place, std::move(shared)).first->second;
   }
@@ -250,7 +255,7 @@ class Scanner {
     std::vector<std::vector<RunEvidence>> evidence(shown.size());
     in_parallel(shown.size(), 0, [&](std::size_t r) { evidence[r] = evidence_of(table_.runs()[r], shared[r], shown[r], families); });
     std::vector<Scored> scored(families.size());
-    const double base_nats = table_.score(base_.candidates, place).evidence_nats;
+    const double base_nats = table_.score(base_.candidates, place).evidence_nats - table_.grid().log_prior_nats(place);
     for (std::size_t f = 0; f < families.size(); ++f) {
       std::vector<RunEvidence> of_family;
       for (const std::vector<RunEvidence>& of_run : evidence) {

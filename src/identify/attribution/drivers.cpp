@@ -161,9 +161,6 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
   all.add(air, ambient_C);
 }
 
-/// Of what is left of a name once "#2", which a split run carries, is gone.
-std::string recording_of(const std::string& run) { return run.substr(0, run.find('#')); }
-
 }  // namespace
 
 FreeSignals free_signals(const Recording& recording, const MeasuredRun& run) {
@@ -212,24 +209,7 @@ std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedR
       return found == free[r].end() ? kUnknown : found->second[k];
     });
   }
-  std::vector<Driver> drivers = all.take();
-  std::set<std::string> recordings;
-  for (const MeasuredRun& run : runs) {
-    recordings.insert(recording_of(run.name));
-  }
-  for (const std::string& recording : recordings) {
-    if (recordings.size() < 2) {
-      break;
-    }
-    Driver driver = driver_of(recording, "", DriverKind::run);
-    driver.high = 1.0;
-    driver.condition = {{"run", recording}};
-    for (const MeasuredRun& run : runs) {
-      driver.values.push_back(Eigen::VectorXd::Constant(run.samples() - 1, recording_of(run.name) == recording ? 1.0 : 0.0));
-    }
-    drivers.push_back(std::move(driver));
-  }
-  return drivers;
+  return all.take();
 }
 
 }  // namespace heatsoak

@@ -17,8 +17,18 @@ LatentFlux FluxGrid::at(const Place& place) const {
   return flux;
 }
 
+double FluxGrid::log_prior_nats(const Place& place) const {
+  constexpr double kUnusual_share = 0.1;
+  static const double decay = -std::log(0.05) / kUnusual_share;
+  double nats = 0.0;
+  for (std::size_t node = 0; node + 1 < place.size() && mean_heat_W > 0.0; ++node) {
+    nats -= decay * rms_W[static_cast<std::size_t>(place[node])] / mean_heat_W;
+  }
+  return nats;
+}
+
 FluxGrid flux_grid(double mean_heat_W, double longest_s) {
-  FluxGrid grid{{0.0}, {}};
+  FluxGrid grid{{0.0}, {}, mean_heat_W};
   for (double rms_W = 0.004 * mean_heat_W; rms_W < 3.0 * mean_heat_W; rms_W *= 2.0) {
     grid.rms_W.push_back(rms_W);
   }
@@ -99,7 +109,7 @@ SetScore EvidenceTable::score(std::span<const int> set, const FluxGrid::Place& p
   const LinearFit fitted = fit({&chosen, 1}, set);
   SetScore out;
   out.candidates.assign(set.begin(), set.end());
-  out.evidence_nats = fitted.log_evidence;
+  out.evidence_nats = fitted.log_evidence + grid_.log_prior_nats(place);
   out.place = place;
   out.coefficient = fitted.coefficients;
   out.covariance = fitted.covariance;
@@ -110,16 +120,45 @@ SetScore EvidenceTable::score(std::span<const int> set, const FluxGrid::Place& p
   return out;
 }
 
+namespace {
+
+/// One axis after the other, then along the ridges that strengths and time scale form: much heat that changes slowly looks like little that
+/// changes fast.
+std::vector<FluxGrid::Place> directions(std::size_t axes) {
+  std::vector<FluxGrid::Place> all;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    all.emplace_back(axes, 0)[axis] = 1;
+  }
+  for (std::size_t axis = 0; axis + 1 < axes && axes > 2; ++axis) {
+    all.emplace_back(axes, 0)[axis] = 1;
+    all.back().back() = 1;
+  }
+  all.emplace_back(axes, 1);
+  all.emplace_back(axes, 1).back() = 0;
+  return all;
+}
+
+}  // namespace
+
 SetScore EvidenceTable::best(std::span<const int> set, const FluxGrid::Place& start) {
   SetScore best = score(set, start);
+  const auto is_inside = [&](const FluxGrid::Place& place) {
+    for (std::size_t axis = 0; axis < place.size(); ++axis) {
+      const std::size_t count = axis + 1 < place.size() ? grid_.rms_W.size() : grid_.time_scale_s.size();
+      if (place[axis] < 0 || place[axis] >= static_cast<int>(count)) {
+        return false;
+      }
+    }
+    return true;
+  };
+  const std::vector<FluxGrid::Place> ways = directions(start.size());
   for (bool moved = true; moved;) {
     moved = false;
-    for (std::size_t axis = 0; axis < start.size(); ++axis) {
-      const int count = static_cast<int>(axis + 1 < start.size() ? grid_.rms_W.size() : grid_.time_scale_s.size());
-      for (const int step : {-1, 1}) {
+    for (std::size_t way = 0; way < ways.size() && !(way >= start.size() && moved); ++way) {
+      for (const int sign : {-1, 1}) {
         for (FluxGrid::Place place = best.place;;) {
-          place[axis] += step;
-          if (place[axis] < 0 || place[axis] >= count) {
+          std::ranges::transform(place, ways[way], place.begin(), [&](int index, int step) { return index + sign * step; });
+          if (!is_inside(place)) {
             break;
           }
           SetScore next = score(set, place);

@@ -26,9 +26,13 @@ struct DesignRun {
 struct FluxGrid {
   std::vector<double> rms_W;  ///< increasing, the first is 0
   std::vector<double> time_scale_s;
+  double mean_heat_W = 0.0;  ///< that the model knows of
   using Place = std::vector<int>;
 
   [[nodiscard]] LatentFlux at(const Place& place) const;
+  /// How probable a place is before anything is measured: models leave a few per cent of the heat they know unexplained. Exponential in
+  /// the strengths (Simpson et al. 2017, the prior that penalises complexity), 5 % of it beyond a tenth of the mean heat.
+  [[nodiscard]] double log_prior_nats(const Place& place) const;
 };
 
 /// Steps of 2 between 0.4 % and three times `mean_heat_W`, and times between 20 s and `longest_s`.

@@ -7,6 +7,9 @@
 namespace heatsoak {
 namespace {
 
+constexpr double kLeastHeatShare = -0.9;
+constexpr double kMostHeatShare = 3.0;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using RowStride = Eigen::InnerStride<Eigen::Dynamic>;
@@ -48,6 +51,9 @@ Eigen::VectorXd ExtendedModel::theta() const {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     all[model.free_count() + static_cast<Eigen::Index>(i)] = sensors[i].value / sensors[i].type->typical_size;
   }
+  for (std::size_t i = 0; i < heat_shares.size(); ++i) {
+    all[first_heat_share() + static_cast<Eigen::Index>(i)] = heat_shares[i].deviation_share / kUsualDeviation_share;
+  }
   return all;
 }
 
@@ -55,6 +61,9 @@ void ExtendedModel::set_theta(const Eigen::VectorXd& theta) {
   model.values = model.values_at(theta.head(model.free_count()));
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     sensors[i].value = sensors[i].type->typical_size * theta[model.free_count() + static_cast<Eigen::Index>(i)];
+  }
+  for (std::size_t i = 0; i < heat_shares.size(); ++i) {
+    heat_shares[i].deviation_share = kUsualDeviation_share * theta[first_heat_share() + static_cast<Eigen::Index>(i)];
   }
 }
 
@@ -67,6 +76,10 @@ Prior ExtendedModel::prior() const {
     const double sd_share = sensors[i].spread_sd / sensors[i].type->typical_size;
     all.precision(inner + static_cast<Eigen::Index>(i), inner + static_cast<Eigen::Index>(i)) = 1.0 / (sd_share * sd_share);
   }
+  for (std::size_t i = 0; i < heat_shares.size(); ++i) {
+    const Eigen::Index own = first_heat_share() + static_cast<Eigen::Index>(i);
+    all.precision(own, own) = std::pow(kUsualDeviation_share / heat_shares[i].spread_sd_share, 2);
+  }
   return all;
 }
 
@@ -75,6 +88,9 @@ double ExtendedModel::low(Eigen::Index coordinate) const {
     const FreeParameter& free = model.free[static_cast<std::size_t>(coordinate)];
     return free.by_log && free.low <= 0.0 ? -kInfinity : model.theta_of(coordinate, free.low);
   }
+  if (coordinate >= first_heat_share()) {
+    return kLeastHeatShare / kUsualDeviation_share;
+  }
   const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
   return term.type->size.range.low / term.type->typical_size;
 }
@@ -82,6 +98,9 @@ double ExtendedModel::low(Eigen::Index coordinate) const {
 double ExtendedModel::high(Eigen::Index coordinate) const {
   if (coordinate < model.free_count()) {
     return model.theta_of(coordinate, model.free[static_cast<std::size_t>(coordinate)].high);
+  }
+  if (coordinate >= first_heat_share()) {
+    return kMostHeatShare / kUsualDeviation_share;
   }
   const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
   return term.type->size.range.high / term.type->typical_size;
@@ -94,15 +113,33 @@ std::vector<double> ExtendedModel::values_in(const MeasuredRun& run) const {
       values[static_cast<std::size_t>(term.place)] = term.off_value;
     }
   }
+  for (const HeatShareTerm& term : heat_shares) {
+    if (has_condition(run, term.condition)) {
+      for (const int place : heat_input_parameters(model.network)) {
+        values[static_cast<std::size_t>(place)] *= 1.0 + term.deviation_share;
+      }
+    }
+  }
   return values;
 }
 
-bool has_condition(const MeasuredRun& run, const std::map<std::string, std::string>& condition) {
-  return std::ranges::all_of(condition, [&](const auto& part) {
-    const auto found = run.conditions.find(part.first);
-    return found != run.conditions.end() && found->second == part.second;
-  });
+namespace {
+
+/// How the parameter at `place` in a run moves with the model's own.
+double factor_in(const ExtendedModel& model, int place, const MeasuredRun& run) {
+  const std::vector<int> inputs = heat_input_parameters(model.model.network);
+  double factor = 1.0;
+  for (const HeatShareTerm& term : model.heat_shares) {
+    const bool is_input = std::ranges::find(inputs, place) != inputs.end();
+    factor *= is_input && has_condition(run, term.condition) ? 1.0 + term.deviation_share : 1.0;
+  }
+  for (const ConditionalTerm& term : model.conditional) {
+    factor *= term.place == place && !has_condition(run, term.condition) ? 0.0 : 1.0;
+  }
+  return factor;
 }
+
+}  // namespace
 
 LinearisedRun linearise(const ExtendedModel& model, std::span<const double> start_C, const MeasuredRun& run) {
   const Network& network = model.model.network;
@@ -112,17 +149,25 @@ LinearisedRun linearise(const ExtendedModel& model, std::span<const double> star
   for (const FreeParameter& free : model.model.free) {
     wanted.push_back(free.place);
   }
-  LinearisedRun out = linearise(network, model.values_in(run), wanted, model.model.flux_nodes, start, run);
+  const std::vector<int> inputs = model.heat_shares.empty() ? std::vector<int>{} : heat_input_parameters(network);
+  wanted.insert(wanted.end(), inputs.begin(), inputs.end());
+  const std::vector<double> values = model.values_in(run);
+  LinearisedRun out = linearise(network, values, wanted, model.model.flux_nodes, start, run);
   Columns by_theta(out.by_parameter.rows(), model.free_count());
-  by_theta.leftCols(model.model.free_count()) = heatsoak::by_theta(model.model, model.model.theta(), out.by_parameter);
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    for (const ConditionalTerm& term : model.conditional) {
-      if (term.place == wanted[i] && !has_condition(run, term.condition)) {
-        by_theta.col(static_cast<Eigen::Index>(i)).setZero();
-      }
+  by_theta.rightCols(model.free_count() - model.model.free_count()).setZero();
+  for (std::size_t i = 0; i < model.heat_shares.size(); ++i) {
+    const double whole_share = 1.0 + model.heat_shares[i].deviation_share;
+    for (std::size_t input = 0; has_condition(run, model.heat_shares[i].condition) && input < inputs.size(); ++input) {
+      by_theta.col(model.first_heat_share() + static_cast<Eigen::Index>(i)) +=
+          kUsualDeviation_share * values[static_cast<std::size_t>(inputs[input])] / whole_share *
+          out.by_parameter.col(model.model.free_count() + static_cast<Eigen::Index>(input));
     }
   }
-  by_theta.rightCols(static_cast<Eigen::Index>(model.sensors.size())).setZero();
+  out.by_parameter.conservativeResize(Eigen::NoChange, model.model.free_count());
+  by_theta.leftCols(model.model.free_count()) = heatsoak::by_theta(model.model, model.model.theta(), out.by_parameter);
+  for (Eigen::Index i = 0; i < model.model.free_count(); ++i) {
+    by_theta.col(i) *= factor_in(model, wanted[static_cast<std::size_t>(i)], run);
+  }
   out.by_parameter = std::move(by_theta);
   for (std::size_t i = 0; i < model.sensors.size(); ++i) {
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {

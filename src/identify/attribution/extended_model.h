@@ -15,7 +15,7 @@ struct ConditionalTerm {
   std::string effect_name;
   int place = 0;           ///< of the parameter that switches it
   double off_value = 0.0;  ///< with which the effect does nothing
-  std::map<std::string, std::string> condition;
+  Condition condition;
 };
 
 struct SensorTerm {
@@ -24,13 +24,25 @@ struct SensorTerm {
   double spread_sd = 1.0;  ///< known before, around 0, in the same unit
 };
 
-/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes.
+/// In runs of a condition the heat that goes in deviates from what their logs say.
+struct HeatShareTerm {
+  Condition condition;
+  double deviation_share = 0.0;  ///< 0.1: a tenth more heat than the log says
+  double spread_sd_share = 0.2;  ///< known before, around 0
+};
+
+/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes, then the deviations of heat in units of the
+/// usual one.
 struct ExtendedModel {
   Model model;
   std::vector<ConditionalTerm> conditional;
   std::vector<SensorTerm> sensors;
+  std::vector<HeatShareTerm> heat_shares;
 
-  [[nodiscard]] Eigen::Index free_count() const { return model.free_count() + static_cast<Eigen::Index>(sensors.size()); }
+  [[nodiscard]] Eigen::Index free_count() const {
+    return model.free_count() + static_cast<Eigen::Index>(sensors.size() + heat_shares.size());
+  }
+  [[nodiscard]] Eigen::Index first_heat_share() const { return model.free_count() + static_cast<Eigen::Index>(sensors.size()); }
   [[nodiscard]] Eigen::VectorXd theta() const;
   void set_theta(const Eigen::VectorXd& theta);
   /// Prior of all coordinates; the mean is absolute.
@@ -41,8 +53,6 @@ struct ExtendedModel {
   /// The network's parameters in that run.
   [[nodiscard]] std::vector<double> values_in(const MeasuredRun& run) const;
 };
-
-bool has_condition(const MeasuredRun& run, const std::map<std::string, std::string>& condition);
 
 /// As linearise(), with the sensors as they are; columns by coordinate (per unit of θ). `start_C` may be shorter than the
 /// network has nodes: the rest begin at the ambient temperature.

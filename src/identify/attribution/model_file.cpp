@@ -1,23 +1,18 @@
 #include "identify/attribution/model_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <regex>
 #include <set>
-#include <sstream>
 
-#include "motor/datasheet_network.h"
+#include "base/diagnostic.h"
 
 namespace heatsoak {
 namespace {
 
 constexpr double kInterval_sd = 1.959964;
-
-/// ± of a calibrated parameter in its logarithm before it is fitted again.
-constexpr double kSpread = 1.1;
 
 bool has_signal(const Recording& recording, Signal signal) {
   const std::vector<Signal> signals = signals_of(recording);
@@ -52,104 +47,110 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
   }
 }
 
-std::string parameter_line(const FittedParameter& parameter, const ParameterSpec& spec) {
-  const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-  std::string line = fmt::format("{} = {{ value = \"{:.5g}{}\", origin = \"measured\", source = \"heatsoak_diagnose\"", parameter.name,
-                                 parameter.value, unit);
-  const bool has_range =
-      parameter.low < parameter.value && parameter.high > parameter.value && parameter.low > spec.range.low && parameter.low > 0.0;
-  line += has_range ? fmt::format(", range = [\"{:.5g}{}\", \"{:.5g}{}\"]", parameter.low, unit, parameter.high, unit) : "";
-  return line + " }\n";
+constexpr const char* kSource = "diagnosis";
+
+Figure measured(double value, double low, double high, const Range& range) {
+  Figure figure;
+  figure.value = value;
+  figure.origin = Origin::measured;
+  figure.source = kSource;
+  if (low < value && high > value && low > 0.0) {
+    figure.spread = Spread{Spread::Kind::range, std::max(low, range.low), std::min(high, range.high), true};
+  }
+  return figure;
 }
 
-/// One [effects.*] table.
-std::string effect_table(const FoundEffect& effect, const RefitResult& fit) {
+MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
   const Network& network = fit.model.model.network;
-  const auto in_place = std::ranges::find(network.effects(), effect.name, &EffectInPlace::name);
-  std::string text = fmt::format("\n[effects.{}]\n", effect.name);
-  if (in_place->type->name != effect.name) {
-    text += fmt::format("type = \"{}\"\n", in_place->type->name);
-  }
+  const auto in_place = std::ranges::find(network.effects(), found.name, &EffectInPlace::name);
+  MotorEffect effect{found.name, in_place->type, {}, {}, found.condition};
   for (std::size_t role = 0; role < in_place->node_index.size(); ++role) {
-    const std::string_view node = network.node_name(in_place->node_index[role]);
-    if (node != in_place->type->nodes[role].default_node) {
-      text += fmt::format("{} = \"{}\"\n", in_place->type->nodes[role].role, node);
-    }
+    const bool is_own = in_place->type->nodes[role].own_capacity >= 0;
+    effect.nodes.push_back(is_own ? found.name : std::string(network.node_name(in_place->node_index[role])));
   }
   for (std::size_t p = 0; p < in_place->parameter_index.size(); ++p) {
     const ParameterSpec& spec = in_place->type->parameters[p];
     const double value = fit.model.model.values[static_cast<std::size_t>(in_place->parameter_index[p])];
     if (!spec.choices.empty()) {
-      text += fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(value)].name);
+      Figure chosen;
+      chosen.value = value;
+      chosen.printed = spec.choices[static_cast<std::size_t>(value)].name;
+      effect.parameters.push_back(chosen);
       continue;
     }
-    text += parameter_line(*std::ranges::find(effect.parameters, spec.key, &FittedParameter::name), spec);
+    const FittedParameter& fitted = *std::ranges::find(found.parameters, spec.key, &FittedParameter::name);
+    effect.parameters.push_back(measured(value, fitted.low, fitted.high, spec.range));
   }
-  if (!effect.condition.empty()) {
-    text += fmt::format("[effects.{}.condition]\n", effect.name);
-    for (const auto& [key, value] : effect.condition) {
-      text += fmt::format("{} = \"{}\"\n", key, value);
-    }
-  }
-  return text;
+  return effect;
 }
 
-/// The four thermal figures of the datasheet network as the final fit has them.
-std::map<std::string, FittedParameter> thermal_figures(const RefitResult& fit) {
-  const Model& model = fit.model.model;
-  const auto of = [&](std::string_view name) {
-    FittedParameter out;
-    for (std::size_t i = 0; i < model.free.size(); ++i) {
-      if (model.name(static_cast<Eigen::Index>(i)) == name) {
-        const auto at = static_cast<Eigen::Index>(i);
-        const double sd = std::sqrt(fit.covariance(at, at));
-        out.value = model.values[static_cast<std::size_t>(model.free[i].place)];
-        out.low = out.value * std::exp(-kInterval_sd * sd);
-        out.high = out.value * std::exp(kInterval_sd * sd);
-      }
+/// The file's figures as the fit has them, and how they hang together.
+void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+  const RefitResult& fit = diagnosis.selection.after;
+  const auto free = model.model.model.free_count();
+  const Eigen::VectorXd moved = fit.model.model.theta().head(free) - model.model.model.theta();
+  const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
+  std::vector<const FittedFigure*> of_file;
+  for (const FittedFigure& each : model.figures) {
+    if (each.is_of_file) {
+      of_file.push_back(&each);
     }
-    return out;
-  };
-  const FittedParameter inner = of("winding_stator.thermal_resistance"), outer = of("stator_ambient.thermal_resistance");
-  const FittedParameter winding = of("winding.heat_capacity"), stator = of("stator.heat_capacity");
-  const auto product = [](const FittedParameter& a, const FittedParameter& b) {
-    // Independent in the logarithm, which errs on the wide side: τ is better known than its factors.
-    const double spread = std::hypot(std::log(a.high / a.value), std::log(b.high / b.value));
-    return FittedParameter{"", "s", a.value * b.value, a.value * b.value * std::exp(-spread), a.value * b.value * std::exp(spread)};
-  };
-  std::map<std::string, FittedParameter> figures{{"thermal_resistance_winding_stator", inner},
-                                                 {"thermal_resistance_stator_ambient", outer}};
-  figures["thermal_resistance_winding_stator"].unit = figures["thermal_resistance_stator_ambient"].unit = "K/W";
-  figures["thermal_time_constant_winding"] = product(inner, winding);
-  figures["thermal_time_constant_stator"] = product(outer, stator);
-  return figures;
+  }
+  Eigen::MatrixXd exponents(static_cast<Eigen::Index>(of_file.size()), free);
+  MotorFit together;
+  together.motor = motor.fit ? motor.fit->motor : motor.id;
+  for (std::size_t i = 0; i < of_file.size(); ++i) {
+    const FittedFigure& each = *of_file[i];
+    exponents.row(static_cast<Eigen::Index>(i)) = each.exponents.transpose();
+    const double sd = std::sqrt(std::max(0.0, each.exponents.dot(covariance * each.exponents)));
+    Figure& figure = *find_figure(motor, each.name);
+    const double value = each.before * std::exp(each.exponents.dot(moved));
+    const std::string source = figure.source;
+    figure = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
+    figure.derivation = source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures, before it {}", source);
+    together.figures.push_back(each.name);
+  }
+  Eigen::MatrixXd correlation = exponents * covariance * exponents.transpose();
+  const Eigen::VectorXd sd = correlation.diagonal().cwiseSqrt().cwiseMax(1e-9);
+  correlation = sd.cwiseInverse().asDiagonal() * correlation * sd.cwiseInverse().asDiagonal();
+  correlation.diagonal().setOnes();
+  together.correlation = correlation;
+  const LatentFlux flux = diagnosis.selection.grid.at(fit.place);
+  together.latent_flux_W = flux.rms_W;
+  together.latent_flux_time_scale_s = flux.time_scale_s;
+  std::map<std::string, double> noise_K;
+  for (const MeasuredRun& run : diagnosis.runs) {
+    for (const Sensor& sensor : run.sensors) {
+      noise_K[sensor.node] = std::max(noise_K[sensor.node], sensor.noise_K);
+    }
+    if (std::ranges::find(together.runs, run.name) == together.runs.end()) {
+      together.runs.push_back(run.name);
+    }
+  }
+  together.noise_K.assign(noise_K.begin(), noise_K.end());
+  motor.fit = std::move(together);
 }
 
 }  // namespace
 
 ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings) {
   ModelOfLogs out;
-  Model& model = out.model.model;
-  model.network = datasheet_network(motor, nominal_sample(motor));
   const auto have = [&](Signal signal) {
     return std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, signal); });
   };
-  if (!have(Signal::current) && have(Signal::input_power)) {
-    model.network.add_effect("input_power", *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
-                             std::vector<double>{1.0});
-    out.notes.emplace_back(
-        "no current in the logs: all electric power that goes in is taken as heat of the winding, the driver's share included");
+  Motor everywhere = motor;
+  for (MotorEffect& effect : everywhere.effects) {
+    effect.condition.clear();
   }
-  model.values = model.network.values();
-  model.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
-  for (int node = 0; node < model.network.state_count(); ++node) {
-    model.flux_nodes.push_back(node);
-  }
-  for (std::size_t place = 0; place < model.values.size(); ++place) {
-    const std::string& name = model.network.parameters()[place].name;
-    const double value = model.values[place];
-    if ((name.ends_with(".heat_capacity") || name.ends_with(".thermal_resistance")) && value > 0.0) {
-      model.set_free({static_cast<int>(place), true, 1.0, value / 100.0, value * 100.0}, kSpread);
+  MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
+  out.model.model = std::move(built.model);
+  out.figures = std::move(built.figures);
+  out.notes = std::move(built.held);
+  for (const MotorEffect& effect : motor.effects) {
+    const int size = effect.type->candidacy.size_parameter;
+    if (!effect.condition.empty() && size >= 0) {
+      const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
+      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
     }
   }
   set_needed(out, motor, recordings);
@@ -185,29 +186,22 @@ Recording part_of(const Recording& recording, double from_share, double to_share
   return part;
 }
 
-std::string extended_motor_file(const std::string& original, const Motor& motor, const Diagnosis& diagnosis) {
-  const RefitResult& fit = diagnosis.selection.after;
-  const std::map<std::string, FittedParameter> figures = thermal_figures(fit);
-  std::string text;
-  std::istringstream lines(original);
-  for (std::string line; std::getline(lines, line);) {
-    for (const auto& [key, figure] : figures) {
-      if (std::regex_search(line, std::regex("^" + key + "\\s*=")) && figure.value > 0.0) {
-        line = fmt::format(
-            "{} = {{ value = \"{:.5g} {}\", origin = \"measured\", source = \"heatsoak_diagnose\", range = [\"{:.5g} {}\", \"{:.5g} {}\"] "
-            "}}",
-            key, figure.value, figure.unit, figure.low, figure.unit, figure.high, figure.unit);
-      }
-    }
-    text += line + "\n";
-    if (line == "[sources]" && !motor.sources.contains("heatsoak_diagnose")) {
-      text += "heatsoak_diagnose = \"fitted to measured runs by heatsoak diagnose; ranges are 95 % intervals\"\n";
-    }
-  }
+Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+  Motor result = motor;
+  set_figures(result, model, diagnosis);
+  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(result.fit->runs, ", "));
   for (const FoundEffect& effect : diagnosis.effects) {
-    text += effect.name.empty() ? "" : effect_table(effect, fit);
+    if (!effect.name.empty()) {
+      result.effects.push_back(motor_effect(effect, diagnosis.selection.after));
+    } else if (!effect.parameters.empty()) {
+      const FittedParameter& size = effect.parameters.front();
+      result.notes.push_back(fmt::format(
+          "{} at the {}{}: {} {:.3g} {}; found in measurements, no property of the motor", effect.id, effect.node,
+          effect.condition.empty() ? "" : fmt::format(" in {}", effect.condition.begin()->second), size.name, size.value, size.unit));
+    }
   }
-  return text;
+  refresh_values(result);
+  return result;
 }
 
 }  // namespace heatsoak

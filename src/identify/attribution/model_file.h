@@ -5,25 +5,28 @@
 #include <vector>
 
 #include "identify/attribution/diagnosis.h"
+#include "identify/calibration/motor_model.h"
 #include "motor/motor.h"
 
 namespace heatsoak {
 
 struct ModelOfLogs {
   ExtendedModel model;
-  std::vector<Signal> needed;      ///< heat inputs that runs must have for it
-  std::vector<std::string> notes;  ///< what is taken for granted because no log has it
+  std::vector<FittedFigure> figures;  ///< of the motor's file, as the model's parameters make them
+  std::vector<Signal> needed;         ///< heat inputs that runs must have for it
+  std::vector<std::string> notes;     ///< what is taken for granted because no log has it
 };
 
-/// The motor's network with its heat capacities and thermal resistances free. Where no recording has a current, all measured input
-/// power heats the winding. Heat inputs that no recording has count as 0.
-/// Throws Failure (bad_input) where the recordings have no heat input that the motor's effects turn into heat.
+/// The motor's network with the figures free that a calibration frees, known before as well as the file says. Where not every recording has
+/// a current, measured input power heats the winding. Effects under conditions act in the runs that have them. Heat inputs that no
+/// recording has count as 0. Throws Failure (bad_input) where the recordings have no heat input that the motor's effects turn into heat.
 ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings);
 
 /// The rows of a recording between two shares of its duration, 0 … 1; its name and conditions stay.
 Recording part_of(const Recording& recording, double from_share, double to_share);
 
-/// `original`, the text of the motor's file, with the diagnosis' thermal figures and its effects added: again a motor file.
-std::string extended_motor_file(const std::string& original, const Motor& motor, const Diagnosis& diagnosis);
+/// The motor with the diagnosis' figures and its effects: what `to_toml` writes is again a motor file. Faults of sensors and deviations of
+/// a run's heat are no properties of a motor: they become notes.
+Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
 }  // namespace heatsoak

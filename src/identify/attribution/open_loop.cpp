@@ -15,19 +15,34 @@ std::string recording_of(const MeasuredRun& run) {
   return found == run.conditions.end() ? run.name : found->second;
 }
 
+/// The temperature that a sensor shows as `shown_C` when nothing has changed for long: readings are linear in it.
+double true_C(const ExtendedModel& model, const std::string& signal, double shown_C) {
+  const std::vector<double> now_s{0.0};
+  Eigen::VectorXd cold = Eigen::VectorXd::Constant(1, 0.0);
+  Eigen::VectorXd warm = Eigen::VectorXd::Constant(1, 1.0);
+  for (const SensorTerm& term : model.sensors) {
+    if (term.type->signal == signal) {
+      term.type->law.apply(now_s, term.value, false, cold);
+      term.type->law.apply(now_s, term.value, false, warm);
+    }
+  }
+  return (shown_C - cold[0]) / (warm[0] - cold[0]);
+}
+
 std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
   const Network& network = model.model.network;
-  std::vector<double> start = measured_start_C(network, run);
   for (const MeasuredRun& before : before_it) {
     const double gap_s = run.time_s.front() - before.time_s.back();
-    if (recording_of(before) != recording_of(run) || gap_s < -1e-9 || gap_s > kContinues_s) {
-      continue;
+    if (recording_of(before) == recording_of(run) && gap_s > -1e-9 && gap_s < kContinues_s) {
+      const LinearisedRun path = linearise(network, model.values_in(before), {}, {}, start_C(model, before, {}), before);
+      const Eigen::VectorXd end_C = path.state_C.rightCols(1);
+      return {end_C.begin(), end_C.end()};
     }
-    const LinearisedRun path = linearise(network, model.values_in(before), {}, {}, measured_start_C(network, before), before);
-    for (int node = 0; node < network.state_count(); ++node) {
-      const bool is_measured = run.sensor_at(network.node_name(node)) >= 0;
-      start[static_cast<std::size_t>(node)] = is_measured ? start[static_cast<std::size_t>(node)] : path.state_C(node, path.samples() - 1);
-    }
+  }
+  std::vector<double> start = measured_start_C(network, run);
+  for (const Sensor& sensor : run.sensors) {
+    double& node_C = start[static_cast<std::size_t>(network.find_node(sensor.node))];
+    node_C = true_C(model, sensor.signal, node_C);
   }
   return start;
 }

@@ -7,11 +7,10 @@
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
+#include "identify/open_loop.h"
 
 namespace heatsoak {
 namespace {
-
-constexpr double kStartSd_K = 5.0;
 
 /// The step of all coordinates that decreases the squares most while none leaves its bounds: those that would are held there.
 LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
@@ -41,13 +40,16 @@ LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eig
         inside.push_back(i);
       }
     }
-    if (inside.size() == moving.size()) {
+    const bool has_settled = inside.size() == moving.size() || inside.empty();
+    moving = std::move(inside);
+    if (has_settled) {
       break;
     }
-    moving = std::move(inside);
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  covariance(moving, moving) = fit.covariance;
+  if (!moving.empty()) {
+    covariance(moving, moving) = fit.covariance;
+  }
   fit.covariance = std::move(covariance);
   fit.coefficients = std::move(step);
   return fit;
@@ -80,13 +82,14 @@ class Fitter {
       const double misfit = table.misfit_now(now_.place);
       const LinearFit fit = bounded_step(table);
       const double promised = misfit - fit.misfit;
-      now_.evidence_nats = fit.log_evidence;
+      now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
       now_.covariance = fit.covariance;
       now_.converged = promised < 0.02;
       if (now_.converged && step > 0) {
         break;
       }
-      if (!take(fit, misfit, table)) {
+      // What no step improves at first may move once the unknown heat is what the misfit asks for.
+      if (!take(fit, misfit, table) && step > 0) {
         break;
       }
     }
@@ -103,7 +106,7 @@ class Fitter {
   }
 
   [[nodiscard]] EvidenceTable table_of(const RefitResult& at) const {
-    return {design(at.fitted, runs_, options_.weights, {}), options_.grid, prior_here(at.model), {}};
+    return {design(at.model.model.network, at.fitted, runs_, options_.errors, {}), options_.grid, prior_here(at.model), {}};
   }
 
   [[nodiscard]] LinearFit bounded_step(EvidenceTable& table) const {
@@ -133,6 +136,7 @@ class Fitter {
     double best_nats = -std::numeric_limits<double>::infinity();
     for (const FluxGrid::Place& place : places) {
       fits.push_back(bounded_fit(table.all_runs(place), prior, low_ - theta, high_ - theta));
+      fits.back().log_evidence += options_.grid.log_prior_nats(place);
       best_nats = std::max(best_nats, fits.back().log_evidence);
     }
     double total_weight = 0.0;
@@ -201,19 +205,25 @@ RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std
   return Fitter(std::move(model), runs, std::move(start_C), options).run();
 }
 
-std::vector<DesignRun> design(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const std::vector<Eigen::VectorXd>& weights, const std::vector<Columns>& extra) {
+std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
+                              const SensorErrors& errors, const std::vector<Columns>& extra) {
   std::vector<DesignRun> all;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     DesignRun one;
     one.run = &fitted[r];
     for (const Sensor& sensor : runs[r].sensors) {
       one.noise.noise_K.push_back(sensor.noise_K);
+      if (!errors.wander_K.empty()) {
+        const auto found = errors.wander_K.find(sensor.signal);
+        one.noise.wander_K.push_back(found == errors.wander_K.end() ? 0.0 : found->second);
+      }
     }
-    if (!weights.empty()) {
-      one.noise.weight = weights[r];
+    one.noise.wander_time_scale_s = errors.wander_time_scale_s;
+    if (!errors.weights.empty()) {
+      one.noise.weight = errors.weights[r];
     }
-    one.start = {Eigen::VectorXd::Zero(fitted[r].states), Eigen::VectorXd::Constant(fitted[r].states, kStartSd_K)};
+    const RunStart start = start_of(network, runs[r]);
+    one.start = {start.prior_C - fitted[r].state_C.col(0), start.prior_sd_K};
     const Eigen::Index inner = fitted[r].by_parameter.cols();
     one.columns.resize(fitted[r].by_parameter.rows(), inner + (extra.empty() ? 0 : extra[r].cols()));
     one.columns.leftCols(inner) = fitted[r].by_parameter;
@@ -231,22 +241,8 @@ ThetaPrior prior_here(const ExtendedModel& model) {
 }
 
 std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run) {
-  std::vector<double> start_C(static_cast<std::size_t>(network.state_count()), std::nan(""));
-  double sum_C = 0.0;
-  double count = 0.0;
-  for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
-    const auto shown = run.measured_C.col(static_cast<Eigen::Index>(sensor));
-    const auto first = std::ranges::find_if(shown, [](double shown_C) { return !std::isnan(shown_C); });
-    if (first != shown.end()) {
-      start_C[static_cast<std::size_t>(network.find_node(run.sensors[sensor].node))] = *first;
-      sum_C += *first;
-      count += 1.0;
-    }
-  }
-  const double between_C = count > 0.0 ? sum_C / count : run.at.front().ambient_C;
-  std::ranges::replace_if(
-      start_C, [](double known_C) { return std::isnan(known_C); }, between_C);
-  return start_C;
+  const Eigen::VectorXd start_C = start_of(network, run).state_C;
+  return {start_C.begin(), start_C.end()};
 }
 
 }  // namespace heatsoak

@@ -5,6 +5,7 @@
 
 #include "identify/attribution/evidence_table.h"
 #include "identify/attribution/extended_model.h"
+#include "identify/attribution/sensor_errors.h"
 
 namespace heatsoak {
 
@@ -20,8 +21,8 @@ struct RefitResult {
 
 struct RefitOptions {
   FluxGrid grid;
-  FluxGrid::Place place;                 ///< to begin with
-  std::vector<Eigen::VectorXd> weights;  ///< per run and sample; empty: all count
+  FluxGrid::Place place;  ///< to begin with
+  SensorErrors errors;
   int most_steps = 8;
   /// Average the result over how probable neighbouring suppositions about the unknown heat are: intervals that hold what they
   /// promise. Otherwise the most probable one alone counts.
@@ -33,8 +34,8 @@ RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std
                   const RefitOptions& options);
 
 /// The runs as the table takes them, with `extra` columns beside those of the model's coordinates.
-std::vector<DesignRun> design(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const std::vector<Eigen::VectorXd>& weights, const std::vector<Columns>& extra);
+std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
+                              const SensorErrors& errors, const std::vector<Columns>& extra);
 /// The prior of the model's coordinates relative to where they are.
 ThetaPrior prior_here(const ExtendedModel& model);
 

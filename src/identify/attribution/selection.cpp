@@ -4,61 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "base/parallel.h"
+#include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 
 namespace heatsoak {
 namespace {
 
-double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
-  const auto nodes = static_cast<std::size_t>(model.network.node_count());
-  std::vector<double> heat_W(model.network.effects().size() * nodes);
-  double energy_J = 0.0;
-  double time_s = 0.0;
-  for (const MeasuredRun& run : runs) {
-    const std::vector<double> state_C = measured_start_C(model.network, run);
-    for (std::size_t k = 0; k < run.at.size(); ++k) {
-      const double duration_s = run.time_s[k + 1] - run.time_s[k];
-      model.network.balance_W(run.at[k], model.values, state_C, heat_W);
-      time_s += duration_s;
-      for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
-        const auto row = std::span(heat_W).subspan(e * nodes, nodes);
-        // What a flow takes out of one node it brings into another: only sources have a sum.
-        energy_J += duration_s * std::abs(std::accumulate(row.begin(), row.end(), 0.0));
-      }
-    }
-  }
-  return time_s > 0.0 ? energy_J / time_s : 0.0;
-}
-
-double longest_s(const std::vector<MeasuredRun>& runs) {
-  double longest = 0.0;
-  for (const MeasuredRun& run : runs) {
-    longest = std::max(longest, run.time_s.back() - run.time_s.front());
-  }
-  return longest;
-}
-
-/// Samples that no smooth heat explains are outliers; a run where these are many has a model problem instead and keeps them.
-std::vector<Eigen::VectorXd> weights_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid) {
-  constexpr double kOutlier_sd = 4.5;
-  std::vector<Eigen::VectorXd> weights(runs.size());
-  const std::vector<DesignRun> designs = design(fit.fitted, runs, {}, {});
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    Columns residual = fit.fitted[r].residual_K;
-    Whitening(fit.fitted[r], grid.at(fit.place), designs[r].noise).apply(residual);
-    weights[r].setOnes(residual.rows());
-    for (Eigen::Index i = 0; i < residual.rows(); ++i) {
-      weights[r][i] = std::abs(residual(i, 0)) > kOutlier_sd ? 0.0 : 1.0;
-    }
-    if (weights[r].sum() < 0.98 * static_cast<double>(weights[r].size())) {
-      weights[r].setOnes();
-    }
-  }
-  return weights;
-}
+/// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
+constexpr double kMuchUnknown_share = 0.05;
 
 constexpr int kMostCurvesTried = 3;
 
@@ -77,14 +34,13 @@ class Selector {
       start_C.push_back(measured_start_C(input_.model.model.network, run));
     }
     out_.before = refit(input_.model, input_.runs, start_C, options_);
-    options_.weights = weights_of(out_.before, input_.runs, options_.grid);
-    options_.place = out_.before.place;
+    look_at_sensors(out_.before);
     out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
     out_.after = out_.before;
     out_.grid = options_.grid;
-    out_.weights = options_.weights;
     while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
     }
+    out_.errors = options_.errors;
     check_backwards();
     if (!out_.terms.empty()) {
       options_.place = out_.after.place;
@@ -95,6 +51,15 @@ class Selector {
   }
 
  private:
+  void look_at_sensors(const RefitResult& fit) {
+    options_.place = fit.place;
+    options_.errors = with_wander(fit, input_.runs, options_.grid, kMuchUnknown_share * out_.mean_heat_W, options_.errors);
+    options_.errors.weights = outlier_weights(fit, input_.runs, options_.grid, options_.errors);
+    if (!options_.errors.wander_K.empty()) {
+      options_.place = first_place_;
+    }
+  }
+
   [[nodiscard]] std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) const {
     std::vector<CandidateColumn> rules;
     for (const Candidate& each : candidates) {
@@ -105,22 +70,17 @@ class Selector {
 
   /// True where a term was taken in.
   bool one_round() {
-    const CandidateList list = candidates_for(out_.after.model.model.network, input_.runs);
+    const CandidateList list = candidates_for(out_.after.model, input_.runs);
     out_.not_judged = list.not_judged;
-    std::vector<Candidate> candidates;
-    for (const Candidate& each : list.candidates) {
-      if (!has_sensor_term(each)) {
-        candidates.push_back(each);
-      }
-    }
+    const std::vector<Candidate>& candidates = list.candidates;
     std::vector<Columns> columns(input_.runs.size());
-    in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
-      columns[r] = candidate_columns(candidates, out_.after.model.model.network, out_.after.model.values_in(input_.runs[r]),
-                                     out_.after.fitted[r], input_.runs[r]);
-    });
-    EvidenceTable table(design(out_.after.fitted, input_.runs, options_.weights, columns), options_.grid, prior_here(out_.after.model),
-                        column_rules(candidates));
+    in_parallel(input_.runs.size(), 0,
+                [&](std::size_t r) { columns[r] = candidate_columns(candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]); });
+    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, columns), options_.grid,
+                        prior_here(out_.after.model), column_rules(candidates));
     const SetScore base = table.best({}, out_.after.place);
+    out_.after.evidence_nats = std::max(out_.after.evidence_nats, base.evidence_nats);
+    out_.after.place = base.place;
     Round round;
     round.evidence_nats = base.evidence_nats;
     round.ladder = judge(candidates, table, base);
@@ -132,11 +92,6 @@ class Selector {
     const bool taken = take_best(round, candidates, table, base);
     out_.rounds.push_back(std::move(round));
     return taken;
-  }
-
-  [[nodiscard]] bool has_sensor_term(const Candidate& candidate) const {
-    return candidate.sensor_type &&
-           std::ranges::any_of(out_.after.model.sensors, [&](const SensorTerm& term) { return term.type == candidate.sensor_type; });
   }
 
   /// The best few candidates with their unknown heat re-maximised.
@@ -258,6 +213,9 @@ class Selector {
         return false;
       }
     }
+    if (take_set(round, candidates, table, base, best_nats)) {
+      return true;
+    }
     if (best_nats < least) {
       return false;
     }
@@ -281,27 +239,164 @@ class Selector {
   /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
   /// where the promise is not kept, once more from what was known beforehand.
   RefitResult try_term(const JudgedCandidate& judged, double promised_nats) const {
-    RefitOptions options = options_;
-    options.place = judged.place;
-    ExtendedModel model = with_candidate(out_.after.model, judged.candidate, judged.size_share);
-    Eigen::VectorXd theta = model.theta();
-    const Eigen::Index inner = out_.after.model.model.free_count();
-    const Eigen::Index sensors = judged.step.size() - inner;
-    theta.head(inner) += judged.step.head(inner);
-    theta.segment(model.model.free_count(), sensors) += judged.step.tail(sensors);
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
-    }
-    model.set_theta(theta);
-    RefitResult fit = refit(std::move(model), input_.runs, out_.after.start_C, options);
+    RefitResult fit = try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
     if (fit.evidence_nats > out_.after.evidence_nats + promised_nats) {
       return fit;
     }
+    RefitOptions options = options_;
     options.place = first_place_;
     const double sign = judged.size_share < 0.0 ? -1.0 : 1.0;
     RefitResult afresh = refit(with_candidate(with_values_of(out_.after.model, input_.model), judged.candidate, sign), input_.runs,
                                out_.before.start_C, options);
     return afresh.evidence_nats > fit.evidence_nats ? std::move(afresh) : std::move(fit);
+  }
+
+  RefitResult try_terms(const std::vector<Candidate>& added, const std::vector<double>& size_share, const Eigen::VectorXd& step,
+                        const FluxGrid::Place& place) const {
+    RefitOptions options = options_;
+    options.place = place;
+    ExtendedModel model = out_.after.model;
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      model = with_candidate(model, added[i], size_share[i]);
+    }
+    Eigen::VectorXd theta = model.theta();
+    const Eigen::Index inner = out_.after.model.model.free_count();
+    const auto sensors = static_cast<Eigen::Index>(out_.after.model.sensors.size());
+    const auto heat_shares = static_cast<Eigen::Index>(out_.after.model.heat_shares.size());
+    theta.head(inner) += step.head(inner);
+    theta.segment(model.model.free_count(), sensors) += step.segment(inner, sensors);
+    theta.segment(model.first_heat_share(), heat_shares) += step.tail(heat_shares);
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
+    }
+    model.set_theta(theta);
+    return refit(std::move(model), input_.runs, out_.after.start_C, options);
+  }
+
+  /// What a set of so many terms must be ahead: every term has to be worth the least gain.
+  [[nodiscard]] double worth_nats(double gain_nats, std::size_t terms) const {
+    return gain_nats - static_cast<double>(terms) * rules_.least_gain_nats;
+  }
+
+  /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
+  bool take_set(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
+                double best_single_nats) {
+    const LatentFlux flux = table.grid().at(base.place);
+    if (*std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W) {
+      return false;
+    }
+    std::optional<RefitResult> best;
+    std::vector<int> chosen;
+    double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1));
+    for (const SetScore& set : best_sets(round, candidates, table, base)) {
+      const Eigen::Index own = table.free_count();
+      std::vector<Candidate> added;
+      std::vector<double> size_share;
+      for (std::size_t i = 0; i < set.candidates.size(); ++i) {
+        added.push_back(candidates[static_cast<std::size_t>(set.candidates[i])]);
+        size_share.push_back(set.coefficient[own + static_cast<Eigen::Index>(i)]);
+      }
+      RefitResult fit = try_terms(added, size_share, set.coefficient.head(own), set.place);
+      const double set_worth_nats = worth_nats(fit.evidence_nats - out_.after.evidence_nats, added.size());
+      if (set_worth_nats > best_worth_nats) {
+        best_worth_nats = set_worth_nats;
+        best = std::move(fit);
+        chosen = set.candidates;
+      }
+    }
+    if (!best) {
+      return false;
+    }
+    auto name = best->model.model.network.effects().end() -
+                std::ranges::count_if(chosen, [&](int j) { return candidates[static_cast<std::size_t>(j)].type != nullptr; });
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      AcceptedTerm term;
+      term.candidate = candidates[static_cast<std::size_t>(chosen[i])];
+      term.effect_name = term.candidate->type ? (name++)->name : std::string();
+      term.gain_nats = (best->evidence_nats - out_.after.evidence_nats) / static_cast<double>(chosen.size());
+      term.visibility_ratio = table.visibility_ratio(base.candidates, base.place, chosen[i]);
+      tell_rivals(round, candidates, table, base, chosen, i, term);
+      out_.terms.push_back(std::move(term));
+    }
+    out_.after = std::move(*best);
+    return true;
+  }
+
+  /// Of effects that gain something by themselves and can be seen: sets that grow one by one from the best smaller ones.
+  std::vector<SetScore> best_sets(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table,
+                                  const SetScore& base) const {
+    constexpr std::size_t kKept = 6;
+    constexpr std::size_t kRefitted = 4;
+    const auto by_evidence = [](const SetScore& a, const SetScore& b) { return a.evidence_nats > b.evidence_nats; };
+    const std::vector<int> pool = visible_places(round, candidates);
+    std::vector<SetScore> all;
+    std::vector<SetScore> smaller{base};
+    for (std::size_t size = 1; out_.terms.size() + size <= static_cast<std::size_t>(rules_.most_terms); ++size) {
+      std::map<std::vector<int>, SetScore> larger;
+      for (const SetScore& from : smaller) {
+        for (const int j : pool) {
+          std::vector<int> set = from.candidates;
+          set.insert(std::ranges::lower_bound(set, j), j);
+          if (std::ranges::find(from.candidates, j) != from.candidates.end() || larger.contains(set)) {
+            continue;
+          }
+          SetScore score = table.best(set, from.place);
+          if (score.is_allowed) {
+            larger.emplace(std::move(set), std::move(score));
+          }
+        }
+      }
+      smaller.clear();
+      for (auto& [set, score] : larger) {
+        smaller.push_back(std::move(score));
+      }
+      std::ranges::stable_sort(smaller, by_evidence);
+      // Of single ones all go on: what they gain alone says little here.
+      smaller.resize(std::min(smaller.size(), size == 1 ? pool.size() : kKept));
+      if (size > 1) {
+        all.insert(all.end(), smaller.begin(), smaller.end());
+      }
+    }
+    std::ranges::stable_sort(all, [&](const SetScore& a, const SetScore& b) {
+      return worth_nats(a.evidence_nats, a.candidates.size()) > worth_nats(b.evidence_nats, b.candidates.size());
+    });
+    all.resize(std::min(all.size(), kRefitted));
+    return all;
+  }
+
+  [[nodiscard]] std::vector<int> visible_places(const Round& round, const std::vector<Candidate>& candidates) const {
+    std::vector<int> pool;
+    for (const JudgedCandidate& each : round.ladder) {
+      const auto found = std::ranges::find_if(
+          candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
+      // Shapes are free in a refit: one variant stands for all.
+      const bool is_variant =
+          std::ranges::any_of(pool, [&](int j) { return candidates[static_cast<std::size_t>(j)].id == each.candidate.id; });
+      if (each.visibility_ratio >= rules_.least_visibility_ratio && !is_variant) {
+        pool.push_back(static_cast<int>(found - candidates.begin()));
+      }
+    }
+    return pool;
+  }
+
+  /// What could stand in place of one of a set.
+  void tell_rivals(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
+                   const std::vector<int>& chosen, std::size_t own, AcceptedTerm& term) const {
+    const double chosen_nats = table.best(chosen, base.place).evidence_nats;
+    for (const int j : visible_places(round, candidates)) {
+      const Candidate& rival = candidates[static_cast<std::size_t>(j)];
+      std::vector<int> set = chosen;
+      set[own] = j;
+      if (std::ranges::find(chosen, j) != chosen.end() || rival.id == term.candidate->id ||
+          std::ranges::find(term.confusable_with, rival.id) != term.confusable_with.end()) {
+        continue;
+      }
+      const SetScore with = table.best(set, base.place);
+      if (with.is_allowed && with.evidence_nats > chosen_nats - rules_.ambiguous_within_nats) {
+        term.confusable_with.push_back(rival.id);
+        term.experiments.emplace_back(rival.experiment());
+      }
+    }
   }
 
   /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.

@@ -71,8 +71,8 @@ struct Selection {
   double mean_heat_W = 0.0;              ///< that the model knows of, over all runs
   std::optional<ScanResult> open_curve;  ///< that nothing in the network can follow, or physics forbids as it stands
   FluxGrid grid;
-  std::vector<Eigen::VectorXd> weights;  ///< of the samples, per run
-  std::vector<std::string> refused;      ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
+  SensorErrors errors;
+  std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
 };
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);

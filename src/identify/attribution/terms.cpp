@@ -121,6 +121,10 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
     out.sensors.push_back({candidate.sensor_type, size_share * candidate.typical_size(), kSizeSpread_share * candidate.typical_size()});
     return out;
   }
+  if (candidate.is_heat_share()) {
+    out.heat_shares.push_back({candidate.condition, size_share * candidate.typical_size(), kSizeSpread_share * candidate.typical_size()});
+    return out;
+  }
   std::vector<double> parameters = candidate.parameters;
   const Range& range = candidate.size_spec().range;
   double& size = parameters[static_cast<std::size_t>(candidate.size_parameter())];
@@ -147,6 +151,10 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   }
   set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(),
                        range, kSizeSpread_share);
+  if (!candidate.condition.empty()) {
+    out.conditional.push_back(
+        {effect.name, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], 0.0, candidate.condition});
+  }
   return out;
 }
 
@@ -173,6 +181,10 @@ ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
   for (SensorTerm& term : model.sensors) {
     const auto found = std::ranges::find(other.sensors, term.type, &SensorTerm::type);
     term.value = found != other.sensors.end() ? found->value : term.value;
+  }
+  for (HeatShareTerm& term : model.heat_shares) {
+    const auto found = std::ranges::find(other.heat_shares, term.condition, &HeatShareTerm::condition);
+    term.deviation_share = found != other.heat_shares.end() ? found->deviation_share : term.deviation_share;
   }
   return model;
 }

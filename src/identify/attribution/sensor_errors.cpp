@@ -1,0 +1,132 @@
+#include "identify/attribution/sensor_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identify/attribution/refit.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kShortestWander_s = 4.0;
+constexpr double kLongestWander_s = 64.0;
+/// So much more probable must a model be with errors of the sensors than without.
+constexpr double kClearly_nats = 10.0;
+
+/// The evidence of the model at the fit, at the unknown heat that is best then.
+class Trial {
+ public:
+  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, FluxGrid::Place begin)
+      : fit_(fit), runs_(runs), grid_(grid), place_(std::move(begin)) {}
+
+  double evidence_nats(const SensorErrors& errors) {
+    EvidenceTable table(design(fit_.model.model.network, fit_.fitted, runs_, errors, {}), grid_, prior_here(fit_.model), {});
+    const SetScore best = table.best({}, place_);
+    last_ = best.place;
+    return best.evidence_nats;
+  }
+  /// The next trials begin where the last one ended.
+  void go_on_there() { place_ = last_; }
+
+ private:
+  const RefitResult& fit_;
+  const std::vector<MeasuredRun>& runs_;
+  const FluxGrid& grid_;
+  FluxGrid::Place place_, last_;
+};
+
+/// Doubles and halves one number after the other as long as the evidence grows.
+double climb(Trial& trial, SensorErrors& errors) {
+  double best_nats = trial.evidence_nats(errors);
+  trial.go_on_there();
+  const auto try_out = [&](const SensorErrors& next) {
+    const double nats = trial.evidence_nats(next);
+    if (nats <= best_nats + 0.5) {
+      return false;
+    }
+    best_nats = nats;
+    errors = next;
+    trial.go_on_there();
+    return true;
+  };
+  constexpr int kMostRounds = 4;
+  bool moved = true;
+  for (int round = 0; moved && round < kMostRounds; ++round) {
+    moved = false;
+    for (const double factor : {2.0, 0.5}) {
+      for (const auto& [signal, now_K] : std::map(errors.wander_K)) {
+        SensorErrors next = errors;
+        next.wander_K[signal] *= factor;
+        while (try_out(next)) {
+          moved = true;
+          next.wander_K[signal] *= factor;
+        }
+      }
+      SensorErrors next = errors;
+      next.wander_time_scale_s *= factor;
+      while (next.wander_time_scale_s >= kShortestWander_s && next.wander_time_scale_s <= kLongestWander_s && try_out(next)) {
+        moved = true;
+        next.wander_time_scale_s *= factor;
+      }
+    }
+  }
+  return best_nats;
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> outlier_weights(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid,
+                                             const SensorErrors& known) {
+  constexpr double kOutlier_sd = 4.5;
+  // Where these are many the model has a problem instead, and every sample keeps a say.
+  constexpr double kMostOutliers_share = 0.02;
+  SensorErrors all = known;
+  all.weights.clear();
+  std::vector<Eigen::VectorXd> weights(runs.size());
+  const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, runs, all, {});
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    Columns residual = fit.fitted[r].residual_K;
+    Whitening(fit.fitted[r], grid.at(fit.place), designs[r].noise).apply(residual);
+    weights[r].setOnes(residual.rows());
+    for (Eigen::Index i = 0; i < residual.rows(); ++i) {
+      weights[r][i] = std::abs(residual(i, 0)) > kOutlier_sd ? 0.0 : 1.0;
+    }
+    if (weights[r].sum() < (1.0 - kMostOutliers_share) * static_cast<double>(weights[r].size())) {
+      weights[r].setOnes();
+    }
+  }
+  return weights;
+}
+
+SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, double tolerable_W,
+                         SensorErrors known) {
+  const LatentFlux flux = grid.at(fit.place);
+  if (known.wander_K.empty() && *std::ranges::max_element(flux.rms_W) <= tolerable_W) {
+    return known;
+  }
+  const double without_nats =
+      known.wander_K.empty() ? Trial(fit, runs, grid, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
+  // Little unknown heat beside it to begin with: much of it has taken the place of what is looked for.
+  FluxGrid::Place little = fit.place;
+  std::ranges::fill(little.begin(), little.end() - 1, std::min(3, static_cast<int>(grid.rms_W.size()) - 1));
+  SensorErrors best = known;
+  double best_nats = without_nats + kClearly_nats;
+  for (const double noises : {2.0, 10.0}) {
+    SensorErrors wandering = known;
+    for (const MeasuredRun& run : runs) {
+      for (const Sensor& sensor : run.sensors) {
+        double& wander_K = wandering.wander_K[sensor.signal];
+        wander_K = known.wander_K.empty() ? std::max(wander_K, noises * sensor.noise_K) : wander_K;
+      }
+    }
+    Trial trial(fit, runs, grid, little);
+    if (const double nats = climb(trial, wandering); nats > best_nats) {
+      best_nats = nats;
+      best = wandering;
+    }
+  }
+  return best;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,33 @@
+// What sensors do besides showing temperatures: samples that count as outliers, and slow errors of their own.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "identify/measured_run.h"
+
+namespace heatsoak {
+
+struct RefitResult;
+struct FluxGrid;
+
+struct SensorErrors {
+  std::vector<Eigen::VectorXd> weights;  ///< per run: of each sample, 0 for an outlier; empty: all count
+  /// By signal: standard deviation of an error that comes and goes within seconds and heats nothing, as where a probe sits at one phase of
+  /// a motor that creeps. Empty: none.
+  std::map<std::string, double> wander_K;
+  double wander_time_scale_s = 10.0;
+};
+
+/// Samples that no smooth heat explains.
+std::vector<Eigen::VectorXd> outlier_weights(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid,
+                                             const SensorErrors& known);
+
+/// `known` with slow errors that make the model at the fit most probable. They are looked for where much unknown heat, more than
+/// `tolerable_W`, would be needed otherwise, and believed where the evidence for them is clear.
+SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, double tolerable_W,
+                         SensorErrors known);
+
+}  // namespace heatsoak

@@ -1,0 +1,86 @@
+#include "motor/conditions.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "thermal/network.h"
+
+namespace heatsoak {
+namespace {
+
+/// A motor at work, hot: every signal that a law may need is there.
+OperatingPoint<double> at_work() {
+  OperatingPoint<double> at;
+  at.current_rms_A = 5.0;
+  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = at.velocity_rad_per_s = 300.0;
+  at.ambient_C = 20.0;
+  at.shaft_power_W = 50.0;
+  at.input_power_W = 80.0;
+  at.bus_V = 24.0;
+  at.modulation_ratio = 0.5;
+  at.vehicle_speed_m_per_s = 2.0;
+  at.neighbour_C = 90.0;
+  at.neighbour_share = 1.0;
+  at.age_h = 100.0;
+  at.acceleration_rad_per_s2 = 100.0;
+  at.copper_loss_W = 10.0;
+  return at;
+}
+
+double probe_C(const std::string& node) { return node == "winding" ? 100.0 : node == "stator" ? 70.0 : 40.0; }
+
+}  // namespace
+
+bool acts_by_default(const MotorEffect& effect, std::span<const double> parameters) {
+  Network network;
+  for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
+    const std::string& node = effect.nodes[role];
+    const bool is_own = effect.type->nodes[role].own_capacity >= 0;
+    if (!is_own && node != Network::kAmbient && network.find_node(node) < 0) {
+      network.add_node(node, 1.0);
+    }
+  }
+  network.add_effect(effect.name, *effect.type, effect.nodes, parameters);
+  std::vector<double> state_C;
+  for (int node = 0; node < network.state_count(); ++node) {
+    state_C.push_back(probe_C(std::string(network.node_name(node))));
+  }
+  std::vector<double> heat_W(static_cast<std::size_t>(network.node_count()));
+  network.balance_W(at_work(), network.values(), state_C, heat_W);
+  const auto hottest = std::ranges::max_element(state_C) - state_C.begin();
+  return state_C.empty() || heat_W[static_cast<std::size_t>(hottest)] >= 0.0;
+}
+
+Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
+  std::set<std::string> there;
+  for (const MotorEffect& effect : motor.effects) {
+    for (const auto& [key, value] : effect.condition) {
+      there.insert(fmt::format("{}={}", key, value));
+    }
+  }
+  for (const auto& [key, value] : conditions) {
+    const bool is_key = std::ranges::any_of(there, [&](const std::string& each) { return each.starts_with(key + "="); });
+    if (!is_key) {
+      throw Failure(ExitCode::bad_input,
+                    there.empty() ? fmt::format("condition {}={}: no effect of {} is under a condition", key, value, motor.id)
+                                  : fmt::format("condition {}={}: expected one of {}'s: {}", key, value, motor.id, fmt::join(there, ", ")));
+    }
+  }
+  std::erase_if(motor.effects, [&](const MotorEffect& effect) {
+    return std::ranges::any_of(effect.condition, [&](const auto& part) {
+      const auto found = conditions.find(part.first);
+      return found != conditions.end() && found->second != part.second;
+    });
+  });
+  for (MotorEffect& effect : motor.effects) {
+    std::erase_if(effect.condition, [&](const auto& part) { return conditions.contains(part.first); });
+  }
+  return motor;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,43 @@
+#include "thermal/effect.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { hot, cold };
+enum Parameter { conductance };
+
+struct Airflow {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    heat.flow(hot, cold, x.parameter(conductance) * (x.temperature_C(hot) - x.temperature_C(cold)));
+  }
+};
+
+}  // namespace
+
+EffectType airflow() {
+  return {
+      .name = {},
+      .summary =
+          "Air that something else moves past the motor, a fan, a draught, the way it is mounted: heat leaves in proportion to the excess.",
+      .equation = "P_hot→cold = G · (T_hot − T_cold)",
+      .reference = "Newton's law of cooling; VDI Heat Atlas, forced convection at a constant speed of the air",
+      .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "beside what still air leads away"}},
+      .typical = "0.05 to 0.3 W/K for a motor of 0.1 kg; a fan on a large one some W/K",
+      .look_alike =
+          "The resistance to ambient itself: only runs with and without the air, all else equal, tell. At the winding: "
+          "winding_through_flow, where "
+          "the rotor moves the air.",
+      // 0.2 W/K · (60 − 25) K = 7 W
+      .example = {.parameters = {0.2}, .at = {}, .temperature_C = {60.0, 25.0}, .expected_heat_W = {-7.0, 7.0}},
+      .laws = laws<Airflow>(),
+      .needs = {},
+      .candidacy = {.size_parameter = conductance,
+                    .variants = {{0.15}},
+                    .family = "more cooling than in still air",
+                    .experiment = "the same load twice, once with the air held off by a screen"},
+  };
+}
+
+}  // namespace heatsoak::effects
