@@ -117,7 +117,8 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, con
     panel.curves = {{"curve", heat.knots, heat.curve, 0, false}};
     panel.bands = {band};
     chart.panels = {panel};
-    pictures.push_back({fmt::format("curve_{}_{}", heat.node, heat.drivers.front()), chart});
+    // Two curves may have a node and a driver in common, as one that heats and one that cools.
+    pictures.push_back({fmt::format("curve_{}_{}_{}", pictures.size() - 1, heat.node, heat.drivers.front()), chart});
   }
   return pictures;
 }

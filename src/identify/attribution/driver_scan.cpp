@@ -132,6 +132,9 @@ class Scanner {
   }
 
   std::vector<ScanResult> run(int most) {
+    if (input_.drivers->empty()) {
+      return {};
+    }
     std::vector<Climber> climbers;
     for (const Batch& batch : batches_of(input_)) {
       const std::vector<Eigen::VectorXd> multiplier = multipliers(batch.term);

@@ -13,6 +13,8 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// Two drivers whose values go together more than this are one; the earlier name stays.
 constexpr double kSameCorrelation_ratio = 0.9995;
+/// A curve over a driver has seven knots: with fewer samples than a few for each it says nothing.
+constexpr std::size_t kFewestSamples = 30;
 
 Driver driver_of(std::string name, std::string unit, DriverKind kind) {
   Driver driver;
@@ -58,7 +60,7 @@ class Collector {
     for (const Eigen::VectorXd& values : driver.values) {
       std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return !std::isnan(value); });
     }
-    if (known.size() < 100) {
+    if (known.size() < kFewestSamples) {
       return;
     }
     std::ranges::sort(known);

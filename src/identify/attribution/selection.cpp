@@ -428,7 +428,9 @@ class Selector {
       term.effect_name = std::string(fit.model.model.network.effects().back().name);
       for (const ScanResult& other : round.scan) {
         const std::string& name = out_.drivers[static_cast<std::size_t>(other.term.driver)].name;
-        if (&other != &each && other.gain_nats > each.gain_nats - rules_.ambiguous_within_nats) {
+        // The same driver may rule another node or another law: that is no other driver.
+        if (other.term.driver != each.term.driver && other.gain_nats > each.gain_nats - rules_.ambiguous_within_nats &&
+            std::ranges::find(term.confusable_with, name) == term.confusable_with.end()) {
           term.confusable_with.push_back(name);
         }
       }

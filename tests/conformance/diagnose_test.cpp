@@ -1,0 +1,61 @@
+// `heatsoak diagnose` as a user meets it: the shipped logs, short ones, and the extended model in another verb.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program_run.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const fs::path kSoak = fs::path(HEATSOAK_SOURCE_DIR) / "reports/soak";
+constexpr const char* kMotor = "maxon_ec45_flat_70w_24v";
+
+std::string log(const std::string& name) { return (kSoak / name).string(); }
+
+// The logs are of a motor in a chassis that soaks heat; the third match was never trained on.
+TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
+  const TemporaryFolder folder;
+  const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), log("bench.csv"),
+                               "--holdout", log("match_3.csv"), "--out", "found", "--json", "-"},
+                              {.folder = folder.path()});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const nlohmann::json answer = done.json();
+  EXPECT_EQ(answer["schema"], "heatsoak.diagnosis/1");
+  EXPECT_EQ(answer["verdict"], "effect_found");
+  ASSERT_EQ(answer["effects"].size(), 1U) << done.out;
+  const nlohmann::json& effect = answer["effects"][0];
+  EXPECT_EQ(effect["id"], "third_node");
+  EXPECT_EQ(effect["node"], "stator");
+  for (const char* key : {"parameters", "heat_W", "evidence", "confusable_with"}) {
+    EXPECT_TRUE(effect.contains(key)) << key;
+  }
+  for (const char* signal : {"winding_C", "stator_C"}) {
+    EXPECT_LT(answer["after"]["holdout"][signal]["rmse_K"].get<double>(),
+              0.6 * answer["before"]["holdout"][signal]["rmse_K"].get<double>());
+  }
+  for (const char* key : {"residual_tests", "description"}) {
+    EXPECT_TRUE(answer.contains(key)) << key;
+  }
+  EXPECT_THAT(content_of(folder.path() / "found/diagnosis.html"), HasSubstr("third_node"));
+  const ProgramRun used = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--model",
+                               "found/maxon_ec45_flat_70w_24v.toml", "--samples", "0"},
+                              {.folder = folder.path()});
+  EXPECT_LE(used.exit_code, 1) << used.err;
+}
+
+// Too few samples for any curve over a signal: that is an answer, not a crash.
+TEST(Diagnose, AnswersOnLogsOfSeconds) {
+  for (const char* part : {"@0-1%", "@0-2%", "@0-4%"}) {
+    const TemporaryFolder folder;
+    const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", log("bench.csv") + part, "--out", "found", "--json", "-"},
+                                {.folder = folder.path()});
+    EXPECT_THAT(done.exit_code, testing::AnyOf(0, 3)) << part << done.err;
+    EXPECT_THAT(done.json().value("verdict", "an error"), testing::Not("effect_found")) << part;
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
