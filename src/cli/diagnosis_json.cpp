@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +21,18 @@ Json errors_json(const Errors& errors) {
   return json;
 }
 
+/// As the catalogue has them: "constant_heat" for "constant_heat@stator in run4".
+std::vector<std::string> plain_ids(const std::vector<std::string>& candidates) {
+  std::vector<std::string> ids;
+  for (const std::string& candidate : candidates) {
+    std::string id = candidate.substr(0, candidate.find_first_of("@ "));
+    if (std::ranges::find(ids, id) == ids.end()) {
+      ids.push_back(std::move(id));
+    }
+  }
+  return ids;
+}
+
 Json effect_json(const FoundEffect& effect) {
   Json parameters = Json::array();
   for (const FittedParameter& parameter : effect.parameters) {
@@ -38,7 +51,7 @@ Json effect_json(const FoundEffect& effect) {
           {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
           {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
           {"visibility", rounded(effect.visibility_ratio, 4)},
-          {"confusable_with", effect.confusable_with}};
+          {"confusable_with", plain_ids(effect.confusable_with)}};
 }
 
 Json tests_json(const std::vector<InnovationTests>& tests) {

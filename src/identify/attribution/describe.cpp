@@ -71,7 +71,8 @@ std::string describe(const Diagnosis& diagnosis) {
       break;
   }
   for (const FoundEffect& effect : diagnosis.effects) {
-    text += effect_in_words(effect);
+    // What has no name in the catalogue is told below, with its driver.
+    text += effect.is_from_catalogue ? effect_in_words(effect) : "";
   }
   for (const Unexplained& heat : diagnosis.unexplained) {
     text += heat.drivers.empty()

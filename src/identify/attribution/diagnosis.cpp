@@ -83,7 +83,7 @@ class Teller {
       return effect;
     }
     const EffectInPlace& in_place = *effect_named(term.effect_name);
-    effect.id = term.candidate ? term.candidate->id.substr(0, term.candidate->id.find(" in ")) : std::string(in_place.type->name);
+    effect.id = in_place.type->name;
     effect.node = after().model.model.network.node_name(in_place.node_index.front());
     effect.description = in_place.type->summary;
     for (const ConditionalTerm& conditional : after().model.conditional) {
