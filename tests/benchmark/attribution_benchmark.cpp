@@ -30,7 +30,7 @@ void diagnose_four_half_hours(benchmark::State& state, const char* missing) {
     (void)each;
     benchmark::DoNotOptimize(diagnose(input, {}));
   }
-  state.counters["candidates"] = static_cast<double>(candidates_for(input.model.model.network, input.train).candidates.size());
+  state.counters["candidates"] = static_cast<double>(candidates_for(input.model, input.train).candidates.size());
 }
 BENCHMARK_CAPTURE(diagnose_four_half_hours, nothing_missing, "")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK_CAPTURE(diagnose_four_half_hours, one_effect_missing, "iron_loss_eddy")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
