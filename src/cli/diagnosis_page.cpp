@@ -122,7 +122,8 @@ std::string test_table(const Diagnosis& diagnosis) {
 constexpr std::string_view kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1080px;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left}"
-    "th{background:#f2f2f2}svg{max-width:100%;height:auto}p.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid "
+    "th{background:#f2f2f2}figure{margin:1em "
+    "0}svg{max-width:100%;height:auto}p.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid "
     "#c8102e}";
 
 }  // namespace
@@ -147,7 +148,8 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   }
   for (const auto& [name, picture] : svg) {
     const std::size_t begin = picture.find("<svg");
-    text += fmt::format("<h2>{}</h2>\n{}\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
+    // Each picture has its own title.
+    text += fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
   text +=
       "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown heat; "
