@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
+#include "../support/measured_data.h"
 #include "identify/attribution/model_file.h"
 #include "identify/calibration/calibrate.h"
 #include "identify/measurement/mapping.h"
@@ -15,18 +15,6 @@ namespace heatsoak {
 namespace {
 
 const std::filesystem::path kReports = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "reports/diagnosis";
-
-/// HEATSOAK_MEASURED_DATA, or shared/data beside a folder above the sources.
-std::filesystem::path recordings() {
-  if (const char* const stated = std::getenv("HEATSOAK_MEASURED_DATA")) {
-    return stated;
-  }
-  std::filesystem::path above = HEATSOAK_SOURCE_DIR;
-  while (above.has_relative_path() && !std::filesystem::exists(above.parent_path() / "shared/data")) {
-    above = above.parent_path();
-  }
-  return above.parent_path() / "shared/data";
-}
 
 Recording read(const std::filesystem::path& log, const std::filesystem::path& map) {
   RecordingReport report;
@@ -58,10 +46,11 @@ double rms_K(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, c
 }
 
 TEST(MeasuredMotors, a_fan_that_nobody_told_of_is_found_in_the_run_that_had_it) {
-  const std::filesystem::path folder = recordings() / "tasrv_uav_motor";
-  if (!std::filesystem::exists(folder)) {
+  const std::optional<std::filesystem::path> found = measured_data("tasrv_uav_motor");
+  if (!found) {
     GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)";
   }
+  const std::filesystem::path& folder = *found;
   const std::filesystem::path map = kReports / "uav_fan/recordings.map.toml";
   std::map<std::string, Recording> run;
   for (const char* const name : {"run1", "run2", "run3", "run4", "run5"}) {

@@ -17,15 +17,7 @@ void diagnose_four_half_hours(benchmark::State& state, const char* missing) {
     sealed.missing = found->make(1.0);
   }
   const Runs runs = record(sealed);
-  DiagnosisInput input;
-  input.model = model_before(runs.make, sealed.seed);
-  for (const TrueRun& run : runs.training) {
-    input.train.push_back(measured(run));
-    input.free.push_back(free_signals(run.log, input.train.back()));
-  }
-  for (const TrueRun& run : runs.unseen) {
-    input.holdout.push_back(measured(run));
-  }
+  const DiagnosisInput input = question(sealed, runs);
   for (auto each : state) {
     (void)each;
     benchmark::DoNotOptimize(diagnose(input, {}));
@@ -33,7 +25,10 @@ void diagnose_four_half_hours(benchmark::State& state, const char* missing) {
   state.counters["candidates"] = static_cast<double>(candidates_for(input.model, input.train).candidates.size());
 }
 BENCHMARK_CAPTURE(diagnose_four_half_hours, nothing_missing, "")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK_CAPTURE(diagnose_four_half_hours, one_effect_missing, "iron_loss_eddy")->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(diagnose_four_half_hours, one_effect_missing, "iron_loss_eddy")
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace heatsoak::truth

@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <optional>
-
+#include "../support/measured_data.h"
 #include "identify/calibration/calibrate.h"
 #include "identify/measurement/read_recording.h"
 
@@ -16,19 +14,6 @@ namespace fs = std::filesystem;
 using testing::Contains;
 using testing::Field;
 using testing::HasSubstr;
-
-/// HEATSOAK_MEASURED_DATA, or shared/data beside a folder above the sources.
-std::optional<fs::path> measured_data() {
-  if (const char* given = std::getenv("HEATSOAK_MEASURED_DATA")) {
-    return fs::exists(given) ? std::optional<fs::path>(given) : std::nullopt;
-  }
-  for (fs::path above = HEATSOAK_SOURCE_DIR; above.has_relative_path(); above = above.parent_path()) {
-    if (fs::exists(above.parent_path() / "shared/data")) {
-      return above.parent_path() / "shared/data";
-    }
-  }
-  return std::nullopt;
-}
 
 const fs::path kReports = fs::path(HEATSOAK_SOURCE_DIR) / "reports";
 const fs::path kMappings = fs::path(HEATSOAK_SOURCE_DIR) / "tests/data/mappings";

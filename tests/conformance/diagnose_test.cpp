@@ -13,6 +13,12 @@ using testing::HasSubstr;
 const fs::path kSoak = fs::path(HEATSOAK_SOURCE_DIR) / "reports/soak";
 constexpr const char* kMotor = "maxon_ec45_flat_70w_24v";
 
+RunOptions in(const TemporaryFolder& folder) {
+  RunOptions options;
+  options.folder = folder.path();
+  return options;
+}
+
 std::string log(const std::string& name) { return (kSoak / name).string(); }
 
 // The logs are of a motor in a chassis that soaks heat; the third match was never trained on.
@@ -20,7 +26,7 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   const TemporaryFolder folder;
   const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), log("bench.csv"),
                                "--holdout", log("match_3.csv"), "--out", "found", "--json", "-"},
-                              {.folder = folder.path()});
+                              in(folder));
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const nlohmann::json answer = done.json();
   EXPECT_EQ(answer["schema"], "heatsoak.diagnosis/1");
@@ -42,7 +48,7 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   EXPECT_THAT(content_of(folder.path() / "found/diagnosis.html"), HasSubstr("third_node"));
   const ProgramRun used = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--model",
                                "found/maxon_ec45_flat_70w_24v.toml", "--samples", "0"},
-                              {.folder = folder.path()});
+                              in(folder));
   EXPECT_LE(used.exit_code, 1) << used.err;
 }
 
@@ -50,8 +56,8 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
 TEST(Diagnose, AnswersOnLogsOfSeconds) {
   for (const char* part : {"@0-1%", "@0-2%", "@0-4%"}) {
     const TemporaryFolder folder;
-    const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", log("bench.csv") + part, "--out", "found", "--json", "-"},
-                                {.folder = folder.path()});
+    const ProgramRun done =
+        run({"diagnose", "--model", kMotor, "--train", log("bench.csv") + part, "--out", "found", "--json", "-"}, in(folder));
     EXPECT_THAT(done.exit_code, testing::AnyOf(0, 3)) << part << done.err;
     EXPECT_THAT(done.json().value("verdict", "an error"), testing::Not("effect_found")) << part;
   }

@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <iostream>
 
-#include "../robot/robotino_recordings.h"
+#include "../support/measured_data.h"
 #include "identify/friction/friction_fit.h"
 #include "identify/friction/read_friction_log.h"
 #include "identify/measurement/read_recording.h"

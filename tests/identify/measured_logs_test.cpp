@@ -2,10 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <optional>
 
+#include "../support/measured_data.h"
 #include "identify/measurement/quality.h"
 #include "identify/measurement/read_recording.h"
 
@@ -16,19 +15,6 @@ namespace fs = std::filesystem;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-/// HEATSOAK_MEASURED_DATA, or shared/data beside a folder above the sources.
-std::optional<fs::path> measured_data() {
-  if (const char* given = std::getenv("HEATSOAK_MEASURED_DATA")) {
-    return fs::exists(given) ? std::optional<fs::path>(given) : std::nullopt;
-  }
-  for (fs::path above = HEATSOAK_SOURCE_DIR; above.has_relative_path(); above = above.parent_path()) {
-    if (fs::exists(above.parent_path() / "shared/data")) {
-      return above.parent_path() / "shared/data";
-    }
-  }
-  return std::nullopt;
-}
 
 class MeasuredLogs : public testing::Test {
  protected:

@@ -1,14 +1,13 @@
 // Recordings of a Festo Robotino driving on 72 headings, where they are at hand; no part of the project.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "../support/measured_data.h"
 #include "robot/kinematics.h"
 
 namespace heatsoak {
@@ -23,21 +22,6 @@ struct SteadyRun {
 
   [[nodiscard]] bool is_even() const { return static_cast<int>(heading_deg) % 10 == 0; }
 };
-
-/// HEATSOAK_MEASURED_DATA, or shared/data beside a folder above the sources.
-inline std::optional<std::filesystem::path> measured_data(const std::string& folder) {
-  if (const char* given = std::getenv("HEATSOAK_MEASURED_DATA")) {
-    const std::filesystem::path path = std::filesystem::path(given) / folder;
-    return std::filesystem::exists(path) ? std::optional(path) : std::nullopt;
-  }
-  for (std::filesystem::path above = HEATSOAK_SOURCE_DIR; above.has_relative_path(); above = above.parent_path()) {
-    const std::filesystem::path path = above.parent_path() / "shared/data" / folder;
-    if (std::filesystem::exists(path)) {
-      return path;
-    }
-  }
-  return std::nullopt;
-}
 
 /// Three header rows, then `;` separated numbers: time in ms, set speeds, encoder counts, velocities, currents, camera.
 inline std::vector<std::vector<double>> read_recording(const std::filesystem::path& path) {
