@@ -117,6 +117,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
   }
   json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(diagnosis.before_holdout)}};
   json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(diagnosis.after_holdout)}};
+  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(diagnosis.refitted_holdout)}};
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = diagnosis.description;
   if (!diagnosis.unexplained.empty()) {
@@ -138,6 +139,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
   }
   json["ladder"] = ladder_json(diagnosis.selection);
   json["refused"] = diagnosis.selection.refused;
+  json["would_not_show"] = diagnosis.selection.unseen;
   json["not_judged"] = diagnosis.selection.not_judged;
   json["unknown_heat_rms_W"] = {{"before", diagnosis.flux_rms_before_W}, {"after", diagnosis.flux_rms_after_W}};
   json["power_balance_W"] = Json::object();

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity.h"
 #include "cli/diagnosis_answer.h"
 
 namespace heatsoak {
@@ -25,20 +27,26 @@ std::string row(const std::vector<std::string>& cells, std::string_view tag = "t
 }
 
 std::string error_table(const Diagnosis& diagnosis) {
-  std::string text =
-      "<table>" + row({"signal", "runs", "before: rms / K", "after: rms / K", "before: worst / K", "after: worst / K"}, "th");
-  const auto add = [&](const Errors& before, const Errors& after, const char* where) {
+  std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "own figures refitted: rms / K", "after: rms / K",
+                                      "before: worst / K", "after: worst / K"},
+                                     "th");
+  const auto add = [&](const Errors& before, const Errors& refitted, const Errors& after, const char* where) {
     for (const auto& [signal, error] : before) {
       const auto found = after.find(signal);
       if (found != after.end()) {
-        text += row({signal, where, fmt::format("{:.2f}", error.rmse_K), fmt::format("{:.2f}", found->second.rmse_K),
-                     fmt::format("{:.1f}", error.max_abs_K), fmt::format("{:.1f}", found->second.max_abs_K)});
+        text += row({signal, where, fmt::format("{:.2f}", error.rmse_K), fmt::format("{:.2f}", refitted.at(signal).rmse_K),
+                     fmt::format("{:.2f}", found->second.rmse_K), fmt::format("{:.1f}", error.max_abs_K),
+                     fmt::format("{:.1f}", found->second.max_abs_K)});
       }
     }
   };
-  add(diagnosis.before_train, diagnosis.after_train, "training");
-  add(diagnosis.before_holdout, diagnosis.after_holdout, "never seen");
+  add(diagnosis.before_train, diagnosis.refitted_train, diagnosis.after_train, "training");
+  add(diagnosis.before_holdout, diagnosis.refitted_holdout, diagnosis.after_holdout, "never seen");
   return text + "</table>\n";
+}
+
+std::string heat_in_words(const FoundEffect& effect) {
+  return effect.has_heat ? fmt::format("{} / {} W", significant(effect.mean_W, 2), significant(effect.peak_W, 2)) : "none";
 }
 
 std::string effect_table(const Diagnosis& diagnosis) {
@@ -53,13 +61,12 @@ std::string effect_table(const Diagnosis& diagnosis) {
     bool is_first = true;
     for (const FittedParameter& parameter : effect.parameters) {
       const bool is_fitted = parameter.low < parameter.high;
-      text +=
-          row({is_first ? effect.id : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
-               fmt::format("{:.4g} {}", parameter.value, parameter.unit),
-               is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high) : "not fitted",
-               is_first ? fmt::format("{:.2g} / {:.2g} W", effect.mean_W, effect.peak_W) : "",
-               is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "", is_first ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
-               is_first ? fmt::format("{}", fmt::join(effect.confusable_with, ", ")) : ""});
+      text += row({is_first ? effect.id : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
+                   fmt::format("{:.4g} {}", parameter.value, parameter.unit),
+                   is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high) : "not fitted",
+                   is_first ? heat_in_words(effect) : "", is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "",
+                   is_first ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
+                   is_first ? fmt::format("{}", fmt::join(effect.confusable_with, ", ")) : ""});
       is_first = false;
     }
   }
@@ -80,7 +87,7 @@ std::string ladder_table(const Diagnosis& diagnosis) {
       const std::string& driver = diagnosis.selection.drivers[static_cast<std::size_t>(each.term.driver)].name;
       text += row({fmt::format("curve over {} × {} at {}{}", driver, to_string(each.term.multiplier), each.term.node,
                                each.term.other.empty() ? "" : "→" + each.term.other),
-                   fmt::format("{:.1f}", each.gain_nats), fmt::format("{:.2g} W mean", each.mean_W), "", ""});
+                   fmt::format("{:.1f}", each.gain_nats), fmt::format("{} W mean", significant(each.mean_W, 2)), "", ""});
     }
     text += "</table>\n";
   }
@@ -119,6 +126,30 @@ std::string test_table(const Diagnosis& diagnosis) {
   return text + "</table>\n";
 }
 
+/// With its times where a part of the same recording stands on the other side.
+std::vector<std::string> names_of(const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& others) {
+  std::vector<std::string> names;
+  for (const MeasuredRun& run : runs) {
+    const bool is_split = std::ranges::find(others, run.name, &MeasuredRun::name) != others.end();
+    names.push_back(is_split ? fmt::format("{} ({:.0f} to {:.0f} s)", run.name, run.time_s.front(), run.time_s.back()) : run.name);
+  }
+  return names;
+}
+
+std::string_view heading_of(DiagnosisVerdict verdict) {
+  switch (verdict) {
+    case DiagnosisVerdict::effect_found:
+      return "an effect is missing in the model";
+    case DiagnosisVerdict::nothing_missing:
+      return "nothing is missing in the model";
+    case DiagnosisVerdict::unexplained:
+      return "heat that no effect of the catalogue explains";
+    case DiagnosisVerdict::not_identifiable:
+      return "these runs cannot tell";
+  }
+  return "";
+}
+
 constexpr std::string_view kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1080px;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left}"
@@ -132,14 +163,9 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
                            const std::vector<std::pair<std::string, std::string>>& svg) {
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
-  text += fmt::format("<h1>Diagnosis: {}</h1>\n<p class=\"words\">{}</p>\n", to_string(diagnosis.verdict), escaped(diagnosis.description));
-  std::vector<std::string> train, holdout;
-  for (const MeasuredRun& run : input.train) {
-    train.push_back(run.name);
-  }
-  for (const MeasuredRun& run : input.holdout) {
-    holdout.push_back(run.name);
-  }
+  text += fmt::format("<h1>Diagnosis: {}</h1>\n<p class=\"words\">{}</p>\n", heading_of(diagnosis.verdict), escaped(diagnosis.description));
+  const std::vector<std::string> train = names_of(input.train, input.holdout);
+  const std::vector<std::string> holdout = names_of(input.holdout, input.train);
   text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", escaped(fmt::format("{}", fmt::join(train, ", "))),
                       holdout.empty() ? "none" : escaped(fmt::format("{}", fmt::join(holdout, ", "))));
   text += "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis);
@@ -166,6 +192,10 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     text += "</ul>\n";
   }
   std::vector<std::string> remarks = diagnosis.notes;
+  if (!diagnosis.selection.unseen.empty()) {
+    remarks.push_back(
+        fmt::format("at their usual size these would not show in these runs: {}", fmt::join(diagnosis.selection.unseen, ", ")));
+  }
   remarks.insert(remarks.end(), diagnosis.selection.refused.begin(), diagnosis.selection.refused.end());
   remarks.insert(remarks.end(), diagnosis.selection.not_judged.begin(), diagnosis.selection.not_judged.end());
   text += "<h2>What was not judged, and what is taken for granted</h2><ul>";

@@ -65,14 +65,13 @@ DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& inp
 
 DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
   Chart chart{"Unknown heat in W before and after",
-              "what must flow into the node besides the model for the temperatures to be as measured; band: ± 2 standard deviations of "
-              "what is usual after",
+              "what must flow into the node besides the model for the temperatures to be as measured; band: 95 % after, given the model",
               "time / min",
               {}};
   for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {
     ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
     ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
-    ChartBand band{"usual", {}, {}, {}, 0};
+    ChartBand band{"95 %", {}, {}, {}, 0};
     double begin_min = 0.0;
     for (const FluxTrace& trace : diagnosis.flux) {
       if (trace.node != node) {
@@ -82,7 +81,9 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
         const double x = begin_min + (trace.time_s[k] - trace.time_s.front()) / 60.0;
         old.x.push_back(x), old.y.push_back(trace.before_W[k]);
         now.x.push_back(x), now.y.push_back(trace.after_W[k]);
-        band.x.push_back(x), band.low.push_back(-2.0 * rms_W), band.high.push_back(2.0 * rms_W);
+        band.x.push_back(x);
+        band.low.push_back(trace.after_W[k] - 1.96 * trace.after_sd_W[k]);
+        band.high.push_back(trace.after_W[k] + 1.96 * trace.after_sd_W[k]);
       }
       old.x.push_back(old.x.back()), old.y.push_back(kGap);
       now.x.push_back(now.x.back()), now.y.push_back(kGap);

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "identify/linearised_run.h"
-
 namespace heatsoak {
 
 RunStart start_of(const Network& network, const MeasuredRun& run) {
@@ -63,30 +61,41 @@ Eigen::Index deciding_samples(const Network& network, const MeasuredRun& run) {
   return std::max<Eigen::Index>(kFew, std::ranges::upper_bound(run.time_s, until_s) - run.time_s.begin());
 }
 
+/// The first samples of a run.
+MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
+  MeasuredRun part = run;
+  part.time_s.resize(static_cast<std::size_t>(samples));
+  part.at.resize(static_cast<std::size_t>(samples - 1));
+  part.measured_C = run.measured_C.topRows(samples);
+  return part;
+}
+
 }  // namespace
 
-Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
-  const Eigen::Index deciding = deciding_samples(network, run);
+Eigen::VectorXd decided_start_C(const Network& network, RunStart start, const MeasuredRun& run, const RunFrom& along) {
   // No model follows the first seconds better than this, and a node that is not sensed must not pay for it.
   constexpr double kLeastNoise_K = 0.3;
-  const std::vector<int> none;
-  RunStart start = start_of(network, run);
-  LinearisedRun free_run;
-  for (int pass = 0; pass < 2; ++pass) {
-    free_run = linearise(network, parameters, none, none, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
-    Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
-    Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
-    for (Eigen::Index row = 0; row < std::min(deciding * free_run.sensors(), free_run.residual_K.size()); ++row) {
-      if (!std::isnan(free_run.residual_K[row])) {
-        const double noise_K = std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(row % free_run.sensors())].noise_K);
-        normal += free_run.by_start.row(row).transpose() * free_run.by_start.row(row) / (noise_K * noise_K);
-        right += free_run.by_start.row(row).transpose() * free_run.residual_K[row] / (noise_K * noise_K);
-      }
-    }
-    if (pass == 0) {
-      start.state_C += normal.ldlt().solve(right);
+  const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
+  const LinearisedRun path = along({start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, beginning);
+  Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
+  Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
+  for (Eigen::Index row = 0; row < path.residual_K.size(); ++row) {
+    if (!std::isnan(path.residual_K[row])) {
+      const double noise_K = std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(row % path.sensors())].noise_K);
+      normal += path.by_start.row(row).transpose() * path.by_start.row(row) / (noise_K * noise_K);
+      right += path.by_start.row(row).transpose() * path.residual_K[row] / (noise_K * noise_K);
     }
   }
+  return start.state_C + normal.ldlt().solve(right);
+}
+
+Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
+  const std::vector<int> none;
+  const RunFrom along = [&](std::span<const double> start_C, const MeasuredRun& part) {
+    return linearise(network, parameters, none, none, start_C, part);
+  };
+  const Eigen::VectorXd start_C = decided_start_C(network, start_of(network, run), run, along);
+  const LinearisedRun free_run = along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run);
   Eigen::MatrixXd shown_C(run.samples(), free_run.sensors());
   for (Eigen::Index sensor = 0; sensor < free_run.sensors(); ++sensor) {
     shown_C.col(sensor) = free_run.state_C.row(free_run.sensor_node[static_cast<std::size_t>(sensor)]).transpose();

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "identify/linearised_run.h"
 #include "identify/measured_run.h"
 
 namespace heatsoak {
@@ -19,6 +21,12 @@ struct RunStart {
 
 /// Temperatures at the start that serve best without any fit: first samples, and where a node has no sensor, what its neighbour shows.
 RunStart start_of(const Network& network, const MeasuredRun& run);
+
+/// The model along a run from start temperatures.
+using RunFrom = std::function<LinearisedRun(std::span<const double> start_C, const MeasuredRun& run)>;
+/// The start that the first five samples decide, or the first minute (at most a tenth of the run) where a node has no sensor, around what
+/// `start` has for probable.
+Eigen::VectorXd decided_start_C(const Network& network, RunStart start, const MeasuredRun& run, const RunFrom& along);
 
 /// What the sensors would show (n × sensors) if the model ran free from the run's start. The start is decided by the first five samples
 /// only, or the first minute (at most a tenth of the run) where a node has no sensor: a model that lacks heat must not hide it there.

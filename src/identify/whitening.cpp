@@ -218,7 +218,7 @@ Innovations Whitening::innovations(const Eigen::VectorXd& residual_K) const {
   return all;
 }
 
-Eigen::MatrixXd Whitening::smoothed_flux_W(const Eigen::VectorXd& residual_K) const {
+FluxEstimate Whitening::smoothed_flux(const Eigen::VectorXd& residual_K) const {
   using Dynamic = Square<Eigen::Dynamic>;
   const Eigen::Index x = run_->states;
   const Eigen::Index q = run_->fluxes;
@@ -250,7 +250,9 @@ Eigen::MatrixXd Whitening::smoothed_flux_W(const Eigen::VectorXd& residual_K) co
       add_unknown(k, covariance);
     }
   }
+  Eigen::MatrixXd sd_W(q, samples);
   Eigen::VectorXd adjoint = Eigen::VectorXd::Zero(size_);
+  Dynamic information = Dynamic::Zero(size_, size_);  // about the state, from this sample on
   for (Eigen::Index k = samples - 1; k >= 0; --k) {
     for (Eigen::Index sensor = run_->sensors() - 1; sensor >= 0; --sensor) {
       const Eigen::Index row = k * run_->sensors() + sensor;
@@ -258,19 +260,27 @@ Eigen::MatrixXd Whitening::smoothed_flux_W(const Eigen::VectorXd& residual_K) co
       if (inverse_sd_per_K > 0.0) {
         const Eigen::Map<const Eigen::VectorXd> gain(gain_.data() + row * size_, size_);
         const double moved = innovation[row] * inverse_sd_per_K * inverse_sd_per_K - gain.dot(adjoint);
-        adjoint[node_of(sensor)] += moved;
+        Eigen::VectorXd seen = Eigen::VectorXd::Zero(size_);
+        seen[node_of(sensor)] = 1.0;
         if (wanders_) {
-          adjoint[wander_place(sensor)] += moved;
+          seen[wander_place(sensor)] = 1.0;
         }
+        adjoint += moved * seen;
+        const Eigen::VectorXd across = information * gain;
+        information += (gain.dot(across) + inverse_sd_per_K * inverse_sd_per_K) * seen * seen.transpose() - seen * across.transpose() -
+                       across * seen.transpose();
       }
     }
-    flux_W.col(k) += flux_rows.middleCols(k * q, q).transpose() * adjoint;
+    const auto rows = flux_rows.middleCols(k * q, q);
+    flux_W.col(k) += rows.transpose() * adjoint;
+    sd_W.col(k) = (rows.middleRows(x, q) - rows.transpose() * information * rows).diagonal().cwiseMax(0.0).cwiseSqrt();
     if (k > 0) {
       set_transition(k - 1, transition);
       adjoint = transition.transpose() * adjoint.eval();
+      information = transition.transpose() * information.eval() * transition;
     }
   }
-  return flux_W;
+  return {std::move(flux_W), std::move(sd_W)};
 }
 
 }  // namespace heatsoak

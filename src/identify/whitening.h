@@ -35,6 +35,12 @@ struct Innovations {
   Eigen::VectorXd noise_share;   ///< n·s: of the variance, what is the sensor's noise
 };
 
+/// Fluxes × n.
+struct FluxEstimate {
+  Eigen::MatrixXd mean_W;
+  Eigen::MatrixXd sd_W;  ///< posterior standard deviation, given model and flux
+};
+
 /// The linear operator W with Wᵀ·W = V⁻¹, V the covariance of noise and flux as the sensors see them, for one run; the start temperatures
 /// are taken as known. Masked samples become rows of zeros.
 class Whitening {
@@ -49,9 +55,9 @@ class Whitening {
   /// Samples that count.
   [[nodiscard]] Eigen::Index count() const { return count_; }
   [[nodiscard]] Innovations innovations(const Eigen::VectorXd& residual_K) const;
-  /// Best estimate of the unknown heat in W (fluxes × n), given all samples of a residual from which everything known is removed
-  /// (n·s, in K): the smoother of Bryson and Frazier.
-  [[nodiscard]] Eigen::MatrixXd smoothed_flux_W(const Eigen::VectorXd& residual_K) const;
+  /// Best estimate of the unknown heat, given all samples of a residual from which everything known is removed (n·s, in K): the
+  /// smoother of Bryson and Frazier.
+  [[nodiscard]] FluxEstimate smoothed_flux(const Eigen::VectorXd& residual_K) const;
 
  private:
   template <int Size>

@@ -153,7 +153,7 @@ TEST_P(SmoothedFlux, is_the_conditional_mean) {
   const Eigen::VectorXd residual = reference.columns.rightCols(1);
   const Eigen::VectorXd weighted = reference.covariance.ldlt().solve(residual);
   const Eigen::VectorXd explained = dense(run, flux, {{0.0, 0.0}, {}}).covariance * weighted;
-  const Eigen::MatrixXd flux_W = Whitening(run, flux, noise).smoothed_flux_W(run.residual_K);
+  const Eigen::MatrixXd flux_W = Whitening(run, flux, noise).smoothed_flux(run.residual_K).mean_W;
   Eigen::VectorXd state = Eigen::VectorXd::Zero(2);
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < run.samples(); ++k) {
@@ -171,6 +171,31 @@ TEST_P(SmoothedFlux, is_the_conditional_mean) {
         state[i] = transition[2 * i] * before[0] + transition[2 * i + 1] * before[1] + injection[2 * i] * flux_W(0, k) +
                    injection[2 * i + 1] * flux_W(1, k);
       }
+    }
+  }
+}
+
+/// The variance that the estimate explains and what is left of it make up the flux's own.
+TEST_P(SmoothedFlux, has_the_standard_deviation_that_is_left) {
+  const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 40));
+  const LatentFlux flux{{0.3, 0.7}, 90.0};
+  const SensorNoise noise{{0.15, 0.1}, {}, GetParam(), 7.0};
+  const Whitening whitening(run, flux, noise);
+  const Eigen::MatrixXd sd_W = whitening.smoothed_flux(run.residual_K).sd_W;
+  const Dense reference = dense(run, flux, noise);
+  Eigen::MatrixXd by_sample(2 * run.samples(), reference.covariance.rows());
+  Eigen::Index kept = 0;
+  for (Eigen::Index row = 0; row < run.residual_K.size(); ++row) {
+    if (!std::isnan(run.residual_K[row])) {
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(run.residual_K.size(), row);
+      by_sample.col(kept++) = whitening.smoothed_flux(unit).mean_W.reshaped();
+    }
+  }
+  const Eigen::MatrixXd explained = by_sample * reference.covariance * by_sample.transpose();
+  for (Eigen::Index k = 0; k < run.samples(); ++k) {
+    for (Eigen::Index f = 0; f < 2; ++f) {
+      const double own_W = flux.rms_W[static_cast<std::size_t>(f)];
+      EXPECT_NEAR(sd_W(f, k), std::sqrt(own_W * own_W - explained(2 * k + f, 2 * k + f)), 1e-8) << k;
     }
   }
 }

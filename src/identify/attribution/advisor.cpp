@@ -90,7 +90,7 @@ double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std
   const std::vector<double> start_C(static_cast<std::size_t>(fit.model.model.network.state_count()), run.at.front().ambient_C);
   const std::vector<LinearisedRun> path{linearise(fit.model, start_C, run)};
   const std::vector<DesignRun> designs =
-      design(fit.model.model.network, path, runs, {}, {candidate_columns(pair, fit.model, path.front(), run)});
+      design(fit.model.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), run)});
   const Whitening whitening(path.front(), flux, designs.front().noise);
   const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
   const Eigen::Index own = fit.model.free_count();

@@ -342,10 +342,12 @@ bool has_condition(const MeasuredRun& run, const Condition& condition) {
   });
 }
 
+bool is_heat_input(const EffectType& type) { return type.name == "copper_loss" || type.name == "input_power_loss"; }
+
 std::vector<int> heat_input_parameters(const Network& network) {
   std::vector<int> places;
   for (const EffectInPlace& effect : network.effects()) {
-    if (effect.type->name == "copper_loss" || effect.type->name == "input_power_loss") {
+    if (is_heat_input(*effect.type)) {
       places.push_back(effect.parameter_index.front());
     }
   }

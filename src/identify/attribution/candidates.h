@@ -52,6 +52,8 @@ CandidateList candidates_for(const ExtendedModel& model, const std::vector<Measu
 Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
                           const MeasuredRun& run);
 
+/// What turns the electrical input into heat.
+bool is_heat_input(const EffectType& type);
 /// Places of the parameters in which the heat that goes in is linear: the resistance of copper, the share of the input power.
 std::vector<int> heat_input_parameters(const Network& network);
 

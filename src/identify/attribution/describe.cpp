@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity.h"
 #include "identify/attribution/diagnosis.h"
 
 namespace heatsoak {
@@ -41,11 +42,40 @@ std::string effect_in_words(const FoundEffect& effect) {
     }
   }
   if (effect.mean_W > 0.0) {
-    text += fmt::format("; {:.2g} W on average, up to {:.2g} W", effect.mean_W, effect.peak_W);
+    text += fmt::format("; {} W on average, up to {} W", significant(effect.mean_W, 2), significant(effect.peak_W, 2));
   }
   text += fmt::format(". Without it the model would be e^{:.0f} times less probable.", effect.gain_nats);
   if (!effect.confusable_with.empty()) {
     text += fmt::format(" These runs cannot tell it from {}.", fmt::join(effect.confusable_with, " or "));
+  }
+  return text;
+}
+
+double rms_K(const Errors& errors) {
+  double squares_K2 = 0.0;
+  for (const auto& [signal, error] : errors) {
+    squares_K2 += error.rmse_K * error.rmse_K;
+  }
+  return std::sqrt(squares_K2 / static_cast<double>(std::max<std::size_t>(1, errors.size())));
+}
+
+/// What the reader must know before he trusts the model on other runs.
+std::string doubts_in_words(const Diagnosis& diagnosis) {
+  constexpr double kWorse_ratio = 1.1;
+  constexpr double kElsewhere_ratio = 3.0;
+  constexpr double kMatters_K = 0.1;
+  std::string text;
+  const double before_K = rms_K(diagnosis.before_holdout), refitted_K = rms_K(diagnosis.refitted_holdout);
+  const double after_K = rms_K(diagnosis.after_holdout), train_K = rms_K(diagnosis.after_train);
+  if (!diagnosis.effects.empty() && refitted_K < after_K - kMatters_K && refitted_K * kWorse_ratio < after_K) {
+    text += fmt::format(" The model's own figures refitted without any of this leave {} K there, less: do not rely on what was added.",
+                        significant(refitted_K, 2));
+  } else if (before_K < after_K - kMatters_K && before_K * kWorse_ratio < after_K) {
+    text += " The error on runs the fit never saw grows: do not rely on the new model there.";
+  }
+  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
+    text += fmt::format(" It is {:.0f} times that on the training runs: those runs hold something that these do not show.",
+                        after_K / std::max(kMatters_K, train_K));
   }
   return text;
 }
@@ -67,7 +97,14 @@ std::string describe(const Diagnosis& diagnosis) {
       text = "The runs show heat that the model does not have, and no law of the catalogue explains it.";
       break;
     case DiagnosisVerdict::not_identifiable:
-      text = "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no name is given.";
+      text = diagnosis.selection.refused.empty()
+                 ? fmt::format(
+                       "These runs cannot tell whether something is missing: at their usual size only {:.0f} % of the effects of "
+                       "the catalogue would show in them.",
+                       100.0 * diagnosis.selection.seen_share)
+                 : std::string(
+                       "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no "
+                       "name is given.");
       break;
   }
   for (const FoundEffect& effect : diagnosis.effects) {
@@ -76,15 +113,16 @@ std::string describe(const Diagnosis& diagnosis) {
   }
   for (const Unexplained& heat : diagnosis.unexplained) {
     text += heat.drivers.empty()
-                ? fmt::format(" Unexplained: {:.2g} W rms into the {} that come and go within {:.0f} s; no measured signal follows them.",
-                              heat.rms_W, heat.node, heat.time_scale_s)
-                : fmt::format(" Unnamed: heat at the {} that follows {}, {:.2g} W on average, up to {:.2g} W.", heat.node,
-                              fmt::join(heat.drivers, " or "), heat.mean_W, heat.peak_W) +
+                ? fmt::format(" Unexplained: {} W rms into the {} that come and go within {:.0f} s; no measured signal follows them.",
+                              significant(heat.rms_W, 2), heat.node, heat.time_scale_s)
+                : fmt::format(" Unnamed: heat at the {} that follows {}, {} W on average, up to {} W.", heat.node,
+                              fmt::join(heat.drivers, " or "), significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
                       (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "");
   }
   text += errors_in_words(diagnosis.before_holdout.empty() ? diagnosis.before_train : diagnosis.before_holdout,
                           diagnosis.before_holdout.empty() ? diagnosis.after_train : diagnosis.after_holdout,
                           diagnosis.before_holdout.empty() ? "the training runs" : "runs the fit never saw");
+  text += doubts_in_words(diagnosis);
   for (const std::string& refused : diagnosis.selection.refused) {
     text += fmt::format(" Not named: {}.", refused);
   }

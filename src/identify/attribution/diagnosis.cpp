@@ -16,6 +16,9 @@ constexpr double kInterval_sd = 1.959964;
 /// Unknown heat below this share of the heat that the model knows is what every model leaves.
 constexpr double kTolerableUnknown_share = 0.03;
 
+/// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
+constexpr double kLeastSeen_share = 0.5;
+
 struct HeatOfEffect {
   double mean_W = 0.0;
   double peak_W = 0.0;
@@ -97,7 +100,7 @@ class Teller {
       effect.is_from_catalogue = !effect.condition.empty();
     }
     tell_parameters(in_place, effect);
-    const HeatOfEffect heat = heat_of(in_place, effect.condition);
+    const HeatOfEffect heat = heat_of([&](const EffectInPlace& each) { return &each == &in_place; }, effect.condition);
     effect.mean_W = heat.mean_W;
     effect.peak_W = heat.peak_W;
     return effect;
@@ -105,6 +108,7 @@ class Teller {
 
   void tell_sensor(const SensorEffectType& type, FoundEffect& effect) const {
     effect.id = type.name;
+    effect.has_heat = false;
     effect.node = type.signal.substr(0, type.signal.rfind('_'));
     effect.description = type.summary;
     for (std::size_t i = 0; i < after().model.sensors.size(); ++i) {
@@ -133,6 +137,10 @@ class Teller {
     effect.parameters.push_back(
         {std::string(candidate.size_spec().key), "", value, std::max(value - kInterval_sd * sd, -1.0), value + kInterval_sd * sd});
     effect.p_value = p_of(value, sd);
+    const HeatOfEffect heat = heat_of([](const EffectInPlace& in_place) { return is_heat_input(*in_place.type); }, candidate.condition);
+    const double share = std::abs(value) / std::max(0.01, 1.0 + value);
+    effect.mean_W = share * heat.mean_W;
+    effect.peak_W = share * heat.peak_W;
   }
 
   static double p_of(double value, double sd) {
@@ -165,10 +173,17 @@ class Teller {
     }
   }
 
-  [[nodiscard]] HeatOfEffect heat_of(const EffectInPlace& in_place, const std::map<std::string, std::string>& condition) const {
+  /// Into the first node of the effects that `counts` says, in runs of the condition.
+  template <class Counts>
+  [[nodiscard]] HeatOfEffect heat_of(const Counts& counts, const std::map<std::string, std::string>& condition) const {
     const auto nodes = static_cast<std::size_t>(after().model.model.network.node_count());
-    const auto place = static_cast<std::size_t>(&in_place - after().model.model.network.effects().data());
-    const auto node = static_cast<std::size_t>(in_place.node_index.front());
+    std::vector<std::size_t> places;
+    for (const EffectInPlace& in_place : after().model.model.network.effects()) {
+      if (counts(in_place)) {
+        const auto effect = static_cast<std::size_t>(&in_place - after().model.model.network.effects().data());
+        places.push_back(effect * nodes + static_cast<std::size_t>(in_place.node_index.front()));
+      }
+    }
     std::vector<double> magnitude_W;
     HeatOfEffect out;
     double time_s = 0.0;
@@ -179,7 +194,10 @@ class Teller {
       }
       along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
         const double duration_s = run.time_s[k + 1] - run.time_s[k];
-        magnitude_W.push_back(std::abs(heat_W[place * nodes + node]));
+        magnitude_W.push_back(0.0);
+        for (const std::size_t place : places) {
+          magnitude_W.back() += std::abs(heat_W[place]);
+        }
         out.mean_W += duration_s * magnitude_W.back();
         time_s += duration_s;
       });
@@ -195,38 +213,41 @@ class Teller {
 
   void tell_errors() {
     out_.before_train = open_loop_errors(input_.model, input_.train, {});
+    out_.refitted_train = open_loop_errors(out_.selection.before.model, input_.train, {});
     out_.after_train = open_loop_errors(after().model, input_.train, {});
     out_.before_holdout = open_loop_errors(input_.model, input_.holdout, input_.train);
+    out_.refitted_holdout = open_loop_errors(out_.selection.before.model, input_.holdout, input_.train);
     out_.after_holdout = open_loop_errors(after().model, input_.holdout, input_.train);
   }
 
   [[nodiscard]] LatentFlux flux_at(const RefitResult& fit) const { return out_.selection.grid.at(fit.place); }
 
   /// Smoothed unknown heat of every run: fluxes × samples.
-  [[nodiscard]] std::vector<Eigen::MatrixXd> smoothed_W(const RefitResult& fit) const {
-    std::vector<Eigen::MatrixXd> all;
-    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {});
+  [[nodiscard]] std::vector<FluxEstimate> smoothed(const RefitResult& fit) const {
+    std::vector<FluxEstimate> all;
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {}, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
-      all.push_back(Whitening(fit.fitted[r], flux_at(fit), designs[r].noise).smoothed_flux_W(fit.fitted[r].residual_K));
+      all.push_back(Whitening(fit.fitted[r], flux_at(fit), designs[r].noise).smoothed_flux(fit.fitted[r].residual_K));
     }
     return all;
   }
 
   void tell_flux() {
-    const std::vector<Eigen::MatrixXd> before_W = smoothed_W(out_.selection.before);
-    const std::vector<Eigen::MatrixXd> after_W = smoothed_W(after());
+    const std::vector<FluxEstimate> before = smoothed(out_.selection.before);
+    const std::vector<FluxEstimate> now = smoothed(after());
     const std::vector<int>& nodes = input_.model.model.flux_nodes;
     std::map<std::string, double> counts;
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
       for (std::size_t f = 0; f < nodes.size(); ++f) {
         const std::string node(input_.model.model.network.node_name(nodes[f]));
         const auto row = static_cast<Eigen::Index>(f);
-        FluxTrace trace{input_.train[r].name, node, input_.train[r].time_s, {}, {}};
-        trace.before_W.assign(before_W[r].row(row).begin(), before_W[r].row(row).end());
-        trace.after_W.assign(after_W[r].row(row).begin(), after_W[r].row(row).end());
-        out_.flux_rms_before_W[node] += before_W[r].row(row).squaredNorm();
-        out_.flux_rms_after_W[node] += after_W[r].row(row).squaredNorm();
-        counts[node] += static_cast<double>(before_W[r].cols());
+        FluxTrace trace{input_.train[r].name, node, input_.train[r].time_s, {}, {}, {}};
+        trace.before_W.assign(before[r].mean_W.row(row).begin(), before[r].mean_W.row(row).end());
+        trace.after_W.assign(now[r].mean_W.row(row).begin(), now[r].mean_W.row(row).end());
+        trace.after_sd_W.assign(now[r].sd_W.row(row).begin(), now[r].sd_W.row(row).end());
+        out_.flux_rms_before_W[node] += before[r].mean_W.row(row).squaredNorm();
+        out_.flux_rms_after_W[node] += now[r].mean_W.row(row).squaredNorm();
+        counts[node] += static_cast<double>(before[r].mean_W.cols());
         out_.flux.push_back(std::move(trace));
       }
     }
@@ -265,7 +286,7 @@ class Teller {
   [[nodiscard]] std::vector<InnovationTests> tests_of(const RefitResult& fit) const {
     std::map<std::string, Eigen::VectorXd> innovations;
     std::map<std::string, std::vector<NamedInput>> inputs;
-    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {});
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {}, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       const LinearisedRun& path = fit.fitted[r];
       const Eigen::VectorXd standardised = Whitening(path, flux_at(fit), designs[r].noise).innovations(path.residual_K).standardised;
@@ -317,6 +338,7 @@ class Teller {
     for (const AcceptedTerm& term : out_.selection.terms) {
       if (term.curve && out_.selection.drivers[static_cast<std::size_t>(term.curve->term.driver)].kind != DriverKind::run) {
         add_curve(*term.curve, term.confusable_with);
+        tell_as_added(term, out_.unexplained.back());
       }
     }
     if (out_.selection.open_curve) {
@@ -343,6 +365,23 @@ class Teller {
         heat.time_scale_s = flux_at(after()).time_scale_s;
         out_.unexplained.push_back(std::move(heat));
       }
+    }
+  }
+
+  /// The curve as the model has it, which is what physics leaves of the scan's.
+  void tell_as_added(const AcceptedTerm& term, Unexplained& heat) const {
+    const auto effect = std::ranges::find(out_.effects, term.effect_name, &FoundEffect::name);
+    heat.mean_W = heat.rms_W = effect->mean_W;
+    heat.peak_W = effect->peak_W;
+    const Model& model = after().model.model;
+    const EffectInPlace& in_place = *effect_named(term.effect_name);
+    const std::size_t first = in_place.parameter_index.size() - heat.curve.size();
+    for (std::size_t knot = 0; knot < heat.curve.size(); ++knot) {
+      const int place = in_place.parameter_index[first + knot];
+      heat.curve[knot] = model.values[static_cast<std::size_t>(place)];
+      const auto free = std::ranges::find(model.free, place, &FreeParameter::place);
+      const Eigen::Index own = free - model.free.begin();
+      heat.curve_sd[knot] = free == model.free.end() ? 0.0 : free->scale * std::sqrt(after().covariance(own, own));
     }
   }
 
@@ -378,7 +417,8 @@ class Teller {
     if (!out_.unexplained.empty()) {
       return DiagnosisVerdict::unexplained;
     }
-    return out_.selection.refused.empty() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::not_identifiable;
+    const bool would_show = out_.selection.seen_share >= kLeastSeen_share;
+    return out_.selection.refused.empty() && would_show ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::not_identifiable;
   }
 
   const DiagnosisInput& input_;

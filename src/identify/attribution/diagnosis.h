@@ -51,6 +51,7 @@ struct FoundEffect {
   std::vector<std::string> drivers;              ///< of a curve
   double mean_W = 0.0;                           ///< of the magnitude over the time of the runs in which it acts
   double peak_W = 0.0;                           ///< 99 % of the magnitude
+  bool has_heat = true;                          ///< false: a fault of a sensor
   double gain_nats = 0.0;                        ///< that the final model would lose without it
   double delta_bic = 0.0;                        ///< −2 · gain
   double p_value = 1.0;                          ///< of the size being 0, one parameter
@@ -80,6 +81,7 @@ struct FluxTrace {
   std::string node;
   std::vector<double> time_s;
   std::vector<double> before_W, after_W;
+  std::vector<double> after_sd_W;  ///< posterior, given the model
 };
 
 /// Mean heat in W that an effect brings into a node over the training runs.
@@ -99,7 +101,8 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;
   std::vector<Unexplained> unexplained;
   Errors before_train, before_holdout, after_train, after_holdout;
-  std::vector<MeasuredRun> runs;  ///< of the training
+  Errors refitted_train, refitted_holdout;  ///< the model's own figures fitted to the training runs, nothing added
+  std::vector<MeasuredRun> runs;            ///< of the training
   std::vector<InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;
   std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< by node

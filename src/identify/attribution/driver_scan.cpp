@@ -191,19 +191,27 @@ class Scanner {
       width += static_cast<Eigen::Index>(family.knots.size());
     }
     const double sign = is_taken_out(families.front().term.multiplier) ? -1.0 : 1.0;
-    Columns heat_W = Columns::Zero(multiplier.size(), width);
+    const DesignRun& design = table_.runs()[r];
+    Columns heat_W = Columns::Zero(design.run.samples() - 1, width);
     Eigen::Index at = 0;
     for (const Family& family : families) {
       const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
       const auto size = static_cast<Eigen::Index>(family.knots.size());
-      for (Eigen::Index k = 0; k < heat_W.rows(); ++k) {
+      for (Eigen::Index k = 0; k < multiplier.size(); ++k) {
         const double value = driver.values[r][k];
+        const Eigen::Index row = design.interval_of[static_cast<std::size_t>(k)];
+        if (row < 0 || std::isnan(value)) {
+          continue;
+        }
+        const double share =
+            (*input_.fitted)[r].duration_s[static_cast<std::size_t>(k)] / design.run.duration_s[static_cast<std::size_t>(row)];
+        const double usual_W = sign * share * family.usual * multiplier[k];
         if (driver.kind == DriverKind::run) {
-          heat_W(k, at) = sign * family.usual * multiplier[k] * value;
-        } else if (!std::isnan(value)) {
+          heat_W(row, at) += usual_W * value;
+        } else {
           const HatsAt hats = hats_at(family.knots, value);
-          heat_W(k, at + hats.left) = sign * family.usual * multiplier[k] * (1.0 - hats.right_share);
-          heat_W(k, at + hats.left + 1) = sign * family.usual * multiplier[k] * hats.right_share;
+          heat_W(row, at + hats.left) += usual_W * (1.0 - hats.right_share);
+          heat_W(row, at + hats.left + 1) += usual_W * hats.right_share;
         }
       }
       at += size;
@@ -220,7 +228,7 @@ class Scanner {
     const int other = term.other.empty() ? -1 : flux_of(*input_.model, term.other);
     std::vector<Columns> shown(multiplier.size());
     in_parallel(shown.size(), 0,
-                [&](std::size_t r) { shown[r] = response(*table_.runs()[r].run, heats_W(families, multiplier[r], r), into, other); });
+                [&](std::size_t r) { shown[r] = response(table_.runs()[r].run, heats_W(families, multiplier[r], r), into, other); });
     return shown;
   }
 
@@ -232,14 +240,14 @@ class Scanner {
     const LatentFlux flux = table_.grid().at(place);
     std::vector<SharedRun> shared;
     for (const DesignRun& design : table_.runs()) {
-      shared.push_back({Whitening(*design.run, flux, design.noise), {}, {}});
+      shared.push_back({Whitening(design.run, flux, design.noise), {}, {}});
     }
     in_parallel(shared.size(), 0, [&](std::size_t r) {
       const DesignRun& design = table_.runs()[r];
-      const Eigen::Index starts = design.run->states;
+      const Eigen::Index starts = design.run.states;
       Columns& columns = shared[r].columns;
       columns.resize(design.columns.rows(), starts + static_cast<Eigen::Index>(inner_.size()) + 1);
-      columns << design.run->by_start, design.columns(Eigen::all, inner_), design.run->residual_K;
+      columns << design.run.by_start, design.columns(Eigen::all, inner_), design.run.residual_K;
       shared[r].whitening.apply(columns);
       shared[r].products = columns.transpose() * columns;
       const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
@@ -275,7 +283,7 @@ class Scanner {
   static std::vector<RunEvidence> evidence_of(const DesignRun& design, const SharedRun& common, Columns& shown,
                                               const std::vector<Family>& families) {
     common.whitening.apply(shown);
-    const Eigen::Index starts = design.run->states;
+    const Eigen::Index starts = design.run.states;
     const Eigen::Index shared = common.columns.cols();
     const Eigen::MatrixXd across = common.columns.transpose() * shown;
     std::vector<RunEvidence> evidence;

@@ -67,7 +67,7 @@ class Collector {
     driver.low = known[known.size() / 100];
     driver.high = known[known.size() - 1 - known.size() / 100];
     const double size = std::max(std::abs(driver.low), std::abs(driver.high));
-    if (!(driver.high - driver.low > 1e-6 * size) || is_copy(driver)) {
+    if (!(driver.high - driver.low > 1e-6 * size) || is_label(driver) || is_copy(driver)) {
       return;
     }
     double width = driver.high - driver.low;
@@ -80,6 +80,22 @@ class Collector {
       }
     }
     kept_.push_back(std::move(driver));
+  }
+
+  /// Hardly moves within any run: it says which run it is, no more.
+  [[nodiscard]] static bool is_label(const Driver& driver) {
+    constexpr double kLeastWithin_share = 0.2;
+    return std::ranges::none_of(driver.values, [&](const Eigen::VectorXd& of_run) {
+      double low = driver.high;
+      double high = driver.low;
+      for (const double value : of_run) {
+        if (!std::isnan(value)) {
+          low = std::min(low, value);
+          high = std::max(high, value);
+        }
+      }
+      return high - low > kLeastWithin_share * (driver.high - driver.low);
+    });
   }
 
   [[nodiscard]] bool is_copy(const Driver& driver) const {

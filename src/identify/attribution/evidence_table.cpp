@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 
@@ -51,9 +52,9 @@ const EvidenceTable::Reduced& EvidenceTable::at(const FluxGrid::Place& place) {
   reduced.run.resize(runs_.size());
   in_parallel(runs_.size(), 0, [&](std::size_t i) {
     const DesignRun& design = runs_[i];
-    const Whitening whitening(*design.run, flux, design.noise);
-    reduced.run[i] = candidates_.empty() ? run_evidence(*design.run, design.columns, whitening, design.start)
-                                         : run_evidence_of_many(*design.run, design.columns, free_count(), whitening, design.start);
+    const Whitening whitening(design.run, flux, design.noise);
+    reduced.run[i] = candidates_.empty() ? run_evidence(design.run, design.columns, whitening, design.start)
+                                         : run_evidence_of_many(design.run, design.columns, free_count(), whitening, design.start);
   });
   reduced.all.triangle = stacked(reduced.run);
   for (const RunEvidence& run : reduced.run) {
@@ -246,6 +247,15 @@ Eigen::MatrixXd EvidenceTable::unabsorbed(std::span<const int> base, const FluxG
 double EvidenceTable::visibility_ratio(std::span<const int> base, const FluxGrid::Place& place, int candidate) {
   const double all = at(place).all.triangle.col(free_count() + candidate).squaredNorm();
   return all > 0.0 ? unabsorbed(base, place, {candidate}).squaredNorm() / all : 0.0;
+}
+
+std::vector<double> EvidenceTable::typical_gains_nats(const SetScore& base) {
+  std::vector<int> all(candidates_.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Eigen::VectorXd squares = unabsorbed(base.candidates, base.place, all).colwise().squaredNorm();
+  std::vector<double> gain_nats(all.size());
+  std::ranges::transform(squares, gain_nats.begin(), [](double square) { return 0.5 * square; });
+  return gain_nats;
 }
 
 double EvidenceTable::cosine_ratio(const SetScore& base, int a, int b) {

@@ -16,10 +16,11 @@ namespace heatsoak {
 
 /// One run at the present fit. The columns are: one per free parameter (per unit of θ), one per candidate (per typical size).
 struct DesignRun {
-  const LinearisedRun* run = nullptr;  ///< outlives the table
+  LinearisedRun run;  ///< averaged, see identify/averaged_run.h; without by_parameter
   SensorNoise noise;
   StartPrior start;
   Columns columns;
+  std::vector<Eigen::Index> interval_of;  ///< per interval of the log that of `run`; -1: none
 };
 
 /// What (σ, ℓ) may be. A place is one index per node that unknown heat may reach, then the index of the time scale.
@@ -83,6 +84,8 @@ class EvidenceTable {
   [[nodiscard]] std::vector<double> left_out_gains_nats(const SetScore& base, const SetScore& set);
   /// Share of a candidate's whitened column that θ and the members of `base` do not absorb: 1 − R².
   [[nodiscard]] double visibility_ratio(std::span<const int> base, const FluxGrid::Place& place, int candidate);
+  /// Evidence that each candidate would bring at its typical size beside the base.
+  [[nodiscard]] std::vector<double> typical_gains_nats(const SetScore& base);
   /// Of the whitened columns of two candidates, after removal of what θ and `base` absorb.
   [[nodiscard]] double cosine_ratio(const SetScore& base, int a, int b);
   /// What each run alone says of a member's size while everything else is as the set has it.

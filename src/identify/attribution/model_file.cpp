@@ -106,8 +106,14 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
     Figure& figure = *find_figure(motor, each.name);
     const double value = each.before * std::exp(each.exponents.dot(moved));
     const std::string source = figure.source;
+    const Origin origin = figure.origin;
     figure = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
     figure.derivation = source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures, before it {}", source);
+    if (!is_told(sd, each.prior_sd)) {
+      figure.origin = origin;
+      figure.source += source.empty() ? "" : fmt::format(", {}", source);
+      figure.derivation = "fit to measured temperatures, which do not tell it alone";
+    }
     together.figures.push_back(each.name);
   }
   Eigen::MatrixXd correlation = exponents * covariance * exponents.transpose();
@@ -131,6 +137,27 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   motor.fit = std::move(together);
 }
 
+/// Figures that were fitted to some of these very runs are known no better than from a data sheet: the runs would count twice, and the
+/// intervals held for a model that perhaps lacked something.
+void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vector<std::string>& notes) {
+  const auto is_fitted = [&](const Recording& each) {
+    return std::ranges::any_of(motor.fit->runs, [&](const std::string& run) { return run.substr(0, run.find('#')) == each.name; });
+  };
+  if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
+    return;
+  }
+  constexpr double kSheet_sd = 0.4;
+  for (const std::string& name : motor.fit->figures) {
+    Figure* const figure = find_figure(motor, name);
+    // Of the others the fit has said that it does not tell them.
+    if (figure && figure->origin == Origin::measured && figure->value > 0.0) {
+      figure->spread =
+          Spread{Spread::Kind::range, figure->value * std::exp(-2.0 * kSheet_sd), figure->value * std::exp(2.0 * kSheet_sd), true};
+    }
+  }
+  notes.push_back("the model was fitted to some of these runs: its intervals do not count a second time");
+}
+
 }  // namespace
 
 ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings) {
@@ -142,10 +169,11 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   for (MotorEffect& effect : everywhere.effects) {
     effect.condition.clear();
   }
+  forget_fit(everywhere, recordings, out.notes);
   MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
   out.model.model = std::move(built.model);
   out.figures = std::move(built.figures);
-  out.notes = std::move(built.held);
+  out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   for (const MotorEffect& effect : motor.effects) {
     const int size = effect.type->candidacy.size_parameter;
     if (!effect.condition.empty() && size >= 0) {

@@ -1,4 +1,6 @@
 // Predictions of a model that runs freely: errors and the power balance.
+#include "identify/open_loop.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -39,12 +41,15 @@ std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, 
       return {end_C.begin(), end_C.end()};
     }
   }
-  std::vector<double> start = measured_start_C(network, run);
+  RunStart start = start_of(network, run);
   for (const Sensor& sensor : run.sensors) {
-    double& node_C = start[static_cast<std::size_t>(network.find_node(sensor.node))];
+    double& node_C = start.state_C[network.find_node(sensor.node)];
     node_C = true_C(model, sensor.signal, node_C);
   }
-  return start;
+  start.prior_C = start.state_C;
+  const Eigen::VectorXd decided_C = decided_start_C(
+      network, start, run, [&](std::span<const double> from_C, const MeasuredRun& part) { return linearise(model, from_C, part); });
+  return {decided_C.begin(), decided_C.end()};
 }
 
 }  // namespace

@@ -7,52 +7,94 @@
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
+#include "identify/averaged_run.h"
 #include "identify/open_loop.h"
 
 namespace heatsoak {
 namespace {
 
-/// The step of all coordinates that decreases the squares most while none leaves its bounds: those that would are held there.
+/// The prior of the moving coordinates, the others held at `step`.
+ThetaPrior prior_given(const ThetaPrior& prior, const std::vector<Eigen::Index>& moving, const Eigen::VectorXd& step) {
+  const Eigen::MatrixXd own = prior.precision(moving, moving);
+  Eigen::VectorXd held = step - prior.mean;
+  held(moving).setZero();
+  const Eigen::VectorXd pull = (prior.precision * held)(moving);
+  return {own, prior.mean(moving) - Eigen::VectorXd(own.completeOrthogonalDecomposition().solve(pull))};
+}
+
+/// Least squares of the moving coordinates, the others held at `step`.
+LinearFit fit_moving(const RunEvidence& all, const ThetaPrior& prior, const std::vector<Eigen::Index>& moving,
+                     const Eigen::VectorXd& step) {
+  const auto inner = static_cast<Eigen::Index>(moving.size());
+  Eigen::VectorXd held = step;
+  held(moving).setZero();
+  Eigen::MatrixXd tall(all.triangle.rows(), inner + 1);
+  tall << all.triangle(Eigen::all, moving), all.triangle.rightCols<1>() - all.triangle.leftCols(step.size()) * held;
+  if (moving.empty()) {
+    return {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0), -0.5 * (tall.squaredNorm() + all.log_determinant), tall.squaredNorm()};
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(tall);
+  const RunEvidence reduced{decomposition.matrixQR().topRows(inner + 1).triangularView<Eigen::Upper>(), all.log_determinant, all.count};
+  const ThetaPrior own = prior_given(prior, moving, step);
+  return linear_fit({&reduced, 1}, own.mean, own.precision);
+}
+
+/// The step of all coordinates that decreases the squares most while none leaves its bounds (Stark and Parker 1995, bounded-variable
+/// least squares): those that would leave are held, and let go again where the squares pull them back inside.
 LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
   const Eigen::Index count = prior.mean.size();
+  const auto data = all.triangle.leftCols(count);
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(count).cwiseMax(low).cwiseMin(high);
+  const auto residual = [&] { return Eigen::VectorXd(data * step - all.triangle.rightCols<1>()); };
+  std::vector<bool> is_held(static_cast<std::size_t>(count), false);
   std::vector<Eigen::Index> moving;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    moving.push_back(i);
-  }
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(count);
   LinearFit fit;
-  while (true) {
-    const auto inner = static_cast<Eigen::Index>(moving.size());
-    Eigen::VectorXd held = step;
-    held(moving).setZero();
-    Eigen::MatrixXd tall(all.triangle.rows(), inner + 1);
-    tall << all.triangle(Eigen::all, moving), all.triangle.rightCols<1>() - all.triangle.leftCols(count) * held;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(tall);
-    const RunEvidence reduced{decomposition.matrixQR().topRows(inner + 1).triangularView<Eigen::Upper>(), all.log_determinant, all.count};
-    // The prior's mean for the moving ones, given the held ones: precisions here are diagonal blocks or nearly so.
-    fit = linear_fit({&reduced, 1}, prior.mean(moving), prior.precision(moving, moving));
-    step(moving) = fit.coefficients;
-    std::vector<Eigen::Index> inside;
-    for (const Eigen::Index i : moving) {
-      if (step[i] < low[i] - 1e-12 || step[i] > high[i] + 1e-12) {
-        step[i] = std::clamp(step[i], low[i], high[i]);
-      } else {
-        inside.push_back(i);
+  for (Eigen::Index round = 0; round < 4 * count + 4; ++round) {
+    moving.clear();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (!is_held[static_cast<std::size_t>(i)]) {
+        moving.push_back(i);
       }
     }
-    const bool has_settled = inside.size() == moving.size() || inside.empty();
-    moving = std::move(inside);
-    if (has_settled) {
+    fit = fit_moving(all, prior, moving, step);
+    double share = 1.0;
+    Eigen::Index first = -1;
+    for (std::size_t m = 0; m < moving.size(); ++m) {
+      const Eigen::Index i = moving[m];
+      const double wanted = fit.coefficients[static_cast<Eigen::Index>(m)];
+      const double bound = std::clamp(wanted, low[i], high[i]);
+      if (bound != wanted && (bound - step[i]) / (wanted - step[i]) < share) {
+        share = std::max(0.0, (bound - step[i]) / (wanted - step[i]));
+        first = i;
+      }
+    }
+    step(moving) += share * (fit.coefficients - step(moving)).eval();
+    if (first >= 0) {
+      step[first] = std::clamp(fit.coefficients[std::ranges::find(moving, first) - moving.begin()], low[first], high[first]);
+      is_held[static_cast<std::size_t>(first)] = true;
+      continue;
+    }
+    const Eigen::VectorXd slope = data.transpose() * residual() + prior.precision * (step - prior.mean);
+    double steepest = 1e-9 * (1.0 + slope.cwiseAbs().maxCoeff());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double inwards = step[i] <= low[i] ? -slope[i] : slope[i];
+      if (is_held[static_cast<std::size_t>(i)] && inwards > steepest) {
+        steepest = inwards;
+        first = i;
+      }
+    }
+    if (first < 0) {
       break;
     }
+    is_held[static_cast<std::size_t>(first)] = false;
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
   if (!moving.empty()) {
     covariance(moving, moving) = fit.covariance;
   }
-  fit.covariance = std::move(covariance);
-  fit.coefficients = std::move(step);
-  return fit;
+  // What the held ones cost before anything is measured counts as well.
+  const double misfit = residual().squaredNorm() + (step - prior.mean).dot(prior.precision * (step - prior.mean));
+  return {std::move(step), std::move(covariance), fit.log_evidence - 0.5 * (misfit - fit.misfit), misfit};
 }
 
 class Fitter {
@@ -106,7 +148,8 @@ class Fitter {
   }
 
   [[nodiscard]] EvidenceTable table_of(const RefitResult& at) const {
-    return {design(at.model.model.network, at.fitted, runs_, options_.errors, {}), options_.grid, prior_here(at.model), {}};
+    return {
+        design(at.model.model.network, at.fitted, runs_, options_.errors, options_.merged, {}), options_.grid, prior_here(at.model), {}};
   }
 
   [[nodiscard]] LinearFit bounded_step(EvidenceTable& table) const {
@@ -160,7 +203,7 @@ class Fitter {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const DesignRun& design = table.runs()[r];
       start_step_K.push_back(
-          start_correction_K(*design.run, design.columns, fit.coefficients, Whitening(*design.run, flux, design.noise), design.start));
+          start_correction_K(design.run, design.columns, fit.coefficients, Whitening(design.run, flux, design.noise), design.start));
     }
     for (double share = 1.0; share > 0.05; share *= 0.5) {
       RefitResult next;
@@ -206,11 +249,15 @@ RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std
 }
 
 std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const SensorErrors& errors, const std::vector<Columns>& extra) {
-  std::vector<DesignRun> all;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    DesignRun one;
-    one.run = &fitted[r];
+                              const SensorErrors& errors, const std::vector<int>& merged, const std::vector<Columns>& extra) {
+  std::vector<DesignRun> all(runs.size());
+  in_parallel(runs.size(), 0, [&](std::size_t r) {
+    DesignRun& one = all[r];
+    const Eigen::VectorXd weight = errors.weights.empty() ? Eigen::VectorXd() : errors.weights[r];
+    const Averaging averaging(fitted[r], weight, merged.empty() ? 1 : merged[r]);
+    one.run = averaging.run();
+    one.noise.weight = averaging.weight();
+    one.interval_of = averaging.interval_of();
     for (const Sensor& sensor : runs[r].sensors) {
       one.noise.noise_K.push_back(sensor.noise_K);
       if (!errors.wander_K.empty()) {
@@ -219,19 +266,15 @@ std::vector<DesignRun> design(const Network& network, const std::vector<Linearis
       }
     }
     one.noise.wander_time_scale_s = errors.wander_time_scale_s;
-    if (!errors.weights.empty()) {
-      one.noise.weight = errors.weights[r];
-    }
     const RunStart start = start_of(network, runs[r]);
     one.start = {start.prior_C - fitted[r].state_C.col(0), start.prior_sd_K};
     const Eigen::Index inner = fitted[r].by_parameter.cols();
-    one.columns.resize(fitted[r].by_parameter.rows(), inner + (extra.empty() ? 0 : extra[r].cols()));
-    one.columns.leftCols(inner) = fitted[r].by_parameter;
+    one.columns.resize(one.run.residual_K.size(), inner + (extra.empty() ? 0 : extra[r].cols()));
+    one.columns.leftCols(inner) = averaging.average(fitted[r].by_parameter);
     if (!extra.empty()) {
-      one.columns.rightCols(extra[r].cols()) = extra[r];
+      one.columns.rightCols(extra[r].cols()) = averaging.average(extra[r]);
     }
-    all.push_back(std::move(one));
-  }
+  });
   return all;
 }
 

@@ -23,6 +23,7 @@ struct RefitOptions {
   FluxGrid grid;
   FluxGrid::Place place;  ///< to begin with
   SensorErrors errors;
+  std::vector<int> merged;  ///< per run how many samples are averaged; results with others are not comparable
   int most_steps = 8;
   /// Average the result over how probable neighbouring suppositions about the unknown heat are: intervals that hold what they
   /// promise. Otherwise the most probable one alone counts.
@@ -33,9 +34,10 @@ struct RefitOptions {
 RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                   const RefitOptions& options);
 
-/// The runs as the table takes them, with `extra` columns beside those of the model's coordinates.
+/// The runs as the table takes them, with `extra` columns beside those of the model's coordinates. `merged` is empty where no samples are
+/// averaged.
 std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const SensorErrors& errors, const std::vector<Columns>& extra);
+                              const SensorErrors& errors, const std::vector<int>& merged, const std::vector<Columns>& extra);
 /// The prior of the model's coordinates relative to where they are.
 ThetaPrior prior_here(const ExtendedModel& model);
 

@@ -8,8 +8,10 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "identify/attribution/backward_check.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
+#include "identify/averaged_run.h"
 
 namespace heatsoak {
 namespace {
@@ -32,6 +34,7 @@ class Selector {
     std::vector<std::vector<double>> start_C;
     for (const MeasuredRun& run : input_.runs) {
       start_C.push_back(measured_start_C(input_.model.model.network, run));
+      options_.merged.push_back(mergeable_samples(linearise(input_.model, start_C.back(), run)));
     }
     out_.before = refit(input_.model, input_.runs, start_C, options_);
     look_at_sensors(out_.before);
@@ -41,7 +44,7 @@ class Selector {
     while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
     }
     out_.errors = options_.errors;
-    check_backwards();
+    check_backwards(out_, input_, rules_, options_);
     if (!out_.terms.empty()) {
       options_.place = out_.after.place;
       options_.averages_flux = true;
@@ -53,7 +56,7 @@ class Selector {
  private:
   void look_at_sensors(const RefitResult& fit) {
     options_.place = fit.place;
-    options_.errors = with_wander(fit, input_.runs, options_.grid, kMuchUnknown_share * out_.mean_heat_W, options_.errors);
+    options_.errors = with_wander(fit, input_.runs, options_.grid, options_.merged, kMuchUnknown_share * out_.mean_heat_W, options_.errors);
     options_.errors.weights = outlier_weights(fit, input_.runs, options_.grid, options_.errors);
     if (!options_.errors.wander_K.empty()) {
       options_.place = first_place_;
@@ -76,22 +79,63 @@ class Selector {
     std::vector<Columns> columns(input_.runs.size());
     in_parallel(input_.runs.size(), 0,
                 [&](std::size_t r) { columns[r] = candidate_columns(candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]); });
-    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, columns), options_.grid,
-                        prior_here(out_.after.model), column_rules(candidates));
+    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, columns),
+                        options_.grid, prior_here(out_.after.model), column_rules(candidates));
     const SetScore base = table.best({}, out_.after.place);
     out_.after.evidence_nats = std::max(out_.after.evidence_nats, base.evidence_nats);
     out_.after.place = base.place;
+    if (out_.rounds.empty()) {
+      tell_unseen(candidates, table.typical_gains_nats(base));
+    }
     Round round;
     round.evidence_nats = base.evidence_nats;
     round.ladder = judge(candidates, table, base);
     if (input_.scans_drivers) {
-      out_.drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs, input_.free);
-      round.scan = scan_drivers(
-          {&out_.after.model.model, &input_.runs, &out_.after.fitted, &out_.drivers, std::max(0.05, out_.mean_heat_W)}, table, base, 8);
+      round.scan = scan(table, base);
     }
     const bool taken = take_best(round, candidates, table, base);
     out_.rounds.push_back(std::move(round));
     return taken;
+  }
+
+  /// Its results name drivers by their places in the list of all rounds: what one round looks at, another may not have.
+  std::vector<ScanResult> scan(EvidenceTable& table, const SetScore& base) {
+    std::vector<Driver> drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs, input_.free);
+    std::vector<ScanResult> results = scan_drivers(
+        {&out_.after.model.model, &input_.runs, &out_.after.fitted, &drivers, std::max(0.05, out_.mean_heat_W)}, table, base, 8);
+    std::vector<int> place;
+    for (Driver& driver : drivers) {
+      const auto known =
+          std::ranges::find_if(out_.drivers, [&](const Driver& d) { return d.name == driver.name && d.condition == driver.condition; });
+      place.push_back(static_cast<int>(known - out_.drivers.begin()));
+      if (known == out_.drivers.end()) {
+        out_.drivers.push_back(std::move(driver));
+      } else {
+        *known = std::move(driver);
+      }
+    }
+    for (ScanResult& each : results) {
+      each.term.driver = place[static_cast<std::size_t>(each.term.driver)];
+    }
+    return results;
+  }
+
+  /// An effect would be seen if one of its forms would.
+  void tell_unseen(const std::vector<Candidate>& candidates, const std::vector<double>& gain_nats) {
+    std::map<std::string, double> best_nats;
+    for (std::size_t j = 0; j < candidates.size(); ++j) {
+      if (candidates[j].type && candidates[j].condition.empty()) {
+        double& best = best_nats[std::string(candidates[j].type->name)];
+        best = std::max(best, gain_nats[j]);
+      }
+    }
+    for (const auto& [name, nats] : best_nats) {
+      if (!(nats >= rules_.least_gain_nats)) {
+        out_.unseen.push_back(name);
+      }
+    }
+    const auto judged = static_cast<double>(std::max<std::size_t>(1, best_nats.size()));
+    out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / judged;
   }
 
   /// The best few candidates with their unknown heat re-maximised.
@@ -439,41 +483,6 @@ class Selector {
       return true;
     }
     return false;
-  }
-
-  /// Drops what the later terms have made superfluous.
-  void check_backwards() {
-    bool has_dropped = false;
-    for (std::size_t i = out_.terms.size(); i-- > 0;) {
-      if (i + 1 == out_.terms.size() && !has_dropped) {
-        // Without the last one the model is what it was a round before.
-        out_.terms[i].loss_without_nats = out_.terms[i].gain_nats;
-        continue;
-      }
-      RefitOptions options = options_;
-      options.place = out_.after.place;
-      RefitResult without = refit(with_values_of(with_terms_except(i), out_.after.model), input_.runs, out_.before.start_C, options);
-      out_.terms[i].loss_without_nats = out_.after.evidence_nats - without.evidence_nats;
-      if (out_.terms[i].loss_without_nats < rules_.least_gain_nats) {
-        out_.after = std::move(without);
-        out_.terms.erase(out_.terms.begin() + static_cast<std::ptrdiff_t>(i));
-        has_dropped = true;
-        i = out_.terms.size();
-      }
-    }
-  }
-
-  [[nodiscard]] ExtendedModel with_terms_except(std::size_t left_out) const {
-    ExtendedModel model = out_.before.model;
-    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
-      if (i == left_out) {
-        continue;
-      }
-      const AcceptedTerm& term = out_.terms[i];
-      model = term.candidate ? with_candidate(model, *term.candidate, 1.0)
-                             : *with_curve(model, *term.curve, out_.drivers[static_cast<std::size_t>(term.curve->term.driver)]);
-    }
-    return model;
   }
 
   const SelectionInput& input_;

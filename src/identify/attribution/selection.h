@@ -72,6 +72,8 @@ struct Selection {
   std::optional<ScanResult> open_curve;  ///< that nothing in the network can follow, or physics forbids as it stands
   FluxGrid grid;
   SensorErrors errors;
+  std::vector<std::string> unseen;   ///< effects that at their typical size would not show in these runs
+  double seen_share = 1.0;           ///< of the effects that were judged
   std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
 };
 

@@ -17,11 +17,12 @@ constexpr double kClearly_nats = 10.0;
 /// The evidence of the model at the fit, at the unknown heat that is best then.
 class Trial {
  public:
-  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, FluxGrid::Place begin)
-      : fit_(fit), runs_(runs), grid_(grid), place_(std::move(begin)) {}
+  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
+        FluxGrid::Place begin)
+      : fit_(fit), runs_(runs), grid_(grid), merged_(merged), place_(std::move(begin)) {}
 
   double evidence_nats(const SensorErrors& errors) {
-    EvidenceTable table(design(fit_.model.model.network, fit_.fitted, runs_, errors, {}), grid_, prior_here(fit_.model), {});
+    EvidenceTable table(design(fit_.model.model.network, fit_.fitted, runs_, errors, merged_, {}), grid_, prior_here(fit_.model), {});
     const SetScore best = table.best({}, place_);
     last_ = best.place;
     return best.evidence_nats;
@@ -33,6 +34,7 @@ class Trial {
   const RefitResult& fit_;
   const std::vector<MeasuredRun>& runs_;
   const FluxGrid& grid_;
+  const std::vector<int>& merged_;
   FluxGrid::Place place_, last_;
 };
 
@@ -84,7 +86,7 @@ std::vector<Eigen::VectorXd> outlier_weights(const RefitResult& fit, const std::
   SensorErrors all = known;
   all.weights.clear();
   std::vector<Eigen::VectorXd> weights(runs.size());
-  const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, runs, all, {});
+  const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, runs, all, {}, {});
   for (std::size_t r = 0; r < runs.size(); ++r) {
     Columns residual = fit.fitted[r].residual_K;
     Whitening(fit.fitted[r], grid.at(fit.place), designs[r].noise).apply(residual);
@@ -99,14 +101,14 @@ std::vector<Eigen::VectorXd> outlier_weights(const RefitResult& fit, const std::
   return weights;
 }
 
-SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, double tolerable_W,
-                         SensorErrors known) {
+SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
+                         double tolerable_W, SensorErrors known) {
   const LatentFlux flux = grid.at(fit.place);
   if (known.wander_K.empty() && *std::ranges::max_element(flux.rms_W) <= tolerable_W) {
     return known;
   }
   const double without_nats =
-      known.wander_K.empty() ? Trial(fit, runs, grid, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
+      known.wander_K.empty() ? Trial(fit, runs, grid, merged, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
   // Little unknown heat beside it to begin with: much of it has taken the place of what is looked for.
   FluxGrid::Place little = fit.place;
   std::ranges::fill(little.begin(), little.end() - 1, std::min(3, static_cast<int>(grid.rms_W.size()) - 1));
@@ -120,7 +122,7 @@ SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>&
         wander_K = known.wander_K.empty() ? std::max(wander_K, noises * sensor.noise_K) : wander_K;
       }
     }
-    Trial trial(fit, runs, grid, little);
+    Trial trial(fit, runs, grid, merged, little);
     if (const double nats = climb(trial, wandering); nats > best_nats) {
       best_nats = nats;
       best = wandering;

@@ -27,7 +27,7 @@ std::vector<Eigen::VectorXd> outlier_weights(const RefitResult& fit, const std::
 
 /// `known` with slow errors that make the model at the fit most probable. They are looked for where much unknown heat, more than
 /// `tolerable_W`, would be needed otherwise, and believed where the evidence for them is clear.
-SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, double tolerable_W,
-                         SensorErrors known);
+SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
+                         double tolerable_W, SensorErrors known);
 
 }  // namespace heatsoak

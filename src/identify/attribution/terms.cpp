@@ -18,6 +18,8 @@ constexpr double kBodySpread = 1.0;
 /// A conductance that is not there, as a resistance.
 constexpr double kNoContact_K_per_W = 1e9;
 
+std::string named(std::string_view name, std::string usual) { return name.empty() ? std::move(usual) : std::string(name); }
+
 std::string unused_name(const Network& network, const std::string& wanted) {
   std::string name = wanted;
   const auto is_used = [&] { return std::ranges::any_of(network.effects(), [&](const EffectInPlace& e) { return e.name == name; }); };
@@ -44,20 +46,21 @@ void set_free_around_zero(Model& model, int place, double scale, const Range& ra
 }
 
 /// A contact to `cold` in certain runs only.
-ExtendedModel with_contact(ExtendedModel model, const ScanResult& curve, const Driver& driver) {
+ExtendedModel with_contact(ExtendedModel model, const ScanResult& curve, const Driver& driver, std::string_view name) {
   const std::string cold = curve.term.other.empty() ? std::string(Network::kAmbient) : curve.term.other;
   const double resistance_K_per_W = 1.0 / std::max(curve.curve[0], 1e-6);
-  const EffectInPlace& effect = add(model.model, fmt::format("contact_{}_{}", curve.term.node, cold), *find_effect("conduction"),
-                                    {curve.term.node, cold}, {resistance_K_per_W});
+  const EffectInPlace& effect = add(model.model, named(name, fmt::format("contact_{}_{}", curve.term.node, cold)),
+                                    *find_effect("conduction"), {curve.term.node, cold}, {resistance_K_per_W});
   const int place = effect.parameter_index.front();
   model.conditional.push_back({effect.name, place, kNoContact_K_per_W, driver.condition});
   model.model.set_free({.place = place, .by_log = true, .scale = 1.0, .low = 1e-3, .high = kNoContact_K_per_W}, 3.0);
   return model;
 }
 
-ExtendedModel with_source(ExtendedModel model, const ScanResult& curve, const Driver& driver) {
+ExtendedModel with_source(ExtendedModel model, const ScanResult& curve, const Driver& driver, std::string_view name) {
   const EffectType& type = *find_effect("constant_heat");
-  const EffectInPlace& effect = add(model.model, fmt::format("heat_{}", curve.term.node), type, {curve.term.node}, {curve.curve[0]});
+  const EffectInPlace& effect =
+      add(model.model, named(name, fmt::format("heat_{}", curve.term.node)), type, {curve.term.node}, {curve.curve[0]});
   const int place = effect.parameter_index.front();
   model.conditional.push_back({effect.name, place, 0.0, driver.condition});
   set_free_around_zero(model.model, place, curve.usual, type.parameters.front().range, 1.0);
@@ -89,7 +92,7 @@ Eigen::VectorXd passive(const ScanResult& curve) {
   return (curve.curve.array() - shift).cwiseMax(0.0);
 }
 
-std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Driver& driver) {
+std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
   const EffectType& type = *find_effect("tabulated");
   const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
@@ -104,7 +107,7 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
   parameters.insert(parameters.end(), values.begin(), values.end());
   ExtendedModel out = model;
-  const EffectInPlace effect = add(out.model, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name), type,
+  const EffectInPlace effect = add(out.model, named(name, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name)), type,
                                    {curve.term.node, cold, watched, reference}, parameters);
   for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
     set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
@@ -115,7 +118,7 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
 
 }  // namespace
 
-ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share) {
+ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name) {
   ExtendedModel out = model;
   if (candidate.sensor_type) {
     out.sensors.push_back({candidate.sensor_type, size_share * candidate.typical_size(), kSizeSpread_share * candidate.typical_size()});
@@ -136,7 +139,8 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
       parameters[static_cast<std::size_t>(role.own_capacity)] *= std::max(0.05, size_share);
     }
   }
-  const EffectInPlace effect = add(out.model, std::string(candidate.type->name), *candidate.type, candidate.nodes, parameters);
+  const EffectInPlace effect =
+      add(out.model, std::string(name.empty() ? candidate.type->name : name), *candidate.type, candidate.nodes, parameters);
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const ParameterSpec& spec = candidate.type->parameters[p];
     if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
@@ -158,15 +162,15 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   return out;
 }
 
-std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver) {
+std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
   if (driver.kind == DriverKind::run) {
     // In certain runs only: more contact or more heat there, never less than nothing.
     if (curve.curve[0] <= 0.0 || curve.term.multiplier == Multiplier::copper) {
       return std::nullopt;
     }
-    return curve.term.multiplier == Multiplier::source ? with_source(model, curve, driver) : with_contact(model, curve, driver);
+    return curve.term.multiplier == Multiplier::source ? with_source(model, curve, driver, name) : with_contact(model, curve, driver, name);
   }
-  return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver);
+  return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
 }
 
 ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {

@@ -19,9 +19,6 @@ namespace {
 constexpr double kQuantile = 1.959964;
 /// Beyond this standard deviation of a logarithm the parabola at the optimum is no picture of the likelihood.
 constexpr double kCurvatureHolds_sd = 0.1;
-/// An interval of a factor of two to each side is no answer, and less than a third off the former uncertainty is no news.
-constexpr double kIdentifiable_sd = 0.35;
-constexpr double kNews_share = 0.7;
 
 std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const MeasuredRunOptions& options,
                                  std::vector<std::string>& notes) {
@@ -218,7 +215,7 @@ class Calibrating {
       }
       figure.low = figure.value * std::exp(-below);
       figure.high = figure.value * std::exp(above);
-      figure.is_identifiable = sd < kIdentifiable_sd && sd < kNews_share * each.prior_sd;
+      figure.is_identifiable = is_told(sd, each.prior_sd);
       all_.figures.push_back(std::move(figure));
     }
     Eigen::MatrixXd exponents(of_file, model.free_count());

@@ -26,6 +26,9 @@ struct FittedFigure {
   Origin origin = Origin::estimated;
 };
 
+/// Data, not only what was known before, tell a figure to a factor of two or better; standard deviations are of the logarithm.
+bool is_told(double sd, double prior_sd);
+
 struct MotorModel {
   Model model;
   HeatInput heat = HeatInput::current;

@@ -1,0 +1,165 @@
+#include "identify/attribution/backward_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "identify/attribution/terms.h"
+
+namespace heatsoak {
+namespace {
+
+/// Names of nodes that a term reaches or watches besides those it brings itself.
+std::vector<std::string> nodes_of(const AcceptedTerm& term, const std::vector<Driver>& drivers) {
+  if (term.curve) {
+    const Driver& driver = drivers[static_cast<std::size_t>(term.curve->term.driver)];
+    return {term.curve->term.node, term.curve->term.other, driver.watched, driver.reference};
+  }
+  std::vector<std::string> nodes;
+  for (std::size_t role = 0; role < term.candidate->nodes.size(); ++role) {
+    if (term.candidate->type->nodes[role].own_capacity < 0) {
+      nodes.push_back(term.candidate->nodes[role]);
+    }
+  }
+  return nodes;
+}
+
+class BackwardCheck {
+ public:
+  BackwardCheck(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options)
+      : out_(selection), input_(input), rules_(rules), options_(std::move(options)) {}
+
+  void run() {
+    while (drops_superfluous() || drops_invisible()) {
+      has_dropped_ = true;
+    }
+  }
+
+ private:
+  /// False where none is.
+  bool drops_superfluous() {
+    for (std::size_t i = out_.terms.size(); i-- > 0;) {
+      if (i + 1 == out_.terms.size() && !has_dropped_) {
+        // Without the last one the model is what it was a round before.
+        out_.terms[i].loss_without_nats = out_.terms[i].gain_nats;
+        continue;
+      }
+      const std::vector<bool> stays = all_but(i);
+      RefitResult without = refit_with(stays);
+      out_.terms[i].loss_without_nats = out_.after.evidence_nats - without.evidence_nats;
+      const auto dropped = static_cast<double>(std::ranges::count(stays, false));
+      if (out_.terms[i].loss_without_nats < dropped * rules_.least_gain_nats) {
+        keep(stays, std::move(without));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool drops_invisible() {
+    std::size_t least = out_.terms.size();
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      if (out_.terms[i].candidate) {
+        out_.terms[i].visibility_ratio = visibility_ratio(i);
+        const bool is_less = least == out_.terms.size() || out_.terms[i].visibility_ratio < out_.terms[least].visibility_ratio;
+        least = is_less ? i : least;
+      }
+    }
+    if (least == out_.terms.size() || out_.terms[least].visibility_ratio >= rules_.least_visibility_ratio) {
+      return false;
+    }
+    const AcceptedTerm& term = out_.terms[least];
+    out_.refused.push_back(fmt::format("{}: {:.0f} nats, but all but {:.1f} % of it could be the base parameters and the other effects",
+                                       term.candidate->id, term.loss_without_nats, 100.0 * term.visibility_ratio));
+    const std::vector<bool> stays = all_but(least);
+    keep(stays, refit_with(stays));
+    return true;
+  }
+
+  /// Of the whitened response to the term's size from nothing, in the shape that was found, what all else leaves of it: 1 − R².
+  [[nodiscard]] double visibility_ratio(std::size_t term) const {
+    Candidate candidate = *out_.terms[term].candidate;
+    if (candidate.type) {
+      const auto in_place = std::ranges::find(out_.after.model.model.network.effects(), out_.terms[term].effect_name, &EffectInPlace::name);
+      const auto size = static_cast<std::size_t>(candidate.size_parameter());
+      for (std::size_t p = 0; p < candidate.parameters.size(); ++p) {
+        const double found = out_.after.model.model.values[static_cast<std::size_t>(in_place->parameter_index[p])];
+        candidate.parameters[p] = p == size && found == 0.0 ? candidate.parameters[p] : found;
+      }
+    }
+    const ExtendedModel without = model_with(all_but(term));
+    const auto states = static_cast<std::size_t>(without.model.network.state_count());
+    std::vector<LinearisedRun> fitted;
+    std::vector<Columns> columns;
+    for (std::size_t r = 0; r < input_.runs.size(); ++r) {
+      std::vector<double> start_C = out_.after.start_C[r];
+      start_C.resize(std::min(start_C.size(), states));
+      fitted.push_back(linearise(without, start_C, input_.runs[r]));
+      columns.push_back(candidate_columns({candidate}, without, fitted.back(), input_.runs[r]));
+    }
+    EvidenceTable table(design(without.model.network, fitted, input_.runs, options_.errors, options_.merged, columns), out_.grid,
+                        prior_here(without), {CandidateColumn{}});
+    return table.visibility_ratio({}, out_.after.place, 0);
+  }
+
+  /// Without the term and all that stand on a node which it brings.
+  [[nodiscard]] std::vector<bool> all_but(std::size_t left_out) const {
+    std::vector<bool> stays(out_.terms.size(), true);
+    std::vector<std::string> gone{out_.terms[left_out].effect_name};
+    stays[left_out] = false;
+    for (std::size_t next = 0; next < gone.size(); ++next) {
+      for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+        const std::vector<std::string> nodes = nodes_of(out_.terms[i], out_.drivers);
+        if (stays[i] && !gone[next].empty() && std::ranges::find(nodes, gone[next]) != nodes.end()) {
+          stays[i] = false;
+          gone.push_back(out_.terms[i].effect_name);
+        }
+      }
+    }
+    return stays;
+  }
+
+  [[nodiscard]] ExtendedModel model_with(const std::vector<bool>& stays) const {
+    ExtendedModel model = out_.before.model;
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      const AcceptedTerm& term = out_.terms[i];
+      if (!stays[i]) {
+        continue;
+      }
+      model = term.candidate
+                  ? with_candidate(model, *term.candidate, 1.0, term.effect_name)
+                  : *with_curve(model, *term.curve, out_.drivers[static_cast<std::size_t>(term.curve->term.driver)], term.effect_name);
+    }
+    return with_values_of(std::move(model), out_.after.model);
+  }
+
+  [[nodiscard]] RefitResult refit_with(const std::vector<bool>& stays) {
+    options_.place = out_.after.place;
+    return refit(model_with(stays), input_.runs, out_.before.start_C, options_);
+  }
+
+  void keep(const std::vector<bool>& stays, RefitResult fit) {
+    out_.after = std::move(fit);
+    std::vector<AcceptedTerm> terms;
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      if (stays[i]) {
+        terms.push_back(std::move(out_.terms[i]));
+      }
+    }
+    out_.terms = std::move(terms);
+  }
+
+  Selection& out_;
+  const SelectionInput& input_;
+  const SelectionRules& rules_;
+  RefitOptions options_;
+  bool has_dropped_ = false;
+};
+
+}  // namespace
+
+void check_backwards(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options) {
+  BackwardCheck(selection, input, rules, std::move(options)).run();
+}
+
+}  // namespace heatsoak

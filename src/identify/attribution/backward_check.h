@@ -1,0 +1,12 @@
+// Which of the terms that were taken in one after the other stay in the end.
+#pragma once
+
+#include "identify/attribution/selection.h"
+
+namespace heatsoak {
+
+/// Drops from `selection` what later terms have made superfluous, and effects of the catalogue that cannot be told from all the others
+/// together: these are refused.
+void check_backwards(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options);
+
+}  // namespace heatsoak
