@@ -51,7 +51,8 @@ Json effect_json(const FoundEffect& effect) {
           {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
           {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
           {"visibility", rounded(effect.visibility_ratio, 4)},
-          {"confusable_with", plain_ids(effect.confusable_with)}};
+          {"confusable_with", plain_ids(effect.confusable_with)},
+          {"look_alike", effect.look_alike}};
 }
 
 Json tests_json(const std::vector<InnovationTests>& tests) {
@@ -76,7 +77,8 @@ Json unexplained_json(const Unexplained& heat) {
             {"drivers", heat.drivers},
             {"heat_W", {{"mean", rounded(heat.mean_W, 4)}, {"max", rounded(heat.peak_W, 4)}, {"rms", rounded(heat.rms_W, 4)}}},
             {"time_scale_s", rounded(heat.time_scale_s, 1)},
-            {"nats", rounded(heat.gain_nats, 2)}};
+            {"nats", rounded(heat.gain_nats, 2)},
+            {"in_model", heat.is_in_model}};
   if (!heat.knots.empty()) {
     json["curve"] = {
         {"driver", heat.knots}, {"driver_unit", heat.driver_unit}, {"value", heat.curve}, {"sd", heat.curve_sd}, {"unit", heat.curve_unit}};

@@ -70,7 +70,13 @@ std::string effect_table(const Diagnosis& diagnosis) {
       is_first = false;
     }
   }
-  return text + "</table>\n";
+  text += "</table>\n";
+  for (const FoundEffect& effect : diagnosis.effects) {
+    if (!effect.look_alike.empty() && effect.is_from_catalogue) {
+      text += fmt::format("<p>{} in general: {}</p>\n", escaped(effect.id), escaped(effect.look_alike));
+    }
+  }
+  return text;
 }
 
 std::string ladder_table(const Diagnosis& diagnosis) {

@@ -109,6 +109,14 @@ double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std
   return 0.5 * (column - others * others.colPivHouseholderQr().solve(column)).squaredNorm();
 }
 
+bool has_nodes_of(const Network& network, const Candidate& candidate) {
+  bool has_all = true;
+  for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
+    has_all = has_all && (candidate.type->nodes[role].own_capacity >= 0 || network.find_node(candidate.nodes[role]) >= 0);
+  }
+  return has_all;
+}
+
 }  // namespace
 
 std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs) {
@@ -121,6 +129,12 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
       const auto found =
           std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.confusable_with[rival]; });
       if (found == ladder.end()) {
+        continue;
+      }
+      // At a body that came with another effect: there is no such body where the next run is tried out.
+      if (!has_nodes_of(selection.before.model.model.network, *term.candidate) ||
+          !has_nodes_of(selection.before.model.model.network, found->candidate)) {
+        experiments.push_back({fmt::format("{} or {}", term.candidate->id, found->candidate.id), term.experiments[rival], 0.0});
         continue;
       }
       const auto own = std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.candidate->id; });

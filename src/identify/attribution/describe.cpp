@@ -117,7 +117,8 @@ std::string describe(const Diagnosis& diagnosis) {
                               significant(heat.rms_W, 2), heat.node, heat.time_scale_s)
                 : fmt::format(" Unnamed: heat at the {} that follows {}, {} W on average, up to {} W.", heat.node,
                               fmt::join(heat.drivers, " or "), significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
-                      (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "");
+                      (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
+                      (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
   }
   text += errors_in_words(diagnosis.before_holdout.empty() ? diagnosis.before_train : diagnosis.before_holdout,
                           diagnosis.before_holdout.empty() ? diagnosis.after_train : diagnosis.after_holdout,

@@ -89,6 +89,7 @@ class Teller {
     effect.id = in_place.type->name;
     effect.node = after().model.model.network.node_name(in_place.node_index.front());
     effect.description = in_place.type->summary;
+    effect.look_alike = in_place.type->look_alike;
     for (const ConditionalTerm& conditional : after().model.conditional) {
       if (conditional.effect_name == term.effect_name) {
         effect.condition = conditional.condition;
@@ -111,6 +112,7 @@ class Teller {
     effect.has_heat = false;
     effect.node = type.signal.substr(0, type.signal.rfind('_'));
     effect.description = type.summary;
+    effect.look_alike = type.look_alike;
     for (std::size_t i = 0; i < after().model.sensors.size(); ++i) {
       if (after().model.sensors[i].type == &type) {
         const auto own = after().model.model.free_count() + static_cast<Eigen::Index>(i);
@@ -371,6 +373,7 @@ class Teller {
   /// The curve as the model has it, which is what physics leaves of the scan's.
   void tell_as_added(const AcceptedTerm& term, Unexplained& heat) const {
     const auto effect = std::ranges::find(out_.effects, term.effect_name, &FoundEffect::name);
+    heat.is_in_model = true;
     heat.mean_W = heat.rms_W = effect->mean_W;
     heat.peak_W = effect->peak_W;
     const Model& model = after().model.model;

@@ -56,7 +56,8 @@ struct FoundEffect {
   double delta_bic = 0.0;                        ///< −2 · gain
   double p_value = 1.0;                          ///< of the size being 0, one parameter
   double visibility_ratio = 0.0;
-  std::vector<std::string> confusable_with;
+  std::vector<std::string> confusable_with;  ///< on these runs
+  std::string look_alike;                    ///< in general, and what tells them apart: the catalogue's own words
   bool is_from_catalogue = true;
 };
 
@@ -73,6 +74,7 @@ struct Unexplained {
   std::vector<double> curve_sd;
   std::string curve_unit;
   std::string driver_unit;
+  bool is_in_model = false;  ///< the extended model follows it
 };
 
 /// Unknown heat along a training run, in W.

@@ -14,7 +14,14 @@ constexpr int kKnots = 7;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
+/// Evenly spaced. Where the driver changes its sign one of them is 0: forwards and backwards, driving and braking differ there.
 std::vector<double> knots_between(double low, double high) {
+  if (low < 0.0 && high > 0.0) {
+    const double below = std::clamp(std::round(-low / (high - low) * (kKnots - 1.0)), 1.0, kKnots - 2.0);
+    const double step = std::max(-low / below, high / (kKnots - 1.0 - below));
+    low = -below * step;
+    high = (kKnots - 1.0 - below) * step;
+  }
   std::vector<double> knots(kKnots);
   for (int i = 0; i < kKnots; ++i) {
     knots[static_cast<std::size_t>(i)] = low + (high - low) * i / (kKnots - 1.0);
