@@ -182,11 +182,11 @@ class Builder {
 
 }  // namespace
 
-bool is_told(double found_sd, double prior_sd) {
+bool is_told(double sd_share, double prior_sd_share) {
   // An interval of a factor of two to each side is no answer, and less than a third off the former uncertainty is no news.
   constexpr double kIdentifiable_sd = 0.35;
   constexpr double kNews_share = 0.7;
-  return found_sd < kIdentifiable_sd && found_sd < kNews_share * prior_sd;
+  return sd_share < kIdentifiable_sd && sd_share < kNews_share * prior_sd_share;
 }
 
 double prior_sd_of(const Figure& figure) {

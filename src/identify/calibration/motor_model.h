@@ -27,7 +27,7 @@ struct FittedFigure {
 };
 
 /// Data, not only what was known before, tell a figure to a factor of two or better; standard deviations are of the logarithm.
-bool is_told(double found_sd, double prior_sd);
+bool is_told(double sd_share, double prior_sd_share);
 
 struct MotorModel {
   Model model;
