@@ -8,8 +8,8 @@ namespace heatsoak {
 namespace {
 
 constexpr double kSharesOfTimeConstant = 5.0;
-/// Unknown heat may change within 20 s.
-constexpr double kLongestStretch_s = 5.0;
+/// Sensors lag by some seconds, and that must stay to be seen.
+constexpr double kLongestStretch_s = 2.0;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -14,9 +14,9 @@ constexpr int kKnots = 7;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
-/// Evenly spaced. Where the driver changes its sign one of them is 0: forwards and backwards, driving and braking differ there.
-std::vector<double> knots_between(double low, double high) {
-  if (low < 0.0 && high > 0.0) {
+/// Evenly spaced. Where a driver (no temperature) changes its sign one of them is 0: forwards and backwards, driving and braking differ.
+std::vector<double> knots_between(double low, double high, DriverKind kind) {
+  if (low < 0.0 && high > 0.0 && kind != DriverKind::node_temperature) {
     const double below = std::clamp(std::round(-low / (high - low) * (kKnots - 1.0)), 1.0, kKnots - 2.0);
     const double step = std::max(-low / below, high / (kKnots - 1.0 - below));
     low = -below * step;
@@ -30,7 +30,7 @@ std::vector<double> knots_between(double low, double high) {
 }
 
 std::vector<double> knots_of(const Driver& driver) {
-  return driver.kind == DriverKind::run ? std::vector<double>{1.0} : knots_between(driver.low, driver.high);
+  return driver.kind == DriverKind::run ? std::vector<double>{1.0} : knots_between(driver.low, driver.high, driver.kind);
 }
 
 /// How the sensors answer to heats held over the intervals: `heat_W` (intervals × c) into the node with place `flux`, out of `other`.
@@ -337,9 +337,10 @@ class Scanner {
   void climb(Climber& climber) {
     const std::vector<Eigen::VectorXd> multiplier = multipliers(climber.family.term);
     climb(climber, multiplier);
-    for (const auto& [low, high] : (*input_.drivers)[static_cast<std::size_t>(climber.family.term.driver)].inner) {
+    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(climber.family.term.driver)];
+    for (const auto& [low, high] : driver.inner) {
       Climber inner = climber;
-      inner.family.knots = knots_between(low, high);
+      inner.family.knots = knots_between(low, high, driver.kind);
       const std::vector<Family> own{inner.family};
       inner.scored = gained(own, responses(own, multiplier), inner.place);
       if (inner.scored.gain_nats > climber.scored.gain_nats) {

@@ -157,7 +157,7 @@ class Fitter {
     return bounded_fit(table.all_runs(now_.place), table.prior_of({}), low_ - theta, high_ - theta);
   }
 
-  /// Covariance over the places around the best: Σ w·(covariance + step·stepᵀ), w by evidence.
+  /// Mean and covariance over the places around the best: Σ w·(covariance + step·stepᵀ), w by evidence.
   void average(EvidenceTable& table) {
     const Eigen::VectorXd theta = now_.model.theta();
     const ThetaPrior prior = table.prior_of({});
@@ -193,43 +193,57 @@ class Fitter {
     }
     mean /= total_weight;
     now_.covariance = square / total_weight - mean * mean.transpose();
+    try {
+      now_ = moved(mean, start_steps_K(mean, table), 1.0);
+    } catch (const Failure&) {
+      return;
+    }
+  }
+
+  /// What the start temperatures do when the coordinates make a step.
+  [[nodiscard]] std::vector<Eigen::VectorXd> start_steps_K(const Eigen::VectorXd& step, const EvidenceTable& table) const {
+    const LatentFlux flux = options_.grid.at(now_.place);
+    std::vector<Eigen::VectorXd> steps_K;
+    for (const DesignRun& design : table.runs()) {
+      steps_K.push_back(start_correction_K(design.run, design.columns, step, Whitening(design.run, flux, design.noise), design.start));
+    }
+    return steps_K;
+  }
+
+  /// Throws Failure where the temperatures run away.
+  [[nodiscard]] RefitResult moved(const Eigen::VectorXd& step, const std::vector<Eigen::VectorXd>& start_step_K, double share) const {
+    RefitResult next;
+    next.model = now_.model;
+    next.model.set_theta((now_.model.theta() + share * step).cwiseMax(low_).cwiseMin(high_));
+    next.place = now_.place;
+    next.start_C = now_.start_C;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      next.start_C[r].resize(static_cast<std::size_t>(start_step_K[r].size()), runs_[r].at.front().ambient_C);
+      for (Eigen::Index i = 0; i < start_step_K[r].size(); ++i) {
+        next.start_C[r][static_cast<std::size_t>(i)] += share * start_step_K[r][i];
+      }
+    }
+    linearise_all(next);
+    next.evidence_nats = now_.evidence_nats;
+    next.covariance = now_.covariance;
+    next.converged = now_.converged;
+    return next;
   }
 
   /// The longest of the halved steps that lowers the squares; false where none does.
   bool take(const LinearFit& fit, double misfit, EvidenceTable& table) {
-    const Eigen::VectorXd theta = now_.model.theta();
-    const LatentFlux flux = options_.grid.at(now_.place);
-    std::vector<Eigen::VectorXd> start_step_K;
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
-      const DesignRun& design = table.runs()[r];
-      start_step_K.push_back(
-          start_correction_K(design.run, design.columns, fit.coefficients, Whitening(design.run, flux, design.noise), design.start));
-    }
+    const std::vector<Eigen::VectorXd> start_step_K = start_steps_K(fit.coefficients, table);
     for (double share = 1.0; share > 0.05; share *= 0.5) {
-      RefitResult next;
-      next.model = now_.model;
-      next.model.set_theta((theta + share * fit.coefficients).cwiseMax(low_).cwiseMin(high_));
-      next.place = now_.place;
-      next.start_C = now_.start_C;
-      for (std::size_t r = 0; r < runs_.size(); ++r) {
-        next.start_C[r].resize(static_cast<std::size_t>(start_step_K[r].size()), runs_[r].at.front().ambient_C);
-        for (Eigen::Index i = 0; i < start_step_K[r].size(); ++i) {
-          next.start_C[r][static_cast<std::size_t>(i)] += share * start_step_K[r][i];
-        }
-      }
       try {
-        linearise_all(next);
+        RefitResult next = moved(fit.coefficients, start_step_K, share);
+        EvidenceTable next_table = table_of(next);
+        if (next_table.misfit_now(now_.place) < misfit + 1e-9) {
+          now_ = std::move(next);
+          table = table_of(now_);
+          return true;
+        }
       } catch (const Failure&) {
         continue;
-      }
-      EvidenceTable next_table = table_of(next);
-      if (next_table.misfit_now(now_.place) < misfit + 1e-9) {
-        next.evidence_nats = now_.evidence_nats;
-        next.covariance = now_.covariance;
-        next.converged = now_.converged;
-        now_ = std::move(next);
-        table = table_of(now_);
-        return true;
       }
     }
     return false;
