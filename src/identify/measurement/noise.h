@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "identify/measurement/thinned.h"
 
 namespace heatsoak {
 
@@ -23,8 +26,44 @@ struct NoiseLevel {
   double repeats_share = 0.0;  ///< of neighbours that are equal
 };
 
-/// Of values in the order of time; NaN are skipped, differences do not reach over `runs` ([begin, end)). Of a long log
-/// some 200 000 samples are looked at, spread evenly.
-NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs);
+/// Takes a channel's values in the order of time, NaN where there is none. Memory does not grow with their number: of long
+/// ones a sample is kept, spread evenly.
+class NoiseGauge {
+ public:
+  explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), bends_(most) {}
+
+  /// What comes next does not follow what came before.
+  void begin_run() { before_ = before_that_ = std::numeric_limits<double>::quiet_NaN(); }
+  void add(double value) {
+    // A NaN is unequal to itself, and so is every difference with one.
+    if (value == value) {
+      values_.add(value);
+    }
+    const double change = value - before_;
+    if (change == change) {
+      changes_.add(change < 0.0 ? -change : change);
+      const double bend = change - (before_ - before_that_);
+      if (bend == bend) {
+        bends_.add(bend < 0.0 ? -bend : bend);
+      }
+    }
+    before_that_ = before_;
+    before_ = value;
+  }
+  [[nodiscard]] NoiseLevel level() const;
+  /// How many different values the kept ones have.
+  [[nodiscard]] std::size_t distinct() const;
+
+ private:
+  Thinned values_;
+  Thinned changes_;
+  Thinned bends_;
+  double before_ = std::numeric_limits<double>::quiet_NaN();
+  double before_that_ = before_;
+};
+
+/// Of values in the order of time; NaN are skipped, differences do not reach over `runs` ([begin, end)).
+NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs,
+                       std::size_t most = Thinned::kMost);
 
 }  // namespace heatsoak

@@ -351,23 +351,17 @@ class Suspector {
       if (channel.quantity.kind != QuantityKind::heat_input || range->samples < 100 || range->is_constant()) {
         continue;
       }
-      for (const double end : {range->high, range->low}) {
-        const auto there = static_cast<double>(std::ranges::count(channel.values, end));
-        if (end != 0.0 && there > kMuch_share * static_cast<double>(range->samples) && range->noise > 0.0 && distinct_beyond(channel, 50)) {
+      constexpr std::size_t kManyValues = 50;  // set points have few, measured signals have many
+      for (const auto& [end, samples] : {std::pair(range->high, range->at_high), std::pair(range->low, range->at_low)}) {
+        const auto there = static_cast<double>(samples);
+        if (end != 0.0 && there > kMuch_share * static_cast<double>(range->samples) && range->noise > 0.0 &&
+            range->distinct > kManyValues) {
           found_.push_back(fmt::format("{} stays at exactly {} {} in {:.0f} % of its rows: a limit, or a saturated sensor?",
                                        channel.quantity.key, significant(end, 5), unit_for_display(channel.quantity.unit),
                                        100.0 * there / static_cast<double>(range->samples)));
         }
       }
     }
-  }
-  /// Set points have few values, measured signals have many.
-  [[nodiscard]] static bool distinct_beyond(const Channel& channel, std::size_t many) {
-    std::vector<double> sorted;
-    std::ranges::copy_if(channel.values, std::back_inserter(sorted), [](double value) { return !std::isnan(value); });
-    std::ranges::sort(sorted);
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    return sorted.size() > many;
   }
 
   const Recording& recording_;
