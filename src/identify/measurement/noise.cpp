@@ -75,7 +75,9 @@ double resolution_of(std::span<const double> values) {
 
 NoiseLevel NoiseGauge::level() const {
   NoiseLevel level;
-  level.step = resolution_of_sorted(sorted_of(values_.values()));
+  std::vector<double> sorted = sorted_of(values_.values());
+  level.step = resolution_of_sorted(sorted);
+  level.distinct = sorted.size() - std::ranges::unique(sorted).size();
   std::vector<double> changes = changes_.values();
   const auto pairs = static_cast<double>(changes.size());
   std::erase(changes, 0.0);
@@ -83,12 +85,6 @@ NoiseLevel NoiseGauge::level() const {
   level.usual = median_of(std::move(changes));
   level.noise = std::max(kMedianToSigma * median_of(bends_.values()) / std::sqrt(6.0), level.step / std::sqrt(12.0));
   return level;
-}
-
-std::size_t NoiseGauge::distinct() const {
-  std::vector<double> sorted = sorted_of(values_.values());
-  const auto rest = std::ranges::unique(sorted);
-  return sorted.size() - rest.size();
 }
 
 NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs, std::size_t most) {

@@ -24,6 +24,7 @@ struct NoiseLevel {
   /// Standard deviation of white noise: 1.4826 · median|second difference| / √6, but not below step/√12.
   double noise = 0.0;
   double repeats_share = 0.0;  ///< of neighbours that are equal
+  std::size_t distinct = 0;    ///< different values among those looked at
 };
 
 /// Takes a channel's values in the order of time, NaN where there is none. Memory does not grow with their number: of long
@@ -51,8 +52,6 @@ class NoiseGauge {
     before_ = value;
   }
   [[nodiscard]] NoiseLevel level() const;
-  /// How many different values the kept ones have.
-  [[nodiscard]] std::size_t distinct() const;
 
  private:
   Thinned values_;

@@ -50,7 +50,7 @@ bool cools_down(const Recording& recording, const std::vector<const ChannelQuali
 Fitness thermal_fitness(const Recording& recording, std::size_t rows, const DataQuality& quality) {
   Fitness fitness;
   if (rows < kFewestRows) {
-    fitness.lacks.push_back(fmt::format("it has {} rows; at least {} are needed", rows, kFewestRows));
+    fitness.lacks.push_back(fmt::format("it has {} row{}; at least {} are needed", rows, rows == 1 ? "" : "s", kFewestRows));
   }
   std::vector<const ChannelQuality*> temperatures;
   std::vector<const ChannelQuality*> inputs;
@@ -91,7 +91,7 @@ Fitness drive_fitness(std::size_t rows, const DataQuality& quality) {
     return std::ranges::any_of(quality.channels, [stem](const ChannelQuality& each) { return each.quantity.key.starts_with(stem); });
   };
   if (rows < kFewestRows) {
-    fitness.lacks.push_back(fmt::format("it has {} rows; at least {} are needed", rows, kFewestRows));
+    fitness.lacks.push_back(fmt::format("it has {} row{}; at least {} are needed", rows, rows == 1 ? "" : "s", kFewestRows));
   }
   if (!has("wheel_speed_rad_per_s_")) {
     fitness.lacks.emplace_back("it has no speeds of wheels (wheel_speed_rad_per_s_1, …)");
@@ -211,7 +211,7 @@ void Assessment::tell_channels(const RecordingReport& report) {
     told.high = gauge.high;
     told.at_low = gauge.at_low;
     told.at_high = gauge.at_high;
-    told.distinct = gauge.noise.distinct();
+    told.distinct = noise.distinct;
     told.step = noise.step;
     told.noise = noise.noise;
     for (const auto& [what, entry] : report.left_out) {
@@ -241,6 +241,7 @@ DataQuality Assessment::conclude(const RecordingReport& report) {
   Suspicions suspected = suspicions(rows, quality_.channels);
   quality_.suspicions = std::move(suspected.all);
   quality_.spoiling = std::move(suspected.spoiling);
+  quality_.spoiling_wheels = std::move(suspected.spoiling_wheels);
   quality_.thermal = thermal_fitness(rows, rows_, quality_);
   quality_.drive = drive_fitness(rows_, quality_);
   return std::move(quality_);

@@ -65,10 +65,11 @@ struct DataQuality {
   std::vector<Gap> gaps;  ///< between runs, the first kMostGaps
   std::vector<ChannelQuality> channels;
   std::vector<ClockOffset> clock_offsets;
-  std::vector<std::string> suspicions;  ///< said, not acted on
-  std::vector<std::string> spoiling;    ///< of them: units, signs and sensors with which nothing can be fitted, were it so
-  Fitness thermal;                      ///< to fit a thermal network
-  Fitness drive;                        ///< to fit friction of wheels
+  std::vector<std::string> suspicions;       ///< said, not acted on
+  std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
+  std::vector<std::string> spoiling_wheels;  ///< the same of a robot's wheels and angles
+  Fitness thermal;                           ///< to fit a thermal network
+  Fitness drive;                             ///< to fit friction of wheels
 };
 
 /// Takes a log part by part; what it keeps does not grow with the log.

@@ -50,6 +50,7 @@ class Suspector {
 
   Suspicions run() {
     scales_of_temperature();
+    motor_in_fahrenheit();
     ambient_against_motor();
     answer_to_heat();
     currents();
@@ -58,8 +59,9 @@ class Suspector {
     std::vector<std::string> spoiling = found_;
     angles();
     wheels();
+    std::vector<std::string> spoiling_wheels(found_.begin() + static_cast<std::ptrdiff_t>(spoiling.size()), found_.end());
     limits();
-    return {std::move(found_), std::move(spoiling)};
+    return {std::move(found_), std::move(spoiling), std::move(spoiling_wheels)};
   }
 
  private:
@@ -110,6 +112,37 @@ class Suspector {
         found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", channel.quantity.key,
                                      significant(start, 3), significant(from_fahrenheit_C, 3)));
       }
+    }
+  }
+
+  /// All of the motor's sensors start alike and far above the room, their Fahrenheit is the room's temperature, and none of them ever
+  /// cools, as a motor that starts warm would.
+  void motor_in_fahrenheit() {
+    const Channel* const ambient = recording_.find("ambient_C");
+    std::vector<const Channel*> sensors;
+    for (const Channel& channel : recording_.channels) {
+      if (channel.quantity.kind == QuantityKind::temperature) {
+        sensors.push_back(&channel);
+      }
+    }
+    if (ambient == nullptr || sensors.size() < 2) {
+      return;
+    }
+    constexpr double kAlike_K = 1.5;
+    constexpr double kFar_K = 15.0;
+    constexpr double kRoom_K = 2.5;
+    constexpr double kCools_K = 2.0;
+    const double room_C = at_start(*ambient);
+    const double first_C = at_start(*sensors.front());
+    const bool all = std::ranges::all_of(sensors, [&](const Channel* sensor) {
+      const double start_C = at_start(*sensor);
+      return std::abs(start_C - first_C) < kAlike_K && start_C - room_C > kFar_K && std::abs((start_C - 32.0) / 1.8 - room_C) < kRoom_K &&
+             percentile(sensor->values, 0.0) > start_C - kCools_K;
+    });
+    if (all) {
+      found_.push_back(fmt::format(
+          "{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
+          sensors.front()->quantity.key, significant(first_C, 3), significant(room_C, 3), significant((first_C - 32.0) / 1.8, 3)));
     }
   }
 
