@@ -36,8 +36,6 @@ class Session {
   /// Instead of everything else.
   void answer_failure(const Failure& failure);
   void set_json_target(std::string target) { json_target_ = std::move(target); }
-  /// Words of the command line that may name files to read: finish() refuses to write over one of them.
-  void set_inputs(std::vector<std::string> words) { inputs_ = std::move(words); }
 
  private:
   std::string database_;
@@ -45,9 +43,6 @@ class Session {
   std::string text_;
   std::string json_text_;  ///< for stdout
   std::vector<OutputFile> files_;
-  std::vector<std::string> inputs_;
-
-  void refuse_to_overwrite_inputs() const;
 };
 
 struct Command {

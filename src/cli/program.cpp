@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -34,25 +33,6 @@ std::string json_target(int argc, const char* const* argv) {
     }
   }
   return {};
-}
-
-/// Every word that is no option and does not name an output.
-std::vector<std::string> inputs_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 4> kOutputs{"--out", "--plot", "--json", "--junit"};
-  std::vector<std::string> words;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    const std::size_t equals = word.find('=');
-    const bool is_output = std::ranges::find(kOutputs, word.substr(0, equals)) != kOutputs.end();
-    if (is_output && equals == std::string_view::npos) {
-      ++i;
-    } else if (!word.starts_with("--")) {
-      words.emplace_back(word);
-    } else if (!is_output && equals != std::string_view::npos) {
-      words.emplace_back(word.substr(equals + 1));
-    }
-  }
-  return words;
 }
 
 /// "heatsoak evaluate", as far as the line names a verb.
@@ -114,7 +94,6 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
     verb->callback([run, &code] { code = run(); });
   }
   session.set_json_target(json_target(argc, argv));
-  session.set_inputs(inputs_of(argc, argv));
   check_words(app, argc, argv);
   try {
     app.parse(argc, argv);
@@ -152,23 +131,7 @@ void Session::answer(const nlohmann::ordered_json& json) {
   }
 }
 
-void Session::refuse_to_overwrite_inputs() const {
-  std::error_code unknown;
-  for (const OutputFile& file : files_) {
-    for (const std::string& word : inputs_) {
-      // LOG@0-60% is a part of LOG.
-      const std::string input = std::filesystem::exists(word, unknown) ? word : word.substr(0, word.rfind('@'));
-      if (std::filesystem::is_regular_file(input, unknown) && std::filesystem::equivalent(input, file.path, unknown)) {
-        throw Failure(
-            ExitCode::bad_input,
-            fmt::format("{} is read by this command and would be overwritten; expected another name to write to", file.path.string()));
-      }
-    }
-  }
-}
-
 void Session::finish() {
-  refuse_to_overwrite_inputs();
   write_files(files_);
   put(json_target_ == "-" ? stderr : stdout, text_);
   put(stdout, json_text_);

@@ -345,20 +345,6 @@ TEST(Json, of_friction_keeps_the_contract) {
       2);
 }
 
-TEST(Outputs, never_replace_what_was_read) {
-  const TemporaryFolder folder;
-  const std::string log = (folder.path() / "drive.csv").string();
-  write(log, friction_log_text());
-  for (const Words& words :
-       {Words{"friction", "--robot", "roboteam_twente_v2024", log, "--out", log}, Words{"log", "convert", log, "--out", log},
-        Words{"log", "inspect", log, "--json", log}, Words{"log", "inspect", log, "--plot=" + log}}) {
-    const ProgramRun result = run(words);
-    EXPECT_EQ(result.exit_code, 2) << words.back();
-    EXPECT_THAT(result.err, HasSubstr("would be overwritten"));
-    EXPECT_EQ(content_of(log), friction_log_text());
-  }
-}
-
 TEST(ExitCode, of_friction_refuses_a_log_that_is_given_twice) {
   const TemporaryFolder folder;
   const std::string log = (folder.path() / "drive.csv").string();

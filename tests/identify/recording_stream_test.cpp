@@ -67,10 +67,10 @@ TEST(RecordingStream, FaultsAcrossABorderAreFoundAsElsewhere) {
     SCOPED_TRACE(middle);
     double held_C = 0.0;
     const LogFile file("log.csv", log_text([&](int i, Row& row) {
-                         held_C = i == middle - 100 ? row.winding_C : held_C;
-                         row.winding_C = i >= middle - 100 && i < middle + 100 ? held_C : row.winding_C;
-                         row.winding_C += i == middle - 300 || i == middle + 300 ? 8.0 : 0.0;
-                         row.time_s -= i == middle + 400 ? 1.0 : 0.0;
+                         held_C = i == middle - 2000 ? row.winding_C : held_C;
+                         row.winding_C = i >= middle - 2000 && i < middle + 2000 ? held_C : row.winding_C;
+                         row.winding_C += i == middle - 2300 || i == middle + 2300 ? 8.0 : 0.0;
+                         row.time_s -= i == middle + 2400 ? 1.0 : 0.0;
                        }));
     RecordingReport report;
     const Recording all = read_recording(file.path(), {}, report);
@@ -78,17 +78,17 @@ TEST(RecordingStream, FaultsAcrossABorderAreFoundAsElsewhere) {
     EXPECT_THAT(all.run_begins, testing::ElementsAre(0U));
     const LeftOut* const frozen = report.find("winding_C", LeftOutReason::frozen);
     ASSERT_NE(frozen, nullptr);
-    EXPECT_EQ(frozen->count, 200U);
-    EXPECT_EQ(frozen->lines.front().first, middle - 100 + 2);
+    EXPECT_EQ(frozen->count, 4000U);
+    EXPECT_EQ(frozen->lines.front().first, middle - 2000 + 2);
     const LeftOut* const outliers = report.find("winding_C", LeftOutReason::outlier);
     ASSERT_NE(outliers, nullptr);
-    EXPECT_EQ(outliers->lines.front().first, middle - 300 + 2);
-    EXPECT_EQ(outliers->lines.back().first, middle + 300 + 2);
+    EXPECT_EQ(outliers->lines.front().first, middle - 2300 + 2);
+    EXPECT_EQ(outliers->lines.back().first, middle + 2300 + 2);
     EXPECT_EQ(outliers->count, 2U);
     const LeftOut* const backwards = report.find("", LeftOutReason::time_does_not_increase);
     ASSERT_NE(backwards, nullptr);
     EXPECT_EQ(backwards->count, 1U);
-    EXPECT_EQ(backwards->lines.front().first, middle + 400 + 2);
+    EXPECT_EQ(backwards->lines.front().first, middle + 2400 + 2);
   }
 }
 

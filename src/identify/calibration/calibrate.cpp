@@ -232,8 +232,10 @@ class Calibrating {
       least = std::min(least, moved);
       most = std::max(most, moved);
     }
-    constexpr double kPlain = 0.22;  // a factor of 1.25
-    if (least > kPlain || most < -kPlain) {
+    // Plainly more than what was known before lets expect.
+    const auto across = std::ranges::find(all_.motor_model.figures, "thermal_resistance_winding_stator", &FittedFigure::name);
+    const double plain = std::max(0.22, 1.5 * across->prior_sd);
+    if (least > plain || most < -plain) {
       const bool is_much = least > 0.0;
       all_.notes.push_back(
           fmt::format("all heat capacities are {1} and all resistances {2} than the file's by a factor of {0} or more: the heat of the "
@@ -250,11 +252,11 @@ class Calibrating {
       constexpr double kWorse_ratio = 1.1;
       constexpr double kLeast_K = 0.1;
       if (each.after.rmse_K > kWorse_ratio * each.before.rmse_K + kLeast_K) {
-        all_.worse.push_back(
-            fmt::format("{} of {} is foretold worse than with the figures of the file: {} K rms instead of {} K; two temperatures with "
-                        "constant figures "
-                        "do not describe this motor, so do not forecast with this model; `heatsoak diagnose` looks for what is missing",
-                        each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3)));
+        all_.worse.push_back(fmt::format(
+            "{} of {} is foretold worse than with the figures of the file, {} K rms instead of {} K: do not forecast such runs with this "
+            "model; they hold something that the fitted ones do not tell, or two temperatures with constant figures do not describe this "
+            "motor (`heatsoak diagnose` looks for what is missing)",
+            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3)));
       }
     }
   }

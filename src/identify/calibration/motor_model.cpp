@@ -136,7 +136,8 @@ class Builder {
 
   void capacity(const std::string& name, int place) {
     const double before = all_.model.values[static_cast<std::size_t>(all_.model.free[static_cast<std::size_t>(place)].place)];
-    all_.figures.push_back({name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, Origin::derived});
+    all_.figures.push_back(
+        {name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, motor_.fit ? Origin::measured : Origin::derived});
     all_.figures.back().exponents[place] = 1.0;
   }
 

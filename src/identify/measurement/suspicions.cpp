@@ -34,15 +34,19 @@ double percentile(std::span<const double> values, double share) {
 
 double median(std::span<const double> values) { return percentile(values, 0.5); }
 
-double at_start(const Channel& channel) {
+std::vector<double> first_samples(const Channel& channel) {
   std::vector<double> first;
   for (std::size_t i = 0; i < channel.values.size() && first.size() < 5; ++i) {
     if (!std::isnan(channel.values[i])) {
       first.push_back(channel.values[i]);
     }
   }
-  return median(first);
+  return first;
 }
+
+double at_start(const Channel& channel) { return median(first_samples(channel)); }
+/// Before the first heat warms it.
+double coolest_at_start(const Channel& channel) { return percentile(first_samples(channel), 0.0); }
 
 class Suspector {
  public:
@@ -133,9 +137,9 @@ class Suspector {
     constexpr double kRoom_K = 2.5;
     constexpr double kCools_K = 2.0;
     const double room_C = at_start(*ambient);
-    const double first_C = at_start(*sensors.front());
+    const double first_C = coolest_at_start(*sensors.front());
     const bool all = std::ranges::all_of(sensors, [&](const Channel* sensor) {
-      const double start_C = at_start(*sensor);
+      const double start_C = coolest_at_start(*sensor);
       return std::abs(start_C - first_C) < kAlike_K && start_C - room_C > kFar_K && std::abs((start_C - 32.0) / 1.8 - room_C) < kRoom_K &&
              percentile(sensor->values, 0.0) > start_C - kCools_K;
     });
