@@ -73,6 +73,24 @@ double resolution_of(std::span<const double> values) {
   return resolution_of_sorted(sorted_of(some.values()));
 }
 
+void NoiseGauge::add(std::span<const double> values) {
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      values_.add(value);
+    }
+    const double change = value - value_;
+    if (!std::isnan(change)) {
+      changes_.add(std::abs(change));
+      const double bend = change - (value_ - before_);
+      if (!std::isnan(bend)) {
+        bends_.add(std::abs(bend));
+      }
+    }
+    before_ = value_;
+    value_ = value;
+  }
+}
+
 NoiseLevel NoiseGauge::level() const {
   NoiseLevel level;
   std::vector<double> sorted = sorted_of(values_.values());
@@ -91,9 +109,7 @@ NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair
   NoiseGauge gauge(most);
   for (const auto& [begin, end] : runs) {
     gauge.begin_run();
-    for (const double value : values.subspan(begin, end - begin)) {
-      gauge.add(value);
-    }
+    gauge.add(values.subspan(begin, end - begin));
   }
   return gauge.level();
 }

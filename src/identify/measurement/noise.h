@@ -34,31 +34,16 @@ class NoiseGauge {
   explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), bends_(most) {}
 
   /// What comes next does not follow what came before.
-  void begin_run() { before_ = before_that_ = std::numeric_limits<double>::quiet_NaN(); }
-  void add(double value) {
-    // A NaN is unequal to itself, and so is every difference with one.
-    if (value == value) {
-      values_.add(value);
-    }
-    const double change = value - before_;
-    if (change == change) {
-      changes_.add(change < 0.0 ? -change : change);
-      const double bend = change - (before_ - before_that_);
-      if (bend == bend) {
-        bends_.add(bend < 0.0 ? -bend : bend);
-      }
-    }
-    before_that_ = before_;
-    before_ = value;
-  }
+  void begin_run() { value_ = before_ = std::numeric_limits<double>::quiet_NaN(); }
+  void add(std::span<const double> values);
   [[nodiscard]] NoiseLevel level() const;
 
  private:
   Thinned values_;
   Thinned changes_;
   Thinned bends_;
-  double before_ = std::numeric_limits<double>::quiet_NaN();
-  double before_that_ = before_;
+  double value_ = std::numeric_limits<double>::quiet_NaN();  ///< the last one
+  double before_ = value_;                                   ///< the one before it
 };
 
 /// Of values in the order of time; NaN are skipped, differences do not reach over `runs` ([begin, end)).

@@ -136,19 +136,21 @@ std::vector<double> relative_heat(const Channel& heat_input) {
   return heat;
 }
 
-void Assessment::Gauge::add(double value) {
-  noise.add(value);
-  if (std::isnan(value)) {
-    return;
-  }
-  ++samples;
-  if (value <= low) {
-    at_low = value == low ? at_low + 1 : 1;
-    low = value;
-  }
-  if (value >= high) {
-    at_high = value == high ? at_high + 1 : 1;
-    high = value;
+void Assessment::Gauge::add(std::span<const double> values) {
+  noise.add(values);
+  for (const double value : values) {
+    if (std::isnan(value)) {
+      continue;
+    }
+    ++samples;
+    if (value <= low) {
+      at_low = value == low ? at_low + 1 : 1;
+      low = value;
+    }
+    if (value >= high) {
+      at_high = value == high ? at_high + 1 : 1;
+      high = value;
+    }
   }
 }
 
@@ -181,9 +183,8 @@ void Assessment::add(const Recording& part) {
     const std::span<const double> values = part.channels[c].values;
     std::size_t row = 0;
     const auto add_until = [&](std::size_t end) {
-      for (; row < end; ++row) {
-        gauge.add(values[row]);
-      }
+      gauge.add(values.subspan(row, end - row));
+      row = end;
     };
     for (const std::size_t begin : part.run_begins) {
       add_until(begin);

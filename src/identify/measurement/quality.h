@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,7 +90,7 @@ class Assessment {
     std::size_t at_high = 0;
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
-    void add(double value);
+    void add(std::span<const double> values);
   };
   void add_times(const Recording& part);
   void tell_channels(const RecordingReport& report);

@@ -304,7 +304,7 @@ void Screening::leave_out_bad_samples(Recording& part, std::size_t first, std::s
     Channel& channel = part.channels[c];
     if (channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings) {
       const NoiseLevel noise = noise_level(channel.values, runs, kMostSamples);
-      leave_out_stretches(part, channel, noise, past_[c].low, past_[c].high, past_[c].frozen_at, reported);
+      leave_out_stretches(part, channel, noise, past_[c].low, past_[c].high, past_[c].value, reported);
       leave_out_outliers(part, channel, noise, reported);
     }
   }

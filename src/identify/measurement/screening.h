@@ -25,7 +25,7 @@ class Screening {
   struct Past {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
-    double frozen_at = std::numeric_limits<double>::quiet_NaN();  ///< at the row before the part's first; NaN: was not
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< at which it is frozen in the row before the part; NaN: it is not
   };
   std::vector<Past> past_;  ///< per channel
 };
