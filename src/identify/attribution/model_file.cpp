@@ -109,7 +109,7 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
     const Origin origin = figure.origin;
     figure = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
     figure.derivation = source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures, before it {}", source);
-    if (!is_told(sd, each.prior_sd)) {
+    if (!is_told(sd, each)) {
       figure.origin = origin;
       figure.source += source.empty() ? "" : fmt::format(", {}", source);
       figure.derivation = "fit to measured temperatures, which do not tell it alone";
@@ -155,6 +155,7 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
           Spread{Spread::Kind::range, figure->value * std::exp(-2.0 * kSheet_sd), figure->value * std::exp(2.0 * kSheet_sd), true};
     }
   }
+  motor.fit.reset();
   notes.push_back("the model was fitted to some of these runs: its intervals do not count a second time");
 }
 

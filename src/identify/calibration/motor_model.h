@@ -26,8 +26,8 @@ struct FittedFigure {
   Origin origin = Origin::estimated;
 };
 
-/// Data, not only what was known before, tell a figure to a factor of two or better; standard deviations are of the logarithm.
-bool is_told(double sd_share, double prior_sd_share);
+/// Data, not only what was known before, tell the figure to a factor of two or better; the standard deviation is of its logarithm.
+bool is_told(double sd_share, const FittedFigure& figure);
 
 struct MotorModel {
   Model model;
