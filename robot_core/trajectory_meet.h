@@ -184,14 +184,10 @@ inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until,
   return false;
 }
 
-/// Whether the motion at a place meets the goal, but for rounding errors. What looks so from vertex to vertex is measured
-/// once more from end to end: short motions between large accelerations are far shorter than that.
+/// What a motion misses from end to end. From vertex to vertex this cannot be told: short motions between large accelerations are far
+/// shorter than that. `scale` is what rounding errors are relative to.
 template <typename Real>
-inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
-  if (absolute(a.goal - place.distance) > kTouch<Real> * (a.goal_scale + absolute(place.distance))) {
-    return false;
-  }
-  const Shape<Real> shape = shape_at(a, place);
+inline Real missed_distance(const Ascent<Real>& a, const Shape<Real>& shape, Real& scale) {
   Real distance = 0;
   Real duration = 0;
   Real velocity = 0;
@@ -208,7 +204,19 @@ inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
   raise(a.high, shape.slope_high, shape.hold_high);
   go(raise(a.low, shape.slope_low, shape.hold_low), shape.slope_low, Real(-1), shape.fall);
   const Real slope = absolute(shape.slope_low) + absolute(shape.slope_high);
-  return absolute(a.distance - distance) <= kTouch<Real> * (a.position_scale + duration * (velocity + duration * slope));
+  scale = a.position_scale + duration * (velocity + duration * slope);
+  return a.distance - distance;
+}
+
+/// Whether the motion at a place meets the goal, but for rounding errors.
+template <typename Real>
+inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
+  if (absolute(a.goal - place.distance) > kTouch<Real> * (a.goal_scale + absolute(place.distance))) {
+    return false;
+  }
+  Real scale = 0;
+  const Real missed = missed_distance(a, shape_at(a, place), scale);
+  return absolute(missed) <= kTouch<Real> * scale;
 }
 
 /// A motion that meets the goal but for a rounding error. Where the next one is far off, that makes all the difference:
@@ -220,6 +228,45 @@ inline bool touch(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& 
     shape = shape_at(a, place);
   }
   return meets;
+}
+
+/// A motion that one leg enters with its fall, while the other is raised to a slope (of the given sign) or held: the shortest one, and
+/// those at both ends of the gap. It is the only one of its duration, and beside it there may be no arrival for long. The velocities alone
+/// tell the slope, but their rounding errors count 1/slope times in it, and so in the distance. So the slope (or the hold) is taken from
+/// the distance, and then the velocities have to allow it but for rounding errors. False as well if motions exist where it leads to.
+template <typename Real>
+inline bool meet_at_edge(const Ascent<Real>& a, bool low_is_free, Real sign, Shape<Real>& shape) {
+  const Leg<Real>& fixed = low_is_free ? a.high : a.low;
+  const Leg<Real>& free = low_is_free ? a.low : a.high;
+  const Real entry_2 = fixed.entry * fixed.entry;
+  const Real square = low_is_free ? entry_2 + a.rise : entry_2 - a.rise;
+  const Real tolerance = kTouch<Real> * (absolute(a.low.vertex) + absolute(a.high.vertex) + entry_2);
+  const bool is_held = sign > Real(0) && square > free.bound * free.bound;
+  Real slope = is_held ? free.bound : sign * square_root(square);
+  Real hold = is_held ? square / free.bound - free.bound : Real(0);
+  Real missed = 0;
+  Real scale = 0;
+  constexpr int kSteps = 3;
+  for (int step = 0; step < kSteps; ++step) {
+    const Real fall = fixed.entry + slope;
+    shape = low_is_free ? Shape<Real>{slope, hold, fixed.entry, Real(0), fall, Real(0), a.goal}
+                        : Shape<Real>{fixed.entry, Real(0), slope, hold, fall, Real(0), a.goal};
+    missed = missed_distance(a, shape, scale);
+    const Real later = missed / (fixed.vertex + entry_2 - slope * slope / Real(2));
+    (is_held ? hold : slope) += is_held ? later : later / Real(2);
+    if (!(absolute(square - slope * (slope + hold)) <= tolerance) || (step == 0 && later * sign > Real(0))) {
+      return false;
+    }
+  }
+  return shape.fall >= Real(0) && hold >= Real(0) && slope > free.entry && absolute(missed) <= kTouch<Real> * scale;
+}
+
+/// The shortest motion, if it meets the goal but for rounding errors, while longer ones at first fall behind it.
+template <typename Real>
+inline bool meet_at_shortest(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& shape) {
+  const Real entry_2 = a.high.entry * a.high.entry;
+  const bool falls_behind = (place.is_saddle ? a.high.vertex + entry_2 : place.at) < Real(0);
+  return falls_behind && meet_at_edge(a, place.is_saddle || entry_2 >= place.high_height, Real(1), shape);
 }
 
 /// The first motion from `from` on (whose distance is not above the goal) that meets the goal. False if a gap comes first.
