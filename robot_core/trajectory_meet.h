@@ -43,57 +43,56 @@ inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, 
   return root_between(function, low, high, guess, bound);
 }
 
-/// Some u with distance(u) <= goal < distance(ceiling): the motion with a top above `from` that meets the goal.
+/// Both legs held: the height of the high leg at which the goal is met.
+template <typename Real>
+inline Real solve_both_held(const Ascent<Real>& a) {
+  const Real inverse = Real(1) / a.low.bound + Real(1) / a.high.bound;
+  const Real linear = a.high.vertex * inverse + (a.low.bound + a.high.bound) / Real(2);
+  const Real rest = a.sum / Real(2) * (a.low.bound + a.rise / a.low.bound) + a.high.vertex * a.high.bound - a.goal;
+  const Real root = square_root(linear * linear - Real(2) * inverse * rest);
+  return linear > Real(0) ? -Real(2) * rest / (linear + root) : (root - linear) / inverse;
+}
+
+/// Some top with distance(from) <= goal < distance(ceiling): the motion with a top above `from` that meets the goal. By heights, not by
+/// the top: a short motion at a high velocity hardly raises it.
 template <typename Real>
 inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, const Place<Real>& ceiling) {
-  Real low = from.at;
-  Real low_distance = from.distance;
-  Real high = ceiling.at;
-  Real high_distance = ceiling.distance;
-  const Real low_threshold = a.low.vertex + a.low.bound * a.low.bound;
-  const Real high_threshold = a.high.vertex + a.high.bound * a.high.bound;
-  bool low_is_held = low_threshold <= low;
-  bool high_is_held = high_threshold <= low;
-  if (!low_is_held && low_threshold < high) {
-    const Real distance = top_place(a, low_threshold).distance;
-    low_is_held = distance <= a.goal;
-    (low_is_held ? low : high) = low_threshold;
-    (low_is_held ? low_distance : high_distance) = distance;
-  }
-  if (!high_is_held && high_threshold < high) {
-    if (high_threshold <= low) {
-      high_is_held = true;
-    } else {
-      const Real distance = top_place(a, high_threshold).distance;
-      high_is_held = distance <= a.goal;
-      (high_is_held ? low : high) = high_threshold;
-      (high_is_held ? low_distance : high_distance) = distance;
+  Place<Real> low = from;
+  Place<Real> high = ceiling;
+  // Beyond its threshold a leg is held: on which side of it the goal is tells whether.
+  const auto narrow = [&](Real high_height) {
+    if (high_height <= low.high_height) {
+      return true;
     }
-  }
+    if (high_height >= high.high_height) {
+      return false;
+    }
+    const Place<Real> place = top_place(a, a.high.vertex + high_height, high_height + a.rise, high_height);
+    const bool is_held = place.distance <= a.goal;
+    (is_held ? low : high) = place;
+    return is_held;
+  };
+  const bool low_is_held = narrow(a.low.bound * a.low.bound - a.rise);
+  const bool high_is_held = narrow(a.high.bound * a.high.bound);
   if (low_is_held && high_is_held) {
-    const Real square = Real(1) / a.low.bound + Real(1) / a.high.bound;
-    const Real half = (a.low.bound + a.high.bound) / Real(2);
-    const Real rest = a.low.vertex * (a.low.bound - a.low.vertex / a.low.bound) +
-                      a.high.vertex * (a.high.bound - a.high.vertex / a.high.bound) - Real(2) * a.goal;
-    const Real root = square_root(half * half - square * rest);
-    const Real top = half > Real(0) ? -rest / (half + root) : (root - half) / square;
-    return top_shape(a, top_place(a, clamped(top, low, high)), Real(0), a.goal);
+    const Real height = clamped(solve_both_held(a), low.high_height, high.high_height);
+    return top_shape(a, top_place(a, a.high.vertex + height, height + a.rise, height), Real(0), a.goal);
   }
-  const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
+  const Real share = clamped((a.goal - low.distance) / (high.distance - low.distance), Real(0), Real(1));
+  const Real y_low = square_root(low.high_height);
+  const Real y_high = square_root(high.high_height);
   if (low_is_held) {
-    const Real y_low = square_root(low - a.high.vertex);
-    const Real y_high = square_root(high - a.high.vertex);
     const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, y_low, y_high, y_low + share * (y_high - y_low));
     return low_held_shape(a, y, a.goal);
   }
+  const Real x_low = square_root(low.low_height);
+  const Real x_high = square_root(high.low_height);
   if (high_is_held) {
-    const Real x_low = square_root(low - a.low.vertex);
-    const Real x_high = square_root(high - a.low.vertex);
     const Real x = solve_held(a.high.bound, a.low.vertex, a.sum, -a.rise, a.goal, x_low, x_high, x_low + share * (x_high - x_low));
     return high_held_shape(a, x, a.goal);
   }
-  const Real s_low = square_root(low - a.low.vertex) + square_root(low - a.high.vertex);
-  const Real s_high = square_root(high - a.low.vertex) + square_root(high - a.high.vertex);
+  const Real s_low = x_low + y_low;
+  const Real s_high = x_high + y_high;
   // The legs' own velocities pull the root of the pure cubic up or down.
   Real guess = s_low + share * (s_high - s_low);
   const Real linear = a.sum - a.rise / Real(4);
