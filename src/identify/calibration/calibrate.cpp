@@ -292,9 +292,9 @@ class Calibrating {
       if (each.after.rmse_K > kWorse_ratio * each.before.rmse_K + kLeast_K) {
         all_.worse.push_back(fmt::format(
             "{} of {} is foretold worse than with the figures of the file, {} K rms instead of {} K: do not forecast such runs with this "
-            "model; they hold something that the fitted ones do not tell, or two temperatures with constant figures do not describe this "
-            "motor (`heatsoak diagnose` looks for what is missing)",
-            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3)));
+            "model; {}two temperatures with constant figures do not describe this motor (`heatsoak diagnose` looks for what is missing)",
+            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3),
+            &errors == &all_.holdout_error ? "they hold something that the fitted ones do not tell, or " : ""));
       }
     }
   }
