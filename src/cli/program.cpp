@@ -132,6 +132,15 @@ void Session::answer(const nlohmann::ordered_json& json) {
 }
 
 void Session::finish() {
+  std::vector<Diagnostic> read;
+  for (const OutputFile& each : files_) {
+    if (is_input(each.path)) {
+      read.push_back({{each.path.string()}, {}, "this command reads the file and would write over it; give the output another name"});
+    }
+  }
+  if (!read.empty()) {
+    throw Failure(ExitCode::bad_input, "", std::move(read));
+  }
   write_files(files_);
   put(json_target_ == "-" ? stderr : stdout, text_);
   put(stdout, json_text_);

@@ -27,6 +27,10 @@ struct LoadBin {
   double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between stretches of constant speed are not in it
 };
 
+/// A wheel that turns more slowly stands, 3 mm/s at a rim of 30 mm: what planners, smoothers and number formats leave of a zero has a
+/// sign, and the motor's whole drag would follow it.
+inline constexpr double kStandstill_rad_per_s = 0.1;
+
 /// A stretch with one torque and speed.
 LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A);
 

@@ -204,6 +204,7 @@ LimitingFactor limiting_factor_of(DriveLimit limit) {
 /// One nominal run at one wheel, through the reference.
 struct NominalRun {
   std::vector<Interval> intervals;
+  double current_rms_A = 0.0;  ///< that flows, which falls behind the demand where the hot winding lets less through
   TransientResult transient;
   TemperatureCurves curves;
 };
@@ -214,13 +215,27 @@ NominalRun run_nominal(const Network& network, const MotorSample& sample, const 
   run.intervals = intervals(sample.values, robot, duty.kind, demand, nominal_sample(duty));
   TransientOptions options;
   options.limits = limits;
+  const std::vector<double> parameters = network.values();
+  double charge_A2_s = 0.0;
+  double last_A2 = 0.0;
+  double last_s = 0.0;
   const auto keep = [&](const TransientMoment& moment) {
+    const double flows_A =
+        network.within_headroom(run.intervals[moment.interval].at, parameters.data(), moment.state_C.data());
+    if (!moment.begins_interval) {
+      charge_A2_s += 0.5 * (last_A2 + flows_A * flows_A) * (moment.time_s - last_s);
+    }
+    last_A2 = flows_A * flows_A;
+    last_s = moment.time_s;
+    if (!with_curves) {
+      return;
+    }
     run.curves.time_s.push_back(moment.time_s);
     run.curves.winding_C.push_back(moment.state_C[winding]);
     run.curves.stator_C.push_back(moment.state_C[stator]);
   };
-  run.transient =
-      run_transient(network, network.values(), run.intervals, options, with_curves ? TransientObserver(keep) : TransientObserver());
+  run.transient = run_transient(network, parameters, run.intervals, options, keep);
+  run.current_rms_A = last_s > 0.0 ? std::sqrt(charge_A2_s / last_s) : 0.0;
   return run;
 }
 
@@ -258,11 +273,11 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   result.winding_peak_C.nominal = transient.peak_C[winding];
   result.stator_peak_C.nominal = transient.peak_C[stator];
   result.destroyed = transient.destroyed;
-  result.current_rms_A = current_rms_A(run.intervals);
+  result.current_rms_A = run.current_rms_A;
   result.least_torque_share = hot.least_share;
   result.margin_K = result.winding_limit_C - transient.peak_C[winding];
   if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, result.winding_limit_C)) {
-    result.margin_A = (*factor - 1.0) * result.current_rms_A;
+    result.margin_A = *factor * current_rms_A(run.intervals) - result.current_rms_A;
   }
   std::size_t first_limit = 0;
   for (std::size_t i = 0; i < limits.size(); ++i) {

@@ -37,4 +37,7 @@ struct Recording {
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> runs() const;
 };
 
+/// The rows of a recording between two shares of its duration, 0 … 1; its name and conditions stay.
+Recording part_of(const Recording& recording, double from_share, double to_share);
+
 }  // namespace heatsoak
