@@ -8,9 +8,9 @@
 namespace heatsoak {
 namespace {
 
-double without_crumbs(double speed_rad_per_s) { return std::abs(speed_rad_per_s) < kStandstill_rad_per_s ? 0.0 : speed_rad_per_s; }
-
-double sign(double speed_rad_per_s) { return speed_rad_per_s > 0.0 ? 1.0 : speed_rad_per_s < 0.0 ? -1.0 : 0.0; }
+double direction_of(double speed_rad_per_s) {
+  return std::abs(speed_rad_per_s) < kStandstill_rad_per_s ? 0.0 : std::copysign(1.0, speed_rad_per_s);
+}
 
 }  // namespace
 
@@ -18,9 +18,8 @@ double WheelDemand::duration_s() const {
   return std::accumulate(bins.begin(), bins.end(), 0.0, [](double sum_s, const LoadBin& bin) { return sum_s + bin.duration_s; });
 }
 
-LoadBin constant_bin(double duration_s, double torque_Nm, double seen_rad_per_s, double current_A) {
-  const double speed_rad_per_s = without_crumbs(seen_rad_per_s);
-  const double direction = sign(speed_rad_per_s);
+LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A) {
+  const double direction = direction_of(speed_rad_per_s);
   return {.duration_s = duration_s,
           .torque_rms_Nm = std::abs(torque_Nm),
           .torque_along_motion_Nm = torque_Nm * direction,
@@ -37,9 +36,8 @@ DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid) : bin
   demand_.wheel = std::move(wheel);
 }
 
-void DemandGatherer::add(double duration_s, double torque_Nm, double seen_rad_per_s) {
-  const double speed_rad_per_s = without_crumbs(seen_rad_per_s);
-  const double direction = sign(speed_rad_per_s);
+void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_per_s) {
+  const double direction = direction_of(speed_rad_per_s);
   const double magnitude_rad_per_s = std::abs(speed_rad_per_s);
   const std::array<double, integral_count> now{1.0,
                                                torque_Nm,

@@ -17,9 +17,8 @@ constexpr double kMost_ratio = 3.0;
 
 bool holds_the_same_rows(const Recording& one, const Recording& other) {
   return one.time_s == other.time_s && std::ranges::equal(one.channels, other.channels, [](const Channel& a, const Channel& b) {
-           return a.quantity.key == b.quantity.key && std::ranges::equal(a.values, b.values, [](double x, double y) {
-                    return x == y || (std::isnan(x) && std::isnan(y));
-                  });
+           return a.quantity.key == b.quantity.key &&
+                  std::ranges::equal(a.values, b.values, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
          });
 }
 
@@ -64,11 +63,10 @@ void beyond_the_motor(const Motor& motor, const DataQuality& quality, std::vecto
   }
   const double most_rad_per_s = kMost_ratio * nominal.nominal_voltage_V / nominal.torque_constant_Nm_per_A;
   if (const double reached_rad_per_s = largest(quality, "speed_rad_per_s"); reached_rad_per_s > most_rad_per_s) {
-    wrong.push_back(
-        fmt::format("speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm "
-                    "({} rad/s), or is it another motor?",
-                    significant(reached_rad_per_s, 3), significant(most_rad_per_s, 3),
-                    significant(convert(reached_rad_per_s, "rpm", "rad/s"), 3)));
+    wrong.push_back(fmt::format(
+        "speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm "
+        "({} rad/s), or is it another motor?",
+        significant(reached_rad_per_s, 3), significant(most_rad_per_s, 3), significant(convert(reached_rad_per_s, "rpm", "rad/s"), 3)));
   }
 }
 
