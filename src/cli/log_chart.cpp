@@ -36,7 +36,7 @@ struct Group {
   std::string title;
   std::string y_label;
   bool is_of_wheels = false;  ///< then a wheel has its colour and is named once
-  std::vector<const Channel*> channels;
+  std::vector<std::size_t> channels;
 };
 
 std::string stem_of(const std::string& key) {
@@ -52,7 +52,8 @@ std::vector<Group> groups_of(const Recording& recording) {
   std::vector<Group> groups;
   std::vector<std::string> names;
   for (const QuantityKind kind : {QuantityKind::temperature, QuantityKind::surroundings, QuantityKind::heat_input, QuantityKind::signal}) {
-    for (const Channel& channel : recording.channels) {
+    for (std::size_t place = 0; place < recording.channels.size(); ++place) {
+      const Channel& channel = recording.channels[place];
       if (channel.quantity.kind != kind) {
         continue;
       }
@@ -63,17 +64,17 @@ std::vector<Group> groups_of(const Recording& recording) {
       if (found == names.end()) {
         names.push_back(name);
         const std::string unit = channel.quantity.unit.empty() ? "ratio" : unit_for_display(channel.quantity.unit);
-        groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, is_wheel, {&channel}});
+        groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, is_wheel, {place}});
       } else {
-        groups[static_cast<std::size_t>(found - names.begin())].channels.push_back(&channel);
+        groups[static_cast<std::size_t>(found - names.begin())].channels.push_back(place);
       }
     }
   }
   for (Group& group : groups) {
     if (group.title.empty()) {
       std::vector<std::string> keys;
-      for (const Channel* channel : group.channels) {
-        keys.push_back(channel->quantity.key);
+      for (const std::size_t place : group.channels) {
+        keys.push_back(recording.channels[place].quantity.key);
       }
       group.title = fmt::format("{}", fmt::join(keys, ", "));
     }
@@ -83,10 +84,12 @@ std::vector<Group> groups_of(const Recording& recording) {
 
 class LogChart {
  public:
-  LogChart(const Recording& recording, const RecordingReport& report)
-      : recording_(recording),
+  LogChart(const CondensedRecording& condensed, const DataQuality& quality, const RecordingReport& report)
+      : condensed_(condensed),
+        recording_(condensed.rows()),
+        quality_(quality),
         report_(report),
-        duration_s_(recording.time_s.back() - recording.time_s.front()),
+        duration_s_(quality.sampling.duration_s),
         scale_(scale_for(duration_s_)) {}
 
   Chart draw() const {
@@ -108,8 +111,8 @@ class LogChart {
     for (const auto& [key, condition] : recording_.conditions) {
       text += fmt::format("{}: {}; ", key, condition);
     }
-    return text + fmt::format("{} of {} rows in {} run{}{}", report_.rows_kept, report_.rows_in_file, recording_.run_begins.size(),
-                              recording_.run_begins.size() == 1 ? "" : "s", report_.left_out.empty() ? "" : "; shaded: left out");
+    return text + fmt::format("{} of {} rows in {} run{}{}", report_.rows_kept, report_.rows_in_file, quality_.runs,
+                              quality_.runs == 1 ? "" : "s", report_.left_out.empty() ? "" : "; shaded: left out");
   }
 
   ChartPanel panel(const Group& group, std::set<std::string>& named) const {
@@ -117,17 +120,15 @@ class LogChart {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t i = 0; i < group.channels.size(); ++i) {
-      const std::string& key = group.channels[i]->quantity.key;
+      const std::size_t place = group.channels[i];
+      const std::string& key = recording_.channels[place].quantity.key;
       const std::size_t wheel =
           group.is_of_wheels ? static_cast<std::size_t>(std::max(1, std::atoi(key.c_str() + stem_of(key).size() + 1))) - 1 : i;
       const std::string name = group.is_of_wheels ? fmt::format("wheel {}", wheel + 1) : key;
       const bool is_listed = (group.is_of_wheels || group.channels.size() > 1) && named.insert(name).second;
-      result.curves.push_back(
-          curve(*group.channels[i], is_listed ? name : "", static_cast<int>(wheel % kCurveColors), wheel >= kCurveColors));
-      for (const double value : group.channels[i]->values) {
-        low = std::isnan(value) ? low : std::min(low, value);
-        high = std::isnan(value) ? high : std::max(high, value);
-      }
+      result.curves.push_back(curve(place, is_listed ? name : "", static_cast<int>(wheel % kCurveColors), wheel >= kCurveColors));
+      low = std::min(low, quality_.channels[place].low);
+      high = std::max(high, quality_.channels[place].high);
     }
     const double margin = high > low ? 0.0 : 0.5 * std::max(std::abs(high), 1.0);
     low -= margin;
@@ -138,15 +139,22 @@ class LogChart {
     return result;
   }
 
-  [[nodiscard]] ChartCurve curve(const Channel& channel, const std::string& name, int color, bool dashed) const {
+  [[nodiscard]] ChartCurve curve(std::size_t place, const std::string& name, int color, bool dashed) const {
     ChartCurve result{name, {}, {}, color, dashed};
+    const std::vector<double>& low = condensed_.low(place);
+    const std::vector<double>& high = condensed_.high(place);
+    const auto add = [&](std::size_t row, double value) {
+      result.x.push_back(recording_.time_s[row] * scale_.factor);
+      result.y.push_back(value);
+    };
     for (const auto& [begin, end] : recording_.runs()) {
       for (std::size_t row = begin; row < end; ++row) {
-        result.x.push_back(recording_.time_s[row] * scale_.factor);
-        result.y.push_back(channel.values[row]);
+        add(row, low[row]);
+        if (high[row] > low[row]) {
+          add(row, high[row]);
+        }
       }
-      result.x.push_back(recording_.time_s[end - 1] * scale_.factor);
-      result.y.push_back(kBreak);
+      add(end - 1, kBreak);
     }
     return result;
   }
@@ -155,8 +163,9 @@ class LogChart {
   [[nodiscard]] std::vector<std::pair<double, double>> marks(const Group& group) const {
     std::vector<std::pair<double, double>> found;
     for (const auto& [what, entry] : report_.left_out) {
-      const bool is_here = what.first.empty() ||
-                           std::ranges::any_of(group.channels, [&](const Channel* channel) { return channel->quantity.key == what.first; });
+      const bool is_here = what.first.empty() || std::ranges::any_of(group.channels, [&](std::size_t place) {
+                             return recording_.channels[place].quantity.key == what.first;
+                           });
       for (const LineRange& lines : is_here ? entry.lines : std::vector<LineRange>{}) {
         const double begin_s = time_of(lines.first);
         const double width_s = std::max(time_of(lines.last + 1) - begin_s, kNarrowestMark_share * duration_s_);
@@ -181,7 +190,9 @@ class LogChart {
                                         : recording_.time_s[static_cast<std::size_t>(row - recording_.line.begin())];
   }
 
+  const CondensedRecording& condensed_;
   const Recording& recording_;
+  const DataQuality& quality_;
   const RecordingReport& report_;
   double duration_s_;
   TimeScale scale_;
@@ -189,6 +200,8 @@ class LogChart {
 
 }  // namespace
 
-Chart log_chart(const Recording& recording, const RecordingReport& report) { return LogChart(recording, report).draw(); }
+Chart log_chart(const CondensedRecording& condensed, const DataQuality& quality, const RecordingReport& report) {
+  return LogChart(condensed, quality, report).draw();
+}
 
 }  // namespace heatsoak

@@ -51,10 +51,10 @@ std::string sampling_text(const DataQuality& quality) {
   if (quality.gaps.empty()) {
     return text;
   }
-  text += fmt::format("runs: {}; they begin at line", plural(quality.gaps.size() + 1, "run"));
+  text += fmt::format("runs: {}; they begin at line", plural(quality.runs, "run"));
   for (std::size_t i = 0; i < quality.gaps.size(); ++i) {
     if (i == kShownGaps) {
-      text += fmt::format(" and {} more", quality.gaps.size() - i);
+      text += fmt::format(" and {} more", quality.runs - 1 - i);
       break;
     }
     text += fmt::format("{} {} (after {} s)", i > 0 ? "," : "", quality.gaps[i].line, significant(quality.gaps[i].duration_s, 3));
@@ -184,7 +184,7 @@ Json log_json(const Recording& recording, const RecordingReport& report, const D
             {"usual_period_s", quality.sampling.usual_period_s},
             {"jitter_s", quality.sampling.jitter_s},
             {"longest_gap_s", quality.sampling.longest_gap_s}}},
-          {"runs", recording.run_begins.size()},
+          {"runs", quality.runs},
           {"gaps", gaps},
           {"channels", channels_json(quality)},
           {"left_out", left_out_json(report)},

@@ -10,6 +10,7 @@
 
 namespace heatsoak {
 
+/// `recording`: as much of it as the assessment keeps.
 std::string log_text(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
 nlohmann::ordered_json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
 

@@ -78,6 +78,9 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
   std::vector<std::string> notes;
   std::vector<Diagnostic> wrong;
   const auto look = [&](const Recording& recording, const DataQuality& quality) {
+    if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
+      notes.push_back(fmt::format("{} says that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
+    }
     for (const std::string& each : quality.suspicions) {
       notes.push_back(fmt::format("{}: {}", recording.name, each));
     }
@@ -103,6 +106,22 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
                   std::move(wrong));
   }
   return notes;
+}
+
+void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out) {
+  std::vector<Diagnostic> known;
+  for (const auto& recordings : {fitted, held_out}) {
+    for (const Recording& recording : recordings) {
+      if (motor.fit && std::ranges::find(motor.fit->runs, recording.name) != motor.fit->runs.end()) {
+        known.push_back({{recording.file.string()}, {}, fmt::format("{} was fitted to a run of this name (fit.runs)", motor.id)});
+      }
+    }
+  }
+  if (!known.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "a run would count twice; start from the file as it was before that fit, or if it is another run go on with --as-is",
+                  std::move(known));
+  }
 }
 
 }  // namespace heatsoak

@@ -17,4 +17,7 @@ namespace heatsoak {
 std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out,
                                bool takes_logs_as_they_are);
 
+/// Throws Failure (bad_input) where the file was fitted to a run of a log's name: its figures know already what the run tells.
+void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out);
+
 }  // namespace heatsoak

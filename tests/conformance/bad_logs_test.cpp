@@ -59,6 +59,9 @@ TEST_P(BadDrives, are_told) {
   const ProgramRun friction = run({"friction", "--robot", "roboteam_twente_v2024", log.string()});
   EXPECT_EQ(friction.exit_code, bad.friction_exit) << friction.err;
   EXPECT_THAT(friction.out + friction.err, testing::HasSubstr(bad.friction_says));
+  if (bad.friction_exit == 2 && bad.inspect_exit == 0) {
+    EXPECT_EQ(run({"friction", "--robot", "roboteam_twente_v2024", log.string(), "--as-is"}).exit_code, 0);
+  }
   const ProgramRun inspect = run({"log", "inspect", log.string()});
   EXPECT_EQ(inspect.exit_code, bad.inspect_exit) << inspect.err;
   EXPECT_THAT(inspect.out + inspect.err, testing::HasSubstr(bad.inspect_says));
@@ -67,27 +70,27 @@ TEST_P(BadDrives, are_told) {
 INSTANTIATE_TEST_SUITE_P(
     One, BadDrives,
     testing::Values(BadDrive{"percent",
-                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 0,
+                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 2,
                              "wheel_pwm_ratio_1 reaches", 0, "is it in percent"},
-                    BadDrive{"millivolts", of_each([](DriveRow& row) { row.battery_V *= 1000.0; }), 0, "is it in millivolts?", 0,
+                    BadDrive{"millivolts", of_each([](DriveRow& row) { row.battery_V *= 1000.0; }), 2, "is it in millivolts?", 0,
                              "is it in millivolts?"},
                     BadDrive{"degrees", of_each([](DriveRow& row) {
                                row.command_heading_rad *= 180.0 / std::numbers::pi;
                                row.yaw_rad *= 180.0 / std::numbers::pi;
                              }),
-                             0, "off what the wheels' speeds amount to", 0, "heading_field_rad spans"},
+                             2, "off what the wheels' speeds amount to", 0, "heading_field_rad spans"},
                     BadDrive{"revolutions_per_minute", of_each([](DriveRow& row) {
                                std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
                              }),
-                             0, "times the motor's back-EMF"},
+                             2, "times the motor's back-EMF"},
                     BadDrive{"other_sign",
-                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 0,
+                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 2,
                              "have the wrong sign?"},
                     BadDrive{"other_order", of_each([](DriveRow& row) {
                                std::swap(row.wheel_speed_rad_per_s[0], row.wheel_speed_rad_per_s[1]);
                                std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);
                              }),
-                             0, "are they in another order"},
+                             2, "are they in another order"},
                     BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
                              "time does not increase"},
                     BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3,

@@ -236,6 +236,13 @@ TEST(Lint, takes_files_folders_and_ids_of_every_kind) {
                                       kSource / "duty_profiles/paper_intermittent.toml"}));
 }
 
+TEST(Lint, motors_that_reports_begin_with_are_sound) {
+  for (const char* each : {"reports/calibration/lea_pmsm_52kw.toml", "reports/calibration/p80.toml", "reports/calibration/ri50.toml",
+                           "reports/diagnosis/uav_motor.toml", "tests/data/motors/robotino_motor.toml"}) {
+    EXPECT_EQ(run({"lint", (kSource / each).string(), "--json", "-"}).json().at("errors"), 0) << each;
+  }
+}
+
 TEST(Lint, fails_for_errors_and_tells_warnings) {
   const fs::path data = kSource / "tests" / "data";
   const ProgramRun wrong = run({"lint", (data / "lint_df45l_wiki.toml").string()});
@@ -336,6 +343,17 @@ TEST(Json, of_friction_keeps_the_contract) {
   EXPECT_NE(
       run({"evaluate", "--robot", out, "--duty", "paper_intermittent", "--motors", "maxon_ec45_flat_70w_24v", "--samples", "3"}).exit_code,
       2);
+}
+
+TEST(ExitCode, of_friction_refuses_a_log_that_is_given_twice) {
+  const TemporaryFolder folder;
+  const std::string log = (folder.path() / "drive.csv").string();
+  const std::string copy = (folder.path() / "copy.csv").string();
+  write(log, friction_log_text());
+  write(copy, friction_log_text());
+  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", log, copy});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("holds the same rows as " + log));
 }
 
 TEST(ExitCode, of_friction_says_what_a_log_cannot_tell) {

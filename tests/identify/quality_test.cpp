@@ -211,6 +211,13 @@ INSTANTIATE_TEST_SUITE_P(
                 }
               },
               "stator_C starts at"},
+        Fault{"fahrenheit_motor",
+              [](int, auto& cells) {
+                for (const Column each : {winding, stator}) {
+                  cells[each] = 32.0 + 1.8 * cells[each];
+                }
+              },
+              "are they in degrees Fahrenheit (22"},
         Fault{"kelvin", [](int, auto& cells) { cells[stator] += 273.15; }, "is it in kelvin"},
         Fault{"milliampere", [](int, auto& cells) { cells[current] *= 1000.0; }, "is it in milliamperes?"},
         Fault{"milliseconds", [](int, auto& cells) { cells[time] *= 1000.0; }, "is the time in milliseconds?"},

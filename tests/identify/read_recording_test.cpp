@@ -57,6 +57,34 @@ TEST(ReadRecording, GapOfMoreThanThreePeriodsSplitsTheRun) {
   EXPECT_THAT(recording.run_begins, ElementsAre(0U, 4U)) << "a step of exactly three periods does not split";
 }
 
+TEST(ReadRecording, CopiesOfRowsAreLeftOutHoweverMany) {
+  std::string text = "time_s,winding_C\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("{0},{1}\n", i, 20.0 + 0.1 * i) + (i % 3 == 0 ? fmt::format("{0},{1}\n", i, 20.0 + 0.1 * i) : "");
+  }
+  RecordingReport report;
+  EXPECT_EQ(read(text, report).rows(), 60U);
+  EXPECT_EQ(report.find("", LeftOutReason::time_does_not_increase)->count, 20U);
+  EXPECT_EQ(report.repeated_times, 20U);
+}
+
+TEST(ReadRecording, TimeOfTooFewDigitsIsRefused) {
+  std::string text = "time_s,winding_C\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("{},{}\n", i / 10, 20.0 + 0.1 * i);
+  }
+  EXPECT_THAT(failure_of(text), HasSubstr("54 of 60 rows have the time of the row before"));
+}
+
+TEST(ReadRecording, OtherSeparatorsUnitsAndNamesAreSaid) {
+  EXPECT_THAT(failure_of("time_s;winding_C\n0;20\n"), HasSubstr("this file seems to have ';'"));
+  EXPECT_THAT(failure_of("time_s\twinding_C\n0\t20\n"), HasSubstr("separator = \"tab\""));
+  RecordingReport report;
+  read("time_s,winding_C,stator_F,windin_C\n0,20,68,20\n1,21,69,21\n", report);
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("stator_C = { column = \"stator_F\", unit = … }")));
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("windin_C is taken as one more signal; did you mean 'winding_C'?")));
+}
+
 TEST(ReadRecording, WithoutTimeSaysWhatToDo) {
   EXPECT_THAT(failure_of("tme_s,winding_C\n0,20\n"),
               HasSubstr("log.csv:1:1: error: time_s: there is no such column; did you mean 'tme_s'?"));

@@ -60,6 +60,9 @@ std::string text_of(const Motor& motor, const Calibration& result) {
   }
   text += "\nerror of the free-running model, file → fit\n" + error_rows("fit", result.fit_error) +
           error_rows("hold-out", result.holdout_error);
+  for (const std::string& worse : result.worse) {
+    text += fmt::format("warning: {}\n", worse);
+  }
   text += fmt::format("\nheat that no term of the model explains: winding {} W rms, stator {} W rms, over some {} s\n",
                       significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
                       significant(result.fit.flux.time_scale_s, 1));
@@ -130,6 +133,7 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
           {"rejected_share", number(result.fit.rejected_share)},
           {"not_identifiable", open},
           {"next_experiment", result.next_experiment},
+          {"worse_than_before", result.worse},
           {"notes", result.notes},
           {"model", out}};
 }
@@ -139,6 +143,9 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<std::string> notes;
   const std::vector<Recording> logs = read_logs(options.logs, options.how, notes);
   const std::vector<Recording> holdout = read_logs(options.holdout, options.how, notes);
+  if (!options.how.takes_logs_as_they_are) {
+    refuse_runs_of_the_file(motor, logs, holdout);
+  }
   std::ranges::move(admit(motor, logs, holdout, options.how.takes_logs_as_they_are), std::back_inserter(notes));
   Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C});
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
@@ -161,7 +168,7 @@ Command calibrate_command() {
       .summary = "Fits the thermal figures of a motor to measured runs, with intervals and what the runs cannot tell; exit 3 if nothing",
       .example =
           "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
-          "heatsoak calibrate --motor maxon_ec45_flat_50w_24v log.csv --out model.toml --plot calibration.svg",
+          "heatsoak calibrate --motor maxon_ec45_flat_70w_24v log.csv --out model.toml --plot calibration.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--motor", options->motor,

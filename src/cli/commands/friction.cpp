@@ -33,6 +33,7 @@ struct Options {
   std::string direction = "best";
   std::string return_legs = "leave_out";
   bool is_lifted = false;
+  bool takes_logs_as_they_are = false;
   std::string out;
   std::string plot;
 };
@@ -45,6 +46,7 @@ struct Input {
   std::vector<FrictionLog> logs;
   Findings findings;
   std::vector<std::string> suspicions;
+  std::vector<Diagnostic> spoiling;  ///< of them: units, signs and orders with which the answer would be wrong, were it so
 };
 
 /// The robot's own motor may be in no data base: modulation teaches without it.
@@ -60,6 +62,33 @@ void find_motor(const Options& options, const DataFolders& folders, Input& input
   }
 }
 
+/// A log that counts twice makes intervals narrower than they are. `seen`: files and what they hold.
+void refuse_repeated(const Recording& recording, std::vector<std::pair<std::filesystem::path, std::size_t>>& seen) {
+  std::size_t held = recording.rows();
+  const auto add = [&held](double value) { held = held * 1'000'003 + std::hash<double>{}(value); };
+  std::ranges::for_each(recording.time_s, add);
+  for (const Channel& channel : recording.channels) {
+    std::ranges::for_each(channel.values, add);
+  }
+  if (const auto found = std::ranges::find(seen, held, &std::pair<std::filesystem::path, std::size_t>::second); found != seen.end()) {
+    throw Failure(ExitCode::bad_input, "a log is given twice",
+                  {{{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->first.string())}});
+  }
+  seen.emplace_back(recording.file, held);
+}
+
+/// Figures from a wrong unit would go into the robot's file and from there into its firmware.
+void refuse_what_looks_wrong(const Options& options, const Input& input) {
+  if (!input.spoiling.empty() && !options.takes_logs_as_they_are) {
+    throw Failure(ExitCode::bad_input,
+                  "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or if they are "
+                  "right go on with --as-is",
+                  input.spoiling);
+  }
+}
+
+std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
 Input read_input(const Options& options, const Session& session) {
   const DataFolders folders = session.folders();
   Input input{.robot = read_robot(file_of(folders.robots, "robot", options.robot)),
@@ -67,7 +96,8 @@ Input read_input(const Options& options, const Session& session) {
               .motor_id = {},
               .logs = {},
               .findings = {},
-              .suspicions = {}};
+              .suspicions = {},
+              .spoiling = {}};
   find_motor(options, folders, input);
   FrictionLogNeeds needs;
   needs.voltage = options.method == "steady_state";
@@ -79,13 +109,19 @@ Input read_input(const Options& options, const Session& session) {
                     : options.direction == "wheels"   ? TravelDirection::wheels
                                                       : TravelDirection::best;
   const Progress progress = progress_bar("reading");
+  std::vector<std::pair<std::filesystem::path, std::size_t>> seen;
   for (std::size_t i = 0; i < options.logs.size(); ++i) {
     RecordingReport report;
     const Recording recording = read_recording(options.logs[i], mapping_for(options.logs[i], options.map), report);
     input.logs.push_back(friction_log(recording, input.robot, needs, input.findings));
-    for (const std::string& suspicion : assess(recording, report).suspicions) {
+    const DataQuality quality = assess(recording, report);
+    for (const std::string& suspicion : quality.suspicions) {
       input.suspicions.push_back(fmt::format("{}: {}", recording.name, suspicion));
     }
+    for (const std::string& suspicion : quality.spoiling_wheels) {
+      input.spoiling.push_back({{recording.file.string()}, {}, suspicion});
+    }
+    refuse_repeated(recording, seen);
     if (progress) {
       progress(i + 1, options.logs.size());
     }
@@ -145,13 +181,26 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
       continue;
     }
     lines += fmt::format("{:>5}  {:30} {:24} {:24} {:24} {:6.3f} {:9} {:9}\n", i + 1, text(wheel.damping_V_s_per_rad, 4),
-                         text(wheel.sine_V, 3), text(wheel.constant_V, 3), text(wheel.phase_rad, 0, 180.0 / std::numbers::pi),
+                         text(wheel.sine_V, 3), text(wheel.constant_V, 3), text(wheel.phase_rad, 1, 180.0 / std::numbers::pi),
                          wheel.r2_ratio, wheel.rows_used, rows - wheel.rows_used);
   }
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (std::isfinite(fit.wheels[i].rotation_V.value)) {
       lines += fmt::format("wheel {} turning on the spot: {} V\n", i + 1, text(fit.wheels[i].rotation_V, 3));
     }
+  }
+  if (std::ranges::any_of(fit.wheels, &WheelFriction::damping_is_given)) {
+    std::vector<std::string> moves;
+    for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+      if (fit.wheels[i].damping_is_given) {
+        moves.push_back(fmt::format("{} V (wheel {})", significant(0.1 * std::abs(fit.wheels[i].sine_per_damping_V), 2), i + 1));
+      }
+    }
+    lines += fmt::format(
+        "d (given) is the motor's back-EMF by its file, which the legs do not tell; intervals hold for this d only: 10 % more of it takes "
+        "{} "
+        "from a; legs at a second speed on the same headings tell both\n",
+        fmt::join(moves, ", "));
   }
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (fit.wheels[i].phase_is_bounded) {
@@ -167,14 +216,17 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
 }
 
 /// Why nothing was learned: the commonest reason of the wheels.
-Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit) {
+Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
+  const std::string suspected = suspicions.empty() ? "" : "\n" + suspicions_text(suspicions);
   if (steady.parts.empty()) {
     return {
         ExitCode::cannot_answer,
-        "nothing can be learned: in no stretch do the wheels turn steadily; legs of one speed and direction must last a second or more"};
+        "nothing can be learned: in no stretch do the wheels turn steadily; legs of one speed and direction must last a second or more" +
+            suspected};
   }
-  return {ExitCode::cannot_answer, fmt::format("nothing can be learned from {} steady legs on {} headings: of wheel 1, {}",
-                                               steady.parts.size(), fit.headings, fit.wheels.front().problem)};
+  return {ExitCode::cannot_answer,
+          fmt::format("nothing can be learned from {} on {}: of wheel 1, {}{}", counted(steady.parts.size(), "steady leg"),
+                      counted(static_cast<std::size_t>(fit.headings), "heading"), fit.wheels.front().problem, suspected)};
 }
 
 Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t rows) {
@@ -252,14 +304,17 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
   for (const std::string& suspicion : friction_suspicions(
            steady, fit, kinematics, input.motor ? std::optional(drive_constants(input.robot, *input.motor)) : std::nullopt)) {
     input.suspicions.push_back(suspicion);
+    input.spoiling.push_back({{options.logs.front()}, {}, suspicion});
   }
+  refuse_what_looks_wrong(options, input);
   if (!fit.is_learned()) {
-    session.say(suspicions_text(input.suspicions));
-    throw nothing_learned(steady, fit);
+    throw nothing_learned(steady, fit, input.suspicions);
   }
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, before.voltages);
-  session.say(fmt::format("{}: {} logs, {} rows, {} of them steady in {} legs on {} headings; {} return legs {}\n{}{}", input.robot.id,
-                          input.logs.size(), steady.rows, steady.rows_steady, steady.legs, fit.headings, steady.return_legs,
+  session.say(fmt::format("{}: {}, {} rows, {} of them steady in {} on {}; {} {}\n{}{}", input.robot.id, counted(input.logs.size(), "log"),
+                          steady.rows, steady.rows_steady, counted(static_cast<std::size_t>(steady.legs), "leg"),
+                          counted(static_cast<std::size_t>(fit.headings), "heading"),
+                          counted(static_cast<std::size_t>(steady.return_legs), "return leg"),
                           settings.use_return_legs ? "used too" : "left out", findings_text(input.findings), table(fit, steady.rows)));
   session.say(suspicions_text(input.suspicions));
   if (std::isfinite(error.after_V)) {
@@ -296,8 +351,8 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
   if (!input.motor) {
     throw Failure(ExitCode::bad_input, "a roll-out needs the inertia of the motor's rotor; --motor must name the motor");
   }
-  const BodyConfig body = make_body(input.robot, *input.motor);
-  const RollOutResult result = roll_out(input.logs, body, options.is_lifted);
+  refuse_what_looks_wrong(options, input);
+  const RollOutResult result = roll_out(input.logs, input.robot, *input.motor, options.is_lifted);
   if (result.runs.empty()) {
     throw Failure(ExitCode::cannot_answer,
                   "nothing can be learned: in no stretch of 15 rows do the wheels roll out with their drivers off");
@@ -305,8 +360,8 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
   DriveConstants drive = drive_constants(input.robot, *input.motor);
   drive.drag_torque_Nm = 0.0;
   Json wheels = Json::array();
-  session.say(fmt::format("{}: {} roll-outs in {} logs, motors taken as open\n{}", input.robot.id, result.runs.size(), input.logs.size(),
-                          findings_text(input.findings) + suspicions_text(input.suspicions)));
+  session.say(fmt::format("{}: {} in {}, motors taken as open\n{}", input.robot.id, counted(result.runs.size(), "roll-out"),
+                          counted(input.logs.size(), "log"), findings_text(input.findings) + suspicions_text(input.suspicions)));
   for (const RollOutRun& run : result.runs) {
     session.say(run_text(run));
   }
@@ -353,6 +408,9 @@ ExitCode run(const Options& options, Session& session) {
   if (options.method == "roll_out" && !options.plot.empty()) {
     throw Failure(ExitCode::bad_input, "--plot draws the steady-state test; a roll-out has no picture");
   }
+  if (options.method != "roll_out" && options.is_lifted) {
+    throw Failure(ExitCode::bad_input, "--lifted is of roll-outs; expected --method roll_out beside it");
+  }
   Input input = read_input(options, session);
   return options.method == "steady_state" ? steady_state(options, input, session) : by_roll_out(options, input, session);
 }
@@ -384,6 +442,8 @@ Command friction() {
             app.add_option("--return-legs", options->return_legs, "legs that bring the robot back")
                 ->check(CLI::IsMember({"leave_out", "use"}))
                 ->capture_default_str();
+            app.add_flag("--as-is", options->takes_logs_as_they_are,
+                         "go on where units, signs or the order of wheels look wrong: they are right");
             app.add_flag("--lifted", options->is_lifted, "roll_out: the wheels were off the ground");
             app.add_option("--out", options->out, "the robot's file with the friction found in it")->type_name("ROBOT.toml");
             add_picture(app, options->plot, "offset and damping over the headings; voltage over speed goes beside it, FILE_voltage.svg");

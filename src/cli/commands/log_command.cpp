@@ -9,6 +9,7 @@
 #include "cli/quantity_option.h"
 #include "identify/measurement/quality.h"
 #include "identify/measurement/read_recording.h"
+#include "identify/measurement/recording_stream.h"
 #include "identify/measurement/write_recording.h"
 
 namespace heatsoak::commands {
@@ -40,15 +41,21 @@ ExitCode inspect(const Options& options, Session& session) {
   nlohmann::ordered_json logs = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     RecordingReport report;
-    const Recording recording = read_recording(file, mapping_for(file, options.map), report);
-    const DataQuality quality = assess(recording, report);
+    const Mapping mapping = mapping_for(file, options.map);
+    RecordingStream stream(file, mapping, report);
+    Assessment assessment;
+    for (Recording part; stream.next(part);) {
+      assessment.add(part);
+    }
+    const DataQuality quality = assessment.conclude(report);
+    const Recording& recording = assessment.condensed().rows();
     session.say((logs.empty() ? "" : "\n") + log_text(recording, report, quality));
     logs.push_back(log_json(recording, report, quality));
     if (!quality.thermal.is_good() && !quality.drive.is_good()) {
       code = ExitCode::cannot_answer;
     }
     if (!options.plot.empty()) {
-      session.write(options.plot, draw_svg(log_chart(recording, report)));
+      session.write(options.plot, draw_svg(log_chart(assessment.condensed(), quality, report)));
       session.say(fmt::format("written: {}\n", options.plot));
     }
   }

@@ -142,6 +142,8 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   for (MotorEffect& effect : everywhere.effects) {
     effect.condition.clear();
   }
+  // The runs may be those of that fit: how tightly its figures hang together would count them twice.
+  everywhere.fit.reset();
   MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
   out.model.model = std::move(built.model);
   out.figures = std::move(built.figures);

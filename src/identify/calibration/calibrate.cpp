@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
@@ -79,6 +80,9 @@ class Calibrating {
     if (!all_.open.empty()) {
       all_.next_experiment = std::ranges::min_element(all_.open, {}, &OpenDirection::experiment_min)->experiment;
     }
+    tell_common_factor();
+    tell_what_got_worse("the runs that were fitted", all_.fit_error);
+    tell_what_got_worse("the runs held out", all_.holdout_error);
     refuse_where_nothing_was_learned();
     refuse_where_nothing_is_explained();
     return std::move(all_);
@@ -118,6 +122,47 @@ class Calibrating {
     }
   }
 
+  /// All heat wrong by one factor leaves temperatures as they are and moves every figure alike.
+  void tell_common_factor() {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const auto& [name, sign] :
+         {std::pair("winding_heat_capacity", 1.0), std::pair("stator_heat_capacity", 1.0),
+          std::pair("thermal_resistance_winding_stator", -1.0), std::pair("thermal_resistance_stator_ambient", -1.0)}) {
+      const auto found = std::ranges::find(all_.figures, name, &CalibratedFigure::name);
+      const double moved = sign * std::log(found->value / found->before);
+      least = std::min(least, moved);
+      most = std::max(most, moved);
+    }
+    // Plainly more than what was known before lets expect.
+    const auto across = std::ranges::find(all_.motor_model.figures, "thermal_resistance_winding_stator", &FittedFigure::name);
+    const double plain = std::max(0.22, 1.5 * across->prior_sd);
+    if (least > plain || most < -plain) {
+      const bool is_much = least > 0.0;
+      all_.notes.push_back(
+          fmt::format("all heat capacities are {1} and all resistances {2} than the file's by a factor of {0} or more: the heat of the "
+                      "logs seems too {3} for "
+                      "this motor; is a current a peak value or an amplitude ({4}), the resistance another one, or is it another motor?",
+                      significant(std::exp(is_much ? least : -most), 2), is_much ? "larger" : "smaller", is_much ? "smaller" : "larger",
+                      is_much ? "large" : "small", is_much ? "its heat counts double" : "or that of one phase of several"));
+    }
+  }
+
+  /// Figures that are right for what follows the heat at once may foretell a whole run worse, where the model lacks something.
+  void tell_what_got_worse(const char* runs, const std::vector<ErrorBeforeAfter>& errors) {
+    for (const ErrorBeforeAfter& each : errors) {
+      constexpr double kWorse_ratio = 1.1;
+      constexpr double kLeast_K = 0.1;
+      if (each.after.rmse_K > kWorse_ratio * each.before.rmse_K + kLeast_K) {
+        all_.worse.push_back(fmt::format(
+            "{} of {} is foretold worse than with the figures of the file, {} K rms instead of {} K: do not forecast such runs with this "
+            "model; they hold something that the fitted ones do not tell, or two temperatures with constant figures do not describe this "
+            "motor (`heatsoak diagnose` looks for what is missing)",
+            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3)));
+      }
+    }
+  }
+
   void figures() {
     const MotorModel& motor = all_.motor_model;
     const Model& model = motor.model;
@@ -143,7 +188,7 @@ class Calibrating {
       }
       figure.low = figure.value * std::exp(-below);
       figure.high = figure.value * std::exp(above);
-      figure.is_identifiable = sd < kIdentifiable_sd && sd < kNews_share * each.prior_sd;
+      figure.is_identifiable = sd < kIdentifiable_sd && (each.origin == Origin::measured || sd < kNews_share * each.prior_sd);
       all_.figures.push_back(std::move(figure));
     }
     Eigen::MatrixXd exponents(of_file, model.free_count());

@@ -56,6 +56,7 @@ struct Calibration {
   std::string next_experiment;  ///< empty where nothing is open
   std::vector<ErrorBeforeAfter> fit_error;
   std::vector<ErrorBeforeAfter> holdout_error;
+  std::vector<std::string> worse;  ///< signals that the fit foretells worse than the file it began with, in sentences
   std::vector<std::string> notes;  ///< what was taken for granted or left out, in sentences
 };
 

@@ -144,11 +144,16 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
   const Eigen::MatrixXd relative = data * inverse_root;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(relative.transpose() * relative);
   const Look seen = look(motor, runs);
+  const bool was_fitted = std::ranges::find(motor.figures, Origin::measured, &FittedFigure::origin) != motor.figures.end();
   std::vector<OpenDirection> open;
   for (Eigen::Index i = 0; i < count; ++i) {
     const double information = std::max(0.0, solver.eigenvalues()[i]);
-    if (1.0 / (1.0 + information) > kToldShare) {
-      open.push_back(in_words(motor, (inverse_root * solver.eigenvectors().col(i)).normalized(), seen));
+    // By how much parameters may still move together: a fit before this one can have told what these runs do not.
+    const Eigen::VectorXd left = inverse_root * solver.eigenvectors().col(i) / std::sqrt(1.0 + information);
+    constexpr double kWellKnown = 0.03;
+    const bool is_known = was_fitted && left.cwiseAbs().maxCoeff() < kWellKnown;
+    if (1.0 / (1.0 + information) > kToldShare && !is_known) {
+      open.push_back(in_words(motor, left.normalized(), seen));
     }
   }
   return open;

@@ -94,8 +94,9 @@ class Builder {
     add(std::string(key), std::string(spec->spec.unit), figure, exponents);
   }
   void add(std::string name, std::string unit, const Figure& figure, const std::vector<std::pair<int, double>>& exponents) {
-    FittedFigure fitted{std::move(name), std::move(unit),     true,         Eigen::VectorXd::Zero(kMostFree),
-                        figure.value,    prior_sd_of(figure), figure.origin};
+    // What a fit of this motor found needs no doubt about mountings.
+    const double prior_sd = is_of_fit(name) && figure.spread ? prior_sd_of_spread(figure) : prior_sd_of(figure);
+    FittedFigure fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), figure.value, prior_sd, figure.origin};
     for (const auto& [place, exponent] : exponents) {
       fitted.exponents[place] = exponent;
     }
@@ -135,13 +136,45 @@ class Builder {
 
   void capacity(const std::string& name, int place) {
     const double before = all_.model.values[static_cast<std::size_t>(all_.model.free[static_cast<std::size_t>(place)].place)];
-    all_.figures.push_back({name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, Origin::derived});
+    all_.figures.push_back(
+        {name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, motor_.fit ? Origin::measured : Origin::derived});
     all_.figures.back().exponents[place] = 1.0;
   }
 
   static double prior_sd_of_spread(const Figure& figure) { return 0.25 * std::log(figure.spread->high / figure.spread->low); }
 
-  /// Figures of the file are known independently of each other; the model's parameters are not.
+  [[nodiscard]] bool is_of_fit(const std::string& name) const {
+    return motor_.fit && std::ranges::find(motor_.fit->figures, name) != motor_.fit->figures.end();
+  }
+
+  /// Of the logarithms of the file's figures, which are known independently of each other but for those that one fit found together.
+  [[nodiscard]] Eigen::MatrixXd precision_of_figures(Eigen::Index count) const {
+    Eigen::VectorXd inverse_sd(count);
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
+    std::vector<Eigen::Index> in_fit(static_cast<std::size_t>(count), -1);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const FittedFigure& each = all_.figures[static_cast<std::size_t>(i)];
+      inverse_sd[i] = 1.0 / each.prior_sd;
+      if (is_of_fit(each.name)) {
+        in_fit[static_cast<std::size_t>(i)] = std::ranges::find(motor_.fit->figures, each.name) - motor_.fit->figures.begin();
+      }
+    }
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const Eigen::Index a = in_fit[static_cast<std::size_t>(i)];
+        const Eigen::Index b = in_fit[static_cast<std::size_t>(j)];
+        correlation(i, j) = correlation(j, i) = a >= 0 && b >= 0 ? motor_.fit->correlation(a, b) : 0.0;
+      }
+    }
+    // The file has five digits: what lies below says nothing.
+    constexpr double kRounding = 5e-5;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+    const Eigen::MatrixXd inverse =
+        solver.eigenvectors() * solver.eigenvalues().cwiseMax(kRounding).cwiseInverse().asDiagonal() * solver.eigenvectors().transpose();
+    return inverse_sd.asDiagonal() * inverse * inverse_sd.asDiagonal();
+  }
+
+  /// The figures' prior in terms of the model's parameters.
   void set_prior(std::size_t file_figures, int winding, int stator) {
     Model& model = all_.model;
     const Eigen::Index count = model.free_count();
@@ -149,12 +182,13 @@ class Builder {
       each.exponents.conservativeResize(count);
     }
     model.prior.mean = model.theta();
-    model.prior.precision.setZero(count, count);
+    Eigen::MatrixXd exponents(static_cast<Eigen::Index>(file_figures), count);
     for (std::size_t i = 0; i < file_figures; ++i) {
-      const FittedFigure& each = all_.figures[i];
-      model.prior.precision += each.exponents * each.exponents.transpose() / (each.prior_sd * each.prior_sd);
+      exponents.row(static_cast<Eigen::Index>(i)) = all_.figures[i].exponents.transpose();
     }
-    if (const double mass_kg = motor_.nominal.mass_kg; !std::isnan(mass_kg)) {
+    model.prior.precision = exponents.transpose() * precision_of_figures(exponents.rows()) * exponents;
+    // A fit has heard of the mass already.
+    if (const double mass_kg = motor_.nominal.mass_kg; !std::isnan(mass_kg) && !motor_.fit) {
       const double winding_J_per_K = std::exp(model.prior.mean[winding]);
       const double stator_J_per_K = std::exp(model.prior.mean[stator]);
       const double sum_J_per_K = winding_J_per_K + stator_J_per_K;

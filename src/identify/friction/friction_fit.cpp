@@ -287,6 +287,14 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinem
     found.sine_V = fit.estimate(place(Term::sine));
     found.phase_rad.value = wrapped_rad(phase_rad);
   }
+  if (chosen.damping_is_given && has(Term::sine)) {
+    Eigen::VectorXd driven_V(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      driven_V(static_cast<Eigen::Index>(i)) = given * points[i].part->wheel_speed_rad_per_s[wheel];
+    }
+    const Eigen::MatrixXd weighted = fit.weights.asDiagonal() * X;
+    found.sine_per_damping_V = (X.transpose() * weighted).ldlt().solve(weighted.transpose() * driven_V)[place(Term::sine)];
+  }
   judge(points, fit.weights, wheel, found);
   return found;
 }

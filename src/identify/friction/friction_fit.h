@@ -26,6 +26,7 @@ struct WheelFriction {
   Estimate phase_rad;                                          ///< φ, −π … π
   Estimate rotation_V;                                         ///< c; NaN without legs of rotation
   bool damping_is_given = false;                               ///< not found, taken from what is known of the robot
+  double sine_per_damping_V = 0.0;                             ///< how much less a would be, were the given d twice as large
   bool phase_is_given = false;                                 ///< too few headings: that of the rolling direction
   bool phase_is_bounded = false;                               ///< beyond it the wheel would turn another way than it did
   double r2_ratio = std::numeric_limits<double>::quiet_NaN();  ///< share of the voltage's variance that is explained

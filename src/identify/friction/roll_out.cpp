@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/random.h"
+
 namespace heatsoak {
 namespace {
 
@@ -307,6 +309,38 @@ RollOutResult roll_out(const std::vector<FrictionLog>& logs, const BodyConfig& b
     result.wheel_damping_Nm_s_per_rad.push_back(over_runs(dampings));
     result.wheel_torque_Nm.push_back(over_runs(torques));
   }
+  return result;
+}
+
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const Robot& robot, const MotorValues& motor, bool is_lifted) {
+  constexpr int kDraws = 100;
+  RollOutResult result = roll_out(logs, make_body(robot, motor), is_lifted);
+  std::vector<RollOutResult> drawn;
+  Random random(1, 0);
+  for (int i = 0; i < kDraws; ++i) {
+    drawn.push_back(roll_out(logs, make_body(draw_sample(robot, random), motor), is_lifted));
+  }
+  const auto widen = [&](std::vector<Estimate> RollOutResult::*which) {
+    for (std::size_t wheel = 0; wheel < (result.*which).size(); ++wheel) {
+      Estimate& estimate = (result.*which)[wheel];
+      std::vector<double> values;
+      for (const RollOutResult& each : drawn) {
+        if ((each.*which).size() > wheel && std::isfinite((each.*which)[wheel].value)) {
+          values.push_back((each.*which)[wheel].value);
+        }
+      }
+      std::ranges::sort(values);
+      if (values.size() == drawn.size()) {
+        const auto quantile = [&values](double share) {
+          return values[static_cast<std::size_t>(share * static_cast<double>(values.size()))];
+        };
+        estimate.low = estimate.value - std::hypot(estimate.value - estimate.low, std::max(0.0, estimate.value - quantile(0.025)));
+        estimate.high = estimate.value + std::hypot(estimate.high - estimate.value, std::max(0.0, quantile(0.975) - estimate.value));
+      }
+    }
+  };
+  widen(&RollOutResult::wheel_damping_Nm_s_per_rad);
+  widen(&RollOutResult::wheel_torque_Nm);
   return result;
 }
 

@@ -41,5 +41,7 @@ struct RollOutResult {
 
 /// `body` gives masses and inertias.
 RollOutResult roll_out(const std::vector<FrictionLog>& logs, const BodyConfig& body, bool is_lifted);
+/// The same, with what the robot's file leaves open of masses and inertias in the intervals: all results scale with them.
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const Robot& robot, const MotorValues& motor, bool is_lifted);
 
 }  // namespace heatsoak

@@ -63,7 +63,8 @@ const std::string* BadCells::find(std::size_t slot, std::size_t row) const {
 ChannelSource::ChannelSource(const QuantityMapping& mapping, std::span<const std::string> header, const std::string& log, UsedColumns& used,
                              Diagnostics& problems)
     : mapping_(mapping) {
-  const std::string key = "quantities." + mapping.quantity.key;
+  const bool is_of_mapping = !mapping.places.empty();
+  const std::string key = is_of_mapping ? "quantities." + mapping.quantity.key : mapping.quantity.key;
   const auto compile = [&](const std::string& text, const std::string& part) -> std::optional<BlockExpression> {
     if (text.empty()) {
       return std::nullopt;
@@ -84,7 +85,8 @@ ChannelSource::ChannelSource(const QuantityMapping& mapping, std::span<const std
       return;
     }
     if (std::ranges::count(header, mapping.column) > 1) {
-      problems.add(mapping.place_of("column"), key + ".column", fmt::format("'{}' stands twice in the header of {}", mapping.column, log));
+      problems.add(mapping.place_of("column"), is_of_mapping ? key + ".column" : key,
+                   fmt::format("'{}' stands twice in the header of {}", mapping.column, log));
       return;
     }
     slot_ = used.slot(*place);

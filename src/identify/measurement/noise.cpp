@@ -7,19 +7,11 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::size_t kMostValues = 200'000;  ///< that are looked at, spread over the log
 constexpr double kMedianToSigma = 1.4826;
 
-/// Sorted, without NaN, of a long log some spread evenly.
-std::vector<double> sorted_sample(std::span<const double> values) {
-  std::vector<double> sorted;
-  for (std::size_t i = 0; i < values.size(); i += values.size() / kMostValues + 1) {
-    if (!std::isnan(values[i])) {
-      sorted.push_back(values[i]);
-    }
-  }
-  std::ranges::sort(sorted);
-  return sorted;
+std::vector<double> sorted_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values;
 }
 
 struct Level {
@@ -43,10 +35,7 @@ std::vector<Level> levels_of(const std::vector<double>& sorted) {
   return levels;
 }
 
-}  // namespace
-
-double resolution_of(std::span<const double> values) {
-  const std::vector<double> sorted = sorted_sample(values);
+double resolution_of_sorted(const std::vector<double>& sorted) {
   const std::vector<Level> levels = levels_of(sorted);
   std::vector<double> apart;
   for (std::size_t i = 1; i < levels.size(); ++i) {
@@ -70,34 +59,59 @@ double resolution_of(std::span<const double> values) {
   return levels.size() * 5 < sorted.size() ? median_of(std::move(apart)) : 0.0;
 }
 
+}  // namespace
+
 double median_of(std::vector<double> values) { return values.empty() ? 0.0 : boost::math::statistics::median(values); }
 
-NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs) {
-  std::vector<double> changes;
-  std::vector<double> bends;
-  std::size_t pairs = 0;
-  const std::size_t stride = values.size() / kMostValues + 1;
-  for (const auto& [begin, end] : runs) {
-    for (std::size_t i = begin + 1; i < end; i += stride) {
-      const double change = std::abs(values[i] - values[i - 1]);
-      pairs += std::isnan(change) ? 0 : 1;
-      if (change > 0.0) {
-        changes.push_back(change);
-      }
-      if (i >= begin + 2) {
-        const double bend = std::abs(values[i] - 2.0 * values[i - 1] + values[i - 2]);
-        if (!std::isnan(bend)) {
-          bends.push_back(bend);
-        }
-      }
+double resolution_of(std::span<const double> values) {
+  Thinned some;
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      some.add(value);
     }
   }
+  return resolution_of_sorted(sorted_of(some.values()));
+}
+
+void NoiseGauge::add(std::span<const double> values) {
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      values_.add(value);
+    }
+    const double change = value - value_;
+    if (!std::isnan(change)) {
+      changes_.add(std::abs(change));
+      const double bend = change - (value_ - before_);
+      if (!std::isnan(bend)) {
+        bends_.add(std::abs(bend));
+      }
+    }
+    before_ = value_;
+    value_ = value;
+  }
+}
+
+NoiseLevel NoiseGauge::level() const {
   NoiseLevel level;
-  level.step = resolution_of(values);
-  level.repeats_share = pairs > 0 ? 1.0 - static_cast<double>(changes.size()) / static_cast<double>(pairs) : 0.0;
+  std::vector<double> sorted = sorted_of(values_.values());
+  level.step = resolution_of_sorted(sorted);
+  level.distinct = sorted.size() - std::ranges::unique(sorted).size();
+  std::vector<double> changes = changes_.values();
+  const auto pairs = static_cast<double>(changes.size());
+  std::erase(changes, 0.0);
+  level.repeats_share = pairs > 0.0 ? 1.0 - static_cast<double>(changes.size()) / pairs : 0.0;
   level.usual = median_of(std::move(changes));
-  level.noise = std::max(kMedianToSigma * median_of(std::move(bends)) / std::sqrt(6.0), level.step / std::sqrt(12.0));
+  level.noise = std::max(kMedianToSigma * median_of(bends_.values()) / std::sqrt(6.0), level.step / std::sqrt(12.0));
   return level;
+}
+
+NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs, std::size_t most) {
+  NoiseGauge gauge(most);
+  for (const auto& [begin, end] : runs) {
+    gauge.begin_run();
+    gauge.add(values.subspan(begin, end - begin));
+  }
+  return gauge.level();
 }
 
 }  // namespace heatsoak

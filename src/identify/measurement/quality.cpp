@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
@@ -19,60 +20,9 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kFewestRows = 20;
-constexpr std::size_t kMostSteps = 200'000;  ///< of a long log, spread evenly, to tell the jitter
 /// From the one that heats a winding most directly.
 constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A", "power_in_W", "bus_A",          "torque_Nm",
                                                       "motor_V",   "duty_ratio",  "bus_V",      "speed_rad_per_s"};
-
-Sampling sampling_of(const Recording& recording) {
-  Sampling sampling;
-  if (recording.rows() < 2) {
-    return sampling;
-  }
-  sampling.duration_s = recording.time_s.back() - recording.time_s.front();
-  sampling.usual_period_s = usual_period_s(recording.time_s);
-  std::vector<double> deviations_s;
-  for (std::size_t i = 1; i < recording.rows(); ++i) {
-    const double period_s = recording.time_s[i] - recording.time_s[i - 1];
-    sampling.longest_gap_s = std::max(sampling.longest_gap_s, period_s);
-    if (i % (recording.rows() / kMostSteps + 1) == 0) {
-      deviations_s.push_back(std::abs(period_s - sampling.usual_period_s));
-    }
-  }
-  sampling.jitter_s = 1.4826 * median_of(std::move(deviations_s));
-  return sampling;
-}
-
-std::vector<Gap> gaps_of(const Recording& recording) {
-  std::vector<Gap> gaps;
-  for (const std::size_t begin : recording.run_begins) {
-    if (begin > 0) {
-      gaps.push_back({recording.line[begin], recording.time_s[begin - 1], recording.time_s[begin] - recording.time_s[begin - 1]});
-    }
-  }
-  return gaps;
-}
-
-ChannelQuality quality_of(const Recording& recording, const Channel& channel, const RecordingReport& report) {
-  ChannelQuality quality;
-  quality.quantity = channel.quantity;
-  quality.low = std::numeric_limits<double>::infinity();
-  quality.high = -quality.low;
-  for (const double value : channel.values) {
-    if (!std::isnan(value)) {
-      quality.low = std::min(quality.low, value);
-      quality.high = std::max(quality.high, value);
-      ++quality.samples;
-    }
-  }
-  for (const auto& [what, entry] : report.left_out) {
-    quality.left_out += what.first == channel.quantity.key ? entry.count : 0;
-  }
-  const NoiseLevel noise = noise_level(channel.values, recording.runs());
-  quality.step = noise.step;
-  quality.noise = noise.noise;
-  return quality;
-}
 
 const ChannelQuality* find(const DataQuality& quality, std::string_view key) {
   const auto found = std::ranges::find_if(quality.channels, [key](const ChannelQuality& each) { return each.quantity.key == key; });
@@ -87,19 +37,20 @@ std::string shown(double value, const Quantity& quantity) {
 
 /// Every temperature is highest within the first third of the log, and plainly lower at its end.
 bool cools_down(const Recording& recording, const std::vector<const ChannelQuality*>& temperatures) {
+  const auto is_less = [](double a, double b) { return a < b || (std::isnan(a) && !std::isnan(b)); };
   return !temperatures.empty() && std::ranges::all_of(temperatures, [&](const ChannelQuality* each) {
     const std::vector<double>& values = recording.find(each->quantity.key)->values;
-    const auto highest = static_cast<std::size_t>(std::ranges::find(values, each->high) - values.begin());
+    const auto highest = static_cast<std::size_t>(std::ranges::max_element(values, is_less) - values.begin());
     const auto last = std::ranges::find_if(values.rbegin(), values.rend(), [](double value) { return !std::isnan(value); });
     constexpr double kPlainly = 20.0;
     return highest < values.size() / 3 && last != values.rend() && each->high - *last > kPlainly * each->noise;
   });
 }
 
-Fitness thermal_fitness(const Recording& recording, const DataQuality& quality) {
+Fitness thermal_fitness(const Recording& recording, std::size_t rows, const DataQuality& quality) {
   Fitness fitness;
-  if (recording.rows() < kFewestRows) {
-    fitness.lacks.push_back(fmt::format("it has {} rows; at least {} are needed", recording.rows(), kFewestRows));
+  if (rows < kFewestRows) {
+    fitness.lacks.push_back(fmt::format("it has {} row{}; at least {} are needed", rows, rows == 1 ? "" : "s", kFewestRows));
   }
   std::vector<const ChannelQuality*> temperatures;
   std::vector<const ChannelQuality*> inputs;
@@ -134,13 +85,13 @@ Fitness thermal_fitness(const Recording& recording, const DataQuality& quality) 
   return fitness;
 }
 
-Fitness drive_fitness(const Recording& recording, const DataQuality& quality) {
+Fitness drive_fitness(std::size_t rows, const DataQuality& quality) {
   Fitness fitness;
   const auto has = [&](std::string_view stem) {
     return std::ranges::any_of(quality.channels, [stem](const ChannelQuality& each) { return each.quantity.key.starts_with(stem); });
   };
-  if (recording.rows() < kFewestRows) {
-    fitness.lacks.push_back(fmt::format("it has {} rows; at least {} are needed", recording.rows(), kFewestRows));
+  if (rows < kFewestRows) {
+    fitness.lacks.push_back(fmt::format("it has {} row{}; at least {} are needed", rows, rows == 1 ? "" : "s", kFewestRows));
   }
   if (!has("wheel_speed_rad_per_s_")) {
     fitness.lacks.emplace_back("it has no speeds of wheels (wheel_speed_rad_per_s_1, …)");
@@ -185,26 +136,124 @@ std::vector<double> relative_heat(const Channel& heat_input) {
   return heat;
 }
 
-DataQuality assess(const Recording& recording, const RecordingReport& report) {
-  DataQuality quality;
-  quality.sampling = sampling_of(recording);
-  quality.gaps = gaps_of(recording);
-  for (const Channel& channel : recording.channels) {
-    quality.channels.push_back(quality_of(recording, channel, report));
+void Assessment::Gauge::add(std::span<const double> values) {
+  noise.add(values);
+  for (const double value : values) {
+    if (std::isnan(value)) {
+      continue;
+    }
+    ++samples;
+    if (value <= low) {
+      at_low = value == low ? at_low + 1 : 1;
+      low = value;
+    }
+    if (value >= high) {
+      at_high = value == high ? at_high + 1 : 1;
+      high = value;
+    }
   }
-  if (const Channel* const heat_input = heat_input_of(recording)) {
-    for (const Channel& channel : recording.channels) {
+}
+
+void Assessment::add_times(const Recording& part) {
+  auto begin = part.run_begins.begin();
+  for (std::size_t row = 0; row < part.rows(); ++row) {
+    const double time_s = part.time_s[row];
+    first_s_ = rows_ == 0 ? time_s : first_s_;
+    const double step_s = time_s - last_s_;
+    if (rows_ > 0) {
+      steps_s_.add(step_s);
+      quality_.sampling.longest_gap_s = std::max(quality_.sampling.longest_gap_s, step_s);
+    }
+    if (begin != part.run_begins.end() && *begin == row) {
+      ++begin;
+      if (quality_.runs++ > 0 && quality_.gaps.size() < DataQuality::kMostGaps) {
+        quality_.gaps.push_back({part.line[row], last_s_, step_s});
+      }
+    }
+    last_s_ = time_s;
+    ++rows_;
+  }
+}
+
+void Assessment::add(const Recording& part) {
+  add_times(part);
+  gauges_.resize(part.channels.size());
+  for (std::size_t c = 0; c < part.channels.size(); ++c) {
+    Gauge& gauge = gauges_[c];
+    const std::span<const double> values = part.channels[c].values;
+    std::size_t row = 0;
+    const auto add_until = [&](std::size_t end) {
+      gauge.add(values.subspan(row, end - row));
+      row = end;
+    };
+    for (const std::size_t begin : part.run_begins) {
+      add_until(begin);
+      gauge.noise.begin_run();
+    }
+    add_until(values.size());
+  }
+  condensed_.add(part);
+}
+
+void Assessment::tell_channels(const RecordingReport& report) {
+  for (std::size_t c = gauges_.size(); c-- > 0;) {
+    if (gauges_[c].samples == 0) {
+      gauges_.erase(gauges_.begin() + static_cast<std::ptrdiff_t>(c));
+      condensed_.erase_channel(c);
+    }
+  }
+  for (std::size_t c = 0; c < gauges_.size(); ++c) {
+    const Gauge& gauge = gauges_[c];
+    const NoiseLevel noise = gauge.noise.level();
+    ChannelQuality& told = quality_.channels.emplace_back();
+    told.quantity = condensed_.rows().channels[c].quantity;
+    told.samples = gauge.samples;
+    told.low = gauge.low;
+    told.high = gauge.high;
+    told.at_low = gauge.at_low;
+    told.at_high = gauge.at_high;
+    told.distinct = noise.distinct;
+    told.step = noise.step;
+    told.noise = noise.noise;
+    for (const auto& [what, entry] : report.left_out) {
+      told.left_out += what.first == told.quantity.key ? entry.count : 0;
+    }
+  }
+}
+
+DataQuality Assessment::conclude(const RecordingReport& report) {
+  const Recording& rows = condensed_.rows();
+  Sampling& sampling = quality_.sampling;
+  sampling.duration_s = last_s_ - first_s_;
+  sampling.usual_period_s = median_of(steps_s_.values());
+  std::vector<double> deviations_s = steps_s_.values();
+  for (double& each_s : deviations_s) {
+    each_s = std::abs(each_s - sampling.usual_period_s);
+  }
+  sampling.jitter_s = 1.4826 * median_of(std::move(deviations_s));
+  tell_channels(report);
+  if (const Channel* const heat_input = heat_input_of(rows)) {
+    for (const Channel& channel : rows.channels) {
       if (channel.quantity.kind == QuantityKind::temperature) {
-        quality.clock_offsets.push_back(clock_offset(recording, channel, *heat_input, find(quality, channel.quantity.key)->noise));
+        quality_.clock_offsets.push_back(clock_offset(rows, channel, *heat_input, find(quality_, channel.quantity.key)->noise));
       }
     }
   }
-  Suspicions suspected = suspicions(recording, quality.channels);
-  quality.suspicions = std::move(suspected.all);
-  quality.spoiling = std::move(suspected.spoiling);
-  quality.thermal = thermal_fitness(recording, quality);
-  quality.drive = drive_fitness(recording, quality);
-  return quality;
+  Suspicions suspected = suspicions(rows, quality_.channels);
+  quality_.suspicions = std::move(suspected.all);
+  quality_.spoiling = std::move(suspected.spoiling);
+  quality_.spoiling_wheels = std::move(suspected.spoiling_wheels);
+  quality_.thermal = thermal_fitness(rows, rows_, quality_);
+  quality_.drive = drive_fitness(rows_, quality_);
+  return std::move(quality_);
+}
+
+DataQuality assess(const Recording& recording, const RecordingReport& report) {
+  Assessment assessment;
+  for (std::size_t begin = 0; begin < recording.rows(); begin += CondensedRecording::kMostRows) {
+    assessment.add(recording.slice(begin, std::min(begin + CondensedRecording::kMostRows, recording.rows())));
+  }
+  return assessment.conclude(report);
 }
 
 void require_thermal(const Recording& recording, const DataQuality& quality) {

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "identify/measurement/condensed_recording.h"
+#include "identify/measurement/noise.h"
 #include "identify/measurement/recording.h"
 #include "identify/measurement/recording_report.h"
 
@@ -32,8 +36,11 @@ struct ChannelQuality {
   std::size_t left_out = 0;  ///< for whatever reason
   double low = 0.0;
   double high = 0.0;
-  double step = 0.0;   ///< resolution; 0 where none is seen
-  double noise = 0.0;  ///< standard deviation, model-free, not below step/√12
+  std::size_t at_low = 0;  ///< samples of exactly this value
+  std::size_t at_high = 0;
+  std::size_t distinct = 0;  ///< different values, of long logs among some ten thousand samples
+  double step = 0.0;         ///< resolution; 0 where none is seen
+  double noise = 0.0;        ///< standard deviation, model-free, not below step/√12
   [[nodiscard]] bool is_constant() const { return !(high > low); }
 };
 
@@ -53,14 +60,48 @@ struct Fitness {
 };
 
 struct DataQuality {
+  static constexpr std::size_t kMostGaps = 1000;
   Sampling sampling;
-  std::vector<Gap> gaps;
+  std::size_t runs = 0;
+  std::vector<Gap> gaps;  ///< between runs, the first kMostGaps
   std::vector<ChannelQuality> channels;
   std::vector<ClockOffset> clock_offsets;
-  std::vector<std::string> suspicions;  ///< said, not acted on
-  std::vector<std::string> spoiling;    ///< of them: units, signs and sensors with which nothing can be fitted, were it so
-  Fitness thermal;                      ///< to fit a thermal network
-  Fitness drive;                        ///< to fit friction of wheels
+  std::vector<std::string> suspicions;       ///< said, not acted on
+  std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
+  std::vector<std::string> spoiling_wheels;  ///< the same of a robot's wheels and angles
+  Fitness thermal;                           ///< to fit a thermal network
+  Fitness drive;                             ///< to fit friction of wheels
+};
+
+/// Takes a log part by part; what it keeps does not grow with the log.
+class Assessment {
+ public:
+  /// As RecordingStream gives them.
+  void add(const Recording& part);
+  /// After the last part. Channels without one sample are not told of.
+  DataQuality conclude(const RecordingReport& report);
+  [[nodiscard]] const CondensedRecording& condensed() const { return condensed_; }
+
+ private:
+  struct Gauge {
+    NoiseGauge noise;
+    std::size_t samples = 0;
+    std::size_t at_low = 0;
+    std::size_t at_high = 0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+    void add(std::span<const double> values);
+  };
+  void add_times(const Recording& part);
+  void tell_channels(const RecordingReport& report);
+
+  CondensedRecording condensed_;
+  std::vector<Gauge> gauges_;  ///< per channel
+  Thinned steps_s_;
+  std::size_t rows_ = 0;
+  double first_s_ = 0.0;
+  double last_s_ = 0.0;
+  DataQuality quality_;
 };
 
 DataQuality assess(const Recording& recording, const RecordingReport& report);

@@ -1,5 +1,7 @@
 #include "identify/measurement/quantities.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -157,6 +159,18 @@ std::string nearest_quantity(std::string_view key) {
   std::vector<std::string> names;
   for (const QuantityType& type : kTypes) {
     names.push_back(std::string(type.key) + (type.is_numbered ? "_1" : ""));
+  }
+  // "winding_F": the quantity's own name with another unit.
+  const std::string stem(key.substr(0, key.rfind('_') + 1));
+  std::string_view same;
+  for (const QuantityType& type : kTypes) {
+    if (stem.size() > 1 && !type.is_numbered && type.key.starts_with(stem) && (same.empty() || type.key.size() < same.size())) {
+      same = type.key;
+    }
+  }
+  if (!same.empty() && same != key) {
+    return fmt::format("; did you mean '{0}'? A column in another unit is read with a mapping: {0} = {{ column = \"{1}\", unit = … }}",
+                       same, key);
   }
   return did_you_mean(key, names);
 }

@@ -17,8 +17,24 @@ std::vector<std::pair<std::size_t, std::size_t>> Recording::runs() const {
   return found;
 }
 
+Recording Recording::slice(std::size_t begin, std::size_t end) const {
+  Recording part{name, file, motor, conditions, {}, {}, {}, {}};
+  const auto first = static_cast<std::ptrdiff_t>(begin);
+  const auto last = static_cast<std::ptrdiff_t>(end);
+  part.time_s.assign(time_s.begin() + first, time_s.begin() + last);
+  part.line.assign(line.begin() + first, line.begin() + last);
+  for (const Channel& channel : channels) {
+    part.channels.push_back({channel.quantity, {channel.values.begin() + first, channel.values.begin() + last}});
+  }
+  for (const std::size_t each : run_begins) {
+    if (each >= begin && each < end) {
+      part.run_begins.push_back(each - begin);
+    }
+  }
+  return part;
+}
+
 Recording part_of(const Recording& recording, double from_share, double to_share) {
-  Recording part = recording;
   const double begin_s = recording.time_s.front();
   const double length_s = recording.time_s.back() - begin_s;
   const auto row_at = [&](double share) {
@@ -27,21 +43,9 @@ Recording part_of(const Recording& recording, double from_share, double to_share
                         : static_cast<std::size_t>(std::ranges::lower_bound(recording.time_s, time_s) - recording.time_s.begin());
   };
   const std::size_t first = row_at(from_share);
-  const std::size_t last = std::max(first, row_at(to_share));
-  const auto cut = [&](auto& values) {
-    using Values = std::remove_reference_t<decltype(values)>;
-    values = Values(values.begin() + static_cast<std::ptrdiff_t>(first), values.begin() + static_cast<std::ptrdiff_t>(last));
-  };
-  cut(part.time_s);
-  cut(part.line);
-  for (Channel& channel : part.channels) {
-    cut(channel.values);
-  }
-  part.run_begins = {0};
-  for (const std::size_t begin : recording.run_begins) {
-    if (begin > first && begin < last) {
-      part.run_begins.push_back(begin - first);
-    }
+  Recording part = recording.slice(first, std::max(first, row_at(to_share)));
+  if (part.run_begins.empty() || part.run_begins.front() != 0) {
+    part.run_begins.insert(part.run_begins.begin(), 0);  // a run is entered in its middle
   }
   return part;
 }

@@ -35,6 +35,8 @@ struct Recording {
   [[nodiscard]] std::size_t rows() const { return time_s.size(); }
   /// [begin, end) of each run.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> runs() const;
+  /// Rows [begin, end) as a part of this recording: `run_begins` has 0 only where a run begins there.
+  [[nodiscard]] Recording slice(std::size_t begin, std::size_t end) const;
 };
 
 /// The rows of a recording between two shares of its duration, 0 … 1; its name and conditions stay.

@@ -9,8 +9,6 @@
 namespace heatsoak {
 namespace {
 
-/// Three, and a little: a step of exactly three periods must not split by rounding.
-constexpr double kLongestStep_ratio = 3.0 * (1.0 + 1e-6);
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 bool changes(double before, double after) { return before != after && !(std::isnan(before) && std::isnan(after)); }
@@ -18,12 +16,11 @@ bool changes(double before, double after) { return before != after && !(std::isn
 }  // namespace
 
 double usual_period_s(std::span<const double> time_s) {
-  constexpr std::size_t kMostSteps = 200'000;  // of a long log, spread evenly
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < time_s.size(); i += time_s.size() / kMostSteps + 1) {
-    steps_s.push_back(time_s[i] - time_s[i - 1]);
+  Thinned steps_s;
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    steps_s.add(time_s[i] - time_s[i - 1]);
   }
-  return median_of(std::move(steps_s));
+  return median_of(steps_s.values());
 }
 
 std::vector<char> increasing_rows(std::span<const double> time_s) {
@@ -50,15 +47,14 @@ std::vector<char> increasing_rows(std::span<const double> time_s) {
   return stays;
 }
 
-std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values, std::optional<double> longest_gap_s) {
+std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values, double longest_gap_s) {
   std::vector<std::size_t> begins;
   if (time_s.empty()) {
     return begins;
   }
   begins.push_back(0);
-  const double longest_s = longest_gap_s.value_or(kLongestStep_ratio * usual_period_s(time_s));
   for (std::size_t row = 1; row < time_s.size(); ++row) {
-    if (time_s[row] - time_s[row - 1] > longest_s || (!values.empty() && changes(values[row - 1], values[row]))) {
+    if (time_s[row] - time_s[row - 1] > longest_gap_s || (!values.empty() && changes(values[row - 1], values[row]))) {
       begins.push_back(row);
     }
   }

@@ -39,27 +39,25 @@ std::vector<Stretch> stretches_of(std::span<const double> values, std::pair<std:
 
 /// What the channel does when it is in order.
 struct Habits {
-  double low = 0.0;
   double high = 0.0;
   NoiseLevel noise;
   double repeats_share = 0.0;      ///< of neighbours that are equal, long stretches aside
   std::size_t longest_chance = 0;  ///< samples of one value that noise can give; 0 where that cannot be told
 };
 
+/// More of a part does not tell its noise better.
+constexpr std::size_t kMostSamples = 1 << 14;
 constexpr std::size_t kShortStretch = 20;
 constexpr std::size_t kPile = 10;  ///< samples at one end of the range, at least, that are called cut off there
 
-Habits habits_of(std::span<const double> values, std::span<const std::vector<Stretch>> runs, const NoiseLevel& noise) {
+Habits habits_of(std::span<const double> values, std::span<const std::vector<Stretch>> runs, const NoiseLevel& noise, double high) {
   Habits habits;
+  habits.high = high;
   habits.noise = noise;
-  habits.low = std::numeric_limits<double>::infinity();
-  habits.high = -habits.low;
   std::size_t samples = 0;
   std::size_t repeats = 0;
   for (const std::vector<Stretch>& run : runs) {
     for (const Stretch& stretch : run) {
-      habits.low = std::min(habits.low, stretch.value);
-      habits.high = std::max(habits.high, stretch.value);
       if (stretch.samples < kShortStretch) {
         samples += stretch.samples;
         repeats += stretch.samples - 1;
@@ -160,12 +158,11 @@ bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habi
 }
 
 /// Neither five equal neighbours nor ten samples at an end of the range: nothing below could be found. Most long logs end here.
-bool never_rests(std::span<const double> values) {
+/// `low` and `high`: of what went before, and then of this too.
+bool never_rests(std::span<const double> values, double& low, double& high) {
   std::size_t longest = 0;
   std::size_t equal = 0;
   double before = kLeftOut;
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
   for (const double value : values) {
     if (!std::isnan(value)) {
       equal = value == before ? equal + 1 : 1;
@@ -180,35 +177,54 @@ bool never_rests(std::span<const double> values) {
   return longest < kRests && static_cast<std::size_t>(at_ends) < kPile;
 }
 
-void leave_out_stretches(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
-  if (never_rests(channel.values)) {
+/// Where a part's rows are reported, and into what.
+struct Reported {
+  std::size_t first;
+  std::size_t last;
+  RecordingReport& report;
+
+  void leave_out(const Recording& part, Channel& channel, std::size_t row, LeftOutReason reason) const {
+    if (row >= first && row < last) {
+      report.left_out[{channel.quantity.key, reason}].add(part.line[row]);
+    }
+    channel.values[row] = kLeftOut;
+  }
+};
+
+/// `frozen_at` of the row before the first that is reported, and then of the last.
+void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high, double& frozen_at,
+                         const Reported& reported) {
+  const double was_frozen_at = std::exchange(frozen_at, kLeftOut);
+  if (never_rests(channel.values, low, high)) {
     return;
   }
   std::vector<std::vector<Stretch>> runs;
-  for (const auto& run : recording.runs()) {
+  for (const auto& run : part.runs()) {
     runs.push_back(stretches_of(channel.values, run));
   }
-  const Habits habits = habits_of(channel.values, runs, noise);
-  if (!(habits.high > habits.low)) {
+  const Habits habits = habits_of(channel.values, runs, noise, high);
+  if (!(high > low)) {
     return;  // constant from begin to end: what that means is asked elsewhere
   }
-  const bool low_is_cut = piles_up(runs, habits.low, habits);
-  const bool high_is_cut = piles_up(runs, habits.high, habits);
+  const bool low_is_cut = piles_up(runs, low, habits);
+  const bool high_is_cut = piles_up(runs, high, habits);
   for (const std::vector<Stretch>& run : runs) {
     for (std::size_t at = 0; at < run.size(); ++at) {
       const Stretch& stretch = run[at];
-      const bool is_low = stretch.value == habits.low;
-      const bool is_high = stretch.value == habits.high;
+      const bool is_low = stretch.value == low;
+      const bool is_high = stretch.value == high;
       const bool is_saturated =
           (is_low && low_is_cut) || (is_high && high_is_cut) || ((is_low || is_high) && climb_stops_dead(run, at, habits));
-      if (!is_saturated && !ends_in_isolated_jump(run, at, habits) && !stays_still_to_the_end(run, at, habits)) {
+      const bool goes_on = stretch.value == was_frozen_at && stretch.begin < reported.first && stretch.end > reported.first;
+      if (!is_saturated && !goes_on && !ends_in_isolated_jump(run, at, habits) && !stays_still_to_the_end(run, at, habits)) {
         continue;
       }
-      LeftOut& entry = report.left_out[{channel.quantity.key, is_saturated ? LeftOutReason::saturated : LeftOutReason::frozen}];
+      if (!is_saturated && stretch.begin < reported.last && stretch.end >= reported.last) {
+        frozen_at = stretch.value;
+      }
       for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
         if (!std::isnan(channel.values[i])) {
-          entry.add(recording.line[i]);
-          channel.values[i] = kLeftOut;
+          reported.leave_out(part, channel, i, is_saturated ? LeftOutReason::saturated : LeftOutReason::frozen);
         }
       }
     }
@@ -237,13 +253,13 @@ bool has_near_majority(std::span<const double> values, std::span<const std::size
 }
 
 /// Hampel's rule on the samples that are there, window 7, 6 median deviations.
-void leave_out_outliers(Recording& recording, Channel& channel, const NoiseLevel& noise, RecordingReport& report) {
+void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noise, const Reported& reported) {
   constexpr double kDeviations = 6.0;
   constexpr double kSigmaToMedian = 0.6745;
   const double least_deviation = kSigmaToMedian * std::max(noise.noise, noise.usual);
   std::vector<std::size_t> rows;
   std::vector<std::size_t> outliers;
-  for (const auto& [begin, end] : recording.runs()) {
+  for (const auto& [begin, end] : part.runs()) {
     rows.clear();
     for (std::size_t i = begin; i < end; ++i) {
       if (!std::isnan(channel.values[i])) {
@@ -273,25 +289,23 @@ void leave_out_outliers(Recording& recording, Channel& channel, const NoiseLevel
       }
     }
   }
-  if (outliers.empty()) {
-    return;
-  }
-  LeftOut& entry = report.left_out[{channel.quantity.key, LeftOutReason::outlier}];
   for (const std::size_t row : outliers) {
-    entry.add(recording.line[row]);
-    channel.values[row] = kLeftOut;
+    reported.leave_out(part, channel, row, LeftOutReason::outlier);
   }
 }
 
 }  // namespace
 
-void leave_out_bad_samples(Recording& recording, RecordingReport& report) {
-  const auto runs = recording.runs();
-  for (Channel& channel : recording.channels) {
+void Screening::leave_out_bad_samples(Recording& part, std::size_t first, std::size_t last, RecordingReport& report) {
+  const auto runs = part.runs();
+  const Reported reported{first, last, report};
+  past_.resize(part.channels.size());
+  for (std::size_t c = 0; c < part.channels.size(); ++c) {
+    Channel& channel = part.channels[c];
     if (channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings) {
-      const NoiseLevel noise = noise_level(channel.values, runs);
-      leave_out_stretches(recording, channel, noise, report);
-      leave_out_outliers(recording, channel, noise, report);
+      const NoiseLevel noise = noise_level(channel.values, runs, kMostSamples);
+      leave_out_stretches(part, channel, noise, past_[c].low, past_[c].high, past_[c].value, reported);
+      leave_out_outliers(part, channel, noise, reported);
     }
   }
 }

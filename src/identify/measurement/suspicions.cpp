@@ -34,15 +34,19 @@ double percentile(std::span<const double> values, double share) {
 
 double median(std::span<const double> values) { return percentile(values, 0.5); }
 
-double at_start(const Channel& channel) {
+std::vector<double> first_samples(const Channel& channel) {
   std::vector<double> first;
   for (std::size_t i = 0; i < channel.values.size() && first.size() < 5; ++i) {
     if (!std::isnan(channel.values[i])) {
       first.push_back(channel.values[i]);
     }
   }
-  return median(first);
+  return first;
 }
+
+double at_start(const Channel& channel) { return median(first_samples(channel)); }
+/// Before the first heat warms it.
+double coolest_at_start(const Channel& channel) { return percentile(first_samples(channel), 0.0); }
 
 class Suspector {
  public:
@@ -50,6 +54,7 @@ class Suspector {
 
   Suspicions run() {
     scales_of_temperature();
+    motor_in_fahrenheit();
     ambient_against_motor();
     answer_to_heat();
     currents();
@@ -58,8 +63,9 @@ class Suspector {
     std::vector<std::string> spoiling = found_;
     angles();
     wheels();
+    std::vector<std::string> spoiling_wheels(found_.begin() + static_cast<std::ptrdiff_t>(spoiling.size()), found_.end());
     limits();
-    return {std::move(found_), std::move(spoiling)};
+    return {std::move(found_), std::move(spoiling), std::move(spoiling_wheels)};
   }
 
  private:
@@ -110,6 +116,37 @@ class Suspector {
         found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", channel.quantity.key,
                                      significant(start, 3), significant(from_fahrenheit_C, 3)));
       }
+    }
+  }
+
+  /// All of the motor's sensors start alike and far above the room, their Fahrenheit is the room's temperature, and none of them ever
+  /// cools, as a motor that starts warm would.
+  void motor_in_fahrenheit() {
+    const Channel* const ambient = recording_.find("ambient_C");
+    std::vector<const Channel*> sensors;
+    for (const Channel& channel : recording_.channels) {
+      if (channel.quantity.kind == QuantityKind::temperature) {
+        sensors.push_back(&channel);
+      }
+    }
+    if (ambient == nullptr || sensors.size() < 2) {
+      return;
+    }
+    constexpr double kAlike_K = 1.5;
+    constexpr double kFar_K = 15.0;
+    constexpr double kRoom_K = 2.5;
+    constexpr double kCools_K = 2.0;
+    const double room_C = at_start(*ambient);
+    const double first_C = coolest_at_start(*sensors.front());
+    const bool all = std::ranges::all_of(sensors, [&](const Channel* sensor) {
+      const double start_C = coolest_at_start(*sensor);
+      return std::abs(start_C - first_C) < kAlike_K && start_C - room_C > kFar_K && std::abs((start_C - 32.0) / 1.8 - room_C) < kRoom_K &&
+             percentile(sensor->values, 0.0) > start_C - kCools_K;
+    });
+    if (all) {
+      found_.push_back(fmt::format(
+          "{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
+          sensors.front()->quantity.key, significant(first_C, 3), significant(room_C, 3), significant((first_C - 32.0) / 1.8, 3)));
     }
   }
 
@@ -351,23 +388,17 @@ class Suspector {
       if (channel.quantity.kind != QuantityKind::heat_input || range->samples < 100 || range->is_constant()) {
         continue;
       }
-      for (const double end : {range->high, range->low}) {
-        const auto there = static_cast<double>(std::ranges::count(channel.values, end));
-        if (end != 0.0 && there > kMuch_share * static_cast<double>(range->samples) && range->noise > 0.0 && distinct_beyond(channel, 50)) {
+      constexpr std::size_t kManyValues = 50;  // set points have few, measured signals have many
+      for (const auto& [end, samples] : {std::pair(range->high, range->at_high), std::pair(range->low, range->at_low)}) {
+        const auto there = static_cast<double>(samples);
+        if (end != 0.0 && there > kMuch_share * static_cast<double>(range->samples) && range->noise > 0.0 &&
+            range->distinct > kManyValues) {
           found_.push_back(fmt::format("{} stays at exactly {} {} in {:.0f} % of its rows: a limit, or a saturated sensor?",
                                        channel.quantity.key, significant(end, 5), unit_for_display(channel.quantity.unit),
                                        100.0 * there / static_cast<double>(range->samples)));
         }
       }
     }
-  }
-  /// Set points have few values, measured signals have many.
-  [[nodiscard]] static bool distinct_beyond(const Channel& channel, std::size_t many) {
-    std::vector<double> sorted;
-    std::ranges::copy_if(channel.values, std::back_inserter(sorted), [](double value) { return !std::isnan(value); });
-    std::ranges::sort(sorted);
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    return sorted.size() > many;
   }
 
   const Recording& recording_;

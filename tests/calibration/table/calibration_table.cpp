@@ -34,11 +34,12 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
     one.seed = first_seed + i;
     results[i] = calibrate_case(sheet, one);
   });
-  fmt::print("\n{}: {} cases of {} runs\n{:36} {:>8} {:>13} {:>10} {:>10} {:>9} {:>9}\n", title, cases, like.runs, "figure", "covered",
-             "95 % of that", "median err", "90 % err", "rms z", "half width");
+  fmt::print("\n{}: {} cases of {} runs\n{:36} {:>8} {:>13} {:>10} {:>10} {:>9} {:>10} {:>9}\n", title, cases, like.runs, "figure",
+             "covered", "95 % of that", "median err", "90 % err", "rms z", "half width", "averaged");
   std::vector<double> seconds_s;
   for (std::size_t f = 0; f < results.front().marks.size(); ++f) {
-    std::vector<double> errors, widths;
+    // How much wider the interval is for averaging over suppositions than it would be for the most probable one.
+    std::vector<double> errors, widths, averaged;
     int covered = 0;
     double squares = 0.0;
     for (const CaseResult& each : results) {
@@ -48,12 +49,16 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
       const double half = 0.5 * std::log(mark.figure.high / mark.figure.low);
       widths.push_back(half);
       squares += std::pow(std::log(mark.figure.value / mark.truth) / (half / 1.96), 2);
+      const Eigen::VectorXd& exponents = each.calibration.motor_model.figures[f].exponents;
+      const Fit& fit = each.calibration.fit;
+      averaged.push_back(
+          std::sqrt(exponents.dot(fit.covariance * exponents) / exponents.dot(fit.hypotheses.front().covariance * exponents)));
     }
     const auto [low, high] = bounds_of(covered, cases);
     std::ranges::sort(errors);
-    fmt::print("{:36} {:7.1f}% {:5.1f} …{:5.1f}% {:9.2f}% {:9.2f}% {:9.2f} {:9.2f}%\n", results.front().marks[f].name,
+    fmt::print("{:36} {:7.1f}% {:5.1f} …{:5.1f}% {:9.2f}% {:9.2f}% {:9.2f} {:9.2f}% {:9.2f}\n", results.front().marks[f].name,
                100.0 * covered / cases, 100.0 * low, 100.0 * high, 100.0 * median(errors),
-               100.0 * errors[static_cast<std::size_t>(0.9 * cases)], std::sqrt(squares / cases), 100.0 * median(widths));
+               100.0 * errors[static_cast<std::size_t>(0.9 * cases)], std::sqrt(squares / cases), 100.0 * median(widths), median(averaged));
   }
   std::vector<double> flux_W, time_s;
   for (const CaseResult& each : results) {
