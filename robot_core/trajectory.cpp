@@ -24,12 +24,12 @@ PlanResult finish(const Way<Real>& way, const AxisState<Real>& start, const Axis
     trajectory.segment_count = 0;
     return PlanResult::out_of_range;
   }
-  trajectory.target = target;
+  AxisState<Real> met = target;
   if (how == Target::moving_on) {
-    trajectory.target.position += target.velocity * trajectory.duration_s;
-    trajectory.target.acceleration = Real(0);
+    met.position += target.velocity * trajectory.duration_s;
+    met.acceleration = Real(0);
   }
-  return PlanResult::ok;
+  return close_at(met, start, limits, trajectory) ? PlanResult::ok : PlanResult::out_of_range;
 }
 
 }  // namespace

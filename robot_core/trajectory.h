@@ -44,7 +44,7 @@ enum class PlanResult : unsigned char {
   target_acceleration_beyond_limit = 4,
   /// Whoever has the target's velocity and acceleration has broken a velocity limit before.
   target_without_approach = 5,
-  /// The numbers are so far apart that Real cannot hold the durations or distances.
+  /// The numbers are so far apart that Real cannot hold the durations or distances: the last segment would miss the target.
   out_of_range = 6,
 };
 
@@ -107,6 +107,10 @@ enum class Target : unsigned char {
 };
 
 /// The fastest motion of one axis. A start that violates limits is led back first, along the shortest way.
+/// If the result is ok, the last segment ends at the target but for 1e-8 (float: 1e-3) of the scales: of the limits for velocity and
+/// acceleration; for the position, of the larger of start's and target's, plus velocity^2/acceleration of the limits. Mostly it is 1e-15.
+/// Where the way leads far beyond those positions, its rounding errors are put where it is farthest: there, segments follow each other
+/// to that part of the farthest position. A target that is missed by a rounding error (1e-11, float 1e-5) of the velocities counts as met.
 template <typename Real>
 PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
                          Trajectory<Real>& trajectory, Target how = Target::at_position);

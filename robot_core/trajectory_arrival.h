@@ -82,9 +82,25 @@ Arrival<Real> arrival(const Families<Real>& f, bool is_up, const Shape<Real>& sh
   return {is_up, shape, duration_of(is_up ? f.up : f.down, shape)};
 }
 
+/// An arrival at the very start or end of the gap, where both families have the same motion.
+template <typename Real>
+bool arrive_at_edge(const Families<Real>& f, bool is_end, Arrival<Real>& found) {
+  const bool is_up = f.up.has_gap;
+  const Ascent<Real>& a = is_up ? f.up : f.down;
+  Shape<Real> shape{};
+  if (!a.has_gap || !meet_at_edge(a, false, is_end ? Real(1) : Real(-1), shape)) {
+    return false;
+  }
+  found = arrival(f, is_up, shape);
+  return true;
+}
+
 /// The first arrival behind the gap; both families have one, `one` for certain.
 template <typename Real>
 Arrival<Real> arrival_after_gap(const Families<Real>& f, bool one_is_up) {
+  if (Arrival<Real> edge{}; arrive_at_edge(f, true, edge)) {
+    return edge;
+  }
   const Ascent<Real>& one = one_is_up ? f.up : f.down;
   const Ascent<Real>& other = one_is_up ? f.down : f.up;
   Shape<Real> shape{};
@@ -123,11 +139,11 @@ bool arrive_before_gap(const Families<Real>& f, bool& is_up, Arrival<Real>& foun
   }
   const Ascent<Real>& a = is_up ? f.up : f.down;
   Shape<Real> shape{};
-  if (touch(a, place, shape) || meet(a, place, shape)) {
+  if (touch(a, place, shape) || meet_at_shortest(a, place, shape) || meet(a, place, shape)) {
     found = arrival(f, is_up, shape);
     return true;
   }
-  return false;
+  return arrive_at_edge(f, false, found);
 }
 
 /// One segment of full jerk from end to end, where that meets the target but for rounding errors: no change of acceleration

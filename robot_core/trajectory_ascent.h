@@ -89,9 +89,15 @@ inline Place<Real> top_place(const Ascent<Real>& a, Real top, Real low_height, R
   return {false, top, distance, low_height, high_height};
 }
 
+/// No leg is lower than its own entry, not even where the square of that is lost beside the velocities.
+template <typename Real>
+inline Real least_height(const Leg<Real>& leg) {
+  return leg.entry > Real(0) ? leg.entry * leg.entry : Real(0);
+}
+
 template <typename Real>
 inline Place<Real> top_place(const Ascent<Real>& a, Real top) {
-  return top_place(a, top, top - a.low.vertex, top - a.high.vertex);
+  return top_place(a, top, larger(top - a.low.vertex, least_height(a.low)), larger(top - a.high.vertex, least_height(a.high)));
 }
 
 template <typename Real>
@@ -159,17 +165,15 @@ inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Re
   const Real missing = a.low.entry * a.low.entry - a.rise;
   a.has_gap = a.starts_in_saddle && a.low.entry > Real(0) && missing > Real(0);
   a.gap = a.has_gap ? larger(-square_root(missing), a.high.entry) : Real(0);
-  const Real low_top = a.low.entry > Real(0) ? a.low.vertex + a.low.entry * a.low.entry : a.low.vertex;
-  const Real high_top = a.high.entry > Real(0) ? a.high.vertex + a.high.entry * a.high.entry : a.high.vertex;
-  a.ceiling = larger(velocity_max, larger(low_top, high_top));
+  a.ceiling = larger(velocity_max, larger(a.low.vertex + least_height(a.low), a.high.vertex + least_height(a.high)));
   return a;
 }
 
 /// The lowest top at which both legs are whole: one of them begins with a fall, or, if none can, with its vertex.
 template <typename Real>
 inline Place<Real> lowest_top(const Ascent<Real>& a) {
-  const Real low = a.low.entry > Real(0) ? a.low.entry * a.low.entry : Real(0);
-  const Real high = a.high.entry > Real(0) ? a.high.entry * a.high.entry : Real(0);
+  const Real low = least_height(a.low);
+  const Real high = least_height(a.high);
   if (low - a.rise > high) {
     return top_place(a, a.low.vertex + low, low, low - a.rise);
   }

@@ -1,5 +1,6 @@
 #include "robot_core/trajectory.h"
 #include "robot_core/trajectory_limits.h"
+#include "robot_core/trajectory_path.h"
 
 namespace robot_core {
 namespace detail {
@@ -83,13 +84,10 @@ PlanResult plan_bang_bang(const AxisState<Real>& start, const AxisState<Real>& t
   Steps<Real> steps(start, trajectory);
   steps.add((within - v0) / back, back);
   cover(target.position - steps.state().position + frame * steps.time_s(), within, target.velocity - frame, lower, upper, limits, steps);
-  if (!is_finite(steps.state().position) || !is_finite(steps.time_s())) {
-    trajectory.segment_count = 0;
-    return PlanResult::out_of_range;
-  }
   trajectory.duration_s = steps.time_s();
-  trajectory.target = {target.position + frame * steps.time_s(), target.velocity, Real(0)};
-  return PlanResult::ok;
+  trajectory.target = {steps.state().position, steps.state().velocity, Real(0)};
+  const AxisState<Real> met{target.position + frame * steps.time_s(), target.velocity, Real(0)};
+  return is_finite(steps.time_s()) && close_at(met, start, limits, trajectory) ? PlanResult::ok : PlanResult::out_of_range;
 }
 
 #define ROBOT_CORE_INSTANTIATE(Real) \

@@ -13,6 +13,10 @@ namespace robot_core::detail {
 template <typename Real>
 inline constexpr Real kTouch = std::numeric_limits<Real>::digits > 32 ? Real(1e-11) : Real(1e-5);
 
+/// What the end of the last segment may be off the target, relative; see plan_position.
+template <typename Real>
+inline constexpr Real kArrival = std::numeric_limits<Real>::digits > 32 ? Real(1e-8) : Real(1e-3);
+
 template <typename Real>
 inline constexpr Real kLimitTolerance = Real(4096) * std::numeric_limits<Real>::epsilon();
 template <typename Real>

@@ -43,57 +43,56 @@ inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, 
   return root_between(function, low, high, guess, bound);
 }
 
-/// Some u with distance(u) <= goal < distance(ceiling): the motion with a top above `from` that meets the goal.
+/// Both legs held: the height of the high leg at which the goal is met.
+template <typename Real>
+inline Real solve_both_held(const Ascent<Real>& a) {
+  const Real inverse = Real(1) / a.low.bound + Real(1) / a.high.bound;
+  const Real linear = a.high.vertex * inverse + (a.low.bound + a.high.bound) / Real(2);
+  const Real rest = a.sum / Real(2) * (a.low.bound + a.rise / a.low.bound) + a.high.vertex * a.high.bound - a.goal;
+  const Real root = square_root(linear * linear - Real(2) * inverse * rest);
+  return linear > Real(0) ? -Real(2) * rest / (linear + root) : (root - linear) / inverse;
+}
+
+/// Some top with distance(from) <= goal < distance(ceiling): the motion with a top above `from` that meets the goal. By heights, not by
+/// the top: a short motion at a high velocity hardly raises it.
 template <typename Real>
 inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, const Place<Real>& ceiling) {
-  Real low = from.at;
-  Real low_distance = from.distance;
-  Real high = ceiling.at;
-  Real high_distance = ceiling.distance;
-  const Real low_threshold = a.low.vertex + a.low.bound * a.low.bound;
-  const Real high_threshold = a.high.vertex + a.high.bound * a.high.bound;
-  bool low_is_held = low_threshold <= low;
-  bool high_is_held = high_threshold <= low;
-  if (!low_is_held && low_threshold < high) {
-    const Real distance = top_place(a, low_threshold).distance;
-    low_is_held = distance <= a.goal;
-    (low_is_held ? low : high) = low_threshold;
-    (low_is_held ? low_distance : high_distance) = distance;
-  }
-  if (!high_is_held && high_threshold < high) {
-    if (high_threshold <= low) {
-      high_is_held = true;
-    } else {
-      const Real distance = top_place(a, high_threshold).distance;
-      high_is_held = distance <= a.goal;
-      (high_is_held ? low : high) = high_threshold;
-      (high_is_held ? low_distance : high_distance) = distance;
+  Place<Real> low = from;
+  Place<Real> high = ceiling;
+  // Beyond its threshold a leg is held: on which side of it the goal is tells whether.
+  const auto narrow = [&](Real high_height) {
+    if (high_height <= low.high_height) {
+      return true;
     }
-  }
+    if (high_height >= high.high_height) {
+      return false;
+    }
+    const Place<Real> place = top_place(a, a.high.vertex + high_height, high_height + a.rise, high_height);
+    const bool is_held = place.distance <= a.goal;
+    (is_held ? low : high) = place;
+    return is_held;
+  };
+  const bool low_is_held = narrow(a.low.bound * a.low.bound - a.rise);
+  const bool high_is_held = narrow(a.high.bound * a.high.bound);
   if (low_is_held && high_is_held) {
-    const Real square = Real(1) / a.low.bound + Real(1) / a.high.bound;
-    const Real half = (a.low.bound + a.high.bound) / Real(2);
-    const Real rest = a.low.vertex * (a.low.bound - a.low.vertex / a.low.bound) +
-                      a.high.vertex * (a.high.bound - a.high.vertex / a.high.bound) - Real(2) * a.goal;
-    const Real root = square_root(half * half - square * rest);
-    const Real top = half > Real(0) ? -rest / (half + root) : (root - half) / square;
-    return top_shape(a, top_place(a, clamped(top, low, high)), Real(0), a.goal);
+    const Real height = clamped(solve_both_held(a), low.high_height, high.high_height);
+    return top_shape(a, top_place(a, a.high.vertex + height, height + a.rise, height), Real(0), a.goal);
   }
-  const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
+  const Real share = clamped((a.goal - low.distance) / (high.distance - low.distance), Real(0), Real(1));
+  const Real y_low = square_root(low.high_height);
+  const Real y_high = square_root(high.high_height);
   if (low_is_held) {
-    const Real y_low = square_root(low - a.high.vertex);
-    const Real y_high = square_root(high - a.high.vertex);
     const Real y = solve_held(a.low.bound, a.high.vertex, a.sum, a.rise, a.goal, y_low, y_high, y_low + share * (y_high - y_low));
     return low_held_shape(a, y, a.goal);
   }
+  const Real x_low = square_root(low.low_height);
+  const Real x_high = square_root(high.low_height);
   if (high_is_held) {
-    const Real x_low = square_root(low - a.low.vertex);
-    const Real x_high = square_root(high - a.low.vertex);
     const Real x = solve_held(a.high.bound, a.low.vertex, a.sum, -a.rise, a.goal, x_low, x_high, x_low + share * (x_high - x_low));
     return high_held_shape(a, x, a.goal);
   }
-  const Real s_low = square_root(low - a.low.vertex) + square_root(low - a.high.vertex);
-  const Real s_high = square_root(high - a.low.vertex) + square_root(high - a.high.vertex);
+  const Real s_low = x_low + y_low;
+  const Real s_high = x_high + y_high;
   // The legs' own velocities pull the root of the pure cubic up or down.
   Real guess = s_low + share * (s_high - s_low);
   const Real linear = a.sum - a.rise / Real(4);
@@ -184,14 +183,10 @@ inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until,
   return false;
 }
 
-/// Whether the motion at a place meets the goal, but for rounding errors. What looks so from vertex to vertex is measured
-/// once more from end to end: short motions between large accelerations are far shorter than that.
+/// What a motion misses from end to end. From vertex to vertex this cannot be told: short motions between large accelerations are far
+/// shorter than that. `scale` is what rounding errors are relative to.
 template <typename Real>
-inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
-  if (absolute(a.goal - place.distance) > kTouch<Real> * (a.goal_scale + absolute(place.distance))) {
-    return false;
-  }
-  const Shape<Real> shape = shape_at(a, place);
+inline Real missed_distance(const Ascent<Real>& a, const Shape<Real>& shape, Real& scale) {
   Real distance = 0;
   Real duration = 0;
   Real velocity = 0;
@@ -208,7 +203,19 @@ inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
   raise(a.high, shape.slope_high, shape.hold_high);
   go(raise(a.low, shape.slope_low, shape.hold_low), shape.slope_low, Real(-1), shape.fall);
   const Real slope = absolute(shape.slope_low) + absolute(shape.slope_high);
-  return absolute(a.distance - distance) <= kTouch<Real> * (a.position_scale + duration * (velocity + duration * slope));
+  scale = a.position_scale + duration * (velocity + duration * slope);
+  return a.distance - distance;
+}
+
+/// Whether the motion at a place meets the goal, but for rounding errors.
+template <typename Real>
+inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
+  if (absolute(a.goal - place.distance) > kTouch<Real> * (a.goal_scale + absolute(place.distance))) {
+    return false;
+  }
+  Real scale = 0;
+  const Real missed = missed_distance(a, shape_at(a, place), scale);
+  return absolute(missed) <= kTouch<Real> * scale;
 }
 
 /// A motion that meets the goal but for a rounding error. Where the next one is far off, that makes all the difference:
@@ -220,6 +227,45 @@ inline bool touch(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& 
     shape = shape_at(a, place);
   }
   return meets;
+}
+
+/// A motion that one leg enters with its fall, while the other is raised to a slope (of the given sign) or held: the shortest one, and
+/// those at both ends of the gap. It is the only one of its duration, and beside it there may be no arrival for long. The velocities alone
+/// tell the slope, but their rounding errors count 1/slope times in it, and so in the distance. So the slope (or the hold) is taken from
+/// the distance, and then the velocities have to allow it but for rounding errors. False as well if motions exist where it leads to.
+template <typename Real>
+inline bool meet_at_edge(const Ascent<Real>& a, bool low_is_free, Real sign, Shape<Real>& shape) {
+  const Leg<Real>& fixed = low_is_free ? a.high : a.low;
+  const Leg<Real>& free = low_is_free ? a.low : a.high;
+  const Real entry_2 = fixed.entry * fixed.entry;
+  const Real square = low_is_free ? entry_2 + a.rise : entry_2 - a.rise;
+  const Real tolerance = kTouch<Real> * (absolute(a.low.vertex) + absolute(a.high.vertex) + entry_2);
+  const bool is_held = sign > Real(0) && square > free.bound * free.bound;
+  Real slope = is_held ? free.bound : sign * square_root(square);
+  Real hold = is_held ? square / free.bound - free.bound : Real(0);
+  Real missed = 0;
+  Real scale = 0;
+  constexpr int kSteps = 3;
+  for (int step = 0; step < kSteps; ++step) {
+    const Real fall = fixed.entry + slope;
+    shape = low_is_free ? Shape<Real>{slope, hold, fixed.entry, Real(0), fall, Real(0), a.goal}
+                        : Shape<Real>{fixed.entry, Real(0), slope, hold, fall, Real(0), a.goal};
+    missed = missed_distance(a, shape, scale);
+    const Real later = missed / (fixed.vertex + entry_2 - slope * slope / Real(2));
+    (is_held ? hold : slope) += is_held ? later : later / Real(2);
+    if (!(absolute(square - slope * (slope + hold)) <= tolerance) || (step == 0 && later * sign > Real(0))) {
+      return false;
+    }
+  }
+  return shape.fall >= Real(0) && hold >= Real(0) && slope > free.entry && absolute(missed) <= kTouch<Real> * scale;
+}
+
+/// The shortest motion, if it meets the goal but for rounding errors, while longer ones at first fall behind it.
+template <typename Real>
+inline bool meet_at_shortest(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& shape) {
+  const Real entry_2 = a.high.entry * a.high.entry;
+  const bool falls_behind = (place.is_saddle ? a.high.vertex + entry_2 : place.at) < Real(0);
+  return falls_behind && meet_at_edge(a, place.is_saddle || entry_2 >= place.high_height, Real(1), shape);
 }
 
 /// The first motion from `from` on (whose distance is not above the goal) that meets the goal. False if a gap comes first.

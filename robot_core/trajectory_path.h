@@ -140,4 +140,41 @@ bool lay_out(const Way<Real>& way, const AxisState<Real>& start, const AxisLimit
   return is_finite(state.position) && is_finite(state.velocity) && is_finite(time_s);
 }
 
+/// What is left to the target at the end of a way is the sum of its rounding errors. Where that can be seen beside the positions asked for,
+/// the way has gone far beyond them, and the error goes where it came from: to the change of segments that is farthest out. False if even
+/// so the end is not the target; `trajectory` is then empty.
+template <typename Real>
+bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
+  AxisState<Real> end = trajectory.target;
+  trajectory.target = target;
+  const Real asked = larger(absolute(start.position), absolute(target.position));
+  const Real velocity = larger(limits.velocity_max, -limits.velocity_min);
+  const Real acceleration = larger(limits.acceleration_max, -limits.acceleration_min);
+  const Real missed = target.position - end.position;
+  Real farthest = 0;
+  if (absolute(missed) > kTouch<Real> * asked) {
+    int from = trajectory.segment_count;
+    for (int i = 1; i < trajectory.segment_count; ++i) {
+      if (const Real far = absolute(trajectory.segments[i].start.position); far > farthest) {
+        farthest = far;
+        from = i;
+      }
+    }
+    for (int i = from; i < trajectory.segment_count; ++i) {
+      trajectory.segments[i].start.position += missed;
+    }
+    if (from < trajectory.segment_count) {
+      const TrajectorySegment<Real>& last = trajectory.segments[trajectory.segment_count - 1];
+      end.position = Trajectory<Real>::advanced(last.start, last.jerk, last.duration_s).position;
+    }
+  }
+  const Real reach = asked + velocity * velocity / acceleration;
+  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * reach &&
+                        absolute(missed) <= kArrival<Real> * (reach + farthest + velocity * trajectory.duration_s) &&
+                        absolute(target.velocity - end.velocity) <= kArrival<Real> * velocity &&
+                        absolute(target.acceleration - end.acceleration) <= kArrival<Real> * acceleration;
+  trajectory.segment_count = is_there ? trajectory.segment_count : 0;
+  return is_there;
+}
+
 }  // namespace robot_core::detail

@@ -163,9 +163,16 @@ bool lay_out_change(const VelocityChange<Real>& c, const TimedChange<Real>& time
   if (timed.up_share > Real(0) && timed.up_share < Real(1)) {
     close_velocity(target.velocity, trajectory);
   }
+  const AxisState<Real> end = trajectory.target;
   trajectory.target.velocity = target.velocity;
   trajectory.target.acceleration = target.acceleration;
-  return true;
+  const Real slopes = absolute(c.highest) + absolute(c.lowest);
+  const Real reach = (c.scale + slopes * slopes + absolute(timed.up.gain) + absolute(timed.down.gain)) * limits.jerk_max;
+  const Real acceleration = larger(limits.acceleration_max, -limits.acceleration_min);
+  const bool is_there = absolute(target.velocity - end.velocity) <= kArrival<Real> * reach &&
+                        absolute(target.acceleration - end.acceleration) <= kArrival<Real> * acceleration;
+  trajectory.segment_count = is_there ? trajectory.segment_count : 0;
+  return is_there;
 }
 
 template <typename Real>

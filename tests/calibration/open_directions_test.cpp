@@ -51,6 +51,35 @@ TEST(OpenDirections, WindingCapacityWhereOnlyTheStatorIsSensed) {
   EXPECT_TRUE(figure(result.calibration, "thermal_resistance_stator_ambient").is_identifiable);
 }
 
+/// The same log as of a motor of another resistance, with the voltage at its terminals.
+TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"5 %\""};
+  const Motor motor = sheet.motor(folder);
+  for (const double ratio : {1.0, 0.7}) {
+    TwoNodeTruth truth = sheet.truth;
+    truth.resistance_25C_ohm *= ratio;
+    LogMaking making;
+    making.duration_s = 1200.0;
+    Recording log = generated_log(truth, making, 5, 0);
+    std::vector<double> speed_rad_per_s, motor_V;
+    const std::vector<double>& current_A = log.find("current_A")->values;
+    const std::vector<double>& winding_C = log.find("winding_C")->values;
+    for (std::size_t row = 0; row < log.rows(); ++row) {
+      speed_rad_per_s.push_back(200.0 * std::sin(0.02 * static_cast<double>(row)));
+      const double hot_ratio = 1.0 + truth.temperature_coefficient_per_K * (winding_C[row] - 25.0);
+      motor_V.push_back(truth.resistance_25C_ohm * hot_ratio * current_A[row] + 0.034 * speed_rad_per_s.back());
+    }
+    log.channels.push_back({*quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
+    log.channels.push_back({*quantity_named("motor_V"), std::move(motor_V)});
+    const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
+    const Calibration found = calibrate(motor, logs, {}, {});
+    EXPECT_EQ(std::ranges::any_of(found.notes,
+                                  [](const std::string& note) { return note.find("go with a terminal resistance of") != note.npos; }),
+              ratio < 1.0);
+  }
+}
+
 /// A log without heat in which the motor cools down.
 Recording cool_down(const TwoNodeTruth& truth) {
   LogMaking making;

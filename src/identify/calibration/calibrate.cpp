@@ -81,6 +81,7 @@ class Calibrating {
       all_.next_experiment = std::ranges::min_element(all_.open, {}, &OpenDirection::experiment_min)->experiment;
     }
     tell_common_factor();
+    tell_terminal_resistance(motor);
     tell_what_got_worse("the runs that were fitted", all_.fit_error);
     tell_what_got_worse("the runs held out", all_.holdout_error);
     refuse_where_nothing_was_learned();
@@ -148,6 +149,46 @@ class Calibrating {
     }
   }
 
+  /// What V = R·I + K·ω makes of the resistance, where the logs hold all three and follow it.
+  void tell_terminal_resistance(const Motor& motor) {
+    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d with_voltage = Eigen::Vector2d::Zero();
+    double squares_V2 = 0.0;
+    for (const Recording& recording : recordings_) {
+      const Channel* const voltage = recording.find("motor_V");
+      const Channel* const current = recording.find("current_A");
+      const Channel* const speed = recording.find("speed_rad_per_s");
+      const Channel* const winding = recording.find("winding_C");
+      for (std::size_t row = 0; voltage && current && speed && row < recording.rows(); ++row) {
+        const double above_K = winding && !std::isnan(winding->values[row]) ? winding->values[row] - 25.0 : 0.0;
+        const double hot_ratio = 1.0 + motor.nominal.temperature_coefficient_per_K * above_K;
+        const Eigen::Vector2d x(hot_ratio * current->values[row], speed->values[row]);
+        const double voltage_V = voltage->values[row];
+        if (std::isnan(x.sum() + voltage_V)) {
+          continue;
+        }
+        products += x * x.transpose();
+        with_voltage += voltage_V * x;
+        squares_V2 += voltage_V * voltage_V;
+      }
+    }
+    const Eigen::Vector2d found = products.completeOrthogonalDecomposition().solve(with_voltage);
+    const double stated_ohm = motor.nominal.terminal_resistance_ohm;
+    // Means over rows in which the load jumps do not follow the law: what it leaves must be small beside the voltage of the current.
+    constexpr double kFollows_share = 0.02;
+    if (!(squares_V2 - found.dot(with_voltage) < kFollows_share * stated_ohm * stated_ohm * products(0, 0)) || !(found[0] > 0.0)) {
+      return;
+    }
+    const double ratio = found[0] / stated_ohm;
+    constexpr double kFar_ratio = 1.15;
+    if (std::max(ratio, 1.0 / ratio) > kFar_ratio) {
+      all_.notes.push_back(fmt::format(
+          "motor_V, current_A and speed of these logs go with a terminal resistance of {} ohm at 25 °C, the file says {} ohm: every "
+          "figure scales with it; is it this motor? If so, state the measured resistance in its file",
+          significant(found[0], 3), significant(stated_ohm, 3)));
+    }
+  }
+
   /// Figures that are right for what follows the heat at once may foretell a whole run worse, where the model lacks something.
   void tell_what_got_worse(const char* runs, const std::vector<ErrorBeforeAfter>& errors) {
     for (const ErrorBeforeAfter& each : errors) {
@@ -156,9 +197,9 @@ class Calibrating {
       if (each.after.rmse_K > kWorse_ratio * each.before.rmse_K + kLeast_K) {
         all_.worse.push_back(fmt::format(
             "{} of {} is foretold worse than with the figures of the file, {} K rms instead of {} K: do not forecast such runs with this "
-            "model; they hold something that the fitted ones do not tell, or two temperatures with constant figures do not describe this "
-            "motor (`heatsoak diagnose` looks for what is missing)",
-            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3)));
+            "model; {}two temperatures with constant figures do not describe this motor (`heatsoak diagnose` looks for what is missing)",
+            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3),
+            &errors == &all_.holdout_error ? "they hold something that the fitted ones do not tell, or " : ""));
       }
     }
   }
@@ -173,6 +214,13 @@ class Calibrating {
       of_file += each.is_of_file ? 1 : 0;
       const double moved = each.exponents.dot(fit.theta - model.theta());
       const double sd = std::sqrt(each.exponents.dot(fit.covariance * each.exponents));
+      constexpr double kUnlikely_sd = 3.0;
+      if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
+        all_.notes.push_back(
+            fmt::format("{} becomes {} times what the file says, {} times as far off as the file lets expect: is a unit of the "
+                        "logs wrong, or is it another motor?",
+                        each.name, significant(std::exp(moved), 2), significant(std::abs(moved) / each.prior_sd, 2)));
+      }
       CalibratedFigure figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
       figure.value = each.before * std::exp(moved);
       double below = kQuantile * sd;
