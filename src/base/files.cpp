@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -23,7 +25,31 @@ namespace {
   throw bad_input({path.string()}, "", "cannot be read: " + reason);
 }
 
+struct Inputs {
+  std::mutex mutex;
+  std::set<std::filesystem::path> paths;
+};
+Inputs& inputs() {
+  static Inputs all;
+  return all;
+}
+
+std::filesystem::path without_links(const std::filesystem::path& path) {
+  std::error_code missing;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path), missing);
+}
+
 }  // namespace
+
+void note_input(const std::filesystem::path& path) {
+  const std::lock_guard lock(inputs().mutex);
+  inputs().paths.insert(without_links(path));
+}
+
+bool is_input(const std::filesystem::path& path) {
+  const std::lock_guard lock(inputs().mutex);
+  return inputs().paths.contains(without_links(path));
+}
 
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes) {
   // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
@@ -42,6 +68,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest_byt
   if (!S_ISREG(about.st_mode)) {
     cannot_read(path, S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
   }
+  note_input(path);
   std::string content;
   std::vector<char> chunk(1 << 16);
   for (;;) {

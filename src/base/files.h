@@ -11,6 +11,11 @@ namespace heatsoak {
 /// All bytes of a regular file of at most `largest_bytes`; else Failure (bad_input).
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes);
 
+/// Whoever opens an input tells it here, so that no output replaces it. Any thread may.
+void note_input(const std::filesystem::path& path);
+/// Whether this process has read the file, under whatever name.
+bool is_input(const std::filesystem::path& path);
+
 struct OutputFile {
   std::filesystem::path path;
   std::string content;

@@ -46,10 +46,32 @@ Played play(const MatchSimulation& wanted, Planner planner) {
   return played;
 }
 
-/// Too hot, or at an end before the match is.
-bool fails(const MatchSimulation& wanted, const DriveScore& score) {
+/// Why the match was not driven, whatever the motors' temperatures are; empty where it was.
+std::string not_driven(const DriveScore& score) {
+  constexpr double kRobot_m = 0.18;
+  constexpr double kMostLifted_share = 0.01;
+  if (score.battery_empty_s > 0.0) {
+    return fmt::format("the battery is empty after {:.0f} s; the rest of the match is a standstill", score.time_s - score.battery_empty_s);
+  }
+  if (score.lifted_s > kMostLifted_share * score.time_s) {
+    return fmt::format("wheels are off the ground for {:.0f} s: the robot tips", score.lifted_s);
+  }
+  return score.tracking_rms_m > kRobot_m
+             ? fmt::format("the robot is {:.1f} m (rms) off its plan, more than its own size: motors, driver or grip are too weak",
+                           score.tracking_rms_m)
+             : std::string();
+}
+
+/// Of all runs: too hot is worse than not driven.
+std::string_view verdict(const MatchSimulation& wanted, const std::vector<Played>& all) {
   const MotorValues& limits = wanted.motor.nominal;
-  return score.battery_empty_s > 0.0 || score.winding_peak_C > limits.winding_limit_C || score.stator_peak_C > limits.stator_limit_C;
+  const auto too_hot = [&](const Played& each) {
+    return each.run.score.winding_peak_C > limits.winding_limit_C || each.run.score.stator_peak_C > limits.stator_limit_C;
+  };
+  if (std::ranges::any_of(all, too_hot)) {
+    return "fail";
+  }
+  return std::ranges::all_of(all, [](const Played& each) { return not_driven(each.run.score).empty(); }) ? "pass" : "infeasible";
 }
 
 struct TableRow {
@@ -250,10 +272,8 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
     throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes too many rows of a match; expected 0.02 s or more", wanted.every_s));
   }
   std::vector<Played> all;
-  bool exceeded = false;
   for (const Planner planner : wanted.planners) {
     all.push_back(play(wanted, planner));
-    exceeded = exceeded || fails(wanted, all.back().run.score);
   }
   if (!wanted.out.empty()) {
     session.write(wanted.out, std::move(all.front().csv));
@@ -267,11 +287,10 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
       "hottest: wheel {} at {:.1f} °C (limit {:.0f} °C): {}\n",
       wanted.motor.id, wanted.robot.id, wanted.duty.id, kRoleNames.at(static_cast<std::size_t>(wanted.inputs.role)), wanted.seed,
       first.time_s / 60.0, 1.0 / control_period_s(wanted.robot), data_quality(wanted.motor), wanted.duty.origin, table(all),
-      energy_text(all), first.hottest_wheel + 1, first.winding_peak_C, wanted.motor.nominal.winding_limit_C, exceeded ? "fail" : "pass"));
+      energy_text(all), first.hottest_wheel + 1, first.winding_peak_C, wanted.motor.nominal.winding_limit_C, verdict(wanted, all)));
   for (const Played& each : all) {
-    if (each.run.score.battery_empty_s > 0.0) {
-      session.say(fmt::format("{}: the battery is empty after {:.0f} s; the rest of the match is a standstill\n", to_string(each.planner),
-                              each.run.score.time_s - each.run.score.battery_empty_s));
+    if (const std::string why = not_driven(each.run.score); !why.empty()) {
+      session.say(fmt::format("{}: {}\n", to_string(each.planner), why));
     }
   }
   for (const std::string& file : {wanted.out, wanted.plot}) {
@@ -293,10 +312,10 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
                   {"stator_peak_C", rounded(first.stator_peak_C, 3)},
                   {"winding_limit_C", rounded(wanted.motor.nominal.winding_limit_C, 2)},
                   {"current_rms_A", rounded(first.current_rms_A, 4)},
-                  {"verdict", exceeded ? "fail" : "pass"},
+                  {"verdict", verdict(wanted, all)},
                   {"data_quality", data_quality(wanted.motor)},
                   {"planners", planners}});
-  return exceeded ? ExitCode::limit_exceeded : ExitCode::done;
+  return verdict(wanted, all) != "pass" ? ExitCode::limit_exceeded : ExitCode::done;
 }
 
 }  // namespace heatsoak

@@ -10,6 +10,7 @@
 #include "base/files.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
+#include "input/document.h"
 
 namespace heatsoak {
 namespace {
@@ -75,7 +76,19 @@ void check_words(const CLI::App& app, int argc, const char* const* argv) {
 /// Unlike fmt::print this does not throw: a full disk is found at the end (see written_out), a full stderr is borne.
 void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
 
-int fail(Session& session, const Failure& failure) {
+/// Findings of layers that know the file and the key, but no longer the line.
+Failure with_places(const Failure& failure) {
+  std::vector<Diagnostic> all(failure.diagnostics().begin(), failure.diagnostics().end());
+  for (Diagnostic& each : all) {
+    if (each.at.line == 0 && !each.key.empty() && each.at.file.ends_with(".toml")) {
+      each.at = place_of(each.at.file, each.key);
+    }
+  }
+  return {failure.code(), failure.message(), std::move(all)};
+}
+
+int fail(Session& session, const Failure& found) {
+  const Failure failure = with_places(found);
   put(stderr, std::string(failure.what()) + "\n");
   session.answer_failure(failure);
   return static_cast<int>(failure.code());
@@ -132,6 +145,15 @@ void Session::answer(const nlohmann::ordered_json& json) {
 }
 
 void Session::finish() {
+  std::vector<Diagnostic> read;
+  for (const OutputFile& each : files_) {
+    if (is_input(each.path)) {
+      read.push_back({{each.path.string()}, {}, "this command reads the file and would write over it; give the output another name"});
+    }
+  }
+  if (!read.empty()) {
+    throw Failure(ExitCode::bad_input, "", std::move(read));
+  }
   write_files(files_);
   put(json_target_ == "-" ? stderr : stdout, text_);
   put(stdout, json_text_);

@@ -9,6 +9,17 @@
 #include "base/quantity.h"
 
 namespace heatsoak {
+namespace {
+
+std::function<std::string(const std::string&)> ends_in(const std::string& ending, const std::string& why) {
+  return [ending, why](const std::string& name) {
+    return name.ends_with(ending) || name.ends_with(ending + "/") || name.starts_with("/dev/")
+               ? std::string()
+               : fmt::format("{} does not end in {}; {}", name, ending, why);
+  };
+}
+
+}  // namespace
 
 CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const ParameterSpec& spec) {
   const auto parse = [flag, spec, &value](const std::string& text) {
@@ -26,12 +37,11 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value,
 }
 
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning) {
-  const auto is_svg = [](const std::string& name) {
-    return name.ends_with(".svg") || name.ends_with(".svg/") || name.starts_with("/dev/")
-               ? std::string()
-               : fmt::format("{} does not end in .svg; pictures are drawn as SVG", name);
-  };
-  return app.add_option("--plot", file, meaning)->check(is_svg)->type_name("FILE.svg");
+  return app.add_option("--plot", file, meaning)->check(ends_in(".svg", "pictures are drawn as SVG"))->type_name("FILE.svg");
+}
+
+CLI::Option* add_table(CLI::App& app, std::string& file, const std::string& meaning) {
+  return app.add_option("--out", file, meaning)->check(ends_in(".csv", "tables are written as CSV"))->type_name("FILE.csv");
 }
 
 std::function<std::string(const std::string&)> whole_number(std::uint64_t most) {

@@ -20,4 +20,7 @@ std::function<std::string(const std::string&)> whole_number(std::uint64_t most);
 /// --plot FILE.svg; another ending is a usage error, because nothing else is drawn.
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning);
 
+/// --out FILE.csv; another ending is a usage error.
+CLI::Option* add_table(CLI::App& app, std::string& file, const std::string& meaning);
+
 }  // namespace heatsoak

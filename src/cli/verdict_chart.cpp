@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -27,6 +28,24 @@ std::vector<const MotorEvaluation*> chosen(const std::vector<MotorEvaluation>& r
   return all;
 }
 
+double at(const TemperatureCurves& curves, const std::vector<double>& values, double time_s) {
+  const auto next = std::ranges::lower_bound(curves.time_s, time_s);
+  return values[static_cast<std::size_t>(std::min(next, curves.time_s.end() - 1) - curves.time_s.begin())];
+}
+
+/// Whether one line would lie under the other: then it is dashed, so that both are seen.
+bool coincide(const TemperatureCurves& one, const std::vector<double>& one_C, const TemperatureCurves& other,
+              const std::vector<double>& other_C) {
+  constexpr int kLooks = 60;
+  constexpr double kLine_K = 1.0;
+  int alike = 0;
+  for (int i = 1; i <= kLooks; ++i) {
+    const double time_s = one.time_s.back() * i / kLooks;
+    alike += std::abs(at(one, one_C, time_s) - at(other, other_C, time_s)) < kLine_K ? 1 : 0;
+  }
+  return 2 * alike > kLooks;
+}
+
 ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_winding) {
   ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
   std::map<double, std::vector<std::string>> limits_C;
@@ -35,7 +54,13 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
     const std::string name =
         of_winding ? fmt::format("{}, {:.0f} °C", shown[i]->motor_id, shown[i]->winding_peak_C.nominal) : std::string();
     const int color = static_cast<int>(i);
-    result.curves.push_back({name, in_minutes(curves.time_s), of_winding ? curves.winding_C : curves.stator_C, color, false});
+    const auto values_of = [of_winding](const TemperatureCurves& c) -> const std::vector<double>& {
+      return of_winding ? c.winding_C : c.stator_C;
+    };
+    const bool is_hidden = std::any_of(shown.begin(), shown.begin() + color, [&](const MotorEvaluation* before) {
+      return coincide(curves, values_of(curves), before->curves, values_of(before->curves));
+    });
+    result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden});
     if (!curves.band_time_s.empty()) {
       result.bands.push_back({"", in_minutes(curves.band_time_s), of_winding ? curves.winding_p05_C : curves.stator_p05_C,
                               of_winding ? curves.winding_p95_C : curves.stator_p95_C, color});
@@ -59,11 +84,13 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
 
 Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
   const std::vector<const MotorEvaluation*> shown = chosen(results, robot);
+  const bool sampled = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
   const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
   return {.title = fmt::format("{} on {}", robot.name, duty.id),
-          .subtitle = fmt::format("{}{}; lines: nominal, areas: 5 % to 95 % of samples{}",
-                                  shown.size() < results.size() ? fmt::format("{} of {} motors, ", shown.size(), results.size()) : "",
-                                  duty.summary, estimated ? "; thermal data partly estimated" : ""),
+          .subtitle =
+              fmt::format("{}{}{}{}", shown.size() < results.size() ? fmt::format("{} of {} motors, ", shown.size(), results.size()) : "",
+                          duty.summary, sampled ? "; lines: nominal, areas: 5\u00a0% to 95\u00a0% of samples" : "; nominal figures",
+                          estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
           .panels = {panel(shown, false), panel(shown, true)}};
 }

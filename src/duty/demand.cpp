@@ -6,17 +6,24 @@
 #include <utility>
 
 namespace heatsoak {
+namespace {
+
+double direction_of(double speed_rad_per_s) {
+  return std::abs(speed_rad_per_s) < kStandstill_rad_per_s ? 0.0 : std::copysign(1.0, speed_rad_per_s);
+}
+
+}  // namespace
 
 double WheelDemand::duration_s() const {
   return std::accumulate(bins.begin(), bins.end(), 0.0, [](double sum_s, const LoadBin& bin) { return sum_s + bin.duration_s; });
 }
 
 LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A) {
-  const double sign = speed_rad_per_s > 0.0 ? 1.0 : speed_rad_per_s < 0.0 ? -1.0 : 0.0;
+  const double direction = direction_of(speed_rad_per_s);
   return {.duration_s = duration_s,
           .torque_rms_Nm = std::abs(torque_Nm),
-          .torque_along_motion_Nm = torque_Nm * sign,
-          .moving_share = std::abs(sign),
+          .torque_along_motion_Nm = torque_Nm * direction,
+          .moving_share = std::abs(direction),
           .speed_mean_rad_per_s = std::abs(speed_rad_per_s),
           .speed_rms_rad_per_s = std::abs(speed_rad_per_s),
           .torque_mean_Nm = torque_Nm,
@@ -30,13 +37,13 @@ DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid) : bin
 }
 
 void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_per_s) {
-  const double sign = speed_rad_per_s > 0.0 ? 1.0 : speed_rad_per_s < 0.0 ? -1.0 : 0.0;
+  const double direction = direction_of(speed_rad_per_s);
   const double magnitude_rad_per_s = std::abs(speed_rad_per_s);
   const std::array<double, integral_count> now{1.0,
                                                torque_Nm,
                                                torque_Nm * torque_Nm,
-                                               torque_Nm * sign,
-                                               std::abs(sign),
+                                               torque_Nm * direction,
+                                               std::abs(direction),
                                                speed_rad_per_s,
                                                magnitude_rad_per_s,
                                                speed_rad_per_s * speed_rad_per_s,
@@ -46,7 +53,7 @@ void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_p
   }
   travelled_rad_per_s_ += std::abs(speed_rad_per_s - last_speed_rad_per_s_.value_or(speed_rad_per_s));
   last_speed_rad_per_s_ = speed_rad_per_s;
-  const double torque_with_motion_Nm = sign < 0.0 ? -torque_Nm : sign > 0.0 ? torque_Nm : std::abs(torque_Nm);
+  const double torque_with_motion_Nm = direction < 0.0 ? -torque_Nm : direction > 0.0 ? torque_Nm : std::abs(torque_Nm);
   // Away from zero, so that a cell asks at least as much as anything in it.
   const int torque_cell =
       static_cast<int>(std::copysign(std::ceil(std::abs(torque_with_motion_Nm) / grid_.torque_step_Nm), torque_with_motion_Nm));

@@ -16,8 +16,8 @@ namespace heatsoak {
 struct LoadBin {
   double duration_s = 0.0;
   double torque_rms_Nm = 0.0;
-  double torque_along_motion_Nm = 0.0;  ///< mean of M·sign ω: positive drives, negative brakes
-  double moving_share = 0.0;            ///< part of the time with ω ≠ 0
+  double torque_along_motion_Nm = 0.0;  ///< mean of M·sign ω (see kStandstill_rad_per_s): positive drives, negative brakes
+  double moving_share = 0.0;            ///< part of the time with a direction
   double speed_mean_rad_per_s = 0.0;    ///< mean of |ω|
   double speed_rms_rad_per_s = 0.0;
   double torque_mean_Nm = 0.0;           ///< signed
@@ -26,6 +26,10 @@ struct LoadBin {
   double power_mean_W = 0.0;             ///< mean of M·ω
   double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between stretches of constant speed are not in it
 };
+
+/// A wheel that turns more slowly has no direction, 3 mm/s at a rim of 30 mm: what planners, smoothers and number formats leave of a
+/// zero has a sign, and the motor's whole drag would follow it.
+inline constexpr double kStandstill_rad_per_s = 0.1;
 
 /// A stretch with one torque and speed.
 LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/files.h"
 
 namespace heatsoak {
 namespace {
@@ -126,6 +127,7 @@ LogBytes::LogBytes(const std::filesystem::path& file) : state_(std::make_unique<
   if (!s.file) {
     throw bad_input({file.string()}, "", fmt::format("cannot be read: {}", std::strerror(errno)));
   }
+  note_input(file);
   s.file_size = std::filesystem::file_size(file, error);
   if (error) {
     s.file_size = 0;

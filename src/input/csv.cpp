@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "base/diagnostic.h"
+#include "base/files.h"
 #include "base/quantity.h"
 
 namespace heatsoak {
@@ -182,6 +183,7 @@ std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::pa
   if (!S_ISREG(about.st_mode)) {
     throw cannot_read(S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
   }
+  note_input(path);
   return file;
 }
 

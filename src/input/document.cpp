@@ -112,6 +112,27 @@ std::string_view to_string(Value::Kind kind) {
 
 Value read_toml(const std::filesystem::path& path) { return parse_toml(read_file(path, kLargestToml_bytes), path.string()); }
 
+Location place_of(const std::filesystem::path& path, std::string_view key) {
+  Location place{path.string()};
+  try {
+    const Value root = read_toml(path);
+    place = {path.string(), 1, 1};
+    const Value* value = &root;
+    while (!key.empty()) {
+      const std::size_t dot = std::min(key.find('.'), key.size());
+      value = value->find(key.substr(0, dot));
+      if (value == nullptr) {
+        break;
+      }
+      place = value->at;
+      key.remove_prefix(std::min(dot + 1, key.size()));
+    }
+  } catch (const Failure&) {
+    // The finding stands without its line.
+  }
+  return place;
+}
+
 Value parse_toml(const std::string& content, const std::string& file) {
   if (content.find('\0') != std::string::npos) {
     throw bad_input({file}, "", "cannot be read: it is a binary file; expected TOML text");

@@ -35,7 +35,10 @@ std::string_view to_string(Value::Kind kind);
 /// error of syntax, or why the file cannot be read.
 Value read_toml(const std::filesystem::path& path);
 
-/// The same for text that is at hand; `file` is its name in messages.
+/// Where the file has the dotted key, or the last table on the way to it; no line where the file cannot be read.
+Location place_of(const std::filesystem::path& path, std::string_view key);
+
+/// As read_toml, for text that is at hand; `file` is its name in messages.
 Value parse_toml(const std::string& content, const std::string& file);
 
 }  // namespace heatsoak

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "base/diagnostic.h"
+#include "base/files.h"
 
 namespace heatsoak {
 namespace {
@@ -47,6 +48,7 @@ class LineReader {
     if (!S_ISREG(about.st_mode)) {
       fail(S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
     }
+    note_input(path);
   }
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;

@@ -32,7 +32,9 @@ void for_each_figure(const Motor& motor, const Visit& visit) {
 
 void sources(const Motor& motor, Findings& findings) {
   for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
-    if (figure.source.empty()) {
+    // What an estimate rests on stands in its derivation.
+    const bool is_derived = figure.origin == Origin::estimated && !figure.derivation.empty();
+    if (figure.source.empty() && !is_derived) {
       findings.error_at(figure.at, fmt::format("{} of {} names no source; expected the ids of what it was derived from, or one whose text "
                                                "says that it is your own judgement",
                                                key, figure.printed));

@@ -121,6 +121,9 @@ void read_figures(Reader& top, Motor& motor, double resistance_factor, double to
       } else if (each.value == &MotorValues::torque_constant_Nm_per_A) {
         scale(*figure, torque_factor);
       }
+      if (each.value == &MotorValues::pole_pairs && figure->value != std::round(figure->value)) {
+        figures->problem("pole_pairs", "is not a whole number");
+      }
       motor.nominal.*each.value = figure->value;
       motor.figures.emplace(each.spec.key, std::move(*figure));
     }

@@ -72,7 +72,8 @@ Kinematics make_kinematics(const Robot& robot) {
   }
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> decomposition(jacobian);
   if (decomposition.rank() < 3) {
-    throw bad_input({robot.file.string()}, "wheels.axis_angles", "leave a direction in which no wheel can drive");
+    throw bad_input({robot.file.string()}, "wheels.axis_angles",
+                    "leave a direction in which no wheel can drive; expected axes that do not all lie in one line or circle the same way");
   }
   const Eigen::Matrix3Xd inverse = decomposition.pseudoInverse();
   for (std::size_t i = 0; i < count; ++i) {

@@ -27,7 +27,7 @@ OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& ro
 std::vector<Interval> intervals(const MotorValues& motor, const Robot& robot, DutyKind kind, const WheelDemand& demand,
                                 const DutySample& sample);
 
-/// Root mean square of the heating current over the whole of it.
+/// Root mean square of the heating current over the whole of it, as far as a winding at 25 °C lets it through.
 double current_rms_A(const std::vector<Interval>& intervals);
 
 /// Whether voltage and current suffice, point by point of the demand.

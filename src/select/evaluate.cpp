@@ -12,6 +12,7 @@
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 #include "select/drive_profile.h"
+#include "select/spread.h"
 #include "thermal/ensemble.h"
 
 namespace heatsoak {
@@ -20,8 +21,8 @@ namespace {
 enum Node { winding, stator };
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
-/// Each takes as long as a nominal run of every motor; the percentiles of a duty's own spread are as coarse as that.
-constexpr int kMostDraws = 16;
+/// Half a minute of work; beyond, the intervals say how coarse the percentiles are.
+constexpr int kMostDraws = 256;
 
 /// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
 class Block {
@@ -140,21 +141,6 @@ struct Work {
   Envelope winding_envelope_C, stator_envelope_C;
 };
 
-double quantile(std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
-}
-
-Spread95 spread(double nominal, std::vector<double> samples) {
-  if (samples.empty()) {
-    return {nominal, kNothing, kNothing, kNothing};
-  }
-  std::ranges::sort(samples);
-  return {nominal, quantile(samples, 0.05), quantile(samples, 0.5), quantile(samples, 0.95)};
-}
-
 /// The factor on all currents with which the winding just reaches its limit: eight factors at a time, each
 /// round between the two that enclose it, at last by their temperatures. Nothing where even no current is too much.
 std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals, double limit_C) {
@@ -204,6 +190,7 @@ LimitingFactor limiting_factor_of(DriveLimit limit) {
 /// One nominal run at one wheel, through the reference.
 struct NominalRun {
   std::vector<Interval> intervals;
+  double current_rms_A = 0.0;  ///< that flows, which falls behind the demand where the hot winding lets less through
   TransientResult transient;
   TemperatureCurves curves;
 };
@@ -214,13 +201,26 @@ NominalRun run_nominal(const Network& network, const MotorSample& sample, const 
   run.intervals = intervals(sample.values, robot, duty.kind, demand, nominal_sample(duty));
   TransientOptions options;
   options.limits = limits;
+  const std::vector<double> parameters = network.values();
+  double charge_A2_s = 0.0;
+  double last_A2 = 0.0;
+  double last_s = 0.0;
   const auto keep = [&](const TransientMoment& moment) {
+    const double flows_A = network.within_headroom(run.intervals[moment.interval].at, parameters.data(), moment.state_C.data());
+    if (!moment.begins_interval) {
+      charge_A2_s += 0.5 * (last_A2 + flows_A * flows_A) * (moment.time_s - last_s);
+    }
+    last_A2 = flows_A * flows_A;
+    last_s = moment.time_s;
+    if (!with_curves) {
+      return;
+    }
     run.curves.time_s.push_back(moment.time_s);
     run.curves.winding_C.push_back(moment.state_C[winding]);
     run.curves.stator_C.push_back(moment.state_C[stator]);
   };
-  run.transient =
-      run_transient(network, network.values(), run.intervals, options, with_curves ? TransientObserver(keep) : TransientObserver());
+  run.transient = run_transient(network, parameters, run.intervals, options, keep);
+  run.current_rms_A = last_s > 0.0 ? std::sqrt(charge_A2_s / last_s) : 0.0;
   return run;
 }
 
@@ -258,11 +258,11 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   result.winding_peak_C.nominal = transient.peak_C[winding];
   result.stator_peak_C.nominal = transient.peak_C[stator];
   result.destroyed = transient.destroyed;
-  result.current_rms_A = current_rms_A(run.intervals);
+  result.current_rms_A = run.current_rms_A;
   result.least_torque_share = hot.least_share;
   result.margin_K = result.winding_limit_C - transient.peak_C[winding];
   if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, result.winding_limit_C)) {
-    result.margin_A = (*factor - 1.0) * result.current_rms_A;
+    result.margin_A = *factor * current_rms_A(run.intervals) - result.current_rms_A;
   }
   std::size_t first_limit = 0;
   for (std::size_t i = 0; i < limits.size(); ++i) {
@@ -282,19 +282,19 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   }
 }
 
-/// The wheel that works hardest: with draws of a duty it stands for the hottest one, which is known only afterwards.
-const WheelDemand& hardest(const std::vector<WheelDemand>& wheels) {
+/// With draws of a duty it stands for the hottest one, which is known only afterwards.
+WheelDemand hardest(std::vector<WheelDemand> wheels) {
   const auto effort_Nm2_s = [](const WheelDemand& wheel) {
     return std::accumulate(wheel.bins.begin(), wheel.bins.end(), 0.0, [](double sum_Nm2_s, const LoadBin& bin) {
       return sum_Nm2_s + bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
     });
   };
-  return *std::ranges::max_element(wheels, {}, effort_Nm2_s);
+  return std::move(*std::ranges::max_element(wheels, {}, effort_Nm2_s));
 }
 
 void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
   const std::size_t turn = static_cast<std::size_t>(first_sample / kLanes);
-  const WheelDemand& demand = options.draws.empty() ? *work.wheel : hardest(options.draws[turn % options.draws.size()]);
+  const WheelDemand& demand = options.draws.empty() ? *work.wheel : options.draws[turn % options.draws.size()];
   const Block block(*work.motor, robot, duty, demand, options, first_sample);
   const double cell_s = work.wheel->duration_s() / static_cast<double>(kBandCells);
   const auto samples = static_cast<std::size_t>(options.samples);
@@ -357,6 +357,21 @@ void finish_band(Work& work, int samples) {
   }
 }
 
+LimitingFactor hotter_limit(const MotorEvaluation& result) {
+  const bool winding_first = !result.stator_limit_C || result.margin_K < *result.stator_limit_C - result.stator_peak_C.nominal;
+  return winding_first ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
+}
+
+/// Where the duty itself is drawn, one game is no more than one game.
+void decide_by_majority(MotorEvaluation& result) {
+  result.verdict = result.short_probability > 0.5        ? Verdict::infeasible
+                   : result.probability_over_limit > 0.5 ? Verdict::fail
+                                                         : Verdict::pass;
+  result.limiting_factor = result.verdict == Verdict::infeasible ? result.short_limit
+                           : result.verdict == Verdict::pass     ? LimitingFactor::none
+                                                                 : hotter_limit(result);
+}
+
 void conclude(Work& work, const EvaluateOptions& options) {
   MotorEvaluation& result = work.result;
   result.winding_peak_C = spread(result.winding_peak_C.nominal, work.winding_peak_C);
@@ -369,12 +384,17 @@ void conclude(Work& work, const EvaluateOptions& options) {
   if (result.verdict != Verdict::infeasible) {
     result.short_limit = by_current > by_voltage ? LimitingFactor::current : LimitingFactor::voltage;
   }
-  if (result.verdict == Verdict::pass && std::max(result.probability_over_limit, result.short_probability) > kMarginalProbability) {
+  if (!options.draws.empty()) {
+    const DrawIntervals intervals = draw_intervals(work.winding_peak_C, work.over_limit, {options.draws.size(), kLanes, options.seed});
+    result.winding_p95_interval_C = intervals.p95;
+    result.probability_interval = intervals.probability;
+    decide_by_majority(result);
+  }
+  // As many games as were drawn cannot rule more out than the interval says.
+  const double over = result.probability_interval ? result.probability_interval->high : result.probability_over_limit;
+  if (result.verdict == Verdict::pass && std::max(over, result.short_probability) > kMarginalProbability) {
     result.verdict = Verdict::marginal;
-    const bool winding_first = !result.stator_limit_C || result.margin_K < *result.stator_limit_C - result.stator_peak_C.nominal;
-    result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit
-                             : winding_first                                          ? LimitingFactor::winding_temperature
-                                                                                      : LimitingFactor::stator_temperature;
+    result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit : hotter_limit(result);
   }
   if (options.with_curves && options.samples > 0) {
     finish_band(work, options.samples);
@@ -397,11 +417,11 @@ int draw_count(const Duty& duty, int samples) {
   return duty.shape_data->has_unknowns() ? std::min((samples + kLanes - 1) / kLanes, kMostDraws) : 0;
 }
 
-std::vector<std::vector<WheelDemand>> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
-                                                   const Progress& progress) {
-  std::vector<std::vector<WheelDemand>> draws(static_cast<std::size_t>(count));
+std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
+                                      const Progress& progress) {
+  std::vector<WheelDemand> draws(static_cast<std::size_t>(count));
   in_parallel(draws.size(), threads, 0, draws.size(), progress,
-              [&](std::size_t draw) { draws[draw] = duty.shape_data->draw(robot, seed, draw); });
+              [&](std::size_t draw) { draws[draw] = hardest(duty.shape_data->draw(robot, seed, draw)); });
   return draws;
 }
 

@@ -34,9 +34,9 @@ struct EvaluateOptions {
   std::uint64_t seed = 1;
   int threads = 0;           ///< 0: all cores; the result does not depend on it
   bool with_curves = false;  ///< keep what a picture needs
-  /// Demands under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all samples have the
-  /// nominal demand.
-  std::span<const std::vector<WheelDemand>> draws{};
+  /// Demands of the hardest wheel under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all
+  /// samples have the nominal demand.
+  std::span<const WheelDemand> draws{};
 };
 
 /// The figure without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
@@ -45,6 +45,12 @@ struct Spread95 {
   double p05 = 0.0;
   double p50 = 0.0;
   double p95 = 0.0;
+};
+
+/// What another set of draws of the duty would give in its place, 19 times of 20.
+struct Interval95 {
+  double low = 0.0;
+  double high = 0.0;
 };
 
 struct TemperatureCurves {
@@ -66,7 +72,10 @@ struct MotorEvaluation {
   std::optional<double> stator_limit_C;
   Spread95 winding_peak_C;
   Spread95 stator_peak_C;
-  double probability_over_limit = 0.0;                   ///< of any temperature limit; NaN without samples
+  double probability_over_limit = 0.0;  ///< of any temperature limit; NaN without samples
+  /// Of the 95th percentile and of the probability: where a duty is drawn, few draws decide them. Nothing without draws.
+  std::optional<Interval95> winding_p95_interval_C;
+  std::optional<Interval95> probability_interval;
   std::optional<double> time_to_limit_s;                 ///< nominal, first of the limits
   double current_rms_A = 0.0;                            ///< heating current over the whole duty
   double margin_K = 0.0;                                 ///< winding limit minus nominal peak
@@ -80,15 +89,16 @@ struct MotorEvaluation {
   TemperatureCurves curves;
 };
 
-/// How many draws of a duty's unknowns serve `samples`: each is as much work as generating the duty once.
+/// How many draws of a duty's unknowns serve `samples`: one for every eight, because each is as much work as generating the duty once.
 int draw_count(const Duty& duty, int samples);
 
-/// The same for every number of threads.
-std::vector<std::vector<WheelDemand>> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
-                                                   const Progress& progress = {});
+/// Of each draw the wheel that works hardest. The same for every number of threads.
+std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
+                                      const Progress& progress = {});
 
-/// Best first: pass, marginal, fail, infeasible; within them by margin. `wheels` is the duty's demand; every figure is
-/// of the wheel whose winding gets hottest. `progress` is called from one thread at a time.
+/// Best first: pass, marginal, fail, infeasible; within them by margin. Without draws the nominal figures decide fail and
+/// infeasible; with draws, where the nominal run is one of many games, more than half of the samples do. `wheels` is the duty's demand;
+/// every figure is of the wheel whose winding gets hottest. `progress` is called from one thread at a time.
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                       std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress = {});
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "motor/datasheet_network.h"
 
@@ -24,11 +25,11 @@ WheelDemand subdivided(const WheelDemand& demand, double every_s) {
 }
 
 /// What flows during a bin, with the sign of its mean.
-DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin& bin, const OperatingPoint<double>& at) {
+DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin& bin, double heating_A) {
   DrivePoint point;
   point.motor_speed_rad_per_s = bin.velocity_mean_rad_per_s * robot.gear_ratio;
   const double direction = bin.torque_mean_Nm != 0.0 ? bin.torque_mean_Nm : bin.velocity_mean_rad_per_s;
-  point.current_A = std::copysign(at.current_rms_A / heating_factor(robot), direction);
+  point.current_A = std::copysign(heating_A / heating_factor(robot), direction);
   const double drag_Nm = bin.velocity_mean_rad_per_s == 0.0 ? 0.0 : std::copysign(drag_torque_Nm(motor), bin.velocity_mean_rad_per_s);
   point.motor_torque_Nm = motor.torque_constant_Nm_per_A * point.current_A - drag_Nm;
   return point;
@@ -38,7 +39,9 @@ std::vector<BookedHeat> balance(const Network& network, const TransientResult& r
   std::vector<BookedHeat> booked;
   const auto nodes = static_cast<std::size_t>(network.node_count());
   for (std::size_t e = 0; e < network.effects().size(); ++e) {
-    for (const int node : network.effects()[e].node_index) {
+    // An effect may play several parts at one node.
+    const std::set<int> of_effect(network.effects()[e].node_index.begin(), network.effects()[e].node_index.end());
+    for (const int node : of_effect) {
       booked.push_back({network.effects()[e].name, std::string(network.node_name(node)),
                         result.heat_J[e * nodes + static_cast<std::size_t>(node)] / result.end_s});
     }
@@ -52,6 +55,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
   const MotorSample sample = nominal_sample(motor);
   const DutySample demand = nominal_sample(duty);
   const Network network = datasheet_network(motor, sample);
+  const std::vector<double> parameters = network.values();
   const WheelDemand fine = subdivided(wheel, every_s);
   const std::vector<Interval> all = intervals(sample.values, robot, duty.kind, fine, demand);
   TransientOptions options;
@@ -65,7 +69,8 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
     if (!moment.begins_interval && moment.time_s < end_s) {
       return;
     }
-    const DrivePoint point = point_of(sample.values, robot, fine.bins[moment.interval], all[moment.interval].at);
+    const double flows_A = network.within_headroom(all[moment.interval].at, parameters.data(), moment.state_C.data());
+    const DrivePoint point = point_of(sample.values, robot, fine.bins[moment.interval], flows_A);
     TraceRow row{.time_s = moment.time_s,
                  .winding_C = moment.state_C[winding],
                  .stator_C = moment.state_C[stator],
@@ -78,7 +83,6 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
     row.own_C.assign(moment.state_C.begin() + first_own, moment.state_C.end());
     trace.rows.push_back(row);
   };
-  const std::vector<double> parameters = network.values();
   const TransientResult result = run_transient(network, parameters, all, options, add_row);
   trace.balance = balance(network, result);
   for (int node = 0; node < network.state_count(); ++node) {

@@ -168,6 +168,7 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   }
 }
 
+template double Network::within_headroom<double>(const OperatingPoint<double>&, const double*, const double*) const;
 template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
 template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
 

@@ -86,14 +86,16 @@ class Network {
   void balance_W(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                  std::span<double> heat_W) const;
 
+  /// What of the point's current in A its headroom lets through at these temperatures (state_count() entries at least); all of it
+  /// where no copper loss is named.
+  template <class S>
+  [[nodiscard]] S within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
+
  private:
   int add_parameter(NetworkParameter parameter);
   int add_state(std::string name, int capacity_index);
   /// Effects in the order in which they are booked: the copper loss first, for others look at its heat.
   [[nodiscard]] std::size_t booked_at(std::size_t turn) const;
-  /// What of the current the headroom lets through; all of it where no copper loss is named.
-  template <class S>
-  [[nodiscard]] S within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
 
   std::vector<std::string> node_names_;
   std::vector<int> capacity_index_;
@@ -102,6 +104,7 @@ class Network {
   int copper_effect_ = -1;
 };
 
+extern template double Network::within_headroom<double>(const OperatingPoint<double>&, const double*, const double*) const;
 extern template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>,
                                                    std::span<double>) const;
 extern template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;

@@ -96,7 +96,7 @@ TEST(SimulateMatch, an_empty_battery_is_no_pass) {
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_THAT(result.err, HasSubstr("the battery is empty after"));
   const json answer = result.json();
-  EXPECT_EQ(answer.at("verdict"), "fail");
+  EXPECT_EQ(answer.at("verdict"), "infeasible");
   const json drive = answer.at("planners").at(0);
   EXPECT_GT(drive.at("battery_empty_s").get<double>(), 60.0);
   const json energy = drive.at("energy");
@@ -109,13 +109,49 @@ TEST(DutyImport, says_why_no_robot_can_be_followed) {
   options.folder = folder.path();
   std::string text = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
   for (int i = 0; i < 200; ++i) {
-    text += std::to_string(0.01 * i) + ",blue,3,1500,-20,0\n";  // millimetres
+    text += std::to_string(0.01 * i) + (i % 2 == 0 ? ",blue,3,1,-2,0\n" : ",blue,3,1500,-20,0\n");
   }
-  write(folder.path() / "game.csv", text);
+  write(folder.path() / "game.csv", text.substr(0, text.find("0.300000")));
   const ProgramRun result = run({"duty", "--import", "game.csv", "--robot", "tigers_v2020"}, options);
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("no robot is seen long enough"));
-  EXPECT_THAT(result.err, HasSubstr("200 detections left out: no number, no such robot, outside any field"));
+  EXPECT_THAT(result.err, HasSubstr("15 detections left out: no number, no such robot, outside any field"));
+}
+
+TEST(DutyImport, other_units_are_suspected) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const std::string header = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
+  std::string millimetres = header;
+  std::string degrees = header;
+  for (int i = 0; i < 400; ++i) {
+    millimetres += std::to_string(0.01 * i) + ",blue,3,1500,-20,0\n";
+    degrees += std::to_string(0.01 * i) + ",blue,3,1,1," + std::to_string(std::fmod(0.9 * i, 360.0)) + "\n";
+  }
+  for (const auto& [text, said] : {std::pair(millimetres, "millimetres"), std::pair(degrees, "degrees")}) {
+    write(folder.path() / "game.csv", text);
+    const ProgramRun result = run({"duty", "--import", "game.csv", "--robot", "tigers_v2020"}, options);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(said));
+  }
+}
+
+TEST(Outputs, never_replace_what_the_command_reads) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const std::string robot = content_of(std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots/roboteam_twente_v2024.toml");
+  write(folder.path() / "mine.toml", robot);
+  const Words duty{"--robot", "mine.toml", "--duty", "paper_intermittent"};
+  const Words evaluate{"--motors", "maxon_ecx_flat_42m_24v", "--samples", "0", "--json", "./mine.toml"};
+  for (const Words& line : {Words{"duty", "--out", "mine.csv"} + duty, Words{"evaluate"} + duty + evaluate}) {
+    const ProgramRun result = run(line, options);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("would write over it"));
+    EXPECT_EQ(content_of(folder.path() / "mine.toml"), robot);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "mine.csv"));
+  }
 }
 
 TEST(SimulateMatch, wrong_combinations_are_refused) {
@@ -159,6 +195,22 @@ TEST(DutyMatch, heat_is_told_by_phase_and_role) {
     before_share = role.at("heat_of_busiest_share").get<double>();
   }
   EXPECT_EQ(before_share, 1.0);
+}
+
+TEST(EvaluateMatch, a_match_and_its_own_export_give_the_same_temperature) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const Words robot{"--robot", "roboteam_twente_v2024"};
+  const ProgramRun written = run(Words{"duty", "--duty", "division_b_match", "--out", "match.csv"} + robot, options);
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  const auto peak_C = [&](const std::string& duty) {
+    const Words motor{"--motors", "maxon_ecx_flat_32l_48v", "--samples", "0", "--json", "-"};
+    const ProgramRun evaluated = run(Words{"evaluate", "--duty", duty} + robot + motor, options);
+    return evaluated.json().at("motors").at(0).at("winding_peak_C").at("nominal").get<double>();
+  };
+  // Rows of 0.01 s in place of bins of 0.25 s.
+  EXPECT_NEAR(peak_C("match.toml"), peak_C("division_b_match"), 0.5);
 }
 
 TEST(EvaluateMatch, says_that_the_duty_s_spread_is_included) {

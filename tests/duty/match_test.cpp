@@ -108,9 +108,9 @@ Seen watch(const MatchInputs& inputs, std::uint64_t seed, MatchLoad* load = null
     for (std::size_t i = 0; i < 4; ++i) {
       const double torque_Nm = now.wheels->torque_Nm[i];
       const double speed_rad_per_s = now.wheels->speed_rad_per_s[i];
-      const double current_A = (torque_Nm + kDrag_Nm * (speed_rad_per_s > 0.0   ? 1.0
-                                                        : speed_rad_per_s < 0.0 ? -1.0
-                                                                                : 0.0)) /
+      const double current_A = (torque_Nm + kDrag_Nm * (speed_rad_per_s > kStandstill_rad_per_s    ? 1.0
+                                                        : speed_rad_per_s < -kStandstill_rad_per_s ? -1.0
+                                                                                                   : 0.0)) /
                                kTorqueConstant_Nm_per_A;
       seen.torque_squared_Nm2_s[i] += torque_Nm * torque_Nm * now.step_s;
       seen.current_squared_A2_s[i] += current_A * current_A * now.step_s;
@@ -132,7 +132,7 @@ TEST(Match, keeps_the_rules_and_the_robot_s_limits) {
     const Seen seen = watch(division_a(), seed);
     EXPECT_LE(seen.fastest_in_stop_m_per_s, 1.5 + 1e-9);
     EXPECT_LE(seen.moved_in_halt_m_per_s, 1e-9);
-    EXPECT_LE(seen.fastest_m_per_s, 2.0 * std::sqrt(2.0));
+    EXPECT_LE(seen.fastest_m_per_s, 2.0 * 1.005);  // a circle, which joined axes leave by some 0.2 %
     EXPECT_LT(seen.farthest_m, 0.3);
   }
 }

@@ -56,7 +56,8 @@ TEST(OperatingPointOfABin, has_the_means_of_its_moments) {
       std::vector<WheelLoad> loads;
       DemandGatherer gatherer("wheel", 1.0, {});
       for (int k = 0; k < 100; ++k) {
-        const double speed_rad_per_s = std::uniform_real_distribution(-150.0, 150.0)(engine);
+        const double drawn_rad_per_s = std::uniform_real_distribution(-150.0, 150.0)(engine);
+        const double speed_rad_per_s = std::copysign(std::max(std::abs(drawn_rad_per_s), kStandstill_rad_per_s), drawn_rad_per_s);
         const double torque_Nm = direction * std::copysign(std::uniform_real_distribution(0.0, 0.1)(engine), speed_rad_per_s);
         loads.push_back({torque_Nm, speed_rad_per_s});
         gatherer.add(0.01, torque_Nm, speed_rad_per_s);

@@ -64,6 +64,28 @@ TEST_F(PaperTrace, power_into_the_terminals_is_heat_and_work) {
   EXPECT_NEAR(in_J / duration_s, lost_W + work_J / duration_s, 0.01 * lost_W);
 }
 
+// Where the hot winding lets less through than the cold one, the columns are those of the current that flows.
+TEST(TraceInVoltageLimit, columns_agree_with_the_account_and_with_the_driver) {
+  const Motor motor = read_motor(kSource / "motor_db/maxon_ec45_flat_30w_12v_200142.toml");
+  Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  shorten(duty, 40);
+  const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const Trace trace = run_trace(robot, duty, duty.demand(robot, 1).front(), motor, 0.02);
+  const MotorValues& values = motor.nominal;
+  double copper_J = 0.0;
+  double most_V = 0.0;
+  for (std::size_t i = 0; i + 1 < trace.rows.size(); ++i) {
+    const TraceRow& row = trace.rows[i];
+    const double resistance_ohm = values.terminal_resistance_ohm * (1.0 + values.temperature_coefficient_per_K * (row.winding_C - 25.0));
+    copper_J += row.current_A * row.current_A * resistance_ohm * (trace.rows[i + 1].time_s - row.time_s);
+    most_V = std::max(most_V, std::abs(row.motor_V));
+  }
+  const auto copper = std::ranges::find(trace.balance, "copper_loss", &BookedHeat::effect);
+  ASSERT_NE(copper, trace.balance.end());
+  EXPECT_NEAR(copper_J / trace.rows.back().time_s, copper->mean_W, 0.005 * copper->mean_W);
+  EXPECT_NEAR(most_V, robot.available_V(), 1e-6);
+}
+
 TEST_F(PaperTrace, rows_are_no_further_apart_than_asked_and_reach_the_end) {
   for (std::size_t i = 1; i < trace().rows.size(); ++i) {
     EXPECT_GT(trace().rows[i].time_s, trace().rows[i - 1].time_s);

@@ -9,10 +9,10 @@
 #include "base/quantity.h"
 #include "cli/calibration_chart.h"
 #include "cli/command.h"
+#include "cli/logs_option.h"
 #include "cli/quantity_option.h"
+#include "identify/admission.h"
 #include "identify/calibration/calibrate.h"
-#include "identify/measurement/mapping.h"
-#include "identify/measurement/read_recording.h"
 #include "motor/motor.h"
 #include "motor/write_motor.h"
 
@@ -21,22 +21,13 @@ namespace {
 
 struct Options {
   std::string motor;
-  std::string map;
   std::vector<std::string> logs;
   std::vector<std::string> holdout;
   std::string out;
   std::string plot;
-  CalibrationOptions calibration;
+  LogOptions how;
+  FitOptions fit;
 };
-
-std::vector<Recording> read_logs(const std::vector<std::string>& files, const std::string& map) {
-  std::vector<Recording> all;
-  for (const std::string& file : files) {
-    RecordingReport report;
-    all.push_back(read_recording(file, mapping_for(file, map), report));
-  }
-  return all;
-}
 
 /// As many digits as the interval carries: its half gets two.
 std::string with_digits(double value, double half) {
@@ -149,9 +140,15 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
 
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.motor));
-  const std::vector<Recording> logs = read_logs(options.logs, options.map);
-  const std::vector<Recording> holdout = read_logs(options.holdout, options.map);
-  const Calibration result = calibrate(motor, logs, holdout, options.calibration);
+  std::vector<std::string> notes;
+  const std::vector<Recording> logs = read_logs(options.logs, options.how, notes);
+  const std::vector<Recording> holdout = read_logs(options.holdout, options.how, notes);
+  if (!options.how.takes_logs_as_they_are) {
+    refuse_runs_of_the_file(motor, logs, holdout);
+  }
+  std::ranges::move(admit(motor, logs, holdout, options.how.takes_logs_as_they_are), std::back_inserter(notes));
+  Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C});
+  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(calibration_chart(motor, result)));
@@ -179,19 +176,14 @@ Command calibrate_command() {
             ->required()
             ->type_name("M");
         app.add_option("logs", options->logs, "measured runs (CSV)")->required()->type_name("LOG");
-        app.add_option("--map", options->map, "mapping file of the logs; beside each log LOG.map.toml is found without")
-            ->type_name("FILE.toml");
         app.add_option("--holdout", options->holdout, "runs to test on, not fitted to")->type_name("LOG");
         app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
         add_picture(app, options->plot, "picture of measured and fitted temperatures");
-        add_quantity(app, "--ambient", options->calibration.ambient_C,
-                     {"ambient", "degC", Range::between(-60.0, 100.0), "of the surroundings, where a log has no such column"});
-        app.add_flag("--as-is", options->calibration.takes_logs_as_they_are,
-                     "go on where units or sensors of a log look wrong: they are right");
-        app.add_option("--seed", options->calibration.fit.seed, "of the starting points; same seed, same bytes")
+        add_log_options(app, options->how);
+        app.add_option("--seed", options->fit.seed, "of the starting points; same seed, same bytes")
             ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
             ->capture_default_str();
-        app.add_option("--threads", options->calibration.fit.threads, "0: all cores; the result does not depend on it")
+        app.add_option("--threads", options->fit.threads, "0: all cores; the result does not depend on it")
             ->check(whole_number(1024))
             ->capture_default_str();
         session.add_data_option(app);

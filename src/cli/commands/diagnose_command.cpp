@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/diagnosis_answer.h"
-#include "cli/quantity_option.h"
+#include "cli/logs_option.h"
+#include "identify/admission.h"
 #include "identify/attribution/model_file.h"
-#include "identify/measurement/read_recording.h"
 #include "motor/write_motor.h"
 
 namespace heatsoak::commands {
@@ -18,53 +19,9 @@ struct Options {
   std::string model;
   std::vector<std::string> train;
   std::vector<std::string> holdout;
-  std::string map;
   std::string out;
-  double ambient_C = MeasuredRunOptions::kNotStated_C;
+  LogOptions logs;
 };
-
-struct LogPart {
-  std::string file;
-  double from_share = 0.0;
-  double to_share = 1.0;
-};
-
-/// "run4.csv@0-60%" is the first 60 % of the time of run4.csv.
-LogPart log_part(const std::string& text) {
-  const std::size_t at = text.rfind('@');
-  if (at == std::string::npos || !text.ends_with('%')) {
-    return {text};
-  }
-  const std::size_t dash = text.find('-', at);
-  LogPart part{text.substr(0, at)};
-  const auto number = [&](std::size_t begin, std::size_t end, double& share) {
-    const auto result = std::from_chars(text.data() + begin, text.data() + end, share);
-    share /= 100.0;
-    return result.ec == std::errc() && result.ptr == text.data() + end;
-  };
-  const bool is_sound = dash != std::string::npos && number(at + 1, dash, part.from_share) &&
-                        number(dash + 1, text.size() - 1, part.to_share) && part.from_share >= 0.0 && part.from_share < part.to_share &&
-                        part.to_share <= 1.0;
-  if (!is_sound) {
-    throw Failure(ExitCode::bad_input, fmt::format("'{}': expected LOG@FROM-TO%, such as run4.csv@0-60%", text));
-  }
-  return part;
-}
-
-struct Logs {
-  std::vector<Recording> train;
-  std::vector<Recording> holdout;
-};
-
-Recording read_part(const std::string& text, const Options& options, std::vector<std::string>& notes) {
-  const LogPart part = log_part(text);
-  RecordingReport report;
-  Recording recording = read_recording(part.file, mapping_for(part.file, options.map), report);
-  for (const std::string& note : report.notes) {
-    notes.push_back(fmt::format("{}: {}", recording.name, note));
-  }
-  return part.from_share > 0.0 || part.to_share < 1.0 ? part_of(recording, part.from_share, part.to_share) : recording;
-}
 
 std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options,
                                  std::vector<FreeSignals>* free, std::vector<std::string>& notes) {
@@ -101,23 +58,19 @@ void hand_out(const Options& options, const Motor& extended, const Diagnosis& di
 
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.model));
-  Logs logs;
   std::vector<std::string> notes;
-  for (const std::string& text : options.train) {
-    logs.train.push_back(read_part(text, options, notes));
-  }
-  for (const std::string& text : options.holdout) {
-    logs.holdout.push_back(read_part(text, options, notes));
-  }
-  ModelOfLogs model = model_of_logs(motor, logs.train);
+  const std::vector<Recording> train = read_logs(options.train, options.logs, notes);
+  const std::vector<Recording> holdout = read_logs(options.holdout, options.logs, notes);
+  std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are), std::back_inserter(notes));
+  ModelOfLogs model = model_of_logs(motor, train);
   notes.insert(notes.end(), model.notes.begin(), model.notes.end());
   MeasuredRunOptions how;
   how.needed = model.needed;
-  how.ambient_C = options.ambient_C;
+  how.ambient_C = options.logs.ambient_C;
   DiagnosisInput input;
   input.model = model.model;
-  input.train = runs_of(logs.train, how, &input.free, notes);
-  input.holdout = runs_of(logs.holdout, how, nullptr, notes);
+  input.train = runs_of(train, how, &input.free, notes);
+  input.holdout = runs_of(holdout, how, nullptr, notes);
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   diagnosis.notes = notes;
   session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), diagnosis.description));
@@ -148,11 +101,8 @@ Command diagnose_command() {
             ->required()
             ->type_name("LOG...");
         app.add_option("--holdout", options->holdout, "logs that the fit never sees; for the error before and after")->type_name("LOG...");
-        app.add_option("--map", options->map, "mapping of columns to quantities; LOG.map.toml beside a log is found by itself")
-            ->type_name("FILE.toml");
         app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
-        add_quantity(app, "--ambient", options->ambient_C,
-                     {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air where a log has none"});
+        add_log_options(app, options->logs);
         session.add_data_option(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };

@@ -166,8 +166,7 @@ Command duty_command() {
                 ->type_name("LOG");
             app.add_option("--player", options->player, "of the recorded game, \"yellow 3\"; the busiest one unless given")->type_name("P");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-            app.add_option("--out", options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate")
-                ->type_name("FILE.csv");
+            add_table(app, options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate");
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
             app.add_option("--seed", options->seed, "same seed, same game")->capture_default_str();

@@ -99,6 +99,12 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
       text += fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})\n", each.motor_id,
                           100.0 * each.short_probability, to_string(each.short_limit));
     }
+    if (each.probability_interval && each.probability_interval->high > 0.0 && each.verdict != Verdict::infeasible) {
+      text += fmt::format(
+          "{}: other draws of the duty would give P over {:.0f} to {:.0f} % and a 95th percentile of {:.0f} to {:.0f} °C (95 %)\n",
+          each.motor_id, 100.0 * each.probability_interval->low, 100.0 * each.probability_interval->high, each.winding_p95_interval_C->low,
+          each.winding_p95_interval_C->high);
+    }
     if (each.destroyed) {
       text += fmt::format("{}: thermal runaway, the calculation ended at 1000 °C\n", each.motor_id);
     }
@@ -120,8 +126,10 @@ std::string report(const std::vector<MotorEvaluation>& results, const Robot& rob
                                                : "nominal figures only",
                   duty.origin);
   if (!options.evaluate.draws.empty()) {
-    text += fmt::format("spread of the duty is included: {} draw{} of its inputs and of the robot's figures, shared by the samples\n",
-                        options.evaluate.draws.size(), options.evaluate.draws.size() == 1 ? "" : "s");
+    text += fmt::format(
+        "spread of the duty is included: {} draw{} of its inputs and of the robot's figures, shared by the samples; P over and verdict are "
+        "of all of them\nthe first peak, reached, K left, A left and A rms are of one game, that of the seed\n",
+        options.evaluate.draws.size(), options.evaluate.draws.size() == 1 ? "" : "s");
   }
   text += fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict", "limited by",
                       "winding peak °C", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
@@ -140,11 +148,16 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
   const auto optional = [](const std::optional<double>& value, int decimals) {
     return value ? rounded(*value, decimals) : nlohmann::ordered_json();
   };
+  const auto interval = [](const std::optional<Interval95>& value, int decimals) {
+    return value ? nlohmann::ordered_json{rounded(value->low, decimals), rounded(value->high, decimals)} : nlohmann::ordered_json();
+  };
   return {{"id", each.motor_id},
           {"winding_limit_C", rounded(each.winding_limit_C, 2)},
           {"winding_peak_C", json(each.winding_peak_C)},
           {"stator_peak_C", json(each.stator_peak_C)},
           {"probability_over_limit", rounded(each.probability_over_limit, 4)},
+          {"probability_ci95", interval(each.probability_interval, 4)},
+          {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
           {"time_to_limit_s", optional(each.time_to_limit_s, 3)},
           {"current_rms_A", rounded(each.current_rms_A, 4)},
           {"verdict", to_string(each.verdict)},
@@ -168,9 +181,8 @@ ExitCode run(Options& options, Session& session) {
   const std::vector<Motor> motors = read_motors(options, folders);
   options.evaluate.with_curves = !options.plot.empty();
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
-  const std::vector<std::vector<WheelDemand>> draws =
-      draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples), options.evaluate.threads,
-                   progress_bar(fmt::format("playing draws of {}", duty.id)));
+  const std::vector<WheelDemand> draws = draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples),
+                                                      options.evaluate.threads, progress_bar(fmt::format("playing draws of {}", duty.id)));
   options.evaluate.draws = draws;
   const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
   if (!options.plot.empty()) {

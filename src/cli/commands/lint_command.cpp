@@ -7,22 +7,49 @@
 #include "cli/command.h"
 #include "cli/file_kind.h"
 #include "duty/duty.h"
+#include "input/document.h"
 #include "motor/lint.h"
 #include "motor/motor.h"
+#include "robot/body.h"
 #include "robot/robot.h"
 
 namespace heatsoak::commands {
 namespace {
 
+/// What only the robot's use would find: whether it can stand and drive, and whether its motor is known.
+std::vector<LintFinding> lint(const Robot& robot, const DataFolders& folders) {
+  std::vector<LintFinding> findings;
+  const std::vector<std::string> known = ids_in(folders.motors);
+  if (robot.drive_motor != "none" && std::ranges::find(known, robot.drive_motor) == known.end()) {
+    findings.push_back({LintFinding::Level::warning, "motor",
+                        fmt::format("drive.motor: there is no motor '{}'{}", robot.drive_motor, did_you_mean(robot.drive_motor, known)),
+                        place_of(robot.file, "drive.motor")});
+  }
+  try {
+    MotorValues any;
+    any.rotor_inertia_kg_m2 = 0.0;
+    make_body(robot, any);
+  } catch (const Failure& failure) {
+    if (std::ranges::any_of(robot.figures, [](const auto& each) { return each.first.starts_with("body."); })) {
+      throw;
+    }
+    for (const Diagnostic& each : failure.diagnostics()) {
+      findings.push_back({LintFinding::Level::note, "motion",
+                          each.key + " " + each.message + "; a match needs it, a prescribed duty does not",
+                          place_of(robot.file, each.key)});
+    }
+  }
+  return findings;
+}
+
 /// Reads the file as what its keys say it is; the findings of a motor's figures are the lint proper.
-std::vector<LintFinding> look_into(const std::filesystem::path& file) {
+std::vector<LintFinding> look_into(const std::filesystem::path& file, const DataFolders& folders) {
   switch (file_kind(file)) {
     case FileKind::duty:
       read_duty(file);
       return {};
     case FileKind::robot:
-      read_robot(file);
-      return {};
+      return lint(read_robot(file), folders);
     case FileKind::motor:
       break;
   }
@@ -70,6 +97,7 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
     const std::vector<std::string> named = files_named(name, session);
     files.insert(files.end(), named.begin(), named.end());
   }
+  const DataFolders folders = session.folders();
   std::vector<Diagnostic> unreadable;
   std::string text;
   nlohmann::ordered_json findings = nlohmann::ordered_json::array();
@@ -77,7 +105,7 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
   std::size_t warnings = 0;
   for (const std::string& file : files) {
     try {
-      for (const LintFinding& each : look_into(file)) {
+      for (const LintFinding& each : look_into(file, folders)) {
         errors += each.level == LintFinding::Level::error ? 1 : 0;
         warnings += each.level == LintFinding::Level::warning ? 1 : 0;
         text += fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, to_string(each.level), each.check,
@@ -108,8 +136,10 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
 Command lint_command() {
   return {
       .name = {},
-      .summary = "Checks motor, robot and duty files: keys, units, and whether a data sheet's figures agree with each other; exit 1 if not",
-      .example = "heatsoak lint motor_db/maxon_ec45_flat_70w_24v.toml",
+      .summary =
+          "Checks motor, robot and duty files: keys, units, and whether a data sheet's figures agree with each other; exit 1 if there is a "
+          "warning or an error",
+      .example = "heatsoak lint maxon_ec45_flat_70w_24v roboteam_twente_v2024 division_a_match",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto files = std::make_shared<std::vector<std::string>>();
         app.add_option("files", *files, "TOML files, folders of them, or ids of motors, robots and duties")->required()->type_name("FILE");

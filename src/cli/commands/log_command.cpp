@@ -103,7 +103,7 @@ Command log_command() {
                        "mapping of columns to quantities; FILE.map.toml beside the log is found by itself (README, \"Measured logs\")")
             ->type_name("FILE.toml");
         add_picture(app, options->plot, "every channel over time, with what is left out");
-        app.add_option("--out", options->out, "of convert: the canonical form")->type_name("FILE.csv");
+        add_table(app, options->out, "of convert: the canonical form");
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
       }};

@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/quantity_option.h"
+#include "motor/datasheet_network.h"
 #include "motor/motor.h"
 #include "thermal/steady_state.h"
+#include "thermal/transient.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -16,6 +21,32 @@ struct Options {
   std::string motor;
   OnOffCurrent current;
 };
+
+/// The highest temperature of the winding in a cycle, once all cycles are alike: (8) to (12) are means over one.
+double cycle_peak_C(const Motor& motor, const OnOffCurrent& current, const OnOffSteadyState& mean) {
+  // At standstill, so that only copper loss heats, as in the equations.
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  OperatingPoint<double> on;
+  on.current_rms_A = current.current_on_A;
+  on.ambient_C = current.ambient_C;
+  OperatingPoint<double> off;
+  off.ambient_C = current.ambient_C;
+  const std::vector<Interval> cycle{{current.time_on_s, on}, {std::max(current.time_off_s, 1e-9), off}};
+  TransientOptions options;
+  options.start_C = {mean.winding_C, mean.stator_C};
+  constexpr int kMostCycles = 200;
+  constexpr double kAlike_K = 0.01;
+  double peak_C = mean.winding_C;
+  for (int i = 0; i < kMostCycles; ++i) {
+    const TransientResult result = run_transient(network, network.values(), cycle, options);
+    const double change_K = std::abs(result.peak_C.front() - std::exchange(peak_C, result.peak_C.front()));
+    options.start_C = result.end_C;
+    if (result.destroyed || (i > 0 && change_K < kAlike_K)) {
+      break;
+    }
+  }
+  return peak_C;
+}
 
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.motor));
@@ -26,14 +57,16 @@ ExitCode run(const Options& options, Session& session) {
                            .thermal_resistance_winding_stator_K_per_W = values.thermal_resistance_winding_stator_K_per_W,
                            .thermal_resistance_stator_ambient_K_per_W = values.thermal_resistance_stator_ambient_K_per_W},
                           options.current);
-  const bool over = state.runaway || state.winding_C > values.winding_limit_C;
+  const double peak_C = state.runaway ? 0.0 : cycle_peak_C(motor, options.current, state);
+  const bool over = state.runaway || peak_C > values.winding_limit_C;
   std::string text = fmt::format("{} ({} thermal data), rms current {:.2f} A, ambient {:.0f} °C\n", motor.id, data_quality(motor),
                                  state.current_rms_A, options.current.ambient_C);
   if (state.runaway) {
     text += "thermal runaway: there is no steady state, the winding's loss grows faster than heat can leave\n";
   } else {
-    text += fmt::format("winding {:.1f} °C (limit {:.0f} °C, {})\nstator  {:.1f} °C\n", state.winding_C, values.winding_limit_C,
-                        over ? "exceeded" : "kept", state.stator_C);
+    text += fmt::format(
+        "winding {:.1f} °C on average, {:.1f} °C at the end of each time on (limit {:.0f} °C, {})\nstator  {:.1f} °C on average\n",
+        state.winding_C, peak_C, values.winding_limit_C, over ? "exceeded" : "kept", state.stator_C);
   }
   session.say(text);
   const auto temperature = [&](double value_C) { return state.runaway ? nlohmann::ordered_json() : nlohmann::ordered_json(value_C); };
@@ -43,6 +76,7 @@ ExitCode run(const Options& options, Session& session) {
                   {"current_rms_A", state.current_rms_A},
                   {"winding_C", temperature(state.winding_C)},
                   {"stator_C", temperature(state.stator_C)},
+                  {"winding_peak_C", temperature(peak_C)},
                   {"winding_limit_C", values.winding_limit_C},
                   {"runaway", state.runaway}});
   return over ? ExitCode::limit_exceeded : ExitCode::done;

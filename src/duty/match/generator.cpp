@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "robot/traction.h"
 #include "robot_core/trajectory.h"
 
 namespace heatsoak {
@@ -92,7 +93,7 @@ class Match {
         body_(make_body(robot, without_rotor())),
         motion_(ideal_tracking(robot, values.aggressiveness, planner)),
         observer_(observer),
-        push_N_(body_.traction.traction_ratio * robot.mass_kg * 9.81) {
+        push_N_(body_.traction.traction_ratio * robot.mass_kg * kGravity_m_per_s2) {
     for (int wheel = 0; wheel < body_.kinematics.wheel_count; ++wheel) {
       gatherers_.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s, kGrid);
     }

@@ -12,7 +12,6 @@
 #include "base/quantity.h"
 #include "identify/calibration/identifiability.h"
 #include "identify/calibration/profile.h"
-#include "identify/measurement/quality.h"
 
 namespace heatsoak {
 namespace {
@@ -61,13 +60,6 @@ class Calibrating {
       : recordings_(recordings), holdout_(holdout), options_(options) {}
 
   Calibration run(const Motor& motor) {
-    refuse_runs_of_the_file(motor);
-    check(motor);
-    for (const Recording& recording : recordings_) {
-      if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
-        all_.notes.push_back(fmt::format("{} says that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
-      }
-    }
     all_.motor_model = motor_model(motor, heat_input_for(recordings_), all_have_speed(recordings_));
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     MeasuredRunOptions how;
@@ -98,96 +90,6 @@ class Calibrating {
   }
 
  private:
-  void check(const Motor& motor) {
-    refuse_repeated();
-    std::vector<Diagnostic> wrong;
-    for (const Recording& recording : recordings_) {
-      const DataQuality quality = assess(recording, {});
-      require_thermal(recording, quality);
-      look_wrong(motor, recording, quality, wrong);
-    }
-    for (const Recording& recording : holdout_) {
-      look_wrong(motor, recording, assess(recording, {}), wrong);
-    }
-    if (!wrong.empty() && !options_.takes_logs_as_they_are) {
-      throw Failure(ExitCode::bad_input,
-                    "units or sensors of the logs look wrong; correct them in a mapping (--map), or if they are right go on with --as-is",
-                    std::move(wrong));
-    }
-  }
-
-  /// A run that counts twice makes intervals narrower than they are; one held out that was fitted tests nothing.
-  void refuse_repeated() const {
-    std::vector<const Recording*> seen;
-    std::vector<Diagnostic> repeated;
-    for (const auto& recordings : {recordings_, holdout_}) {
-      for (const Recording& recording : recordings) {
-        const auto is_same = [&](const Recording* other) {
-          return other->time_s == recording.time_s &&
-                 std::ranges::equal(other->channels, recording.channels, [](const auto& a, const auto& b) {
-                   return a.quantity.key == b.quantity.key && std::ranges::equal(a.values, b.values, [](double x, double y) {
-                            return x == y || (std::isnan(x) && std::isnan(y));
-                          });
-                 });
-        };
-        if (const auto found = std::ranges::find_if(seen, is_same); found != seen.end()) {
-          repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", (*found)->file.string())});
-        }
-        seen.push_back(&recording);
-      }
-    }
-    if (!repeated.empty()) {
-      throw Failure(ExitCode::bad_input, "a log is given twice", std::move(repeated));
-    }
-  }
-
-  void look_wrong(const Motor& motor, const Recording& recording, const DataQuality& quality, std::vector<Diagnostic>& wrong) {
-    for (const std::string& each : quality.suspicions) {
-      all_.notes.push_back(fmt::format("{}: {}", recording.name, each));
-    }
-    std::vector<std::string> spoiling = quality.spoiling;
-    if (std::string too_much = current_beyond(motor, quality); spoiling.empty() && !too_much.empty()) {
-      spoiling.push_back(std::move(too_much));
-    }
-    for (const std::string& each : spoiling) {
-      wrong.push_back({{recording.file.string()}, {}, each});
-    }
-  }
-
-  /// More than the winding lets through at thrice the nominal voltage is another unit.
-  static std::string current_beyond(const Motor& motor, const DataQuality& quality) {
-    const auto found = std::ranges::find_if(quality.channels, [](const ChannelQuality& each) { return each.quantity.key == "current_A"; });
-    if (found == quality.channels.end()) {
-      return {};
-    }
-    constexpr double kMostVoltage_ratio = 3.0;
-    const double most_A = kMostVoltage_ratio * motor.nominal.nominal_voltage_V / motor.nominal.terminal_resistance_ohm;
-    const double reached_A = std::max(std::abs(found->low), std::abs(found->high));
-    return reached_A > most_A
-               ? fmt::format(
-                     "current_A reaches {} A; through {} ohm at three times the nominal voltage flow {} A: is it in "
-                     "milliamperes, or is it another motor?",
-                     significant(reached_A, 3), significant(motor.nominal.terminal_resistance_ohm, 3), significant(most_A, 3))
-               : std::string();
-  }
-
-  /// A file that was fitted to a run knows what the run tells: it would count twice.
-  void refuse_runs_of_the_file(const Motor& motor) const {
-    std::vector<Diagnostic> known;
-    for (const auto& recordings : {recordings_, holdout_}) {
-      for (const Recording& recording : recordings) {
-        if (motor.fit && std::ranges::find(motor.fit->runs, recording.name) != motor.fit->runs.end()) {
-          known.push_back({{recording.file.string()}, {}, fmt::format("{} was fitted to a run of this name (fit.runs)", motor.id)});
-        }
-      }
-    }
-    if (!known.empty() && !options_.takes_logs_as_they_are) {
-      throw Failure(ExitCode::bad_input,
-                    "a run would count twice; start from the file as it was before that fit, or if it is another run go on with --as-is",
-                    std::move(known));
-    }
-  }
-
   /// What the fit says about itself.
   void warn() {
     const Fit& fit = all_.fit;

@@ -17,7 +17,6 @@ namespace heatsoak {
 struct CalibrationOptions {
   FitOptions fit;
   double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
-  bool takes_logs_as_they_are = false;                  ///< true: units or sensors that look wrong are said, not refused
 };
 
 struct CalibratedFigure {
@@ -61,7 +60,7 @@ struct Calibration {
   std::vector<std::string> notes;  ///< what was taken for granted or left out, in sentences
 };
 
-/// Throws Failure: bad_input where the logs lack what is needed, cannot_answer where nothing can be learned from them (with the
+/// Of logs that admit() (identify/admission.h) let pass. Throws Failure: bad_input where the logs lack what is needed, cannot_answer where nothing can be learned from them (with the
 /// reason), numerics_failed where no fit succeeds.
 Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
                       const CalibrationOptions& options);

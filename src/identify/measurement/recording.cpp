@@ -34,4 +34,20 @@ Recording Recording::slice(std::size_t begin, std::size_t end) const {
   return part;
 }
 
+Recording part_of(const Recording& recording, double from_share, double to_share) {
+  const double begin_s = recording.time_s.front();
+  const double length_s = recording.time_s.back() - begin_s;
+  const auto row_at = [&](double share) {
+    const double time_s = begin_s + share * length_s;
+    return share >= 1.0 ? recording.rows()
+                        : static_cast<std::size_t>(std::ranges::lower_bound(recording.time_s, time_s) - recording.time_s.begin());
+  };
+  const std::size_t first = row_at(from_share);
+  Recording part = recording.slice(first, std::max(first, row_at(to_share)));
+  if (part.run_begins.empty() || part.run_begins.front() != 0) {
+    part.run_begins.insert(part.run_begins.begin(), 0);  // a run is entered in its middle
+  }
+  return part;
+}
+
 }  // namespace heatsoak

@@ -39,4 +39,7 @@ struct Recording {
   [[nodiscard]] Recording slice(std::size_t begin, std::size_t end) const;
 };
 
+/// The rows of a recording between two shares of its duration, 0 … 1; its name and conditions stay.
+Recording part_of(const Recording& recording, double from_share, double to_share);
+
 }  // namespace heatsoak

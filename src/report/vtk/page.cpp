@@ -229,8 +229,8 @@ class PageBuilder {
     }
   }
 
-  /// Just above the line at its right end; below where the top is near; further left where a curve or another name is in
-  /// the way; outside, below the legend, where curves are everywhere.
+  /// Just above the line at its right end; below where the top or another level is near; further left where a curve or another
+  /// name is in the way; outside, below the legend, where curves are everywhere.
   void add_level_names(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
     if (panel.levels.empty()) {
       return;
@@ -244,16 +244,35 @@ class PageBuilder {
       const std::string name = printable(level.name);
       const double width_px = text_width_px(name, limit_style);
       const double line_px = vertical.to_px(level.y);
-      const double y_px = line_px - vertical.high_px < limit_style.size_px + 1.0 ? line_px + 14.0 : line_px - 5.0;
-      const Box at_right{right_px_ - 6.0 - width_px, right_px_ - 6.0, y_px - limit_style.size_px, y_px + 3.0};
+      std::vector<Box> taken = names;
+      for (const ChartLevel& other : panel.levels) {
+        if (&other != &level && std::isfinite(other.y)) {
+          taken.push_back({left_px_, right_px_, vertical.to_px(other.y) - 1.0, vertical.to_px(other.y) + 1.0});
+        }
+      }
+      const auto baseline_at = [&](double y_px) {
+        return Box{right_px_ - 6.0 - width_px, right_px_ - 6.0, y_px - limit_style.size_px, y_px + 3.0};
+      };
+      const Box above = baseline_at(line_px - 5.0);
+      const Box below = baseline_at(line_px + 14.0);
+      const bool top_is_near = line_px - vertical.high_px < limit_style.size_px + 1.0;
       const Box outside{right_px_ + 8.0, right_px_ + 8.0 + width_px, line_px - 0.6 * limit_style.size_px,
                         line_px + 0.6 * limit_style.size_px};
       const bool has_room_outside =
           outside.right_px <= page_.width_px - 6.0 && outside.top_px > legend_bottom_px_ && !is_taken(outside, names, {});
-      PlacedText text{
-          .text = name, .x_px = at_right.right_px, .y_px = y_px, .style = limit_style, .anchor = Anchor::right, .has_rim = true};
-      if (const std::optional<Box> free = free_place(at_right, left_px_, names, curves)) {
+      PlacedText text{.text = name,
+                      .x_px = above.right_px,
+                      .y_px = above.bottom_px - 3.0,
+                      .style = limit_style,
+                      .anchor = Anchor::right,
+                      .has_rim = true};
+      std::optional<Box> free = top_is_near ? std::nullopt : free_place(above, left_px_, taken, curves);
+      if (!free) {
+        free = free_place(below, left_px_, taken, curves);
+      }
+      if (free) {
         text.x_px = free->right_px;
+        text.y_px = free->bottom_px - 3.0;
         names.push_back(*free);
       } else if (has_room_outside) {
         text.x_px = outside.left_px;
@@ -261,8 +280,10 @@ class PageBuilder {
         text.anchor = Anchor::left;
         names.push_back(outside);
       } else {  // on a curve it is still readable, on another name it is not
-        names.push_back(free_place(at_right, left_px_, names, {}).value_or(at_right));
+        const Box& beside = top_is_near ? below : above;
+        names.push_back(free_place(beside, left_px_, taken, {}).value_or(beside));
         text.x_px = names.back().right_px;
+        text.y_px = names.back().bottom_px - 3.0;
       }
       add(std::move(text));
     }

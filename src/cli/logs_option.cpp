@@ -1,0 +1,67 @@
+#include "cli/logs_option.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "base/diagnostic.h"
+#include "cli/quantity_option.h"
+#include "identify/measurement/mapping.h"
+#include "identify/measurement/read_recording.h"
+
+namespace heatsoak {
+namespace {
+
+struct LogPart {
+  std::string file;
+  double from_share = 0.0;
+  double to_share = 1.0;
+};
+
+/// "run4.csv@0-60%" is the first 60 % of the time of run4.csv.
+LogPart log_part(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos || !text.ends_with('%')) {
+    return {text};
+  }
+  const std::size_t dash = text.find('-', at);
+  LogPart part{text.substr(0, at)};
+  const auto number = [&](std::size_t begin, std::size_t end, double& share) {
+    const auto result = std::from_chars(text.data() + begin, text.data() + end, share);
+    share /= 100.0;
+    return result.ec == std::errc() && result.ptr == text.data() + end;
+  };
+  const bool is_sound = dash != std::string::npos && number(at + 1, dash, part.from_share) &&
+                        number(dash + 1, text.size() - 1, part.to_share) && part.from_share >= 0.0 && part.from_share < part.to_share &&
+                        part.to_share <= 1.0;
+  if (!is_sound) {
+    throw Failure(ExitCode::bad_input, fmt::format("'{}': expected LOG@FROM-TO%, such as run4.csv@0-60%", text));
+  }
+  return part;
+}
+}  // namespace
+
+void add_log_options(CLI::App& app, LogOptions& options) {
+  app.add_option("--map", options.map, "mapping of columns to quantities; LOG.map.toml beside a log is found by itself")
+      ->type_name("FILE.toml");
+  add_quantity(app, "--ambient", options.ambient_C,
+               {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air where a log has none"});
+  app.add_flag("--as-is", options.takes_logs_as_they_are, "go on where units or sensors of a log look wrong: they are right");
+}
+
+std::vector<Recording> read_logs(const std::vector<std::string>& texts, const LogOptions& options, std::vector<std::string>& notes) {
+  std::vector<Recording> all;
+  for (const std::string& text : texts) {
+    const LogPart part = log_part(text);
+    RecordingReport report;
+    Recording recording = read_recording(part.file, mapping_for(part.file, options.map), report);
+    for (const std::string& note : report.notes) {
+      notes.push_back(fmt::format("{}: {}", recording.name, note));
+    }
+    const bool is_whole = part.from_share == 0.0 && part.to_share == 1.0;
+    all.push_back(is_whole ? std::move(recording) : part_of(recording, part.from_share, part.to_share));
+  }
+  return all;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,23 @@
+// Which logs may be fitted to a motor: read before any equation is solved.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identify/measurement/recording.h"
+#include "motor/motor.h"
+
+namespace heatsoak {
+
+/// Sentences for the user about what looks odd but may be right. Throws Failure with every log's finding at once:
+/// bad_input where rows are given twice or are both fitted and held out, where units, signs or sensors look wrong by
+/// themselves or for this motor (with `takes_logs_as_they_are` these are only said); cannot_answer where a fitted log
+/// can tell nothing about heat.
+std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out,
+                               bool takes_logs_as_they_are);
+
+/// Throws Failure (bad_input) where the file was fitted to a run of a log's name: its figures know already what the run tells.
+void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out);
+
+}  // namespace heatsoak

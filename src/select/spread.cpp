@@ -1,0 +1,57 @@
+#include "select/spread.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/random.h"
+
+namespace heatsoak {
+
+double quantile(std::span<const double> sorted_C, double share) {
+  const double place = share * static_cast<double>(sorted_C.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted_C.size() - 1);
+  return std::lerp(sorted_C[below], sorted_C[above], place - static_cast<double>(below));
+}
+
+Spread95 spread(double nominal_C, std::vector<double> samples_C) {
+  if (samples_C.empty()) {
+    constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+    return {nominal_C, kNothing, kNothing, kNothing};
+  }
+  std::ranges::sort(samples_C);
+  return {nominal_C, quantile(samples_C, 0.05), quantile(samples_C, 0.5), quantile(samples_C, 0.95)};
+}
+
+DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const char> is_over, const SharedDraws& shared) {
+  constexpr std::uint64_t kRepeats = 400;
+  std::vector<std::vector<std::size_t>> members(shared.draw_count);
+  for (std::size_t sample = 0; sample < samples_C.size(); ++sample) {
+    members[sample / shared.block_size % shared.draw_count].push_back(sample);
+  }
+  std::vector<double> p95_C;
+  std::vector<double> probability;
+  std::vector<double> drawn_C;
+  for (std::uint64_t repeat = 0; repeat < kRepeats; ++repeat) {
+    Random random(shared.seed, repeat);
+    drawn_C.clear();
+    double over = 0.0;
+    for (std::size_t i = 0; i < shared.draw_count; ++i) {
+      for (const std::size_t sample : members[static_cast<std::size_t>(random.uniform() * static_cast<double>(shared.draw_count))]) {
+        drawn_C.push_back(samples_C[sample]);
+        over += is_over[sample];
+      }
+    }
+    if (!drawn_C.empty()) {
+      std::ranges::sort(drawn_C);
+      p95_C.push_back(quantile(drawn_C, 0.95));
+      probability.push_back(over / static_cast<double>(drawn_C.size()));
+    }
+  }
+  std::ranges::sort(p95_C);
+  std::ranges::sort(probability);
+  return {{quantile(p95_C, 0.025), quantile(p95_C, 0.975)}, {quantile(probability, 0.025), quantile(probability, 0.975)}};
+}
+
+}  // namespace heatsoak
