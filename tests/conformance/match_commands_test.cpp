@@ -137,6 +137,19 @@ TEST(DutyImport, other_units_are_suspected) {
   }
 }
 
+TEST(Describe, a_duty_shape_is_a_file_to_start_from) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  write(folder.path() / "my_game.csv", "time_s,torque_1_Nm,speed_1_rad_per_s\n0,0.1,20\n1,0,0\n");
+  for (const std::string shape : {"intermittent", "recorded"}) {
+    const json described = run({"describe", shape, "--json", "-"}, options).json();
+    write(folder.path() / "mine.toml", described.at("example").get<std::string>());
+    const ProgramRun result = run({"lint", "mine.toml"}, options);
+    EXPECT_EQ(result.exit_code, 0) << shape << "\n" << result.err;
+  }
+}
+
 TEST(Outputs, never_replace_what_the_command_reads) {
   const TemporaryFolder folder;
   RunOptions options;

@@ -15,6 +15,12 @@
 namespace heatsoak::commands {
 namespace {
 
+/// What every duty file has besides its shape.
+const std::string kDutyHead = R"(summary = "what this load is"
+origin = "who says so, or whose judgement it is"
+ambient = { value = "25 degC", origin = "estimated", derivation = "why this figure", range = ["20 degC", "32 degC"] }
+)";
+
 using Json = nlohmann::ordered_json;
 
 struct Description {
@@ -275,8 +281,9 @@ Description describe(const std::string& name, const DataFolders& folders) {
   }
   for (const ShapeType& shape : all_shapes()) {
     if (shape.name == name) {
-      return {fmt::format("{}: a duty shape, {}\n\n{}", shape.name, shape.summary, shape.example),
-              {{"kind", "shape"}, {"id", shape.name}, {"example", shape.example}}};
+      const std::string file = kDutyHead + std::string(shape.example);
+      return {fmt::format("{}: a duty shape, {}\n\n{}", shape.name, shape.summary, file),
+              {{"kind", "shape"}, {"id", shape.name}, {"example", file}}};
     }
   }
   std::vector<std::string> known;
