@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/diagnostic.h"
+#include "identify/admission.h"
 #include "motor/write_motor.h"
 #include "study.h"
 
@@ -66,8 +67,8 @@ TEST_F(Again, RunsThatTheFileKnowsAreRefused) {
   const Calibration first = calibrate(motor_, logs(0), {}, {});
   const Motor motor = rewritten(motor_, first);
   try {
-    calibrate(motor, logs(0), {}, {});
-    FAIL() << "was calibrated";
+    refuse_runs_of_the_file(motor, logs(0), {});
+    FAIL() << "was let pass";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::bad_input);
     EXPECT_THAT(failure.what(), testing::HasSubstr("would count twice"));
