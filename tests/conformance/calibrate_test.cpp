@@ -6,15 +6,13 @@
 #include <sstream>
 
 #include "program_run.h"
+#include "soak_example.h"
 
 namespace heatsoak {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-const fs::path kSoak = fs::path(HEATSOAK_SOURCE_DIR) / "reports/soak";
-constexpr const char* kMotor = "maxon_ec45_flat_70w_24v";
 
 using Cells = std::vector<std::string>;
 

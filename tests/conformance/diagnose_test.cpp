@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "program_run.h"
+#include "soak_example.h"
 
 namespace heatsoak {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-const fs::path kSoak = fs::path(HEATSOAK_SOURCE_DIR) / "reports/soak";
-constexpr const char* kMotor = "maxon_ec45_flat_70w_24v";
 
 RunOptions in(const TemporaryFolder& folder) {
   RunOptions options;
