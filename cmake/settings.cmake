@@ -17,9 +17,6 @@ option(HEATSOAK_COVERAGE "Build with coverage counters (gcov)" OFF)
 option(HEATSOAK_WERROR "Treat warnings as errors" OFF)
 option(HEATSOAK_PRECOMPILE "Compile the headers of libraries once for all files; off shows what a file forgot to include" ON)
 
-# -O3, which CMake takes, compiles a fifth longer and runs no faster here.
-set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
-
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # The sloppiness is what ccache asks for where headers are precompiled; no source says __TIME__ or __DATE__.
