@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/App.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
