@@ -1,6 +1,7 @@
 // What is wrong with a command line, all of it at once: CLI11 stops at the first mistake.
 #pragma once
 
+#include <CLI/Error.hpp>
 #include <span>
 #include <string>
 

@@ -277,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Slip{"thermal_resistance", &MotorValues::thermal_resistance_winding_stator_K_per_W, 2.0, {"nominal_point_heat"}},
                     Slip{"winding_time_constant", &MotorValues::thermal_time_constant_winding_s, 10.0, {"heat_capacities"}},
                     Slip{"stator_time_constant", &MotorValues::thermal_time_constant_stator_s, 0.1, {"heat_capacities"}},
-                    Slip{"mass", &MotorValues::mass_kg, 10.0, {"heat_capacities"}},
+                    Slip{"mass", &MotorValues::mass_kg, 10.0, {"heat_capacities", "rotor_inertia"}},
                     Slip{"inductance", &MotorValues::terminal_inductance_H, 1000.0, {"electrical_time_constant"}},
                     Slip{"max_speed", &MotorValues::max_speed_rad_per_s, 0.1, {"assigned_power", "limits"}},
                     Slip{"winding_limit", &MotorValues::winding_limit_C, 0.1, {"limits"}},

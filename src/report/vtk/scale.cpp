@@ -69,7 +69,7 @@ double AxisScale::to_px(double value) const {
 namespace {
 
 std::vector<AxisTick> logarithmic_ticks(const AxisRange& range, double count) {
-  const bool has_room = 3.0 * std::log10(range.high / range.low) <= std::max(3.0, count);
+  const bool has_room = 2.0 * std::log10(range.high / range.low) <= std::max(3.0, count);
   std::vector<AxisTick> result;
   for (double decade = std::pow(10.0, std::floor(std::log10(range.low))); decade <= range.high; decade *= 10.0) {
     for (const double multiple : {1.0, 2.0, 5.0}) {
