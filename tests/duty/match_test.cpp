@@ -167,7 +167,7 @@ TEST(Match, a_duel_pushes_with_its_share_of_the_grip) {
       const double most_N = largest_push_N(body, direction_rad, body.weight.center_of_gravity_height_m);
       EXPECT_NEAR(std::hypot(push.x_N, push.y_N), share * most_N, 1e-6 * most_N);
       EXPECT_NEAR(push.yaw_Nm, 0.0, 1e-6);
-      EXPECT_NEAR(magnitude(now.wheels->untransmitted), 0.0, 1e-6);
+      EXPECT_NEAR(std::hypot(now.wheels->untransmitted.x_N, now.wheels->untransmitted.y_N), 0.0, 1e-6);
       for (std::size_t i = 0; i < 4; ++i) {
         largest_Nm = std::max(largest_Nm, std::abs(now.wheels->torque_Nm[i]));
       }

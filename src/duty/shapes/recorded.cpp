@@ -40,6 +40,9 @@ class Recording {
           },
           {}, [this](const CsvRow& row) { take(row); });
     } catch (const Failure& failure) {
+      if (rows_ > kMostRows) {
+        throw;  // whatever else is wrong with it
+      }
       for (const Diagnostic& each : failure.diagnostics()) {
         all.add(each.at, each.key, each.message);
       }
