@@ -63,11 +63,12 @@ class Table {
     if (column_ > 0) {
       if (!has_header_) {
         read_header();
+        is_header_sound_ = problems_.empty();
       } else if (column_ != header_.size()) {
         problem(1, "", fmt::format("has {} cells where the header has {}", column_, header_.size()));
       } else {
         ++rows_;
-        if (!is_bad_row_) {
+        if (is_header_sound_ && !is_bad_row_) {
           row_({line_, values_, cells_});
         }
       }
@@ -172,6 +173,7 @@ class Table {
   int line_ = 1;
   int line_breaks_in_row_ = 0;
   bool has_header_ = false;
+  bool is_header_sound_ = false;
   bool is_bad_row_ = false;
 };
 

@@ -36,7 +36,7 @@ using ChooseCsvColumns = std::function<CsvColumns(std::span<const std::string> h
 /// `optional` ones give NaN where the header has none. Memory does not grow with the file. A UTF-8 byte order mark and CR LF are fine.
 /// Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
 /// another number of cells, no rows. At most 20 problems are listed, then how many more there are. Rows that are sound are
-/// given even where others are not.
+/// given even where others are not, but none where the header is wrong.
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               const std::function<void(const CsvRow&)>& row);
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
