@@ -275,14 +275,17 @@ TEST_P(WikiFigureOfDf45l, is_caught) {
   EXPECT_EQ(lint.exit_code, 1) << lint.out << lint.err;
 }
 
-INSTANTIATE_TEST_SUITE_P(each, WikiFigureOfDf45l,
-                         testing::Values(std::pair{"nominal_current = { value = \"3.26 A\"", "nominal_current = { value = \"6.4 A\""},
-                                         std::pair{"\"65 W\"", "\"151 W\""}, std::pair{"\"0.64 ohm\"", "\"1.2 ohm\""},
-                                         std::pair{"\"150 g\"", "\"320 g\""}, std::pair{"\"27 mm\"", "\"48 mm\""},
-                                         std::pair{"\"181 g cm2\", origin = \"estimated\", source = [\"own\", \"maxon_2019\"], range = "
-                                                   "[\"120 g cm2\", \"250 g cm2\"]",
-                                                   "\"13 g cm2\", origin = \"third_party\", source = \"own\", tolerance = \"10 %\""}),
-                         [](const auto& instance) { return "figure_" + std::to_string(instance.index); });
+INSTANTIATE_TEST_SUITE_P(
+    each, WikiFigureOfDf45l,
+    testing::Values(std::pair{"nominal_current = { value = \"3.26 A\"", "nominal_current = { value = \"6.4 A\""},
+                    std::pair{"\"65 W\"", "\"151 W\""}, std::pair{"\"0.64 ohm\"", "\"1.2 ohm\""},
+                    std::pair{"\"150 g\", origin = \"estimated\", source = [\"own\", \"maxon_2019\"], range = [\"120 g\", \"180 g\"]",
+                              "\"320 g\", origin = \"third_party\", source = \"own\", tolerance = \"5 %\""},
+                    std::pair{"\"27 mm\"", "\"48 mm\""},
+                    std::pair{"\"181 g cm2\", origin = \"estimated\", source = [\"own\", \"maxon_2019\"], range = "
+                              "[\"120 g cm2\", \"250 g cm2\"]",
+                              "\"13 g cm2\", origin = \"third_party\", source = \"own\", tolerance = \"10 %\""}),
+    [](const auto& instance) { return "figure_" + std::to_string(instance.index); });
 
 /// What `describe` prints is ready to paste: an effect's lines behind a motor's.
 class EffectLines : public testing::TestWithParam<std::string> {};
