@@ -116,25 +116,37 @@ class Fitter {
   RefitResult run() {
     linearise_all(now_);
     EvidenceTable table = table_of(now_);
+    LinearFit fit;
+    double misfit = 0.0;
+    const auto look = [&] {
+      misfit = table.misfit_now(now_.place);
+      fit = bounded_step(table);
+      now_.converged = misfit - fit.misfit < 0.02;
+    };
+    // True where another unknown heat is more probable now.
+    const auto seek = [&] {
+      FluxGrid::Place best = table.best({}, now_.place).place;
+      const bool has_moved = best != now_.place;
+      now_.place = std::move(best);
+      look();
+      return has_moved;
+    };
     for (int step = 0; step < options_.most_steps; ++step) {
-      // Far from the best fit its misfit would pass for unknown heat.
-      if (step > 0) {
-        now_.place = table.best({}, now_.place).place;
+      look();
+      // Far from the best fit its misfit would pass for unknown heat; later it is asked for again where no step is left.
+      if (step == 1 || (step > 1 && now_.converged)) {
+        seek();
       }
-      const double misfit = table.misfit_now(now_.place);
-      const LinearFit fit = bounded_step(table);
-      const double promised = misfit - fit.misfit;
-      now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
-      now_.covariance = fit.covariance;
-      now_.converged = promised < 0.02;
       if (now_.converged && step > 0) {
         break;
       }
       // What no step improves at first may move once the unknown heat is what the misfit asks for.
-      if (!take(fit, misfit, table) && step > 0) {
+      if (!take(fit, misfit, table) && step > 0 && (step == 1 || !seek())) {
         break;
       }
     }
+    now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
+    now_.covariance = fit.covariance;
     if (options_.averages_flux) {
       average(table);
     }
@@ -239,7 +251,7 @@ class Fitter {
         EvidenceTable next_table = table_of(next);
         if (next_table.misfit_now(now_.place) < misfit + 1e-9) {
           now_ = std::move(next);
-          table = table_of(now_);
+          table = std::move(next_table);
           return true;
         }
       } catch (const Failure&) {

@@ -9,9 +9,11 @@
 
 #include "base/parallel.h"
 #include "identify/attribution/backward_check.h"
+#include "identify/attribution/many_starts.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/averaged_run.h"
+#include "identify/flux_search.h"
 
 namespace heatsoak {
 namespace {
@@ -36,7 +38,7 @@ class Selector {
       start_C.push_back(measured_start_C(input_.model.model.network, run));
       options_.merged.push_back(mergeable_samples(linearise(input_.model, start_C.back(), run)));
     }
-    out_.before = refit(input_.model, input_.runs, start_C, options_);
+    out_.before = refit_with_doubt(input_.model, input_.runs, start_C, options_, kMostFlux_share * out_.mean_heat_W);
     look_at_sensors(out_.before);
     out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
     out_.after = out_.before;
@@ -157,8 +159,7 @@ class Selector {
       judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
       judged.visibility_ratio = table.visibility_ratio(base.candidates, best.place, j);
       judged.size_share = best.coefficient[table.free_count()];
-      judged.place = best.place;
-      judged.step = best.coefficient.head(table.free_count());
+      judged.linear = best;
       const std::vector<double> left_out = table.left_out_gains_nats(base, best);
       const std::vector<SizeInRun> sizes = table.size_by_run(best, j);
       for (std::size_t r = 0; r < left_out.size(); ++r) {
@@ -234,7 +235,7 @@ class Selector {
         }
         continue;
       }
-      RefitResult fit = try_term(each, 0.5 * each.gain_nats);
+      RefitResult fit = try_added({each.candidate}, each.linear, 0.5 * each.gain_nats);
       each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
@@ -282,26 +283,29 @@ class Selector {
 
   /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
   /// where the promise is not kept, once more from what was known beforehand.
-  RefitResult try_term(const JudgedCandidate& judged, double promised_nats) const {
-    RefitResult fit = try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
+  RefitResult try_added(const std::vector<Candidate>& added, const SetScore& linear, double promised_nats) const {
+    const Eigen::Index own = linear.coefficient.size() - static_cast<Eigen::Index>(added.size());
+    RefitResult fit = try_terms(added, linear.coefficient.tail(added.size()), linear.coefficient.head(own), linear.place);
     if (fit.evidence_nats > out_.after.evidence_nats + promised_nats) {
       return fit;
     }
     RefitOptions options = options_;
     options.place = first_place_;
-    const double sign = judged.size_share < 0.0 ? -1.0 : 1.0;
-    RefitResult afresh = refit(with_candidate(with_values_of(out_.after.model, input_.model), judged.candidate, sign), input_.runs,
-                               out_.before.start_C, options);
+    ExtendedModel model = with_values_of(out_.after.model, input_.model);
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      model = with_candidate(model, added[i], linear.coefficient[own + static_cast<Eigen::Index>(i)] < 0.0 ? -1.0 : 1.0);
+    }
+    RefitResult afresh = refit_from_many(model, input_.runs, out_.before.start_C, options);
     return afresh.evidence_nats > fit.evidence_nats ? std::move(afresh) : std::move(fit);
   }
 
-  RefitResult try_terms(const std::vector<Candidate>& added, const std::vector<double>& size_share, const Eigen::VectorXd& step,
+  RefitResult try_terms(const std::vector<Candidate>& added, const Eigen::VectorXd& size_share, const Eigen::VectorXd& step,
                         const FluxGrid::Place& place) const {
     RefitOptions options = options_;
     options.place = place;
     ExtendedModel model = out_.after.model;
     for (std::size_t i = 0; i < added.size(); ++i) {
-      model = with_candidate(model, added[i], size_share[i]);
+      model = with_candidate(model, added[i], size_share[static_cast<Eigen::Index>(i)]);
     }
     Eigen::VectorXd theta = model.theta();
     const Eigen::Index inner = out_.after.model.model.free_count();
@@ -333,14 +337,11 @@ class Selector {
     std::vector<int> chosen;
     double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1));
     for (const SetScore& set : best_sets(round, candidates, table, base)) {
-      const Eigen::Index own = table.free_count();
       std::vector<Candidate> added;
-      std::vector<double> size_share;
-      for (std::size_t i = 0; i < set.candidates.size(); ++i) {
-        added.push_back(candidates[static_cast<std::size_t>(set.candidates[i])]);
-        size_share.push_back(set.coefficient[own + static_cast<Eigen::Index>(i)]);
+      for (const int j : set.candidates) {
+        added.push_back(candidates[static_cast<std::size_t>(j)]);
       }
-      RefitResult fit = try_terms(added, size_share, set.coefficient.head(own), set.place);
+      RefitResult fit = try_added(added, set, 0.5 * (set.evidence_nats - base.evidence_nats));
       const double set_worth_nats = worth_nats(fit.evidence_nats - out_.after.evidence_nats, added.size());
       if (set_worth_nats > best_worth_nats) {
         best_worth_nats = set_worth_nats;
