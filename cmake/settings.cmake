@@ -15,10 +15,15 @@ endif()
 option(HEATSOAK_SANITIZE "Build with the address and undefined behaviour sanitizers" OFF)
 option(HEATSOAK_COVERAGE "Build with coverage counters (gcov)" OFF)
 option(HEATSOAK_WERROR "Treat warnings as errors" OFF)
+option(HEATSOAK_PRECOMPILE "Compile the headers of libraries once for all files; off shows what a file forgot to include" ON)
+
+# -O3, which CMake takes, compiles a fifth longer and runs no faster here.
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+  # The sloppiness is what ccache asks for where headers are precompiled; no source says __TIME__ or __DATE__.
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
 endif()
 
 add_library(heatsoak_settings INTERFACE)
@@ -37,3 +42,32 @@ if(HEATSOAK_COVERAGE)
   target_compile_options(heatsoak_settings INTERFACE --coverage -fprofile-update=atomic)
   target_link_options(heatsoak_settings INTERFACE --coverage)
 endif()
+
+# add_headers(name header FILES file… LIBRARIES library…): a header of these libraries that is parsed once for every target
+# that says use_headers(target name), and the files with the templates that it declares to be compiled elsewhere.
+function(add_headers name header)
+  cmake_parse_arguments(HEADERS "" "" "FILES;LIBRARIES" ${ARGN})
+  if(HEATSOAK_PRECOMPILE)
+    add_library(${name} STATIC ${HEADERS_FILES})
+    target_link_libraries(${name} PRIVATE heatsoak_settings ${HEADERS_LIBRARIES})
+    target_precompile_headers(${name} PRIVATE "${header}")
+    target_compile_options(${name} PRIVATE ${HEATSOAK_PRECOMPILED_OPTIONS})
+  endif()
+endfunction()
+
+# ccache can only tell what a precompiled header holds where the preprocessor's output says that it is used.
+set(HEATSOAK_PRECOMPILED_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+
+function(use_headers target name)
+  if(HEATSOAK_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM ${name})
+    target_link_libraries(${target} PRIVATE ${name})
+    target_compile_options(${target} PRIVATE ${HEATSOAK_PRECOMPILED_OPTIONS})
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL EXECUTABLE)
+      # A precompiled header serves one kind of position-independent code.
+      set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+      target_compile_options(${target} PRIVATE -fPIC)
+    endif()
+  endif()
+endfunction()

@@ -1,9 +1,6 @@
 // What a verb is, and what all verbs share. One file in src/cli/commands each.
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -14,6 +11,10 @@
 #include "base/files.h"
 #include "input/data_folders.h"
 #include "select/evaluate.h"
+
+namespace CLI {
+class App;
+}
 
 namespace heatsoak {
 

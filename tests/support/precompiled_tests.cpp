@@ -1,0 +1,2 @@
+// A library wants a file.
+#include "precompiled_tests.h"
