@@ -89,15 +89,4 @@ RefitResult refit_from_many(const ExtendedModel& model, const std::vector<Measur
   return best ? std::move(*best) : refit(model, runs, start_C, options);
 }
 
-RefitResult refit_with_doubt(const ExtendedModel& model, const std::vector<MeasuredRun>& runs,
-                             const std::vector<std::vector<double>>& start_C, const RefitOptions& options, double tolerable_W) {
-  RefitResult fit = refit(model, runs, start_C, options);
-  const std::vector<double> unknown_W = options.grid.at(fit.place).rms_W;
-  if (*std::ranges::max_element(unknown_W) <= tolerable_W) {
-    return fit;
-  }
-  RefitResult other = refit_from_many(model, runs, start_C, options);
-  return other.evidence_nats > fit.evidence_nats ? std::move(other) : std::move(fit);
-}
-
 }  // namespace heatsoak

@@ -11,8 +11,4 @@ namespace heatsoak {
 RefitResult refit_from_many(const ExtendedModel& model, const std::vector<MeasuredRun>& runs,
                             const std::vector<std::vector<double>>& start_C, const RefitOptions& options);
 
-/// As refit(); where more unknown heat than `tolerable_W` is left then, from many starts, too, and the best of both.
-RefitResult refit_with_doubt(const ExtendedModel& model, const std::vector<MeasuredRun>& runs,
-                             const std::vector<std::vector<double>>& start_C, const RefitOptions& options, double tolerable_W);
-
 }  // namespace heatsoak

@@ -116,37 +116,25 @@ class Fitter {
   RefitResult run() {
     linearise_all(now_);
     EvidenceTable table = table_of(now_);
-    LinearFit fit;
-    double misfit = 0.0;
-    const auto look = [&] {
-      misfit = table.misfit_now(now_.place);
-      fit = bounded_step(table);
-      now_.converged = misfit - fit.misfit < 0.02;
-    };
-    // True where another unknown heat is more probable now.
-    const auto seek = [&] {
-      FluxGrid::Place best = table.best({}, now_.place).place;
-      const bool has_moved = best != now_.place;
-      now_.place = std::move(best);
-      look();
-      return has_moved;
-    };
     for (int step = 0; step < options_.most_steps; ++step) {
-      look();
-      // Far from the best fit its misfit would pass for unknown heat; later it is asked for again where no step is left.
-      if (step == 1 || (step > 1 && now_.converged)) {
-        seek();
+      // Far from the best fit its misfit would pass for unknown heat.
+      if (step > 0) {
+        now_.place = table.best({}, now_.place).place;
       }
+      const double misfit = table.misfit_now(now_.place);
+      const LinearFit fit = bounded_step(table);
+      const double promised = misfit - fit.misfit;
+      now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
+      now_.covariance = fit.covariance;
+      now_.converged = promised < 0.02;
       if (now_.converged && step > 0) {
         break;
       }
       // What no step improves at first may move once the unknown heat is what the misfit asks for.
-      if (!take(fit, misfit, table) && step > 0 && (step == 1 || !seek())) {
+      if (!take(fit, misfit, table) && step > 0) {
         break;
       }
     }
-    now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
-    now_.covariance = fit.covariance;
     if (options_.averages_flux) {
       average(table);
     }

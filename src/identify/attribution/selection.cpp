@@ -13,7 +13,6 @@
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/averaged_run.h"
-#include "identify/flux_search.h"
 
 namespace heatsoak {
 namespace {
@@ -22,6 +21,8 @@ namespace {
 constexpr double kMuchUnknown_share = 0.05;
 
 constexpr int kMostCurvesTried = 3;
+/// Of the visibility that a name needs in the end: while others are missing, unknown heat hides an effect that is seen beside them.
+constexpr double kHidden_share = 0.5;
 
 class Selector {
  public:
@@ -38,7 +39,7 @@ class Selector {
       start_C.push_back(measured_start_C(input_.model.model.network, run));
       options_.merged.push_back(mergeable_samples(linearise(input_.model, start_C.back(), run)));
     }
-    out_.before = refit_with_doubt(input_.model, input_.runs, start_C, options_, kMostFlux_share * out_.mean_heat_W);
+    out_.before = refit(input_.model, input_.runs, start_C, options_);
     look_at_sensors(out_.before);
     out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
     out_.after = out_.before;
@@ -63,14 +64,6 @@ class Selector {
     if (!options_.errors.wander_K.empty()) {
       options_.place = first_place_;
     }
-  }
-
-  [[nodiscard]] std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) const {
-    std::vector<CandidateColumn> rules;
-    for (const Candidate& each : candidates) {
-      rules.push_back({each.size_spec().range.low < 0.0, 2.0});
-    }
-    return rules;
   }
 
   /// True where a term was taken in.
@@ -417,7 +410,7 @@ class Selector {
       // Shapes are free in a refit: one variant stands for all.
       const bool is_variant =
           std::ranges::any_of(pool, [&](int j) { return candidates[static_cast<std::size_t>(j)].id == each.candidate.id; });
-      if (each.visibility_ratio >= rules_.least_visibility_ratio && !is_variant) {
+      if (each.visibility_ratio >= kHidden_share * rules_.least_visibility_ratio && !is_variant) {
         pool.push_back(static_cast<int>(found - candidates.begin()));
       }
     }

@@ -21,37 +21,35 @@ class Trial {
         FluxGrid::Place begin)
       : fit_(fit), runs_(runs), grid_(grid), merged_(merged), place_(std::move(begin)) {}
 
-  /// At the unknown heat that is best beside these errors; what is tried next begins there.
-  double settle(const SensorErrors& errors) {
-    EvidenceTable table = table_with(errors);
+  double evidence_nats(const SensorErrors& errors) {
+    EvidenceTable table(design(fit_.model.model.network, fit_.fitted, runs_, errors, merged_, {}), grid_, prior_here(fit_.model), {});
     const SetScore best = table.best({}, place_);
-    place_ = best.place;
+    last_ = best.place;
     return best.evidence_nats;
   }
-  /// With the unknown heat as it was settled.
-  [[nodiscard]] double here(const SensorErrors& errors) const { return table_with(errors).score({}, place_).evidence_nats; }
+  /// The next trials begin where the last one ended.
+  void go_on_there() { place_ = last_; }
 
  private:
-  [[nodiscard]] EvidenceTable table_with(const SensorErrors& errors) const {
-    return {design(fit_.model.model.network, fit_.fitted, runs_, errors, merged_, {}), grid_, prior_here(fit_.model), {}};
-  }
-
   const RefitResult& fit_;
   const std::vector<MeasuredRun>& runs_;
   const FluxGrid& grid_;
   const std::vector<int>& merged_;
-  FluxGrid::Place place_;
+  FluxGrid::Place place_, last_;
 };
 
 /// Doubles and halves one number after the other as long as the evidence grows.
 double climb(Trial& trial, SensorErrors& errors) {
-  double best_nats = trial.settle(errors);
+  double best_nats = trial.evidence_nats(errors);
+  trial.go_on_there();
   const auto try_out = [&](const SensorErrors& next) {
-    if (trial.here(next) <= best_nats + 0.5) {
+    const double nats = trial.evidence_nats(next);
+    if (nats <= best_nats + 0.5) {
       return false;
     }
-    best_nats = trial.settle(next);
+    best_nats = nats;
     errors = next;
+    trial.go_on_there();
     return true;
   };
   constexpr int kMostRounds = 4;
@@ -110,7 +108,7 @@ SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>&
     return known;
   }
   const double without_nats =
-      known.wander_K.empty() ? Trial(fit, runs, grid, merged, fit.place).settle(known) : -std::numeric_limits<double>::infinity();
+      known.wander_K.empty() ? Trial(fit, runs, grid, merged, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
   // Little unknown heat beside it to begin with: much of it has taken the place of what is looked for.
   FluxGrid::Place little = fit.place;
   std::ranges::fill(little.begin(), little.end() - 1, std::min(3, static_cast<int>(grid.rms_W.size()) - 1));
