@@ -70,7 +70,7 @@ Kinematics make_kinematics(const Robot& robot) {
     made.wheels[i] = {cosine, sine, -sine, cosine};
     jacobian.row(static_cast<Eigen::Index>(i)) << -sine, cosine, 1.0;
   }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> decomposition(jacobian);
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(jacobian);
   if (decomposition.rank() < 3) {
     throw bad_input({robot.file.string()}, "wheels.axis_angles",
                     "leave a direction in which no wheel can drive; expected axes that do not all lie in one line or circle the same way");
