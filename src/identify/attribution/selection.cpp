@@ -9,7 +9,6 @@
 
 #include "base/parallel.h"
 #include "identify/attribution/backward_check.h"
-#include "identify/attribution/many_starts.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/averaged_run.h"
@@ -21,8 +20,6 @@ namespace {
 constexpr double kMuchUnknown_share = 0.05;
 
 constexpr int kMostCurvesTried = 3;
-/// Of the visibility that a name needs in the end: while others are missing, unknown heat hides an effect that is seen beside them.
-constexpr double kHidden_share = 0.5;
 
 class Selector {
  public:
@@ -64,6 +61,14 @@ class Selector {
     if (!options_.errors.wander_K.empty()) {
       options_.place = first_place_;
     }
+  }
+
+  [[nodiscard]] std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) const {
+    std::vector<CandidateColumn> rules;
+    for (const Candidate& each : candidates) {
+      rules.push_back({each.size_spec().range.low < 0.0, 2.0});
+    }
+    return rules;
   }
 
   /// True where a term was taken in.
@@ -152,7 +157,8 @@ class Selector {
       judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
       judged.visibility_ratio = table.visibility_ratio(base.candidates, best.place, j);
       judged.size_share = best.coefficient[table.free_count()];
-      judged.linear = best;
+      judged.place = best.place;
+      judged.step = best.coefficient.head(table.free_count());
       const std::vector<double> left_out = table.left_out_gains_nats(base, best);
       const std::vector<SizeInRun> sizes = table.size_by_run(best, j);
       for (std::size_t r = 0; r < left_out.size(); ++r) {
@@ -228,7 +234,7 @@ class Selector {
         }
         continue;
       }
-      RefitResult fit = try_added({each.candidate}, each.linear, 0.5 * each.gain_nats);
+      RefitResult fit = try_term(each, 0.5 * each.gain_nats);
       each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
@@ -276,29 +282,26 @@ class Selector {
 
   /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
   /// where the promise is not kept, once more from what was known beforehand.
-  RefitResult try_added(const std::vector<Candidate>& added, const SetScore& linear, double promised_nats) const {
-    const Eigen::Index own = linear.coefficient.size() - static_cast<Eigen::Index>(added.size());
-    RefitResult fit = try_terms(added, linear.coefficient.tail(added.size()), linear.coefficient.head(own), linear.place);
+  RefitResult try_term(const JudgedCandidate& judged, double promised_nats) const {
+    RefitResult fit = try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
     if (fit.evidence_nats > out_.after.evidence_nats + promised_nats) {
       return fit;
     }
     RefitOptions options = options_;
     options.place = first_place_;
-    ExtendedModel model = with_values_of(out_.after.model, input_.model);
-    for (std::size_t i = 0; i < added.size(); ++i) {
-      model = with_candidate(model, added[i], linear.coefficient[own + static_cast<Eigen::Index>(i)] < 0.0 ? -1.0 : 1.0);
-    }
-    RefitResult afresh = refit_from_many(model, input_.runs, out_.before.start_C, options);
+    const double sign = judged.size_share < 0.0 ? -1.0 : 1.0;
+    RefitResult afresh = refit(with_candidate(with_values_of(out_.after.model, input_.model), judged.candidate, sign), input_.runs,
+                               out_.before.start_C, options);
     return afresh.evidence_nats > fit.evidence_nats ? std::move(afresh) : std::move(fit);
   }
 
-  RefitResult try_terms(const std::vector<Candidate>& added, const Eigen::VectorXd& size_share, const Eigen::VectorXd& step,
+  RefitResult try_terms(const std::vector<Candidate>& added, const std::vector<double>& size_share, const Eigen::VectorXd& step,
                         const FluxGrid::Place& place) const {
     RefitOptions options = options_;
     options.place = place;
     ExtendedModel model = out_.after.model;
     for (std::size_t i = 0; i < added.size(); ++i) {
-      model = with_candidate(model, added[i], size_share[static_cast<Eigen::Index>(i)]);
+      model = with_candidate(model, added[i], size_share[i]);
     }
     Eigen::VectorXd theta = model.theta();
     const Eigen::Index inner = out_.after.model.model.free_count();
@@ -330,11 +333,14 @@ class Selector {
     std::vector<int> chosen;
     double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1));
     for (const SetScore& set : best_sets(round, candidates, table, base)) {
+      const Eigen::Index own = table.free_count();
       std::vector<Candidate> added;
-      for (const int j : set.candidates) {
-        added.push_back(candidates[static_cast<std::size_t>(j)]);
+      std::vector<double> size_share;
+      for (std::size_t i = 0; i < set.candidates.size(); ++i) {
+        added.push_back(candidates[static_cast<std::size_t>(set.candidates[i])]);
+        size_share.push_back(set.coefficient[own + static_cast<Eigen::Index>(i)]);
       }
-      RefitResult fit = try_added(added, set, 0.5 * (set.evidence_nats - base.evidence_nats));
+      RefitResult fit = try_terms(added, size_share, set.coefficient.head(own), set.place);
       const double set_worth_nats = worth_nats(fit.evidence_nats - out_.after.evidence_nats, added.size());
       if (set_worth_nats > best_worth_nats) {
         best_worth_nats = set_worth_nats;
@@ -410,7 +416,7 @@ class Selector {
       // Shapes are free in a refit: one variant stands for all.
       const bool is_variant =
           std::ranges::any_of(pool, [&](int j) { return candidates[static_cast<std::size_t>(j)].id == each.candidate.id; });
-      if (each.visibility_ratio >= kHidden_share * rules_.least_visibility_ratio && !is_variant) {
+      if (each.visibility_ratio >= rules_.least_visibility_ratio && !is_variant) {
         pool.push_back(static_cast<int>(found - candidates.begin()));
       }
     }

@@ -38,7 +38,8 @@ struct JudgedCandidate {
   int runs_gained = 0;              ///< of the runs in which it acts at all
   int runs_acting = 0;
   double size_share = 0.0;  ///< in typical sizes
-  SetScore linear;          ///< where the linear fit goes with it
+  FluxGrid::Place place;    ///< of the unknown heat that is most probable beside it
+  Eigen::VectorXd step;     ///< that the model's coordinates make with it
 };
 
 /// A round of the selection: what was in question and what came of it.

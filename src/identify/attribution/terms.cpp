@@ -193,12 +193,4 @@ ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
   return model;
 }
 
-std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) {
-  std::vector<CandidateColumn> rules;
-  for (const Candidate& each : candidates) {
-    rules.push_back({each.size_spec().range.low < 0.0, kSizeSpread_share});
-  }
-  return rules;
-}
-
 }  // namespace heatsoak

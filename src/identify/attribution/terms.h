@@ -20,7 +20,4 @@ std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanRe
 /// `model` with the values that parameters and sensors of the same name have in `other`.
 ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other);
 
-/// What least squares may do with each.
-std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates);
-
 }  // namespace heatsoak
