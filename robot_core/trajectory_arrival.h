@@ -235,11 +235,11 @@ struct Axis {  // NOLINT(cppcoreguidelines-pro-type-member-init): pose_axis() fi
   Families<Real> families;
   /// A start that will inevitably break a velocity limit may still arrive before. Then these are the motions without a
   /// brake, of use only before their gap: in them the acceleration never changes its sign.
-  bool may_be_early;
   Families<Real> early;
+  Arrival<Real> in_one;
+  bool may_be_early;     ///< whether there are early ones
   bool is_in_one;        ///< behind the brake, the first arrival takes one segment
   bool is_early_in_one;  ///< the same of the early ones
-  Arrival<Real> in_one;
 };
 
 template <typename Real>

@@ -71,6 +71,7 @@ void Diagnostics::throw_if_any() const {
 std::string did_you_mean(std::string_view given, std::span<const std::string> candidates) {
   std::size_t best_distance = std::max<std::size_t>(2, given.size() / 3) + 1;
   const std::string* best = nullptr;
+  const std::string* begins_alike = nullptr;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(given, candidate);
     if (distance < best_distance) {
@@ -82,6 +83,14 @@ std::string did_you_mean(std::string_view given, std::span<const std::string> ca
     // What somebody leaves out: "tigers" for "tigers_v2020".
     best = candidates[i].find(given) != std::string::npos ? &candidates[i] : nullptr;
   }
+  // What begins alike: "iron_lossX" for "iron_loss_eddy".
+  std::size_t longest_match = std::max<std::size_t>(3, (2 * given.size() + 2) / 3) - 1;
+  for (std::size_t i = 0; !best && i < candidates.size(); ++i) {
+    const auto match = static_cast<std::size_t>(std::ranges::mismatch(given, candidates[i]).in1 - given.begin());
+    begins_alike = match > longest_match ? &candidates[i] : begins_alike;
+    longest_match = std::max(longest_match, match);
+  }
+  best = best ? best : begins_alike;
   return best ? fmt::format("; did you mean '{}'?", *best) : std::string();
 }
 

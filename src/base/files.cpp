@@ -92,15 +92,27 @@ namespace {
   throw bad_input({path.string()}, "", fmt::format("cannot be written: {}", std::strerror(error)));
 }
 
-/// An open file under a temporary name; gone again unless publish() was reached.
+/// A file that nobody sees before publish(): it has no name, so that not even a killed process leaves a part of it. Where the
+/// file system knows no files without a name (NFS), or without /proc, it has a temporary one.
 class UnfinishedFile {
  public:
   /// `in_place` for what must not be replaced by a renamed file: devices and pipes.
   UnfinishedFile(std::filesystem::path target, bool in_place)
-      : target_(std::move(target)),
-        temporary_(in_place ? target_.string() : fmt::format("{}.{}.partial", target_.string(), ::getpid())),
-        descriptor_(::open(temporary_.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
-        published_(in_place) {
+      : target_(std::move(target)), temporary_(fmt::format("{}.{}.partial", target_.string(), ::getpid())), is_in_place_(in_place) {
+    if (in_place) {
+      descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    } else {
+      const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+      descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+      const bool can_be_linked = descriptor_ >= 0 && ::access("/proc/self/fd", X_OK) == 0;
+      if (!can_be_linked && (descriptor_ >= 0 || errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {
+        if (descriptor_ >= 0) {
+          ::close(descriptor_);
+        }
+        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        has_temporary_name_ = descriptor_ >= 0;
+      }
+    }
     if (descriptor_ < 0) {
       cannot_write(target_, errno);
     }
@@ -111,7 +123,7 @@ class UnfinishedFile {
     if (descriptor_ >= 0) {
       ::close(descriptor_);
     }
-    if (!published_) {
+    if (has_temporary_name_) {
       ::unlink(temporary_.c_str());
     }
   }
@@ -127,18 +139,28 @@ class UnfinishedFile {
   }
 
   void publish() {
+    if (!is_in_place_ && !has_temporary_name_) {
+      // A link cannot replace a file, a renamed one can: the name lives for the moment between the two.
+      ::unlink(temporary_.c_str());
+      has_temporary_name_ =
+          ::linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", descriptor_).c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) == 0;
+      if (!has_temporary_name_) {
+        cannot_write(target_, errno);
+      }
+    }
     // A full disk may show only here.
-    if (::close(std::exchange(descriptor_, -1)) != 0 || (!published_ && std::rename(temporary_.c_str(), target_.c_str()) != 0)) {
+    if (::close(std::exchange(descriptor_, -1)) != 0 || (!is_in_place_ && std::rename(temporary_.c_str(), target_.c_str()) != 0)) {
       cannot_write(target_, errno);
     }
-    published_ = true;
+    has_temporary_name_ = false;
   }
 
  private:
   std::filesystem::path target_;
   std::string temporary_;
   int descriptor_ = -1;
-  bool published_ = false;
+  bool is_in_place_ = false;
+  bool has_temporary_name_ = false;
 };
 
 struct Target {

@@ -3,16 +3,31 @@
 #include <algorithm>
 
 #include "duty/duty.h"
-#include "input/document.h"
 
 namespace heatsoak {
 
-FileKind file_kind(const std::filesystem::path& file) {
-  const Value root = read_toml(file);
+std::string_view to_string(FileKind kind) {
+  switch (kind) {
+    case FileKind::motor:
+      return "motor";
+    case FileKind::robot:
+      return "robot";
+    case FileKind::duty:
+      break;
+  }
+  return "duty";
+}
+
+std::optional<FileKind> evident_kind(const Value& root) {
   if (root.find("shape") || std::ranges::any_of(all_shapes(), [&](const ShapeType& shape) { return root.find(shape.name) != nullptr; })) {
     return FileKind::duty;
   }
-  return root.find("wheels") || root.find("drive") ? FileKind::robot : FileKind::motor;
+  if (root.find("wheels") || root.find("drive")) {
+    return FileKind::robot;
+  }
+  return root.find("figures") || root.find("conventions") ? std::optional(FileKind::motor) : std::nullopt;
 }
+
+FileKind file_kind(const std::filesystem::path& file) { return evident_kind(read_toml(file)).value_or(FileKind::motor); }
 
 }  // namespace heatsoak

@@ -60,10 +60,11 @@ Chart picture(const std::vector<StudyResult>& results, const Robot& robot, const
     const char* label;
     double scale;
     double StudyResult::*value;
+    bool logarithmic = false;
   };
-  constexpr Shown kShown[] = {{"Slip of a mean wheel", "slip / mm per m", 1e3, &StudyResult::slip_share},
+  constexpr Shown kShown[] = {{"Slip of a mean wheel", "slip / mm per m", 1e3, &StudyResult::slip_share, true},
                               {"Time until within 1 cm of the target for good", "time / s", 1.0, &StudyResult::settled_s},
-                              {"Distance between plan and robot", "distance / mm rms", 1e3, &StudyResult::tracking_rms_m},
+                              {"Distance between plan and robot", "distance / mm rms", 1e3, &StudyResult::tracking_rms_m, true},
                               {"Copper heat of all motors", "heat / J per drive", 1.0, &StudyResult::copper_J}};
   Chart chart{.title = fmt::format("{}: jerk limit against bang-bang", robot.name),
               .subtitle = fmt::format(
@@ -72,7 +73,8 @@ Chart picture(const std::vector<StudyResult>& results, const Robot& robot, const
               .panels = {},
               .panel_height_px = 270};
   for (const Shown& each : kShown) {
-    chart.panels.push_back({.title = each.title, .y_label = each.label, .curves = {}, .bands = {}, .levels = {}});
+    chart.panels.push_back(
+        {.title = each.title, .y_label = each.label, .curves = {}, .bands = {}, .levels = {}, .logarithmic = each.logarithmic});
     add_curves(chart.panels.back(), results, robot, chart.panels.size() == 1, each.scale, each.value);
   }
   return chart;
@@ -101,8 +103,11 @@ nlohmann::ordered_json json(const std::vector<StudyResult>& results) {
 ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const std::string& plot, Session& session) {
   const std::vector<StudyCase> cases = jerk_sweep(robot);
   const std::vector<StudyResult> results = study_planners(robot, motor, cases, 0, progress_bar("driving"));
-  session.say(fmt::format("{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest, means\n\n{}", motor.id,
-                          robot.id, table(results, robot)));
+  session.say(fmt::format(
+      "{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest, means\ngrip: the acceleration at which the "
+      "first wheel slides if nothing else is asked of it; contacts creep before, and what the controller corrects comes on top, so that "
+      "sliding begins somewhat below\n\n{}",
+      motor.id, robot.id, table(results, robot)));
   if (!plot.empty()) {
     session.write(plot, draw_svg(picture(results, robot, motor)));
     session.say(fmt::format("picture: {}\n", plot));

@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "base/files.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
+#include "cli/usage.h"
 #include "input/document.h"
 
 namespace heatsoak {
@@ -43,37 +46,6 @@ std::string json_target(int argc, const char* const* argv) {
 std::string verb_of(const CLI::App& app) {
   const auto verbs = app.get_subcommands();
   return verbs.empty() ? app.get_name() : fmt::format("{} {}", app.get_name(), verbs.front()->get_name());
-}
-
-/// CLI11 speaks of a missing option before it speaks of a misspelt one, so the words are looked at first.
-void check_words(const CLI::App& app, int argc, const char* const* argv) {
-  std::vector<std::string> verbs;
-  const CLI::App* verb = nullptr;
-  for (const CLI::App* each : app.get_subcommands({})) {
-    verbs.push_back(each->get_name());
-    verb = argc > 1 && each->get_name() == argv[1] ? each : verb;
-  }
-  if (!verb && argc > 1 && argv[1][0] != '-') {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", argv[1], did_you_mean(argv[1], verbs)));
-  }
-  std::vector<std::string> known;
-  for (const CLI::Option* option : (verb ? *verb : app).get_options()) {
-    for (const std::string& name : option->get_lnames()) {
-      known.push_back("--" + name);
-    }
-  }
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    const std::string name(word.substr(0, word.find('=')));
-    if (name == "--") {
-      break;
-    }
-    if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) {
-      throw Failure(ExitCode::bad_input, fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known),
-                                                     app.get_name(), verb ? " " + verb->get_name() : ""));
-    }
-  }
 }
 
 /// Unlike fmt::print this does not throw: a full disk is found at the end (see written_out), a full stderr is borne.
@@ -110,14 +82,17 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
     verb->callback([run, &code] { code = run(); });
   }
   session.set_json_target(json_target(argc, argv));
-  check_words(app, argc, argv);
+  const auto words = std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
+  // CLI11 speaks of a missing option before it speaks of a misspelt one, so the words are looked at first.
+  check_words(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {
       return app.exit(error);
     }
-    throw Failure(ExitCode::bad_input, fmt::format("{}\n`{} --help` shows the options and an example", error.what(), verb_of(app)));
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}\n`{} --help` shows the options and an example", all_mistakes(error, app, words), verb_of(app)));
   }
   session.finish();
   return static_cast<int>(code);
@@ -220,6 +195,8 @@ nlohmann::ordered_json rounded(double value, int decimals) {
 }
 
 int run_program(int argc, const char* const* argv) {
+  // A file that grows beyond the user's limit then fails as on a full disk, with a message.
+  std::signal(SIGXFSZ, SIG_IGN);
   Session session;
   try {
     const int code = parse_and_run(argc, argv, session);

@@ -12,6 +12,13 @@ double direction_of(double speed_rad_per_s) {
   return std::abs(speed_rad_per_s) < kStandstill_rad_per_s ? 0.0 : std::copysign(1.0, speed_rad_per_s);
 }
 
+/// The number of steps that hold the value; std::ceil is a function call on the plainest processors.
+int cell_of(double value, double step) {
+  const double steps = value / step;
+  const int whole = static_cast<int>(steps);
+  return whole + (steps > whole ? 1 : 0);
+}
+
 }  // namespace
 
 double WheelDemand::duration_s() const {
@@ -55,9 +62,9 @@ void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_p
   last_speed_rad_per_s_ = speed_rad_per_s;
   const double torque_with_motion_Nm = direction < 0.0 ? -torque_Nm : direction > 0.0 ? torque_Nm : std::abs(torque_Nm);
   // Away from zero, so that a cell asks at least as much as anything in it.
-  const int torque_cell =
-      static_cast<int>(std::copysign(std::ceil(std::abs(torque_with_motion_Nm) / grid_.torque_step_Nm), torque_with_motion_Nm));
-  const int speed_cell = static_cast<int>(std::ceil(magnitude_rad_per_s / grid_.speed_step_rad_per_s));
+  const int torque_size = cell_of(std::abs(torque_with_motion_Nm), grid_.torque_step_Nm);
+  const int torque_cell = torque_with_motion_Nm < 0.0 ? -torque_size : torque_size;
+  const int speed_cell = cell_of(magnitude_rad_per_s, grid_.speed_step_rad_per_s);
   if (const std::pair cell{torque_cell, speed_cell}; cell != cell_) {
     close_stay();
     cell_ = cell;

@@ -1,6 +1,7 @@
 #include "duty/game_to_demand.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -16,7 +17,7 @@ constexpr double kRate_Hz = 1000.0;
 /// No break of a game is as long: the clock of the recording jumped.
 constexpr double kLongestAbsence_s = 3600.0;
 
-/// The robot that was asked for, or the one that worked most.
+/// The robot that was asked for, or the one that worked most; nothing where the log has none at all.
 std::optional<RobotName> choose(const ImportReport& survey, const std::string& player, const std::filesystem::path& log) {
   std::vector<std::string> known;
   for (const RobotSummary& each : survey.robots) {
@@ -25,11 +26,57 @@ std::optional<RobotName> choose(const ImportReport& survey, const std::string& p
       return each.robot;
     }
   }
-  if (!player.empty()) {
-    throw Failure(ExitCode::bad_input, fmt::format("{}: there is no robot '{}'{}", log.string(), player, did_you_mean(player, known)));
+  if (!player.empty() && !known.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: there is no robot '{}'{}; the log has {}\n{}", log.string(), player, did_you_mean(player, known),
+                              fmt::join(known, ", "), fmt::join(sentences(survey), "\n")));
   }
   const auto busiest = std::ranges::max_element(survey.robots, {}, &RobotSummary::effort_m2_per_s3);
   return busiest == survey.robots.end() ? std::nullopt : std::optional(busiest->robot);
+}
+
+/// What the motion asks of the wheels, and how much of it was seen and possible.
+struct WheelLoads {
+  std::vector<WheelDemand> wheels;
+  double slip_s = 0.0;
+  double unseen_s = 0.0;  ///< taken as standstill
+  int jumps = 0;          ///< of the clock; left out
+};
+
+WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s) {
+  MotorValues no_rotor;
+  no_rotor.rotor_inertia_kg_m2 = 0.0;
+  const BodyConfig body = make_body(robot, no_rotor);
+  std::vector<DemandGatherer> gatherers;
+  for (int wheel = 0; wheel < body.kinematics.wheel_count; ++wheel) {
+    gatherers.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s,
+                           DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});
+  }
+  WheelLoads loads;
+  double time_s = motion.segments().front().front().time_s;
+  motion.for_each(kRate_Hz, [&](const Motion& at, std::size_t /*segment*/) {
+    if (const double gap_s = at.time_s - time_s; gap_s > kLongestAbsence_s) {
+      ++loads.jumps;
+    } else if (gap_s > 2.0 / kRate_Hz) {
+      loads.unseen_s += gap_s;
+      for (DemandGatherer& each : gatherers) {
+        each.add(gap_s, 0.0, 0.0);
+      }
+    }
+    time_s = at.time_s;
+    const BodyMotion local =
+        local_motion(body, {at.x_m, at.y_m, at.yaw_rad}, {at.velocity_x_m_per_s, at.velocity_y_m_per_s, at.yaw_rate_rad_per_s},
+                     {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
+    const WheelDemands wheels = inverse_dynamics(body, local);
+    loads.slip_s += wheels.transmitted_share < 1.0 ? 1.0 / kRate_Hz : 0.0;
+    for (std::size_t i = 0; i < gatherers.size(); ++i) {
+      gatherers[i].add(1.0 / kRate_Hz, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
+    }
+  });
+  for (DemandGatherer& each : gatherers) {
+    loads.wheels.push_back(each.finish());
+  }
+  return loads;
 }
 
 }  // namespace
@@ -53,49 +100,16 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   }
   const MotionTrack motion = smooth(game.tracks.front());
   result.sentences.push_back(fmt::format("{}: {}", result.player, to_string(motion.report())));
-  MotorValues no_rotor;
-  no_rotor.rotor_inertia_kg_m2 = 0.0;
-  const BodyConfig body = make_body(robot, no_rotor);
-  std::vector<DemandGatherer> gatherers;
-  gatherers.reserve(static_cast<std::size_t>(body.kinematics.wheel_count));
-  for (int wheel = 0; wheel < body.kinematics.wheel_count; ++wheel) {
-    gatherers.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s,
-                           DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});
-  }
-  double time_s = motion.segments().front().front().time_s;
-  double slip_s = 0.0;
-  double unseen_s = 0.0;
-  int jumps = 0;
-  motion.for_each(kRate_Hz, [&](const Motion& at, std::size_t /*segment*/) {
-    if (const double gap_s = at.time_s - time_s; gap_s > kLongestAbsence_s) {
-      ++jumps;
-    } else if (gap_s > 2.0 / kRate_Hz) {
-      unseen_s += gap_s;
-      for (DemandGatherer& each : gatherers) {
-        each.add(gap_s, 0.0, 0.0);
-      }
-    }
-    time_s = at.time_s;
-    const BodyMotion local =
-        local_motion(body, {at.x_m, at.y_m, at.yaw_rad}, {at.velocity_x_m_per_s, at.velocity_y_m_per_s, at.yaw_rate_rad_per_s},
-                     {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
-    const WheelDemands wheels = inverse_dynamics(body, local);
-    slip_s += wheels.transmitted_share < 1.0 ? 1.0 / kRate_Hz : 0.0;
-    for (std::size_t i = 0; i < gatherers.size(); ++i) {
-      gatherers[i].add(1.0 / kRate_Hz, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
-    }
-  });
-  for (DemandGatherer& each : gatherers) {
-    result.wheels.push_back(each.finish());
-  }
-  if (jumps > 0) {
+  WheelLoads loads = loads_of(motion, robot, bin_s);
+  result.wheels = std::move(loads.wheels);
+  if (loads.jumps > 0) {
     result.sentences.push_back(fmt::format("{}: the time jumps ahead by more than {:.0f} s {} times; these gaps are left out",
-                                           result.player, kLongestAbsence_s, jumps));
+                                           result.player, kLongestAbsence_s, loads.jumps));
   }
   const double all_s = result.wheels.front().duration_s();
   result.sentences.push_back(fmt::format(
       "{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the ground could not pass on the motion in {:.1f} % of the time",
-      result.player, all_s, unseen_s, 100.0 * slip_s / all_s));
+      result.player, all_s, loads.unseen_s, 100.0 * loads.slip_s / all_s));
   return result;
 }
 

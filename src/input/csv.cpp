@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -48,7 +49,8 @@ class Table {
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0) {
       const std::optional<double> value = parse_number(text);
       if (!value || !std::isfinite(*value)) {
-        problem(static_cast<int>(column_) + 1, header_[column_], fmt::format("\"{}\" is not a finite number", first_line(text)));
+        problem(static_cast<int>(column_) + 1, header_[column_],
+                fmt::format("\"{}\" is not a finite number; expected one such as 0.25 or -3e-4", first_line(text)));
       } else {
         values_[static_cast<std::size_t>(place_of_[column_])] = *value;
       }
@@ -61,16 +63,18 @@ class Table {
     if (column_ > 0) {
       if (!has_header_) {
         read_header();
+        is_header_sound_ = problems_.empty();
       } else if (column_ != header_.size()) {
         problem(1, "", fmt::format("has {} cells where the header has {}", column_, header_.size()));
       } else {
         ++rows_;
-        if (problems_.empty()) {
-          row_({line_, values_, columns_});
+        if (is_header_sound_ && !is_bad_row_) {
+          row_({line_, values_, cells_});
         }
       }
     }
     column_ = 0;
+    is_bad_row_ = false;
     line_ += line_breaks_in_row_ + (terminator == '\n' ? 1 : 0);
     line_breaks_in_row_ = 0;
   }
@@ -79,6 +83,7 @@ class Table {
   [[noreturn]] void stop(std::string message) const { throw bad_input({file_, line_, 1}, "", std::move(message)); }
 
   void finish() {
+    problems_ = with_characters(std::move(problems_));
     if (has_header_ && rows_ == 0 && problems_.empty()) {
       problem(1, "", "holds no row of numbers");
     }
@@ -97,9 +102,10 @@ class Table {
 
   [[nodiscard]] bool is_hopeless() const { return left_out_ >= kHopeless; }
 
-  void problem(int column, std::string key, std::string message) {
+  void problem(int cell, std::string key, std::string message) {
+    is_bad_row_ = true;
     if (problems_.size() < kMostProblems) {
-      problems_.push_back({{file_, line_, column}, std::move(key), std::move(message)});
+      problems_.push_back({{file_, line_, cell}, std::move(key), std::move(message)});
     } else {
       ++left_out_;
     }
@@ -128,7 +134,7 @@ class Table {
     values_.assign(wanted.required.size() + wanted.optional.size(), kNothing);
     place_of_.assign(header_.size(), -1);
     words_of_.assign(header_.size(), nullptr);
-    columns_.assign(values_.size(), 0);
+    cells_.assign(values_.size(), 0);
     for (std::size_t i = 0; i < header_.size(); ++i) {
       const auto found = std::ranges::find(words_, header_[i], &CsvWords::column);
       words_of_[i] = found != words_.end() ? &*found : nullptr;
@@ -147,7 +153,7 @@ class Table {
         problem(1, name, "stands twice in the header");
       }
       place_of_[static_cast<std::size_t>(found - header_.begin())] = static_cast<int>(i);
-      columns_[i] = static_cast<int>(found - header_.begin()) + 1;
+      cells_[i] = static_cast<int>(found - header_.begin()) + 1;
     }
   }
 
@@ -158,7 +164,7 @@ class Table {
   std::vector<std::string> header_;
   std::vector<int> place_of_;
   std::vector<const CsvWords*> words_of_;
-  std::vector<int> columns_;
+  std::vector<int> cells_;
   std::vector<double> values_;
   std::vector<Diagnostic> problems_;
   std::size_t left_out_ = 0;
@@ -167,6 +173,8 @@ class Table {
   int line_ = 1;
   int line_breaks_in_row_ = 0;
   bool has_header_ = false;
+  bool is_header_sound_ = false;
+  bool is_bad_row_ = false;
 };
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -267,6 +275,37 @@ void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose,
     std::rethrow_exception(guard.error);
   }
   table.finish();
+}
+
+std::vector<Diagnostic> with_characters(std::vector<Diagnostic> of_cells) {
+  std::ifstream file;
+  std::string text;
+  int line = 0;
+  for (Diagnostic& each : of_cells) {
+    if (each.at.column <= 1 || each.at.line < 1) {
+      continue;
+    }
+    if (line == 0 || each.at.line < line) {
+      file = std::ifstream(each.at.file, std::ios::binary);
+      line = 0;
+    }
+    for (; line < each.at.line && std::getline(file, text); ++line) {
+    }
+    if (line == 1 && text.starts_with(kByteOrderMark)) {
+      text.erase(0, kByteOrderMark.size());
+    }
+    int cell = 1;
+    int character = 1;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size() && cell < each.at.column; ++i) {
+      quoted = quoted != (text[i] == '"');
+      cell += text[i] == ',' && !quoted ? 1 : 0;
+      character += (text[i] & 0xC0) != 0x80 ? 1 : 0;
+    }
+    // A row that goes over several lines has its place at the first of them.
+    each.at.column = cell == each.at.column ? character : 1;
+  }
+  return of_cells;
 }
 
 }  // namespace heatsoak

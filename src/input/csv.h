@@ -7,13 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
+
 namespace heatsoak {
 
 /// One row: the wanted columns in the wanted order. `line` counts from 1 as an editor does.
 struct CsvRow {
   int line = 0;
   std::span<const double> values;
-  std::span<const int> columns;  ///< of the values in the file, from 1; 0 where the file has none
+  std::span<const int> cells;  ///< which cell of the row each value is, from 1; 0 where the file has none
 };
 
 /// A column whose cells are words: the value of a row is the word's place in the list.
@@ -33,7 +35,8 @@ using ChooseCsvColumns = std::function<CsvColumns(std::span<const std::string> h
 /// Reads a file with one header row and gives every row to `row`. `required` names must be in the header;
 /// `optional` ones give NaN where the header has none. Memory does not grow with the file. A UTF-8 byte order mark and CR LF are fine.
 /// Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
-/// another number of cells, no rows. At most 20 problems are listed, then how many more there are.
+/// another number of cells, no rows. At most 20 problems are listed, then how many more there are. Rows that are sound are
+/// given even where others are not, but none where the header is wrong.
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               const std::function<void(const CsvRow&)>& row);
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
@@ -41,5 +44,9 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
 /// The same for files that come in several forms.
 void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose, std::span<const CsvWords> words,
               const std::function<void(const CsvRow&)>& row);
+
+/// Problems of one file whose columns count cells, with the character (from 1) at which each cell begins in their place, as
+/// an editor counts. Reads the file once more.
+std::vector<Diagnostic> with_characters(std::vector<Diagnostic> of_cells);
 
 }  // namespace heatsoak

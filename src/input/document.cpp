@@ -85,6 +85,43 @@ Value convert(const toml::node& node, const std::string& file) {
   return value;
 }
 
+/// The last line that begins with a key of that name; 0 where there is none.
+int line_of_key(const toml::table& table, std::string_view name) {
+  int line = 0;
+  for (const auto& [key, member] : table) {
+    if (key.str() == name) {
+      line = std::max(line, static_cast<int>(key.source().begin.line));
+    }
+    if (const toml::table* inner = member.as_table(); inner && !inner->is_inline()) {
+      line = std::max(line, line_of_key(*inner, name));
+    }
+  }
+  return line;
+}
+
+/// What the parser says, and of a key that is given twice where the first one is.
+std::string explanation(const toml::parse_error& error, std::string_view content) {
+  const std::string_view said = error.description();
+  const std::size_t from = said.find('\'');
+  const std::size_t to = said.rfind('\'');
+  if (said.find("redefine") == std::string_view::npos || to <= from) {
+    return fmt::format("not valid TOML: {}", said);
+  }
+  const std::string_view path = said.substr(from + 1, to - from - 1);
+  std::size_t end = 0;
+  for (std::size_t line = 1; line < error.source().begin.line && end < content.size(); ++line) {
+    end = std::min(content.find('\n', end), content.size() - 1) + 1;
+  }
+  int first_line = 0;
+  try {
+    first_line = line_of_key(toml::parse(content.substr(0, end)), path.substr(path.rfind('.') + 1));
+  } catch (const toml::parse_error&) {
+    // The second stands inside something that began before: the message does without the line of the first.
+  }
+  return fmt::format("not valid TOML: '{}' is given twice{}; keep one of the two", path,
+                     first_line > 0 ? fmt::format(", first in line {}", first_line) : "");
+}
+
 }  // namespace
 
 const Value* Value::find(std::string_view key) const {
@@ -147,8 +184,7 @@ Value parse_toml(const std::string& content, const std::string& file) {
     return root;
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    throw bad_input({file, static_cast<int>(at.line), static_cast<int>(at.column)}, "",
-                    fmt::format("not valid TOML: {}", error.description()));
+    throw bad_input({file, static_cast<int>(at.line), static_cast<int>(at.column)}, "", explanation(error, content));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace lint_checks {
@@ -26,7 +27,7 @@ LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_l
 }
 
 double resistance_ohm(const MotorValues& values, double temperature_C) {
-  return values.terminal_resistance_ohm * (1.0 + values.temperature_coefficient_per_K * (temperature_C - 25.0));
+  return values.terminal_resistance_ohm * resistance_ratio(values.temperature_coefficient_per_K, temperature_C);
 }
 
 std::string shown(double value, std::string_view unit) { return fmt::format("{} {}", significant(value, 3), unit_for_display(unit)); }
@@ -99,7 +100,7 @@ std::vector<LintFinding> lint(const Motor& motor) {
     check.run(motor, findings);
     // What was fitted is of one motor, its other figures are of the sheet: that they differ is no fault of the file.
     for (std::size_t i = before; i < list.size() && motor.fit && check.is_of_values; ++i) {
-      list[i].level = std::max(list[i].level, LintFinding::Level::warning);
+      list[i].level = LintFinding::Level::note;
     }
   }
   return list;

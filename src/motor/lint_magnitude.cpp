@@ -24,9 +24,10 @@ constexpr Bounds kDensity_kg_per_m3{1500.0, 7500.0};
 constexpr Bounds kUsualDensity_kg_per_m3{3000.0, 6500.0};
 /// J/(m·r²): all mass in a thin ring would be 1, half the mass in a ring is 0.5; motor_db has 0.05 … 0.28.
 constexpr double kMostInertia = 0.5;
-/// A flat motor carries its magnets outside: a bell of 8 % of the mass with a radius of gyration of 0.6 r has 0.03.
-constexpr double kLeastFlatInertia = 0.03;
-/// Shorter than this share of its diameter a motor counts as flat.
+/// An external rotor is a bell with the magnets in it: 8 % of the mass with a radius of gyration of 0.6 r has 0.03.
+/// motor_db has 0.05 … 0.28 for external rotors, 0.018 … 0.028 for the internal ones of the EC-i 40.
+constexpr double kLeastExternalInertia = 0.03;
+/// Shorter than this share of its diameter a motor counts as flat: nearly all of them have an external rotor.
 constexpr double kFlat = 0.7;
 
 double body_area_m2(const MotorValues& v) { return std::numbers::pi / 4.0 * v.diameter_m * v.diameter_m; }
@@ -98,12 +99,15 @@ void rotor_inertia(const Motor& motor, Findings& findings) {
                                shown_inertia(v.rotor_inertia_kg_m2), shown_inertia(ring_kg_m2), shown(1e3 * v.mass_kg, "g"),
                                shown(500.0 * v.diameter_m, "mm")));
   }
-  if (v.length_m < kFlat * v.diameter_m && ratio < kLeastFlatInertia) {
-    findings.warning("rotor_inertia",
-                     fmt::format("{} is very little for a flat motor of {} and {} diameter, expected at least {} with the magnets outside; "
-                                 "check it unless the rotor is inside",
-                                 shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
-                                 shown_inertia(kLeastFlatInertia * ring_kg_m2)));
+  const bool is_external = motor.rotor == "external";
+  const bool may_be_external = is_external || (motor.rotor.empty() && v.length_m < kFlat * v.diameter_m);
+  if (may_be_external && ratio < kLeastExternalInertia) {
+    findings.add(is_external ? LintFinding::Level::error : LintFinding::Level::warning, "rotor_inertia",
+                 fmt::format("{} is too little for an external rotor of a motor of {} and {} diameter, expected at least {}; {}",
+                             shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
+                             shown_inertia(kLeastExternalInertia * ring_kg_m2),
+                             is_external ? "check it, and whether rotor = \"external\" is right"
+                                         : "check it, or say rotor = \"internal\" if this flat motor's rotor runs inside"));
   }
 }
 

@@ -32,9 +32,12 @@ constexpr Bounds kHeat{0.85, 1.10};
 /// motors.yaml: I_n over the current for copper loss alone is 0.73 … 0.985; ±10 % around it.
 constexpr Bounds kCopperLimit{0.65, 1.05};
 
-/// The current that brings the winding just to its limit in the steady state; 0 where the other losses do so alone.
+/// The current that brings the winding just to its limit in the steady state; 0 where the other losses do so alone. By the
+/// sheet's network: the sheet's nominal point knows nothing of effects that the file adds.
 double limit_current_A(const Motor& motor, double speed_rad_per_s) {
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  Motor sheet = motor;
+  sheet.effects.clear();
+  const Network network = datasheet_network(sheet, nominal_sample(sheet));
   const auto winding = static_cast<std::size_t>(network.find_node("winding"));
   const auto excess_K = [&](double current_A) {
     const std::optional<SteadyState> rest = steady_state(network, {current_A, speed_rad_per_s, speed_rad_per_s, kSheetAmbient_C});

@@ -233,6 +233,8 @@ Motor read_motor(const std::filesystem::path& path) {
   motor.part_number = top.text("part_number", Need::optional).value_or("");
   constexpr std::array<std::string_view, 2> kTypes{"brushless", "brushed"};
   motor.type = top.choice("type", kTypes, Need::required).value_or("");
+  constexpr std::array<std::string_view, 2> kRotors{"external", "internal"};
+  motor.rotor = top.choice("rotor", kRotors, Need::optional).value_or("");
   motor.notes = top.texts("notes", Need::optional);
   if (std::optional<Reader> sources = top.table("sources", Need::required)) {
     for (const std::string& id : sources->keys()) {

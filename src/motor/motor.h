@@ -86,7 +86,8 @@ struct Motor {
   std::string manufacturer;
   std::string name;
   std::string part_number;
-  std::string type;  ///< "brushless", "brushed"
+  std::string type;   ///< "brushless", "brushed"
+  std::string rotor;  ///< "external" around the stator, "internal"; empty where the file does not say
   std::vector<std::string> notes;
   std::map<std::string, std::string, std::less<>> sources;
   bool stall_includes_saturation = false;

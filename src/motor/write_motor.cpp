@@ -102,6 +102,7 @@ std::string to_toml(const Motor& motor) {
     text += fmt::format("part_number = {}\n", toml_text(motor.part_number));
   }
   text += fmt::format("type = {}\n", toml_text(motor.type));
+  text += motor.rotor.empty() ? "" : fmt::format("rotor = {}\n", toml_text(motor.rotor));
   if (!motor.notes.empty()) {
     text += "notes = [\n";
     for (const std::string& note : motor.notes) {

@@ -39,6 +39,7 @@ struct ChartPanel {
   std::vector<ChartCurve> curves = {};
   std::vector<ChartBand> bands = {};
   std::vector<ChartLevel> levels = {};
+  bool logarithmic = false;  ///< of y; what is not positive breaks the line
 };
 
 struct Chart {

@@ -1,8 +1,8 @@
 #include "robot/body.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace heatsoak {
 namespace {
@@ -21,13 +21,11 @@ FrictionConfig make_friction(const Robot& robot, const Kinematics& kinematics) {
       const HeadingWheel& wheel = robot.heading_wheels[i];
       friction.heading.constant_Nm[i] = wheel.constant_Nm;
       friction.heading.sine_Nm[i] = wheel.sine_Nm;
-      friction.heading.phase_offset_rad[i] =
-          std::remainder(wheel.phase_rad - rolling_phase_rad(kinematics.wheels[i]), 2.0 * std::numbers::pi);
+      friction.heading.phase_offset[i] = Direction::of(wheel.phase_rad - rolling_phase_rad(kinematics.wheels[i]));
     }
     friction.heading.double_angle_Nm = given_or(robot.heading_double_angle_Nm, 0.0);
     friction.heading.rotation_Nm = given_or(robot.heading_rotation_Nm, robot.wheel_friction_torque_Nm);
-    std::copy(robot.heading_double_angle_phase_rad.begin(), robot.heading_double_angle_phase_rad.end(),
-              friction.heading.double_angle_phase_rad.begin());
+    std::ranges::transform(robot.heading_double_angle_phase_rad, friction.heading.double_angle_phase.begin(), &Direction::of);
   }
   return friction;
 }

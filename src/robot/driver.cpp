@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "motor/datasheet_network.h"
+#include "robot/motor_drive.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 
@@ -18,8 +19,7 @@ MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor) {
   made.resistance_25C_ohm = motor.terminal_resistance_ohm;
   made.resistance_rise_per_K = motor.temperature_coefficient_per_K;
   made.torque_constant_25C_Nm_per_A = motor.torque_constant_Nm_per_A;
-  // 0.75·R·Î² with Î = I·6/(√3·π).
-  made.heating_factor = robot.commutation == Commutation::sinusoidal ? 9.0 / (std::numbers::pi * std::numbers::pi) : 1.0;
+  made.heating_factor = heating_factor(robot) * heating_factor(robot);
   made.drag_torque_Nm = drag_torque_Nm(motor);
   return made;
 }
@@ -27,8 +27,9 @@ MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor) {
 MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s,
                        double winding_C, double magnet_C, double bus_V) {
   MotorPoint point;
-  point.torque_constant_Nm_per_A = motor.torque_constant_25C_Nm_per_A * (1.0 - motor.torque_constant_fall_per_K * (magnet_C - 25.0));
-  const double winding_ohm = motor.heating_factor * motor.resistance_25C_ohm * (1.0 + motor.resistance_rise_per_K * (winding_C - 25.0));
+  point.torque_constant_Nm_per_A =
+      motor.torque_constant_25C_Nm_per_A * (1.0 - motor.torque_constant_fall_per_K * (magnet_C - kSheetTemperature_C));
+  const double winding_ohm = motor.heating_factor * motor.resistance_25C_ohm * resistance_ratio(motor.resistance_rise_per_K, winding_C);
   point.resistance_ohm = winding_ohm + driver.resistance_ohm;
   const double back_emf_V = point.torque_constant_Nm_per_A * motor_speed_rad_per_s;
   if (command.kind != MotorCommand::Kind::open) {

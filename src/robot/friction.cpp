@@ -22,7 +22,7 @@ double rotation_share(const Kinematics& kinematics, const BodyVelocity& local, d
 
 /// |f(θ)| of the wheels, rotation mixed in.
 PerWheel heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics& kinematics, const BodyVelocity& local) {
-  const double speed_m_per_s = std::hypot(local.x_m_per_s, local.y_m_per_s);
+  const double speed_m_per_s = std::sqrt(local.x_m_per_s * local.x_m_per_s + local.y_m_per_s * local.y_m_per_s);
   const double rotation = rotation_share(kinematics, local, speed_m_per_s);
   const double x = speed_m_per_s > 0.0 ? local.x_m_per_s / speed_m_per_s : 0.0;
   const double y = speed_m_per_s > 0.0 ? local.y_m_per_s / speed_m_per_s : 0.0;
@@ -31,11 +31,10 @@ PerWheel heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics&
     // sin and cos of θ + φ, φ the wheel's rolling direction
     const double sine = kinematics.wheels[i].rolling_x_share * x + kinematics.wheels[i].rolling_y_share * y;
     const double cosine = kinematics.wheels[i].rolling_y_share * x - kinematics.wheels[i].rolling_x_share * y;
-    const double offset_rad = heading.phase_offset_rad[i];
-    const double s = offset_rad == 0.0 ? std::abs(sine) : std::abs(sine * std::cos(offset_rad) + cosine * std::sin(offset_rad));
+    const double s = std::abs(sine * heading.phase_offset[i].cosine_ratio + cosine * heading.phase_offset[i].sine_ratio);
     // sin(2θ + ψ) of the unit vector (x, y)
-    const double phase_rad = heading.double_angle_phase_rad[i];
-    const double twice = 2.0 * x * y * std::cos(phase_rad) + (x * x - y * y) * std::sin(phase_rad);
+    const Direction& phase = heading.double_angle_phase[i];
+    const double twice = 2.0 * x * y * phase.cosine_ratio + (x * x - y * y) * phase.sine_ratio;
     const double translation_Nm = heading.constant_Nm[i] + heading.sine_Nm[i] * s + heading.double_angle_Nm * twice;
     magnitude_Nm[i] = (1.0 - rotation) * translation_Nm + rotation * heading.rotation_Nm;
   }

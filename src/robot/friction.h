@@ -1,6 +1,9 @@
 // What it costs to keep a wheel turning at constant speed, apart from what happens in its motor.
 #pragma once
 
+#include <array>
+#include <cmath>
+
 #include "motor/motor.h"
 #include "robot/kinematics.h"
 
@@ -15,6 +18,14 @@ namespace heatsoak {
 //   a Festo Robotino: currents over 72 headings (tests/robot/robotino_test.cpp)
 // are one model. The other description is the curve that a team measured, taken as it is.
 
+/// An angle by its direction, for what is evaluated a million times.
+struct Direction {
+  double cosine_ratio = 1.0;
+  double sine_ratio = 0.0;
+
+  static Direction of(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
+};
+
 /// The curve of wheel i over the direction of travel θ (local frame), as torque at the wheel:
 ///   f(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)) + sign(ω_i)·A·sin(2θ + ψ_i),
 /// the first two terms those of ETDP 2025, equation (3), A that of the firmware. Without an offset φ_i is the wheel's
@@ -22,12 +33,12 @@ namespace heatsoak {
 /// In rotation it goes over to a constant c: (1 − γ)·f + γ·sign(ω)·c, γ = ½·(1 − cos(π·min(1, R·|yaw rate|/|v|))).
 /// The firmware counts θ from the left to straight ahead: its phase is −ψ here.
 struct HeadingFriction {
-  PerWheel constant_Nm{};             ///< b
-  PerWheel sine_Nm{};                 ///< a
-  PerWheel phase_offset_rad{};        ///< φ_i less that of the rolling direction
-  double double_angle_Nm = 0.0;       ///< A, at most b
-  PerWheel double_angle_phase_rad{};  ///< ψ
-  double rotation_Nm = 0.0;           ///< c
+  PerWheel constant_Nm{};                                   ///< b
+  PerWheel sine_Nm{};                                       ///< a
+  std::array<Direction, kMostWheels> phase_offset{};        ///< φ_i less that of the rolling direction
+  double double_angle_Nm = 0.0;                             ///< A, at most b
+  std::array<Direction, kMostWheels> double_angle_phase{};  ///< ψ
+  double rotation_Nm = 0.0;                                 ///< c
 };
 
 /// φ of the wheel's rolling direction t: sin(θ + φ) = t·(cos θ, sin θ).

@@ -145,7 +145,16 @@ void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& dem
 
 BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global,
                         const BodyAcceleration& acceleration_global) {
-  return {to_local(velocity_global, pose.yaw_rad), to_local(acceleration_global, pose.yaw_rad), {}, body.weight.center_of_gravity_height_m};
+  // The field's x axis in the local frame turns both: sine and cosine once.
+  const BodyVelocity x_axis = to_local(BodyVelocity{1.0, 0.0, 0.0}, pose.yaw_rad);
+  const auto along = [&](double x, double y) { return x * x_axis.x_m_per_s - y * x_axis.y_m_per_s; };
+  const auto across = [&](double x, double y) { return x * x_axis.y_m_per_s + y * x_axis.x_m_per_s; };
+  const auto& [v_x, v_y, yaw_rate] = velocity_global;
+  const auto& [a_x, a_y, yaw_acceleration] = acceleration_global;
+  return {{along(v_x, v_y), across(v_x, v_y), yaw_rate},
+          {along(a_x, a_y), across(a_x, a_y), yaw_acceleration},
+          {},
+          body.weight.center_of_gravity_height_m};
 }
 
 WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) {
@@ -164,6 +173,27 @@ WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) 
                        friction_Nm[i] + body.wheel_inertia_kg_m2 * rim_m_per_s2[i] / radius_m;
   }
   return out;
+}
+
+double largest_push_N(const BodyConfig& body, double direction_rad, double height_m) {
+  const auto holds = [&](double force_N) {
+    BodyMotion motion;
+    motion.external = {-force_N * std::cos(direction_rad), -force_N * std::sin(direction_rad), 0.0};
+    motion.external_height_m = height_m;
+    WheelDemands out;
+    const Demand demand = demand_on_contacts(body, motion, out);
+    const Interval shares = possible_shares(body.kinematics, demand);
+    return shares.low <= shares.high;
+  };
+  // Forces that hold are an interval from 0: halving keeps its end between the two.
+  double holds_N = 0.0;
+  double slides_N = body.traction.traction_ratio * body.weight.mass_kg * kGravity_m_per_s2;
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle_N = 0.5 * (holds_N + slides_N);
+    (holds(middle_N) ? holds_N : slides_N) = middle_N;
+  }
+  return holds_N;
 }
 
 }  // namespace heatsoak

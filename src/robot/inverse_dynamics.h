@@ -38,4 +38,8 @@ struct WheelDemands {
 /// decides. A push at standstill is a stall: torque without speed.
 WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion);
 
+/// The largest force in that direction (local frame) that the robot can hold at a standstill without turning: beyond, a contact
+/// slides whatever the others do. `height_m`: of what it pushes, above the ground.
+double largest_push_N(const BodyConfig& body, double direction_rad, double height_m);
+
 }  // namespace heatsoak

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "motor/datasheet_network.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -49,14 +50,13 @@ DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, 
 }
 
 double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C) {
-  const double resistance_ohm = motor.terminal_resistance_ohm * (1.0 + motor.temperature_coefficient_per_K * (winding_C - 25.0));
+  const double resistance_ohm = motor.terminal_resistance_ohm * resistance_ratio(motor.temperature_coefficient_per_K, winding_C);
   return point.current_A * resistance_ohm + motor.torque_constant_Nm_per_A * point.motor_speed_rad_per_s;
 }
 
 double heating_factor(const Robot& robot) {
-  // 0.75·R·Î² against R·I² at equal torque, Î = I/(√3·π/6): 0.912 of the heat.
-  static const double kSinusoidal = std::sqrt(0.75) * 6.0 / (std::numbers::sqrt3 * std::numbers::pi);
-  return robot.commutation == Commutation::sinusoidal ? kSinusoidal : 1.0;
+  // 0.75·R·Î² against R·I² at equal torque, Î = I/(√3·π/6), is (3/π)².
+  return robot.commutation == Commutation::sinusoidal ? 3.0 / std::numbers::pi : 1.0;
 }
 
 double input_power_W(const MotorValues& motor, double heating_current_A, double shaft_power_W, double speed_rad_per_s) {
@@ -78,7 +78,7 @@ OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValue
           .shaft_power_W = shaft_power_W,
           .input_power_W = input_power_W(motor, heating_A, shaft_power_W, speed_rad_per_s),
           .bus_V = robot.battery_V,
-          .modulation_ratio = std::min(1.0, std::abs(terminal_voltage_V(motor, point, 25.0)) / robot.battery_V),
+          .modulation_ratio = std::min(1.0, std::abs(terminal_voltage_V(motor, point, kSheetTemperature_C)) / robot.battery_V),
           .vehicle_speed_m_per_s = speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m,
           .velocity_rad_per_s = point.motor_speed_rad_per_s};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "motor/datasheet_network.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 
@@ -65,7 +66,7 @@ Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind k
                         double winding_C) {
   Feasibility result;
   MotorValues warm = motor;
-  warm.terminal_resistance_ohm *= 1.0 + motor.temperature_coefficient_per_K * (winding_C - 25.0);
+  warm.terminal_resistance_ohm *= resistance_ratio(motor.temperature_coefficient_per_K, winding_C);
   double short_s = 0.0;
   for (const LoadPoint& each : demand.points) {
     const DrivePoint point = kind == DutyKind::torque
@@ -73,7 +74,7 @@ Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind k
                                  : drive_point_of_current(warm, robot, each.current_A * sample.load, each.speed_rad_per_s);
     DrivePoint wanted = point;
     wanted.current_A = point.current_wanted_A;
-    result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(terminal_voltage_V(warm, wanted, 25.0)));
+    result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(terminal_voltage_V(warm, wanted, kSheetTemperature_C)));
     const double share = point.limit == DriveLimit::none ? 1.0 : point.current_A / point.current_wanted_A;
     if (share < result.least_share) {
       result.least_share = share;

@@ -29,7 +29,7 @@ class Block {
  public:
   Block(const Motor& motor, const Robot& robot, const Duty& duty, const WheelDemand& demand, const EvaluateOptions& options,
         int first_sample)
-      : robot_(robot), kind_(duty.kind), demand_(demand) {
+      : robot_(robot), kind_(duty.kind), demand_(demand), name_(motor.id) {
     std::vector<Network> networks;
     for (int lane = 0; lane < kLanes; ++lane) {
       Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
@@ -89,19 +89,29 @@ class Block {
     const auto by_current =
         std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
     const auto by_speed = std::ranges::max_element(demand_.bins, {}, &LoadBin::speed_rms_rad_per_s);
-    double step_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
+    const double calm_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
+    const double shortest_s = demand_.duration_s() / static_cast<double>(kMostSteps);
+    double step_s = calm_s;
     constexpr double kHotter_K = 60.0;
     for (const auto& bin : {by_current, by_speed}) {
       const OperatingPoint<Lanes> at = point(*bin);
       step_s = std::min({step_s, longest_step_s(network_, parameters_, at), longest_step_s(network_, parameters_, at, kHotter_K)});
     }
-    if (demand_.duration_s() / step_s > static_cast<double>(kMostSteps)) {
+    if (calm_s < shortest_s) {
       throw Failure(
           ExitCode::numerics_failed,
-          fmt::format(
-              "a duty of {:.0f} s has too many steps for a thermal network that settles within {:.2g} s; is a thermal resistance or a "
-              "heat capacity too small?",
-              demand_.duration_s(), step_s));
+          fmt::format("{}: a duty of {:.0f} s has too many steps for a thermal network that settles within {:.2g} s; is a thermal "
+                      "resistance or a heat capacity too small?",
+                      name_, demand_.duration_s(), calm_s));
+    }
+    if (step_s < shortest_s) {
+      // The heat that makes the network fast goes with the square of the current.
+      const double current_A = point(*by_current).current_rms_A.maxCoeff();
+      throw Failure(
+          ExitCode::bad_input,
+          fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; expected "
+                      "at most some {:.0f} A: look at the duty's load and the robot's voltage and current limits",
+                      name_, current_A, step_s, current_A * std::sqrt(step_s / shortest_s)));
     }
     return step_s;
   }
@@ -109,6 +119,7 @@ class Block {
   const Robot& robot_;
   DutyKind kind_;
   const WheelDemand& demand_;
+  const std::string& name_;
   Network network_;
   std::vector<MotorSample> motors_;
   std::vector<DutySample> duties_;

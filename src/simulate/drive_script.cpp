@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/diagnostic.h"
+#include "robot/inverse_dynamics.h"
 
 namespace heatsoak {
 namespace {
@@ -11,10 +12,10 @@ namespace {
 /// The force of the opponent on the robot: against the push, only while they touch.
 class Duel {
  public:
-  void begin(const MotionCommand& command, const Pose& at, double grip_N) {
+  void begin(const MotionCommand& command, const Pose& at, const BodyConfig& body) {
     x_share_ = std::cos(command.push_direction_rad);
     y_share_ = std::sin(command.push_direction_rad);
-    force_N_ = command.push_share * grip_N;
+    force_N_ = command.push_share * largest_push_N(body, command.push_direction_rad - at.yaw_rad, body.weight.center_of_gravity_height_m);
     wall_m_ = along(at.x_m, at.y_m);
     active_ = true;
   }
@@ -50,10 +51,7 @@ class Duel {
 class Loop {
  public:
   Loop(SimulatedRobot& robot, DriveController& controller, Follower& plan, double control_period_s, const LoopObserver& observer)
-      : robot_(robot), controller_(controller), plan_(plan), observer_(observer), periods_per_control_(periods(control_period_s)) {
-    const BodyConfig& body = robot.plant().body;
-    grip_N_ = body.traction.traction_ratio * body.weight.mass_kg * kGravity_m_per_s2;
-  }
+      : robot_(robot), controller_(controller), plan_(plan), observer_(observer), periods_per_control_(periods(control_period_s)) {}
 
   void run(std::span<const ScheduledCommand> script, double end_s) {
     for (std::size_t i = 0; i < script.size(); ++i) {
@@ -74,7 +72,7 @@ class Loop {
   void period(const ScheduledCommand& scheduled, std::size_t index) {
     const bool at_rest = plan_.at_rest();
     if (scheduled.command.duel && at_rest && !duel_.active()) {
-      duel_.begin(scheduled.command, robot_.state().pose, grip_N_);
+      duel_.begin(scheduled.command, robot_.state().pose, robot_.plant().body);
     }
     if (now_ % periods_per_control_ == 0) {
       const Setpoint setpoint{plan_.pose(), plan_.velocity_global(), plan_.acceleration_global(), duel_.push()};
@@ -91,7 +89,6 @@ class Loop {
   Follower& plan_;
   const LoopObserver& observer_;
   std::int64_t periods_per_control_;
-  double grip_N_ = 0.0;
   Duel duel_;
   std::array<MotorCommand, kMostWheels> commands_{};
   std::int64_t now_ = 0;

@@ -115,9 +115,15 @@ std::vector<StudyCase> jerk_sweep(const Robot& robot) {
   constexpr int kJerks = 12;
   constexpr double kLeast_m_per_s3 = 3.0;
   constexpr double kMost_m_per_s3 = 60.0;
+  constexpr double kAlike = 0.05;
   const double own_m_per_s2 = std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2);
+  const double sliding_m_per_s2 = grip_m_per_s2(robot);
   std::vector<StudyCase> cases;
-  for (const double acceleration_m_per_s2 : {own_m_per_s2, grip_m_per_s2(robot), 1.5 * grip_m_per_s2(robot)}) {
+  for (const double acceleration_m_per_s2 : {own_m_per_s2, sliding_m_per_s2, 1.5 * sliding_m_per_s2}) {
+    // A team that goes to the limit of its grip has one case less.
+    if (!cases.empty() && std::abs(acceleration_m_per_s2 / own_m_per_s2 - 1.0) < kAlike) {
+      continue;
+    }
     for (int i = 0; i < kJerks; ++i) {
       cases.push_back({acceleration_m_per_s2, kLeast_m_per_s3 * std::pow(kMost_m_per_s3 / kLeast_m_per_s3, i / (kJerks - 1.0))});
     }

@@ -36,7 +36,7 @@ std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, 
                                         const Progress& progress = {});
 
 /// Cases around a robot's own limits: its acceleration, its grip and half as much again, each with twelve jerks from 3
-/// to 60 m/s³ and bang-bang.
+/// to 60 m/s³ and bang-bang. Where two of the three are within 5 % of each other, the robot's own stands for both.
 std::vector<StudyCase> jerk_sweep(const Robot& robot);
 
 /// The acceleration from rest at which the first wheel slides, in the least favourable direction: less than μ·g, because

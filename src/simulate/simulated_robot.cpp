@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "motor/datasheet_network.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -84,7 +85,7 @@ void SimulatedRobot::warm_up() {
   for (int i = 0; i < wheel_count(); ++i) {
     // The plant's copper loss as the current that makes it, so that the network gets that heat.
     const double resistance_ohm =
-        plant_.motor.resistance_25C_ohm * (1.0 + plant_.motor.resistance_rise_per_K * (input_.winding_C[i] - 25.0));
+        plant_.motor.resistance_25C_ohm * resistance_ratio(plant_.motor.resistance_rise_per_K, input_.winding_C[i]);
     at.current_rms_A[i] = std::sqrt(copper_J_[i] / resistance_ohm / time_s);
   }
   at.speed_mean_rad_per_s = speed_rad_ / time_s;

@@ -6,6 +6,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "thermal/copper.h"
+
 namespace heatsoak {
 namespace {
 
@@ -101,9 +103,8 @@ S Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, con
     return at.current_rms_A;
   }
   const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
-  const S rise_K = temperature_C[copper.node_index[0]] - 25.0;
-  const S most_A =
-      at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * (1.0 + parameters[copper.parameter_index[1]] * rise_K));
+  const S hot_ratio = resistance_ratio(parameters[copper.parameter_index[1]], temperature_C[copper.node_index[0]]);
+  const S most_A = at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * hot_ratio);
   if constexpr (std::is_same_v<S, double>) {
     return std::min(at.current_rms_A, most_A);
   } else {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/diagnostic.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -64,7 +65,7 @@ OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurre
   OnOffSteadyState result;
   result.current_rms_A = current.current_on_A * std::sqrt(current.time_on_s / (current.time_on_s + current.time_off_s));  // (8)
   const double resistance_ambient_ohm =
-      motor.terminal_resistance_25C_ohm * (1.0 + motor.temperature_coefficient_per_K * (current.ambient_C - 25.0));
+      motor.terminal_resistance_25C_ohm * resistance_ratio(motor.temperature_coefficient_per_K, current.ambient_C);
   const double coefficient_per_K = motor.temperature_coefficient_per_K * motor.terminal_resistance_25C_ohm / resistance_ambient_ohm;
   const double total_K_per_W = motor.thermal_resistance_winding_stator_K_per_W + motor.thermal_resistance_stator_ambient_K_per_W;
   const double cold_rise_K = total_K_per_W * resistance_ambient_ohm * result.current_rms_A * result.current_rms_A;

@@ -13,8 +13,8 @@ namespace {
 
 /// Runs the program without output; false where it does not end with `expected`.
 bool ends_with(std::vector<std::string> arguments, int expected) {
-  arguments.insert(arguments.begin(), HEATSOAK_PROGRAM);
-  std::vector<char*> argv;
+  std::string program = HEATSOAK_PROGRAM;
+  std::vector<char*> argv{program.data()};
   for (std::string& each : arguments) {
     argv.push_back(each.data());
   }

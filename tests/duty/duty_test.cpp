@@ -134,7 +134,7 @@ TEST_F(DutyTest, a_recording_of_current_is_repeated_whole) {
 TEST_F(DutyTest, problems_of_the_log_have_their_place_in_the_log) {
   write("log.csv", "time_s,current_A,speed_rad_per_s\n0,1,10\n2,x,20\n1,0,0\n");
   const std::string said = problem("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"1.5\"\n");
-  EXPECT_THAT(said, HasSubstr((folder_ / "log.csv").string() + ":3:2: error: current_A: \"x\""));
+  EXPECT_THAT(said, HasSubstr((folder_ / "log.csv").string() + ":3:3: error: current_A: \"x\""));
   EXPECT_THAT(said, HasSubstr((folder_ / "mine.toml").string() + ":8:11: error: recorded.repeats: is not a whole number"));
 }
 

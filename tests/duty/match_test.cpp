@@ -141,9 +141,41 @@ TEST(Match, duels_push_at_a_stand) {
   const Seen seen = watch(division_a(), 1);
   EXPECT_GT(seen.duel_s, 5.0);
   EXPECT_EQ(seen.duel_speed_rad_per_s, 0.0);
-  // 0.7 of μ·m·g = 0.7·0.7·2.632·9.81 N on four wheels at 28 mm: some 100 mN m
-  EXPECT_GT(seen.duel_torque_Nm, 0.05);
-  EXPECT_LT(seen.duel_torque_Nm, 0.3);
+}
+
+// What the ground passes on in a duel is what is asked: the share of the largest push there is in that direction, and no turn.
+TEST(Match, a_duel_pushes_with_its_share_of_the_grip) {
+  MotorValues no_rotor;
+  no_rotor.rotor_inertia_kg_m2 = 0.0;
+  const BodyConfig body = make_body(twente(), no_rotor);
+  const std::size_t input = static_cast<std::size_t>(
+      std::ranges::find(match_input_specs(), "duel_push_share", [](const MatchInputSpec& each) { return each.spec.key; }) -
+      match_input_specs().begin());
+  double before_Nm = 0.0;
+  for (const double share : {0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}) {
+    MatchInputs inputs = division_a();
+    inputs.figures.at(input).value = share;
+    double largest_Nm = 0.0;
+    int duels = 0;
+    play_match(inputs, inputs.nominal(), twente(), 1, Planner::jerk_limited, 0.25, [&](const MatchMoment& now) {
+      if (!now.duel) {
+        return;
+      }
+      ++duels;
+      const Wrench push = wrench_of_rolling_forces(body.kinematics, now.wheels->rolling_force_N);
+      const double direction_rad = std::atan2(push.y_N, push.x_N);
+      const double most_N = largest_push_N(body, direction_rad, body.weight.center_of_gravity_height_m);
+      EXPECT_NEAR(std::hypot(push.x_N, push.y_N), share * most_N, 1e-6 * most_N);
+      EXPECT_NEAR(push.yaw_Nm, 0.0, 1e-6);
+      EXPECT_NEAR(std::hypot(now.wheels->untransmitted.x_N, now.wheels->untransmitted.y_N), 0.0, 1e-6);
+      for (std::size_t i = 0; i < 4; ++i) {
+        largest_Nm = std::max(largest_Nm, std::abs(now.wheels->torque_Nm[i]));
+      }
+    });
+    EXPECT_GT(duels, 3);
+    EXPECT_GT(largest_Nm, 1.05 * before_Nm) << share;
+    before_Nm = largest_Nm;
+  }
 }
 
 // The means of a bin give ∫I² of a motor with drag exactly, whatever moments were merged.

@@ -289,9 +289,10 @@ TEST(FrictionFit, of_another_law_is_said_and_still_foretells) {
   HeadingFriction& friction = known.plant.body.friction.heading;
   friction.constant_Nm.fill(0.030);
   friction.sine_Nm.fill(0.0);
-  friction.phase_offset_rad.fill(0.0);
+  friction.phase_offset.fill({});
   friction.double_angle_Nm = 0.014;
-  friction.double_angle_phase_rad = {56.5 * kDegree_rad, 116.7 * kDegree_rad, 59.6 * kDegree_rad, 112.4 * kDegree_rad};
+  friction.double_angle_phase = {Direction::of(56.5 * kDegree_rad), Direction::of(116.7 * kDegree_rad), Direction::of(59.6 * kDegree_rad),
+                                 Direction::of(112.4 * kDegree_rad)};
   const SteadyParts steady = parts_of(known, usual_drive(), 9);
   const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
   EXPECT_TRUE(std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_bounded));

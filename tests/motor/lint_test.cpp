@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(df45l, WikiFigureAlone,
                                          WikiFigure{"terminal_inductance", "0.4 mH", LintFinding::Level::error, "confirmations"},
                                          WikiFigure{"mass", "320 g", LintFinding::Level::error, "density"},
                                          WikiFigure{"length", "48 mm", LintFinding::Level::warning, "density"},
-                                         WikiFigure{"rotor_inertia", "13 g cm2", LintFinding::Level::warning, "rotor_inertia"}),
+                                         WikiFigure{"rotor_inertia", "13 g cm2", LintFinding::Level::error, "rotor_inertia"}),
                          [](const auto& each) { return each.param.key; });
 
 // By hand: 24 V · 3.26 A = 78.2 W go in; 130 mN m · 506.8 rad/s = 65.9 W, 3.26² A² · 1.2 ohm · 1.41 = 18.0 W and 5.58 mN m ·
@@ -185,6 +185,18 @@ TEST(WrongFigures, resistance_of_the_wiki_loses_more_than_goes_in_without_any_se
 TEST(WrongFigures, inductance_of_the_wiki_is_refused_by_the_second_source_alone) {
   EXPECT_THAT(said_by("confirmations", df45l_with("terminal_inductance", "0.4 mH")), HasSubstr("tigers_firmware says 0.26 mH"));
   EXPECT_THAT(checks_with(LintFinding::Level::warning, df45l_with("terminal_inductance", "0.4 mH", false)), ElementsAre());
+}
+
+// 13 g cm2 is 0.019 of 150 g at 21.4 mm: as much as the internal rotors of the EC-i 40 have, and no external one.
+TEST(WrongFigures, inertia_of_the_wiki_is_impossible_for_an_external_rotor_only) {
+  Motor motor = df45l_with("rotor_inertia", "13 g cm2");
+  EXPECT_THAT(errors(motor), ElementsAre("rotor_inertia"));
+  EXPECT_THAT(said_by("rotor_inertia", motor), HasSubstr("expected at least 20.6 g cm2"));
+  motor.rotor.clear();  // the file does not say, but it is flat
+  EXPECT_THAT(errors(motor), ElementsAre());
+  EXPECT_THAT(checks_with(LintFinding::Level::warning, motor), ElementsAre("rotor_inertia"));
+  motor.rotor = "internal";
+  EXPECT_EQ(said_by("rotor_inertia", motor), "");
 }
 
 TEST(WrongFigures, sound_file_without_a_change_has_none) { EXPECT_THAT(errors(df45l_with("mass", "150 g")), ElementsAre()); }
@@ -265,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Slip{"thermal_resistance", &MotorValues::thermal_resistance_winding_stator_K_per_W, 2.0, {"nominal_point_heat"}},
                     Slip{"winding_time_constant", &MotorValues::thermal_time_constant_winding_s, 10.0, {"heat_capacities"}},
                     Slip{"stator_time_constant", &MotorValues::thermal_time_constant_stator_s, 0.1, {"heat_capacities"}},
-                    Slip{"mass", &MotorValues::mass_kg, 10.0, {"heat_capacities"}},
+                    Slip{"mass", &MotorValues::mass_kg, 10.0, {"heat_capacities", "rotor_inertia"}},
                     Slip{"inductance", &MotorValues::terminal_inductance_H, 1000.0, {"electrical_time_constant"}},
                     Slip{"max_speed", &MotorValues::max_speed_rad_per_s, 0.1, {"assigned_power", "limits"}},
                     Slip{"winding_limit", &MotorValues::winding_limit_C, 0.1, {"limits"}},
@@ -375,6 +387,31 @@ TEST(Lint, heat_of_estimates_is_only_a_warning) {
 
   EXPECT_THAT(errors(estimated), ElementsAre());
   EXPECT_THAT(checks_with(LintFinding::Level::warning, estimated), Contains("nominal_point_heat"));
+}
+
+// The sheet's nominal point is of the sheet's network: what the file adds to it is no contradiction.
+TEST(Lint, judges_the_nominal_point_without_the_effects_of_the_file) {
+  Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+  const NominalPointHeat sheet = nominal_point_heat(motor).value();
+  Figure figure;
+  figure.value = 2.0;
+  figure.printed = "2 K/W";
+  figure.derivation = "a heat sink";
+  motor.effects.push_back({"flange", find_effect("conduction"), {"winding", "ambient"}, {figure}});
+
+  EXPECT_EQ(nominal_point_heat(motor)->limit_current_A, sheet.limit_current_A);
+  EXPECT_THAT(errors(motor), ElementsAre());
+}
+
+// What was fitted is of one motor: it may differ from the sheet, and the file is sound.
+TEST(Lint, figures_of_a_fit_that_differ_from_the_sheet_are_only_noted) {
+  Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+  motor.nominal.thermal_resistance_winding_stator_K_per_W *= 2.0;
+  EXPECT_THAT(errors(motor), Contains("nominal_point_heat"));
+  motor.fit.emplace();
+  EXPECT_THAT(errors(motor), ElementsAre());
+  EXPECT_THAT(checks_with(LintFinding::Level::warning, motor), ElementsAre());
+  EXPECT_THAT(checks_with(LintFinding::Level::note, motor), Contains("nominal_point_heat"));
 }
 
 // The 48 V winding of a 70 W motor gives 36 W at its own voltage: worth knowing, but right.

@@ -225,6 +225,30 @@ TEST_F(ChartTest, WritesEveryNameOnce) {
   EXPECT_GE(texts(elements, "winding limit 155 °C"), 1U);
 }
 
+// Every factor of ten is the same height; zero has no place there and breaks the line.
+TEST_F(ChartTest, ALogarithmicAxisShowsFactors) {
+  Chart chart{.title = "factors", .x_label = "x", .panels = {{}}};
+  chart.panels[0].logarithmic = true;
+  chart.panels[0].curves = {{.name = "", .x = {0, 1, 2, 3, 4, 5, 6, 7}, .y = {0.1, 1, 10, 100, 0, 100, 10, 1}}};
+  const auto elements = drawn(chart);
+  const auto pieces = lines(elements, blue);
+  ASSERT_EQ(pieces.size(), 2U);
+  ASSERT_EQ(pieces[0].size(), 4U);
+  const double decade_px = pieces[0][0].y_px - pieces[0][1].y_px;
+  EXPECT_GT(decade_px, 30.0);
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_NEAR(pieces[0][i - 1].y_px - pieces[0][i].y_px, decade_px, 0.05);
+  }
+  EXPECT_EQ(pieces[1][0].y_px, pieces[0][3].y_px);
+  const SeenAxis axis = seen_panels(elements).at(0).y;
+  for (const double decade : {0.1, 1.0, 10.0, 100.0}) {
+    const auto tick = std::ranges::find(axis.values, decade);
+    ASSERT_NE(tick, axis.values.end()) << decade;
+    const double curve_px = pieces[0][static_cast<std::size_t>(std::lround(std::log10(decade) + 1.0))].y_px;
+    EXPECT_NEAR(axis.places_px[static_cast<std::size_t>(tick - axis.values.begin())], curve_px, 1.0);
+  }
+}
+
 TEST_F(ChartTest, CurvesStandWhereTheAxesSay) {
   const Chart chart = warm_up();
   const auto elements = drawn(chart);

@@ -368,5 +368,29 @@ TEST(InverseDynamics, names_every_figure_that_is_missing) {
   }
 }
 
+// Level with the ground, so that no load moves: four wheels at 45° pass on 4·μ·(m·g/4)·cos 45° along either axis.
+TEST(LargestPush, of_a_square_robot_by_hand) {
+  const BodyConfig body = bare_body();
+  for (const double direction_rad : {0.0, 0.5 * std::numbers::pi, std::numbers::pi}) {
+    EXPECT_NEAR(largest_push_N(body, direction_rad, 0.0), body.traction.traction_ratio * kWeight_N * std::numbers::sqrt2 / 2.0, 1e-6);
+  }
+}
+
+TEST(LargestPush, is_where_the_first_force_is_left_untransmitted) {
+  const BodyConfig body = make_body(lossy_robot(), bare_motor());
+  for (int i = 0; i < 24; ++i) {
+    const double direction_rad = std::numbers::pi / 12.0 * i;
+    const double height_m = body.weight.center_of_gravity_height_m;
+    const double most_N = largest_push_N(body, direction_rad, height_m);
+    const auto missing_N = [&](double force_N) {
+      const Wrench external{-force_N * std::cos(direction_rad), -force_N * std::sin(direction_rad), 0.0};
+      return magnitude(inverse_dynamics(body, {{}, {}, external, height_m}).untransmitted);
+    };
+    EXPECT_GT(most_N, 0.2 * body.traction.traction_ratio * kWeight_N);
+    EXPECT_LT(missing_N(0.9999 * most_N), 1e-6) << direction_rad;
+    EXPECT_GT(missing_N(1.01 * most_N), 1e-3) << direction_rad;
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak

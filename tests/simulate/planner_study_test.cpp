@@ -56,6 +56,22 @@ TEST(PlannerStudy, grip_is_that_of_the_first_wheel) {
   EXPECT_NEAR(grip_m_per_s2(robot), 0.5 * flat, 1e-4 * flat);
 }
 
+// Twente goes to two thirds of its grip, the TIGERs to all of it.
+TEST(JerkSweep, has_no_acceleration_twice) {
+  const Robot tigers = read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
+  for (const auto& [robot, count] : {std::pair{twente(), 3U}, std::pair{tigers, 2U}}) {
+    std::vector<double> accelerations_m_per_s2;
+    for (const StudyCase& each : jerk_sweep(robot)) {
+      if (std::isinf(each.jerk_m_per_s3)) {
+        accelerations_m_per_s2.push_back(each.acceleration_m_per_s2);
+      }
+    }
+    ASSERT_EQ(accelerations_m_per_s2.size(), count) << robot.id;
+    EXPECT_EQ(accelerations_m_per_s2.front(), std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2));
+    EXPECT_GT(accelerations_m_per_s2.back(), 1.4 * grip_m_per_s2(robot));
+  }
+}
+
 TEST(MatchRun, both_planners_drive_the_same_game) {
   const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
   MatchInputs inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();

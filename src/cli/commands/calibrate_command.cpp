@@ -11,6 +11,7 @@
 #include "cli/calibration_chart.h"
 #include "cli/command.h"
 #include "cli/logs_option.h"
+#include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "identify/admission.h"
 #include "identify/calibration/calibrate.h"
@@ -140,7 +141,7 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
 }
 
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.motor));
+  const Motor motor = motor_named(session.folders(), options.motor);
   std::vector<std::string> notes;
   std::vector<Recording> logs = read_logs(options.logs, options.how, notes);
   std::vector<Recording> holdout = read_logs(options.holdout, options.how, notes);

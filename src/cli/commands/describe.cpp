@@ -196,8 +196,8 @@ std::string motor_file_lines(const EffectType& effect) {
     if (!spec.choices.empty()) {
       text += fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(values[i])].name);
     } else {
-      text += fmt::format("{} = {{ value = \"{}{}{}\", origin = \"estimated\", source = \"own\", derivation = \"typical size\" }}\n",
-                          spec.key, significant(values[i], 6), unit.empty() ? "" : " ", unit);
+      text += fmt::format("{} = {{ value = \"{}{}{}\", origin = \"estimated\", derivation = \"typical size\" }}\n", spec.key,
+                          significant(values[i], 6), unit.empty() ? "" : " ", unit);
     }
   }
   return text;
@@ -256,7 +256,7 @@ Description describe_effect(const EffectType& effect) {
     result.json["experiment"] = effect.candidacy.experiment;
   }
   say("reference", effect.reference);
-  result.text += fmt::format("\nin a motor file whose [sources] explain the name own:\n{}", motor_file_lines(effect));
+  result.text += fmt::format("\nat the end of a motor file:\n{}", motor_file_lines(effect));
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/diagnosis_answer.h"
 #include "cli/logs_option.h"
+#include "cli/named_files.h"
 #include "identify/admission.h"
 #include "identify/attribution/model_file.h"
 #include "motor/write_motor.h"
@@ -59,7 +60,7 @@ void hand_out(const Options& options, const Motor& extended, const Diagnosis& di
 }
 
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.model));
+  const Motor motor = motor_named(session.folders(), options.model);
   std::vector<std::string> notes;
   std::vector<Recording> train = read_logs(options.train, options.logs, notes);
   std::vector<Recording> holdout = read_logs(options.holdout, options.logs, notes);

@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "cli/command.h"
 #include "cli/match_roles.h"
+#include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "duty/duty.h"
 #include "duty/game_to_demand.h"
@@ -144,13 +145,14 @@ ExitCode import(const Options& options, const Robot& robot, Session& session) {
 }
 
 ExitCode run(const Options& options, Session& session) {
-  const DataFolders folders = session.folders();
   if (options.duty.empty() == options.log.empty()) {
     throw Failure(ExitCode::bad_input, "expected one of --duty and --import (`heatsoak duty --help` shows examples)");
   }
-  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
-  return options.log.empty() ? generate(options, robot, read_duty(file_of(folders.duties, "duty", options.duty)), session)
-                             : import(options, robot, session);
+  NamedFiles named(session.folders());
+  const std::optional<Robot> robot = named.robot(options.robot);
+  const std::optional<Duty> duty = options.log.empty() ? named.duty(options.duty) : std::nullopt;
+  named.throw_if_any();
+  return duty ? generate(options, *robot, *duty, session) : import(options, *robot, session);
 }
 
 }  // namespace

@@ -10,10 +10,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <tuple>
 
 #include "cli/command.h"
 #include "cli/condition_option.h"
+#include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
 #include "duty/duty.h"
@@ -37,26 +37,27 @@ struct Options {
 };
 
 /// A model takes the place of the motor that its fit began with, or stands alone where no motors are named.
-std::vector<Motor> read_motors(const Options& options, const DataFolders& folders) {
-  const auto& [names, model] = std::tie(options.motors, options.model);
-  const bool all = (names.empty() && model.empty()) || (names.size() == 1 && names.front() == "all");
+std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
+  std::vector<std::string> names;
+  for (const std::string& name : options.motors.empty() && options.model.empty() ? std::vector<std::string>{"all"} : options.motors) {
+    const std::vector<std::string> all = name == "all" ? ids_in(named.folders().motors) : std::vector<std::string>{name};
+    names.insert(names.end(), all.begin(), all.end());
+  }
   std::vector<Motor> motors;
-  if (!model.empty()) {
-    motors.push_back(under(read_motor(model), options.conditions));
+  const std::optional<Motor> model = options.model.empty() ? std::nullopt : named.motor(options.model);
+  if (model) {
+    motors.push_back(under(*model, options.conditions));
   }
   std::set<std::filesystem::path> taken;
-  for (const std::string& name : all ? ids_in(folders.motors) : names) {
-    const std::filesystem::path file = all ? folders.motors / (name + ".toml") : file_of(folders.motors, "motor", name);
-    const bool is_replaced = !model.empty() && motors.front().fit && motors.front().fit->motor == file.stem();
-    if (!is_replaced && taken.insert(file).second) {
-      motors.push_back(read_motor(file));
-      if (model.empty()) {
-        motors.back() = under(std::move(motors.back()), options.conditions);
-      }
+  for (const std::string& name : names) {
+    const std::optional<std::filesystem::path> file = named.motor_file(name);
+    const bool is_replaced = file && model && model->fit && model->fit->motor == file->stem();
+    if (!file || is_replaced || !taken.insert(*file).second) {
+      continue;
     }
-  }
-  if (motors.empty()) {
-    throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", folders.motors.string()));
+    if (const std::optional<Motor> motor = named.motor(name)) {
+      motors.push_back(options.model.empty() ? under(*motor, options.conditions) : *motor);
+    }
   }
   return motors;
 }
@@ -193,10 +194,16 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
 }
 
 ExitCode run(Options& options, Session& session) {
-  const DataFolders folders = session.folders();
-  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
-  const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
-  const std::vector<Motor> motors = read_motors(options, folders);
+  NamedFiles named(session.folders());
+  const std::optional<Robot> robot_read = named.robot(options.robot);
+  const std::optional<Duty> duty_read = named.duty(options.duty);
+  const std::vector<Motor> motors = read_motors(options, named);
+  named.throw_if_any();
+  const Robot& robot = *robot_read;
+  const Duty& duty = *duty_read;
+  if (motors.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", named.folders().motors.string()));
+  }
   options.evaluate.with_curves = !options.plot.empty();
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
   const std::vector<WheelDemand> draws = draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples),

@@ -11,6 +11,7 @@
 #include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/friction_chart.h"
+#include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "identify/friction/expected_voltage.h"
 #include "identify/friction/friction_suspicions.h"
@@ -54,7 +55,7 @@ struct Input {
 void find_motor(const Options& options, const DataFolders& folders, Input& input) {
   input.motor_id = options.motor.empty() ? input.robot.drive_motor : options.motor;
   try {
-    input.motor = read_motor(file_of(folders.motors, "motor", input.motor_id)).nominal;
+    input.motor = motor_named(folders, input.motor_id).nominal;
   } catch (const Failure&) {
     if (!options.motor.empty()) {
       throw;
@@ -92,7 +93,7 @@ std::string counted(std::size_t count, std::string_view what) { return fmt::form
 
 Input read_input(const Options& options, const Session& session) {
   const DataFolders folders = session.folders();
-  Input input{.robot = read_robot(file_of(folders.robots, "robot", options.robot)),
+  Input input{.robot = robot_named(folders, options.robot),
               .motor = {},
               .motor_id = {},
               .logs = {},

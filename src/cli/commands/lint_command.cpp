@@ -129,7 +129,7 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
   session.say(text + fmt::format("{}: {}\n", counted(files.size(), "file"),
                                  sound ? "sound" : fmt::format("{}, {}", counted(errors, "error"), counted(warnings, "warning"))));
   session.answer({{"schema", "heatsoak.lint/1"}, {"files", files}, {"errors", errors}, {"warnings", warnings}, {"findings", findings}});
-  return errors == 0 ? ExitCode::done : ExitCode::limit_exceeded;
+  return sound ? ExitCode::done : ExitCode::limit_exceeded;
 }
 
 }  // namespace

@@ -20,20 +20,29 @@ struct Row {
   std::string summary;
 };
 
+/// A folder without any is a wrong --db rather than an answer.
+std::vector<std::string> some_ids_in(const std::filesystem::path& folder) {
+  std::vector<std::string> ids = ids_in(folder);
+  if (ids.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("there is no .toml file in {}", folder.string()));
+  }
+  return ids;
+}
+
 std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
   std::vector<Row> result;
   if (what == "motors") {
-    for (const std::string& id : ids_in(folders.motors)) {
+    for (const std::string& id : some_ids_in(folders.motors)) {
       const Motor motor = read_motor(folders.motors / (id + ".toml"));
       result.push_back({id, fmt::format("{} {} ({} thermal data)", motor.manufacturer, motor.name, data_quality(motor))});
     }
   } else if (what == "robots") {
-    for (const std::string& id : ids_in(folders.robots)) {
+    for (const std::string& id : some_ids_in(folders.robots)) {
       const Robot robot = read_robot(folders.robots / (id + ".toml"));
       result.push_back({id, fmt::format("{}, drives with {}", robot.name, robot.drive_motor)});
     }
   } else if (what == "duties") {
-    for (const std::string& id : ids_in(folders.duties)) {
+    for (const std::string& id : some_ids_in(folders.duties)) {
       result.push_back({id, read_duty(folders.duties / (id + ".toml")).summary});
     }
   } else if (what == "effects") {

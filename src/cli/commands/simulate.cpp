@@ -12,6 +12,7 @@
 #include "cli/condition_option.h"
 #include "cli/jerk_sweep.h"
 #include "cli/match_simulation.h"
+#include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
 #include "motor/conditions.h"
@@ -106,14 +107,16 @@ ExitCode run(const Options& options, Session& session) {
   if (options.duty.empty() != options.jerk_sweep) {
     throw Failure(ExitCode::bad_input, "expected one of --duty and --jerk-sweep (`heatsoak simulate --help` shows examples)");
   }
-  const DataFolders folders = session.folders();
-  const Robot robot = read_robot(file_of(folders.robots, "robot", options.robot));
   if (options.motor.empty() == options.model.empty()) {
     throw Failure(ExitCode::bad_input, "expected one of --motor M and --model FILE");
   }
-  const Motor motor =
-      under(read_motor(options.model.empty() ? file_of(folders.motors, "motor", options.motor) : std::filesystem::path(options.model)),
-            options.conditions);
+  NamedFiles named(session.folders());
+  const std::optional<Robot> robot_read = named.robot(options.robot);
+  const std::optional<Motor> motor_read = named.motor(options.model.empty() ? options.motor : options.model);
+  const std::optional<Duty> duty_read = options.jerk_sweep ? std::nullopt : named.duty(options.duty);
+  named.throw_if_any();
+  const Robot& robot = *robot_read;
+  const Motor motor = under(*motor_read, options.conditions);
   const auto needs_a_plant = [&motor] {
     if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {
       throw bad_input({motor.file.string()}, "figures.rotor_inertia",
@@ -127,7 +130,7 @@ ExitCode run(const Options& options, Session& session) {
     }
     return sweep_jerk(robot, motor, options.plot, session);
   }
-  const Duty duty = read_duty(file_of(folders.duties, "duty", options.duty));
+  const Duty& duty = *duty_read;
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
   if (!match) {
     return run_load(options, robot, motor, duty, session);

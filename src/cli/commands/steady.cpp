@@ -9,6 +9,7 @@
 
 #include "base/quantity.h"
 #include "cli/command.h"
+#include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "motor/datasheet_network.h"
 #include "motor/motor.h"
@@ -50,7 +51,7 @@ double cycle_peak_C(const Motor& motor, const OnOffCurrent& current, const OnOff
 }
 
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = read_motor(file_of(session.folders().motors, "motor", options.motor));
+  const Motor motor = motor_named(session.folders(), options.motor);
   const MotorValues& values = motor.nominal;
   const OnOffSteadyState state =
       on_off_steady_state({.terminal_resistance_25C_ohm = values.terminal_resistance_ohm,

@@ -74,7 +74,6 @@ void read(const std::filesystem::path& file, const ImportOptions& /*options*/, L
   const std::array<CsvWords, 1> words{CsvWords{"team", {"yellow", "blue"}}};
   std::map<RobotName, Detection> latest;
   Scales scales;
-  Diagnostics problems;
   ImportReport& report = events.report();
   report.source = "positions in a table";
   read_csv(file, kColumns, {}, words, [&](const CsvRow& row) {
@@ -82,9 +81,10 @@ void read(const std::filesystem::path& file, const ImportOptions& /*options*/, L
     ++report.frames;
     const double id = row.values[robot_id];
     if (!(id >= 0.0 && id <= kLargestRobotId) || id != static_cast<double>(static_cast<int>(id))) {
-      problems.add({file.string(), row.line, row.columns[robot_id]}, "robot_id",
-                   fmt::format("{} is no robot; expected a whole number from 0 to {}", id, kLargestRobotId));
-      problems.throw_if_any();
+      throw Failure(ExitCode::bad_input, "",
+                    with_characters({{{file.string(), row.line, row.cells[robot_id]},
+                                      "robot_id",
+                                      fmt::format("{} is no robot; expected a whole number from 0 to {}", id, kLargestRobotId)}}));
     }
     const RobotName name{row.values[team] == 0.0 ? Team::yellow : Team::blue, static_cast<int>(id)};
     const Detection sight{

@@ -15,7 +15,7 @@ struct MotionCommand {
   double speed_limit_m_per_s = std::numeric_limits<double>::infinity();
   bool duel = false;
   double push_direction_rad = 0.0;  ///< field frame
-  double push_share = 0.0;          ///< of the force that the ground transmits
+  double push_share = 0.0;          ///< of the largest force that the robot can hold there (largest_push_N)
 };
 
 struct FieldPose {

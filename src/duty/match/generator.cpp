@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "robot/traction.h"
 #include "robot_core/trajectory.h"
 
 namespace heatsoak {
@@ -92,8 +91,7 @@ class Match {
         behaviour_(inputs, values, random_),
         body_(make_body(robot, without_rotor())),
         motion_(ideal_tracking(robot, values.aggressiveness, planner)),
-        observer_(observer),
-        push_N_(body_.traction.traction_ratio * robot.mass_kg * kGravity_m_per_s2) {
+        observer_(observer) {
     for (int wheel = 0; wheel < body_.kinematics.wheel_count; ++wheel) {
       gatherers_.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s, kGrid);
     }
@@ -153,8 +151,8 @@ class Match {
     const BodyVelocity velocity = motion_->velocity_global();
     BodyMotion motion = local_motion(body_, pose, velocity, motion_->acceleration_global());
     if (pushes) {
-      const double force_N = command.push_share * push_N_;
       const double direction_rad = command.push_direction_rad - pose.yaw_rad;
+      const double force_N = command.push_share * largest_push_N(body_, direction_rad, motion.external_height_m);
       motion.external = {-force_N * std::cos(direction_rad), -force_N * std::sin(direction_rad), 0.0};
     }
     const WheelDemands wheels = inverse_dynamics(body_, motion);
@@ -169,7 +167,7 @@ class Match {
       phase_load.duel_torque_squared_Nm2_s += pushes ? squared_Nm2_s : 0.0;
     }
     load_.duration_s += step_s;
-    load_.distance_m += std::hypot(velocity.x_m_per_s, velocity.y_m_per_s) * step_s;
+    load_.distance_m += std::sqrt(velocity.x_m_per_s * velocity.x_m_per_s + velocity.y_m_per_s * velocity.y_m_per_s) * step_s;
     if (observer_) {
       observer_({load_.duration_s, step_s, phase, pushes, pose, velocity, &wheels});
     }
@@ -181,7 +179,6 @@ class Match {
   BodyConfig body_;
   std::unique_ptr<Follower> motion_;
   const MatchObserver& observer_;
-  double push_N_;
   std::vector<DemandGatherer> gatherers_;
   MatchLoad load_;
 };

@@ -22,7 +22,7 @@ constexpr std::array kSpecs = {
     MatchInputSpec{{"aggressiveness", "", Range::between(0.1, 1.0), "part of the robot's limits that is used"}, &MatchValues::aggressiveness},
     MatchInputSpec{{"duels_per_min", "1/min", Range::between(0.0, 30.0), "pushing duels per minute of play, attacker"}, &MatchValues::duels_per_min},
     MatchInputSpec{{"duel_mean", "s", kSeconds, "mean length of a duel"}, &MatchValues::duel_mean_s},
-    MatchInputSpec{{"duel_push_share", "", kShare, "force that is asked for in a duel, part of μ·m·g; the ground passes on less where a wheel slides, mostly from 45 % on"}, &MatchValues::duel_push_share},
+    MatchInputSpec{{"duel_push_share", "", kShare, "force of a duel, part of the largest that the robot can hold in its direction before a wheel slides"}, &MatchValues::duel_push_share},
 };
 // clang-format on
 

@@ -30,7 +30,7 @@ struct MatchValues {
   double aggressiveness = 0.0;     ///< part of the robot's limits of speed and acceleration that is used
   double duels_per_min = 0.0;      ///< of play, of an attacker; a defender has half, a keeper a tenth
   double duel_mean_s = 0.0;        ///< pushing against a robot at standstill
-  double duel_push_share = 0.0;    ///< of the force that the ground transmits
+  double duel_push_share = 0.0;    ///< of the largest force that the robot can hold without sliding or turning
 };
 
 struct MatchInputSpec {

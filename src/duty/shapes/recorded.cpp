@@ -15,6 +15,7 @@ constexpr std::size_t kMostRows = 2'000'000;  ///< a day at 20 rows a second; mo
 constexpr int kMostWheels = 4;
 constexpr double kLongest_s = 1e6;
 constexpr double kLargest = 1e5;  ///< N m, A or rad/s
+constexpr std::size_t kMostProblems = 20;
 
 /// "torque_Nm, speed_rad_per_s" of one wheel, or "torque_1_Nm, speed_1_rad_per_s, torque_2_Nm, …" of several.
 std::string column(DutyKind kind, int wheel, bool demand) {
@@ -29,9 +30,27 @@ class Recording {
   Recording(std::filesystem::path file, DutyKind kind) : file_(std::move(file)), kind_(kind) {}
 
   std::vector<WheelDemand> read() {
-    const auto choose = [this](std::span<const std::string> header) { return columns(header); };
-    read_csv(file_, choose, {}, [&](const CsvRow& row) { take(row); });
-    diagnostics_.throw_if_any();
+    Diagnostics all;
+    try {
+      read_csv(
+          file_,
+          [this](std::span<const std::string> header) {
+            names_ = columns(header).required;
+            return columns(header);
+          },
+          {}, [this](const CsvRow& row) { take(row); });
+    } catch (const Failure& failure) {
+      if (rows_ > kMostRows) {
+        throw;  // whatever else is wrong with it
+      }
+      for (const Diagnostic& each : failure.diagnostics()) {
+        all.add(each.at, each.key, each.message);
+      }
+    }
+    for (const Diagnostic& each : with_characters(std::move(problems_))) {
+      all.add(each.at, each.key, each.message);
+    }
+    all.throw_if_any();
     if (rows_ < 2) {
       throw bad_input({file_.string()}, "", "has one row; expected at least two, the last one ends the duty");
     }
@@ -62,21 +81,18 @@ class Recording {
     if (++rows_ > kMostRows) {
       throw bad_input({file_.string(), row.line, 1}, "", fmt::format("has more than {} rows; expected something like a match", kMostRows));
     }
-    if (now_s <= before_s_ && diagnostics_.list().size() < 20) {
-      diagnostics_.add({file_.string(), row.line, 1}, "time_s",
-                       fmt::format("{} s does not come after {} s; time must increase", now_s, before_s_));
+    if (now_s <= before_s_) {
+      problem(row, 0, fmt::format("{} s does not come after {} s; time must increase", now_s, before_s_));
     }
     if (rows_ == 1) {
       first_s_ = now_s;
     }
-    if (now_s - first_s_ > kLongest_s && diagnostics_.list().size() < 20) {
-      diagnostics_.add({file_.string(), row.line, 1}, "time_s",
-                       fmt::format("{} s is more than {:.0f} s after the first row; expected something like a match", now_s, kLongest_s));
+    if (now_s - first_s_ > kLongest_s) {
+      problem(row, 0, fmt::format("{} s is more than {:.0f} s after the first row; expected something like a match", now_s, kLongest_s));
     }
-    for (std::size_t i = 1; i < row.values.size() && diagnostics_.list().size() < 20; ++i) {
+    for (std::size_t i = 1; i < row.values.size(); ++i) {
       if (std::abs(row.values[i]) > kLargest) {
-        diagnostics_.add({file_.string(), row.line, 1}, "",
-                         fmt::format("{} is beyond any motor; expected at most {:.0f}", row.values[i], kLargest));
+        problem(row, i, fmt::format("{0} is beyond any motor; expected -{1:.0f} to {1:.0f}", row.values[i], kLargest));
       }
     }
     for (std::size_t i = 1; i + 1 < row.values.size(); i += 2) {
@@ -94,10 +110,17 @@ class Recording {
     before_s_ = now_s;
   }
 
+  void problem(const CsvRow& row, std::size_t value, std::string message) {
+    if (problems_.size() < kMostProblems) {
+      problems_.push_back({{file_.string(), row.line, row.cells[value]}, names_[value], std::move(message)});
+    }
+  }
+
   std::filesystem::path file_;
   DutyKind kind_;
+  std::vector<std::string> names_;  ///< of the columns that are read, as they are given
   std::vector<WheelDemand> wheels_;
-  Diagnostics diagnostics_;
+  std::vector<Diagnostic> problems_;
   std::size_t rows_ = 0;
   double before_s_ = std::nan("");
   double first_s_ = 0.0;

@@ -12,6 +12,7 @@
 #include "base/quantity.h"
 #include "identify/calibration/identifiability.h"
 #include "identify/calibration/profile.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -157,8 +158,8 @@ class Calibrating {
       const Channel* const speed = recording.find("speed_rad_per_s");
       const Channel* const winding = recording.find("winding_C");
       for (std::size_t row = 0; voltage && current && speed && row < recording.rows(); ++row) {
-        const double above_K = winding && !std::isnan(winding->values[row]) ? winding->values[row] - 25.0 : 0.0;
-        const double hot_ratio = 1.0 + motor.nominal.temperature_coefficient_per_K * above_K;
+        const double winding_C = winding && !std::isnan(winding->values[row]) ? winding->values[row] : kSheetTemperature_C;
+        const double hot_ratio = resistance_ratio(motor.nominal.temperature_coefficient_per_K, winding_C);
         const Eigen::Vector2d x(hot_ratio * current->values[row], speed->values[row]);
         const double voltage_V = voltage->values[row];
         if (std::isnan(x.sum() + voltage_V)) {

@@ -72,6 +72,7 @@ AxisRange x_range(const Chart& chart) {
 
 AxisRange y_range(const ChartPanel& panel) {
   AxisRange range;
+  range.is_logarithmic = panel.logarithmic;
   for (const ChartCurve& curve : panel.curves) {
     range.include(curve.y);
   }

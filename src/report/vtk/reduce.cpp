@@ -52,11 +52,11 @@ std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const Axis
   std::vector<std::vector<CurvePoint>> pieces;
   std::set<std::pair<double, double>> taken;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) {
-      continue;
-    }
     const double x_px = std::round(horizontal.to_px(curve.x[i]));
     const double y_px = std::round(vertical.to_px(curve.y[i]));
+    if (!std::isfinite(x_px) || !std::isfinite(y_px)) {
+      continue;
+    }
     if (taken.emplace(x_px, y_px).second) {
       pieces.push_back({{x_px - 0.5 * marker_px, y_px}, {x_px + 0.5 * marker_px, y_px}});
     }
@@ -65,7 +65,7 @@ std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const Axis
 }
 
 std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical) {
-  const auto columns = pixel_columns(curve.x, horizontal, [&](std::size_t i) { return std::isfinite(curve.y[i]); });
+  const auto columns = pixel_columns(curve.x, horizontal, [&](std::size_t i) { return std::isfinite(vertical.to_px(curve.y[i])); });
   std::vector<std::vector<CurvePoint>> pieces;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const std::vector<std::size_t>& samples = columns[k].samples;
@@ -93,8 +93,9 @@ std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisS
 }
 
 std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal, const AxisScale& vertical) {
-  const auto columns =
-      pixel_columns(band.x, horizontal, [&](std::size_t i) { return std::isfinite(band.low[i]) && std::isfinite(band.high[i]); });
+  const auto columns = pixel_columns(band.x, horizontal, [&](std::size_t i) {
+    return std::isfinite(vertical.to_px(band.low[i])) && std::isfinite(vertical.to_px(band.high[i]));
+  });
   std::vector<std::vector<BandPoint>> pieces;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const std::vector<std::size_t>& samples = columns[k].samples;

@@ -30,7 +30,7 @@ std::string tick_label(double value, double step, double largest) {
 }  // namespace
 
 void AxisRange::include(double value) {
-  if (std::isfinite(value)) {
+  if (std::isfinite(value) && (!is_logarithmic || value > 0.0)) {
     low = std::min(low, value);
     high = std::max(high, value);
   }
@@ -43,6 +43,11 @@ void AxisRange::include(const std::vector<double>& values) {
 }
 
 AxisRange AxisRange::with_headroom(double headroom) const {
+  if (is_logarithmic) {
+    constexpr double kLeastFactor = 1.1;
+    const double factor = low > high ? 10.0 : std::max(kLeastFactor, std::pow(high / low, headroom));
+    return {(low > high ? 1.0 : low) / factor, (low > high ? 1.0 : high) * factor, true};
+  }
   if (low > high) {
     return {0.0, 1.0};
   }
@@ -55,9 +60,34 @@ AxisRange AxisRange::with_headroom(double headroom) const {
   return {low - headroom * (high - low), high + headroom * (high - low)};
 }
 
-double AxisScale::to_px(double value) const { return low_px + (value - range.low) / (range.high - range.low) * (high_px - low_px); }
+double AxisScale::to_px(double value) const {
+  const double share = range.is_logarithmic ? std::log(value / range.low) / std::log(range.high / range.low)
+                                            : (value - range.low) / (range.high - range.low);
+  return low_px + share * (high_px - low_px);
+}
+
+namespace {
+
+std::vector<AxisTick> logarithmic_ticks(const AxisRange& range, double count) {
+  const bool has_room = 2.0 * std::log10(range.high / range.low) <= std::max(3.0, count);
+  std::vector<AxisTick> result;
+  for (double decade = std::pow(10.0, std::floor(std::log10(range.low))); decade <= range.high; decade *= 10.0) {
+    for (const double multiple : {1.0, 2.0, 5.0}) {
+      const double value = multiple * decade;
+      if (value >= range.low * (1.0 - 1e-9) && value <= range.high * (1.0 + 1e-9) && (multiple == 1.0 || has_room)) {
+        result.push_back({value, fmt::format("{:g}", value)});
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 std::vector<AxisTick> ticks(const AxisRange& range, double count) {
+  if (range.is_logarithmic) {
+    return logarithmic_ticks(range, count);
+  }
   const double step = round_step((range.high - range.low) / std::max(3.0, count));
   // The last digits of a range come from rounding; they must not cost the outermost tick.
   const double first = std::ceil(range.low / step - 1e-6);

@@ -7,18 +7,19 @@
 
 namespace heatsoak {
 
-/// The part of an axis that is shown; empty until something finite was included.
+/// The part of an axis that is shown; empty until something finite was included. A logarithmic one takes positive values only.
 struct AxisRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
+  bool is_logarithmic = false;
 
   void include(double value);
   void include(const std::vector<double>& values);
-  /// Wider by `headroom` (a share of the span) at both ends; never empty, never of zero width.
+  /// Wider by `headroom` (a share of the span, of that in decades) at both ends; never empty, never of zero width.
   [[nodiscard]] AxisRange with_headroom(double headroom) const;
 };
 
-/// Linear map of a range to pixels. Pixels count as VTK's scene does: y upwards.
+/// Map of a range to pixels, which count as VTK's scene does: y upwards. What a logarithmic axis cannot show is not finite.
 struct AxisScale {
   AxisRange range;
   double low_px = 0.0;
@@ -32,7 +33,8 @@ struct AxisTick {
   std::string label;  ///< plain notation, as many decimals as the step needs
 };
 
-/// Round values (1, 2 or 5 times a power of ten apart) within the range, at most `count` and a few.
+/// Round values within the range, at most `count` and a few: 1, 2 or 5 times a power of ten apart; on a logarithmic axis powers
+/// of ten, with twice and five times them where there is room.
 std::vector<AxisTick> ticks(const AxisRange& range, double count);
 
 }  // namespace heatsoak

@@ -1,3 +1,4 @@
+#include "thermal/copper.h"
 #include "thermal/effect.h"
 
 namespace heatsoak::effects {
@@ -9,8 +10,8 @@ enum Parameter { terminal_resistance, temperature_coefficient };
 struct CopperLoss {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S resistance_ohm =
-        x.parameter(terminal_resistance) * (1.0 + x.parameter(temperature_coefficient) * (x.temperature_C(winding) - 25.0));
+    const S hot_ratio = resistance_ratio(x.parameter(temperature_coefficient), x.temperature_C(winding));
+    const S resistance_ohm = x.parameter(terminal_resistance) * hot_ratio;
     heat.source(winding, x.at.current_rms_A * x.at.current_rms_A * resistance_ohm);
   }
 };

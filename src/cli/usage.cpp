@@ -1,0 +1,118 @@
+#include "cli/usage.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cctype>
+
+namespace heatsoak {
+namespace {
+
+/// "-3A" is a value, "-" a place for output.
+bool is_option(std::string_view word) { return word.size() > 1 && word[0] == '-' && (word[1] == '-' || std::isalpha(word[1]) != 0); }
+
+/// An option with what follows it up to the next option, or what stands before the first.
+using Group = std::vector<std::string>;
+
+std::vector<Group> groups_of(std::span<const char* const> words) {
+  std::vector<Group> groups(1);
+  for (const char* word : words) {
+    if (is_option(word)) {
+      groups.emplace_back();
+    }
+    groups.back().emplace_back(word);
+  }
+  return groups;
+}
+
+/// The complaint about the values of one group, empty where there is none: what else is missing is another matter.
+std::string complaint(const Command& command, Group group) {
+  Session nobody;
+  CLI::App app;
+  static_cast<void>(command.declare(app, nobody));
+  std::ranges::reverse(group);  // as CLI11 wants them
+  try {
+    app.parse(std::move(group));
+  } catch (const CLI::ValidationError& error) {
+    return error.what();
+  } catch (const CLI::ConversionError& error) {
+    return error.what();
+  } catch (const CLI::ParseError&) {
+  }
+  return {};
+}
+
+/// The verb that the words begin with; null where there is none.
+const CLI::App* verb_of(const CLI::App& app, std::span<const char* const> words) {
+  for (const CLI::App* each : app.get_subcommands({})) {
+    if (!words.empty() && each->get_name() == words.front()) {
+      return each;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void check_words(const CLI::App& app, std::span<const char* const> words) {
+  const CLI::App* verb = verb_of(app, words);
+  if (!verb && !words.empty() && words.front()[0] != '-') {
+    std::vector<std::string> verbs;
+    for (const CLI::App* each : app.get_subcommands({})) {
+      verbs.push_back(each->get_name());
+    }
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", words.front(), did_you_mean(words.front(), verbs)));
+  }
+  std::vector<std::string> known;
+  for (const CLI::Option* option : (verb ? *verb : app).get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      known.push_back("--" + name);
+    }
+  }
+  std::vector<std::string> unknown;
+  for (const std::string_view word : words) {
+    const std::string name(word.substr(0, word.find('=')));
+    if (name == "--") {
+      break;
+    }
+    if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) {
+      unknown.push_back(fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known), app.get_name(),
+                                    verb ? " " + verb->get_name() : ""));
+    }
+  }
+  if (!unknown.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("{}", fmt::join(unknown, "\n")));
+  }
+}
+
+std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std::span<const char* const> words) {
+  std::vector<std::string> all{error.what()};
+  const CLI::App* verb = verb_of(app, words);
+  // Only after all words were taken apart does CLI11 look at values, and then at what is missing.
+  const bool is_of_an_option = dynamic_cast<const CLI::ValidationError*>(&error) || dynamic_cast<const CLI::ConversionError*>(&error) ||
+                               dynamic_cast<const CLI::RequiredError*>(&error);
+  if (!verb || !is_of_an_option) {
+    return all.front();
+  }
+  const auto add = [&all](std::string mistake) {
+    if (!mistake.empty() && std::ranges::find(all, mistake) == all.end()) {
+      all.push_back(std::move(mistake));
+    }
+  };
+  const std::vector<Command> commands = all_commands();
+  const auto command = std::ranges::find(commands, verb->get_name(), &Command::name);
+  for (const Group& group : groups_of(words.subspan(1))) {
+    add(complaint(*command, group));
+  }
+  for (const CLI::Option* option : verb->get_options()) {
+    add(option->get_required() && option->count() == 0 ? CLI::RequiredError(option->get_name()).what() : "");
+  }
+  return fmt::format("{}", fmt::join(all, "\n"));
+}
+
+}  // namespace heatsoak

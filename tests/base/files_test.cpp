@@ -1,0 +1,91 @@
+#include "base/files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Files : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directory(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      all.push_back(entry.path().filename().string());
+    }
+    return all;
+  }
+  fs::path folder_ = fs::temp_directory_path() / ("heatsoak_files_" + std::to_string(::getpid()));
+};
+
+constexpr std::size_t kMost_bytes = 100'000;
+
+/// How a process of its own ends that writes ten times as much to `file` as it may; SIGXFSZ kills in the middle of it.
+int status_of_writer_beyond_its_limit(const fs::path& file) {
+  const pid_t writer = ::fork();
+  if (writer == 0) {
+    const rlimit no_core{0, 0};
+    const rlimit limit{kMost_bytes, kMost_bytes};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_DFL);
+    write_file(file, std::string(10 * kMost_bytes, 'x'));
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(writer, &status, 0);
+  return status;
+}
+
+TEST_F(Files, a_writer_that_is_killed_leaves_nothing_behind) {
+  const int status = status_of_writer_beyond_its_limit(folder_ / "answer.json");
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(WTERMSIG(status), SIGXFSZ);
+  EXPECT_THAT(names(), ElementsAre());
+}
+
+TEST_F(Files, a_writer_that_is_killed_leaves_what_was_there) {
+  std::ofstream(folder_ / "answer.json") << "before";
+  ASSERT_TRUE(WIFSIGNALED(status_of_writer_beyond_its_limit(folder_ / "answer.json")));
+  EXPECT_THAT(names(), ElementsAre("answer.json"));
+  EXPECT_EQ(read_file(folder_ / "answer.json", kMost_bytes), "before");
+}
+
+TEST_F(Files, replaces_what_was_there_and_keeps_to_the_umask) {
+  std::ofstream(folder_ / "answer.json") << "something longer than what comes now";
+  const mode_t before = ::umask(027);
+  write_file(folder_ / "answer.json", "now");
+  ::umask(before);
+  EXPECT_EQ(read_file(folder_ / "answer.json", kMost_bytes), "now");
+  EXPECT_EQ(fs::status(folder_ / "answer.json").permissions(), fs::perms{0640});
+  EXPECT_THAT(names(), ElementsAre("answer.json"));
+}
+
+TEST_F(Files, of_which_one_cannot_be_written_all_stay_away) {
+  const std::vector<OutputFile> files{{folder_ / "a", "1"}, {folder_ / "none" / "b", "2"}};
+  try {
+    write_files(files);
+    FAIL() << "written";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_THAT(failure.what(), HasSubstr("cannot be written: No such file or directory"));
+  }
+  EXPECT_THAT(names(), ElementsAre());
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,182 @@
+// What is wrong is told all at once, and what to do with it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program_run.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using Words = std::vector<std::string>;
+
+const fs::path kSource = HEATSOAK_SOURCE_DIR;
+const std::string kMotorFile = (kSource / "motor_db/maxon_ec45_flat_70w_24v.toml").string();
+const std::string kRobotFile = (kSource / "robot_core/robots/tigers_v2020.toml").string();
+const std::string kDutyFile = (kSource / "duty_profiles/paper_intermittent.toml").string();
+
+// Names.
+
+TEST(AllAtOnce, wrong_ids_of_every_kind) {
+  const ProgramRun result = run({"evaluate", "--robot", "tigers_v2021", "--duty", "paper_intermitent", "--motors",
+                                 "maxon_ec45_flat_70w_24,maxon_dcx19s_24v,foo", "--json", "-"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("no robot 'tigers_v2021'"), HasSubstr("no duty 'paper_intermitent'"),
+                                HasSubstr("no motor 'maxon_ec45_flat_70w_24'"), HasSubstr("no motor 'foo'")));
+  EXPECT_EQ(result.json().at("error").at("code"), 2);
+  const ProgramRun simulated = run({"simulate", "--robot", "a", "--duty", "b", "--motor", "c"});
+  EXPECT_THAT(simulated.err, AllOf(HasSubstr("no robot 'a'"), HasSubstr("no duty 'b'"), HasSubstr("no motor 'c'")));
+}
+
+TEST(AllAtOnce, wrong_ids_beside_wrong_files) {
+  const TemporaryFolder folder;
+  write(folder.path() / "robot.toml", "name = 1\n[wheels]\nradius = 2\n");
+  const ProgramRun result = run({"evaluate", "--robot", (folder.path() / "robot.toml").string(), "--duty", "nosuch", "--motors", "foo"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err,
+              AllOf(HasSubstr("no duty 'nosuch'"), HasSubstr("no motor 'foo'"), HasSubstr("robot.toml:3:10: error: wheels.radius")));
+}
+
+TEST(AllMotors, may_stand_beside_a_file) {
+  const TemporaryFolder folder;
+  write(folder.path() / "mine.toml", content_of(kMotorFile));
+  const auto count = [&](const std::string& motors) {
+    return run({"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--samples", "0", "--json", "-", "--motors", motors})
+        .json()
+        .at("motors")
+        .size();
+  };
+  EXPECT_EQ(count("all," + (folder.path() / "mine.toml").string()), count("all") + 1);
+}
+
+// Files of another kind than the place is for.
+
+struct Misplaced {
+  std::string name;
+  Words words;
+  std::string said;
+};
+class WrongKind : public testing::TestWithParam<Misplaced> {};
+
+TEST_P(WrongKind, is_told_in_one_line) {
+  const ProgramRun result = run(GetParam().words);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr(GetParam().said));
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    files, WrongKind,
+    testing::Values(
+        Misplaced{"motor_as_robot",
+                  {"evaluate", "--robot", kMotorFile, "--duty", "paper_intermittent", "--motors", "maxon_dcx19s_24v"},
+                  "maxon_ec45_flat_70w_24v.toml: error: is a motor file; expected a robot file here (`heatsoak list robots`"},
+        Misplaced{"duty_as_robot", {"duty", "--robot", kDutyFile, "--duty", "division_a_match"}, "is a duty file; expected a robot file"},
+        Misplaced{"motor_as_duty",
+                  {"simulate", "--robot", "tigers_v2020", "--duty", kMotorFile, "--motor", "maxon_dcx19s_24v"},
+                  "is a motor file; expected a duty file here (`heatsoak list duties`"},
+        Misplaced{"robot_as_duty", {"duty", "--robot", "tigers_v2020", "--duty", kRobotFile}, "is a robot file; expected a duty file"},
+        Misplaced{"robot_as_motor",
+                  {"steady", "--motor", kRobotFile, "--current-on", "1", "--time-on", "1", "--time-off", "1"},
+                  "is a robot file; expected a motor file"},
+        Misplaced{"duty_as_motor",
+                  {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", kDutyFile},
+                  "is a duty file; expected a motor file"},
+        Misplaced{"robot_as_model",
+                  {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--model", kRobotFile},
+                  "is a robot file; expected a motor file"}),
+    [](const auto& instance) { return instance.param.name; });
+
+// Options.
+
+TEST(AllAtOnce, wrong_values_and_missing_options) {
+  const ProgramRun result = run({"steady", "--current-on", "-3A", "--time-on=1kg", "--time-off", "-6s", "--ambient", "25degC"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--current-on: -3A is out of range"), HasSubstr("--time-on"), HasSubstr("--time-off: -6s is out"),
+                                HasSubstr("--motor is required"), Not(HasSubstr("--ambient"))));
+}
+
+TEST(AllAtOnce, wrong_numbers_and_words) {
+  const ProgramRun result = run({"simulate", "--robot", "tigers_v2020", "--planner", "fast", "--every", "0", "--plot", "a.png"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--planner"), HasSubstr("--every"), HasSubstr("--plot: a.png does not end in .svg")));
+}
+
+TEST(AllAtOnce, options_that_do_not_exist) {
+  const ProgramRun result = run({"evaluate", "--robt", "x", "--dty", "y"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("did you mean '--robot'?"), HasSubstr("did you mean '--duty'?")));
+}
+
+// Others.
+
+TEST(Describe, knows_what_begins_alike) {
+  const ProgramRun result = run({"describe", "iron_lossX"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("did you mean 'iron_loss_"));
+}
+
+TEST(List, of_a_folder_without_files_is_refused) {
+  const TemporaryFolder folder;
+  const ProgramRun result = run({"list", "motors", "--db", folder.path().string()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("there is no .toml file in " + folder.path().string()));
+}
+
+// 700 A through a motor for 3.3 A: a load that nobody means, not a failure of the numerics.
+TEST(Evaluate, an_absurd_current_is_bad_input) {
+  const TemporaryFolder folder;
+  std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const auto replace = [&robot](const std::string& from, const std::string& to) {
+    ASSERT_NE(robot.find(from), std::string::npos) << from;
+    robot.replace(robot.find(from), from.size(), to);
+  };
+  replace("voltage_limit = \"12.5 V\"\n", "");
+  replace("nominal_voltage = \"22.2 V\"", "nominal_voltage = \"2220 V\"");
+  write(folder.path() / "robot.toml", robot);
+  write(folder.path() / "duty.toml",
+        "summary = \"x\"\norigin = \"x\"\nshape = \"intermittent\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = "
+        "\"x\" }\n[intermittent]\ncurrent_on = { value = \"700 A\", origin = \"estimated\", derivation = \"x\" }\nspeed_on = \"0 "
+        "rad/s\"\ntime_on = \"60 s\"\ntime_off = \"3600 s\"\nrepeats = \"3\"\n");
+  const ProgramRun result = run({"evaluate", "--robot", (folder.path() / "robot.toml").string(), "--duty",
+                                 (folder.path() / "duty.toml").string(), "--motors", "maxon_ec45_flat_70w_24v"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("maxon_ec45_flat_70w_24v: the duty drives 700 A"), HasSubstr("expected at most some ")));
+}
+
+TEST(Outputs, larger_than_the_limit_of_the_user_are_refused_and_leave_nothing) {
+  const TemporaryFolder folder;
+  RunOptions inside;
+  inside.folder = folder.path();
+  const ProgramRun result =
+      run_line("ulimit -f 10; heatsoak duty --robot roboteam_twente_v2024 --duty division_a_match --out duty.csv", inside);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("cannot be written: File too large"));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+// Who asks for a robot that the log lacks hears what the log has, and what was wrong with it.
+TEST(Import, of_a_robot_that_is_not_there_tells_who_is) {
+  const TemporaryFolder folder;
+  std::string game = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
+  for (int i = 0; i < 2000; ++i) {
+    game += std::to_string(0.02 * i) + ",blue,7," + std::to_string(0.01 * i) + ",0,0\n";
+  }
+  write(folder.path() / "game.csv", game);
+  write(folder.path() / "late.csv", game + "1,blue,7,0,0,0\n");
+  const Words words{"duty", "--robot", "tigers_v2020", "--player", "yellow 3", "--import"};
+  Words one = words;
+  one.push_back((folder.path() / "late.csv").string());
+  const ProgramRun result = run(one);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err,
+              AllOf(HasSubstr("there is no robot 'yellow 3'"), HasSubstr("the log has blue 7"), HasSubstr("time must increase")));
+}
+
+}  // namespace
+}  // namespace heatsoak
