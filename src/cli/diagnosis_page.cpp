@@ -160,7 +160,7 @@ constexpr std::string_view kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1080px;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left}"
     "th{background:#f2f2f2}figure{margin:1em "
-    "0}svg{max-width:100%;height:auto}p.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid "
+    "0}svg{max-width:100%;height:auto}div.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid "
     "#c8102e}";
 
 }  // namespace
@@ -169,7 +169,11 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
                            const std::vector<std::pair<std::string, std::string>>& svg) {
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
-  text += fmt::format("<h1>Diagnosis: {}</h1>\n<p class=\"words\">{}</p>\n", heading_of(diagnosis.verdict), escaped(diagnosis.description));
+  text += fmt::format("<h1>Diagnosis: {}</h1>\n<div class=\"words\">\n", heading_of(diagnosis.verdict));
+  for (const std::string& each : diagnosis.words) {
+    text += fmt::format("<p>{}</p>\n", escaped(each));
+  }
+  text += "</div>\n";
   const std::vector<std::string> train = names_of(input.train, input.holdout);
   const std::vector<std::string> holdout = names_of(input.holdout, input.train);
   text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", escaped(fmt::format("{}", fmt::join(train, ", "))),

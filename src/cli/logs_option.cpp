@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <map>
+#include <set>
 
 #include "base/diagnostic.h"
 #include "cli/quantity_option.h"
@@ -62,6 +66,33 @@ std::vector<Recording> read_logs(const std::vector<std::string>& texts, const Lo
     all.push_back(is_whole ? std::move(recording) : part_of(recording, part.from_share, part.to_share));
   }
   return all;
+}
+
+void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out) {
+  std::map<std::string, std::set<std::filesystem::path>> files;
+  const auto for_each = [&](const auto& visit) {
+    std::ranges::for_each(fitted, visit);
+    std::ranges::for_each(held_out, visit);
+  };
+  for_each([&](const Recording& each) { files[each.name].insert(std::filesystem::weakly_canonical(each.file)); });
+  for_each([&](Recording& each) {
+    const std::set<std::filesystem::path>& of_name = files[each.name];
+    if (of_name.size() < 2) {
+      return;
+    }
+    // The shortest tail of the path that no other has.
+    const std::filesystem::path own = std::filesystem::weakly_canonical(each.file);
+    std::string name = each.name;
+    for (std::filesystem::path folder = own.parent_path(); !folder.filename().empty(); folder = folder.parent_path()) {
+      name = folder.filename().string() + "/" + name;
+      const auto same = std::ranges::count_if(
+          of_name, [&](const std::filesystem::path& other) { return (other.parent_path() / other.stem()).string().ends_with("/" + name); });
+      if (same < 2) {
+        break;
+      }
+    }
+    each.name = std::move(name);
+  });
 }
 
 }  // namespace heatsoak

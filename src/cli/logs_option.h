@@ -23,4 +23,8 @@ void add_log_options(CLI::App& app, LogOptions& options);
 /// Throws Failure (bad_input).
 std::vector<Recording> read_logs(const std::vector<std::string>& texts, const LogOptions& options, std::vector<std::string>& notes);
 
+/// Files of one name in different folders are no parts of one run: where there are such, all of the name get that of their folder, too
+/// ("monday/run").
+void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out);
+
 }  // namespace heatsoak

@@ -1,52 +1,11 @@
 #include "identify/linearised_run.h"
 
-#include <fmt/format.h>
-
-#include "base/diagnostic.h"
 #include "thermal/tangent_run.h"
 
 namespace heatsoak {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-struct UnknownHeat {
-  template <class S>
-  static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.source(0, x.parameter(0));
-  }
-};
-
-const EffectType& unknown_heat() {
-  static const EffectType kType = [] {
-    EffectType type;
-    type.name = "unknown heat";
-    type.nodes = {{"node", "stator"}};
-    type.parameters = {{"heat", "W", Range::any(), "held over an interval"}};
-    type.laws = laws<UnknownHeat>();
-    return type;
-  }();
-  return kType;
-}
-
-/// The network with a source of 0 W at every node that unknown heat may reach: its derivative is the response to such heat.
-struct WithSources {
-  Network network;
-  std::vector<double> parameters;
-  std::vector<int> wanted;
-};
-
-WithSources with_sources(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
-                         std::span<const int> flux_nodes) {
-  WithSources all{network, {parameters.begin(), parameters.end()}, {wanted.begin(), wanted.end()}};
-  for (const int node : flux_nodes) {
-    const std::vector<std::string> at{std::string(network.node_name(node))};
-    all.wanted.push_back(static_cast<int>(all.parameters.size()));
-    all.network.add_effect(fmt::format("unknown heat of {}", at.front()), unknown_heat(), at, std::vector<double>{0.0});
-    all.parameters.push_back(0.0);
-  }
-  return all;
-}
 
 class Recorder {
  public:
@@ -102,7 +61,6 @@ class Recorder {
 
 LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
-  const WithSources model = with_sources(network, parameters, wanted, flux_nodes);
   LinearisedRun out;
   out.states = network.state_count();
   out.fluxes = static_cast<Eigen::Index>(flux_nodes.size());
@@ -112,7 +70,7 @@ LinearisedRun linearise(const Network& network, std::span<const double> paramete
   Recorder recorder(out, run, static_cast<Eigen::Index>(wanted.size()));
   out.state_C.col(0) = Eigen::Map<const Eigen::VectorXd>(start_C.data(), out.states);
   recorder.note(0);
-  TangentRun tangent(model.network, model.parameters, model.wanted);
+  TangentRun tangent(network, parameters, wanted, flux_nodes);
   for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
     const auto place = static_cast<std::size_t>(k);
     const std::span<const double> start(out.state_C.col(k).data(), static_cast<std::size_t>(out.states));

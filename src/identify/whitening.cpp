@@ -127,26 +127,23 @@ void Whitening::build(const SensorNoise& noise) {
   }
 }
 
-template <bool IsWhole>
+/// `kStrip` columns.
 void Whitening::apply_to_strip(Eigen::Ref<Columns> columns) const {
   using Row = Eigen::Array<double, 1, kStrip>;
   const Eigen::Index x = run_->states;
   const Eigen::Index q = run_->fluxes;
-  // Known when compiled where it can be: a call that copies eight numbers costs more than they do.
-  const Eigen::Index count = IsWhole ? kStrip : columns.cols();
   std::array<Row, kMostSize> state, moved;
   state.fill(Row::Zero());
   for (Eigen::Index k = 0; k < run_->samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
       const Eigen::Index row = k * run_->sensors() + sensor;
       const double inverse_sd_per_K = inverse_sd_per_K_[static_cast<std::size_t>(row)];
-      double* const shown = columns.data() + row * columns.outerStride();
+      Eigen::Map<Row> shown(columns.data() + row * columns.outerStride());
       if (inverse_sd_per_K == 0.0) {
-        std::fill_n(shown, count, 0.0);
+        shown.setZero();
         continue;
       }
-      Row innovation = Row::Zero();
-      std::copy_n(shown, count, innovation.data());
+      Row innovation = shown;
       innovation -= state[static_cast<std::size_t>(node_of(sensor))];
       if (wanders_) {
         innovation -= state[static_cast<std::size_t>(wander_place(sensor))];
@@ -155,8 +152,7 @@ void Whitening::apply_to_strip(Eigen::Ref<Columns> columns) const {
       for (Eigen::Index i = 0; i < size_; ++i) {
         state[static_cast<std::size_t>(i)] += gain[i] * innovation;
       }
-      innovation *= inverse_sd_per_K;
-      std::copy_n(innovation.data(), count, shown);
+      shown = inverse_sd_per_K * innovation;
     }
     if (k + 1 < run_->samples()) {
       const double* const transition = run_->transition.data() + k * x * x;
@@ -186,9 +182,13 @@ void Whitening::apply(Eigen::Ref<Columns> columns) const {
   // Eight columns at a time: their filter state stays in the innermost cache while the run goes by.
   for (Eigen::Index first = 0; first < columns.cols(); first += kStrip) {
     if (first + kStrip <= columns.cols()) {
-      apply_to_strip<true>(columns.middleCols(first, kStrip));
+      apply_to_strip(columns.middleCols(first, kStrip));
     } else {
-      apply_to_strip<false>(columns.rightCols(columns.cols() - first));
+      const Eigen::Index rest = columns.cols() - first;
+      Columns strip = Columns::Zero(columns.rows(), kStrip);
+      strip.leftCols(rest) = columns.rightCols(rest);
+      apply_to_strip(strip);
+      columns.rightCols(rest) = strip.leftCols(rest);
     }
   }
 }

@@ -70,7 +70,6 @@ class Whitening {
   [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }
   /// Of a sensor's slow error in the filter's state.
   [[nodiscard]] Eigen::Index wander_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }
-  template <bool IsWhole>
   void apply_to_strip(Eigen::Ref<Columns> columns) const;
 
   const LinearisedRun* run_;

@@ -18,10 +18,13 @@ constexpr double kAbsoluteZero_C = -273.15;
 
 }  // namespace
 
-TangentRun::TangentRun(const Network& network, std::span<const double> parameters, std::span<const int> wanted)
-    : network_(network), parameters_(parameters.begin(), parameters.end()), wanted_(wanted.begin(), wanted.end()) {
+TangentRun::TangentRun(const Network& network, std::span<const double> parameters, std::span<const int> wanted, std::span<const int> heated)
+    : network_(network),
+      parameters_(parameters.begin(), parameters.end()),
+      wanted_(wanted.begin(), wanted.end()),
+      heated_(heated.begin(), heated.end()) {
   const Eigen::Index states = network.state_count();
-  const auto columns = static_cast<Eigen::Index>(wanted.size());
+  const auto columns = static_cast<Eigen::Index>(wanted.size() + heated.size());
   for (Eigen::VectorXd* vector : {&step_.state_C, &stage_C_, &rate_sum_}) {
     vector->setZero(states);
   }
@@ -33,11 +36,15 @@ TangentRun::TangentRun(const Network& network, std::span<const double> parameter
   }
 }
 
+void TangentRun::set_slope(const OperatingPoint<double>& at, const Eigen::VectorXd& state_C) {
+  network_.linearise(at, parameters_, std::span(state_C.data(), static_cast<std::size_t>(state_C.size())), slope_);
+}
+
 const NetworkStep& TangentRun::over(std::span<const double> start_C, double duration_s, const OperatingPoint<double>& at) {
   std::ranges::copy(start_C, step_.state_C.begin());
   step_.by_start.setIdentity();
   step_.by_parameter.setZero();
-  network_.linearise(at, parameters_, start_C, slope_);
+  set_slope(at, step_.state_C);
   const double fastest_per_s = slope_.by_state.cwiseAbs().rowwise().sum().maxCoeff();
   const double parts = std::max(1.0, std::ceil(duration_s * fastest_per_s / kStepPerTimeConstant));
   if (!(parts <= kMostParts)) {
@@ -47,6 +54,9 @@ const NetworkStep& TangentRun::over(std::span<const double> start_C, double dura
                               1.0 / fastest_per_s, duration_s));
   }
   for (int part = 0; part < static_cast<int>(parts); ++part) {
+    if (part > 0) {
+      set_slope(at, step_.state_C);
+    }
     one_step(duration_s / parts, at);
   }
   if (!(step_.state_C.minCoeff() > kAbsoluteZero_C && step_.state_C.maxCoeff() < kDestroyed_C)) {
@@ -67,20 +77,22 @@ void TangentRun::one_step(double step_s, const OperatingPoint<double>& at) {
   by_parameter_sum_.setZero();
   for (const auto& [share, weight] : kClassical) {
     const double ahead_s = share * step_s;
-    // At share 0 the rates of the stage before, whatever they are, count nothing.
-    stage_C_ = step_.state_C;
     stage_by_start_ = step_.by_start;
     stage_by_parameter_ = step_.by_parameter;
     if (ahead_s > 0.0) {
-      stage_C_ += ahead_s * slope_.rate_K_per_s;
+      stage_C_ = step_.state_C + ahead_s * slope_.rate_K_per_s;
       stage_by_start_ += ahead_s * rate_by_start_;
       stage_by_parameter_ += ahead_s * rate_by_parameter_;
+      set_slope(at, stage_C_);
     }
-    network_.linearise(at, parameters_, std::span(stage_C_.data(), static_cast<std::size_t>(stage_C_.size())), slope_);
     rate_by_start_.noalias() = slope_.by_state * stage_by_start_;
     rate_by_parameter_.noalias() = slope_.by_state * stage_by_parameter_;
     for (std::size_t w = 0; w < wanted_.size(); ++w) {
       rate_by_parameter_.col(static_cast<Eigen::Index>(w)) += slope_.by_parameter.col(wanted_[w]);
+    }
+    for (std::size_t q = 0; q < heated_.size(); ++q) {
+      const double capacity_J_per_K = parameters_[static_cast<std::size_t>(network_.capacity_index(heated_[q]))];
+      rate_by_parameter_(heated_[q], static_cast<Eigen::Index>(wanted_.size() + q)) += 1.0 / capacity_J_per_K;
     }
     rate_sum_ += weight * slope_.rate_K_per_s;
     by_start_sum_ += weight * rate_by_start_;

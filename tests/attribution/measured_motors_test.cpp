@@ -21,11 +21,13 @@ Recording read(const std::filesystem::path& log, const std::filesystem::path& ma
   return read_recording(log, mapping_for(log.string(), map.string()), report);
 }
 
-DiagnosisInput input_of(const ModelOfLogs& model, const std::vector<Recording>& train, const std::vector<Recording>& holdout) {
+DiagnosisInput input_of(const ModelOfLogs& model, const std::vector<Recording>& train, const std::vector<Recording>& holdout,
+                        double ambient_C = MeasuredRunOptions::kNotStated_C) {
   DiagnosisInput input;
   input.model = model.model;
   MeasuredRunOptions how;
   how.needed = model.needed;
+  how.ambient_C = ambient_C;
   for (const Recording& recording : train) {
     for (MeasuredRun& run : measured_runs(recording, how).runs) {
       input.free.push_back(free_signals(recording, run));
@@ -45,38 +47,149 @@ double rms_K(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, c
   return open_loop_errors(model, runs, {}).at(signal).rmse_K;
 }
 
-TEST(MeasuredMotors, a_fan_that_nobody_told_of_is_found_in_the_run_that_had_it) {
-  const std::optional<std::filesystem::path> found = measured_data("tasrv_uav_motor");
-  if (!found) {
-    GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)";
+/// What a recording folder holds, or nothing where it is not at hand.
+#define SKIP_WITHOUT(folder)                                                   \
+  if (!(folder)) {                                                             \
+    GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)"; \
   }
-  const std::filesystem::path& folder = *found;
-  const std::filesystem::path map = kReports / "uav_fan/recordings.map.toml";
+
+const FoundEffect* effect_of(const Diagnosis& diagnosis, std::string_view id) {
+  const auto found = std::ranges::find(diagnosis.effects, id, &FoundEffect::id);
+  return found == diagnosis.effects.end() ? nullptr : &*found;
+}
+
+struct Drone {
   std::map<std::string, Recording> run;
+  Motor motor;  ///< calibrated on runs 1, 3 and 5
+};
+
+Drone drone(const std::filesystem::path& folder) {
+  Drone all;
   for (const char* const name : {"run1", "run2", "run3", "run4", "run5"}) {
-    run[name] = read(folder / (std::string(name) + ".csv"), map);
-    EXPECT_THAT(run[name].conditions, testing::IsEmpty());
+    all.run[name] = read(folder / (std::string(name) + ".csv"), kReports / "uav_fan/recordings.map.toml");
+    EXPECT_THAT(all.run[name].conditions, testing::IsEmpty());
   }
   const Motor start = read_motor(kReports / "uav_motor.toml");
-  const Calibration calibration = calibrate(start, std::vector{run["run1"], run["run3"], run["run5"]}, {}, {});
-  const Motor motor = calibrated_motor(start, calibration);
-  const std::vector<Recording> train{run["run1"], run["run3"], run["run5"], part_of(run["run4"], 0.0, 0.6)};
-  const ModelOfLogs model = model_of_logs(motor, train);
-  const DiagnosisInput input = input_of(model, train, {part_of(run["run4"], 0.6, 1.0), run["run2"]});
-  const Diagnosis diagnosis = diagnose(input, {});
-  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
-  const auto fan = std::ranges::find_if(diagnosis.effects, [](const FoundEffect& each) { return each.id.starts_with("airflow"); });
-  ASSERT_NE(fan, diagnosis.effects.end()) << diagnosis.description;
+  all.motor = calibrated_motor(start, calibrate(start, std::vector{all.run["run1"], all.run["run3"], all.run["run5"]}, {}, {}));
+  return all;
+}
+
+struct DroneCase {
+  ModelOfLogs model;
+  DiagnosisInput input;
+  Diagnosis diagnosis;
+};
+
+/// Of run 4 the first part is among the training runs.
+DroneCase diagnosed(Drone& all, double cut) {
+  const std::vector<Recording> train{all.run["run1"], all.run["run3"], all.run["run5"], part_of(all.run["run4"], 0.0, cut)};
+  DroneCase out{model_of_logs(all.motor, train), {}, {}};
+  out.input = input_of(out.model, train, {part_of(all.run["run4"], cut, 1.0), all.run["run2"]});
+  out.diagnosis = diagnose(out.input, {});
+  return out;
+}
+
+TEST(MeasuredMotors, a_fan_that_nobody_told_of_is_found_in_the_run_that_had_it) {
+  const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
+  SKIP_WITHOUT(folder);
+  Drone all = drone(*folder);
+  const DroneCase found = diagnosed(all, 0.6);
+  const std::vector<MeasuredRun> run4 = input_of(found.model, {all.run["run4"]}, {}).train;
+  const std::vector<MeasuredRun> run2 = input_of(found.model, {all.run["run2"]}, {}).train;
+  const ExtendedModel& after = found.diagnosis.selection.after.model;
+  for (const char* const signal : {"winding_C", "stator_C"}) {
+    EXPECT_GT(rms_K(found.input.model, run4, signal), 40.0) << signal;
+    EXPECT_LE(rms_K(after, run4, signal), 3.0) << signal;
+    EXPECT_LE(rms_K(after, run2, signal), rms_K(found.input.model, run2, signal)) << signal;
+  }
+}
+
+class DroneWithFan : public testing::TestWithParam<int> {};
+
+TEST_P(DroneWithFan, is_named_wherever_its_run_is_cut) {
+  const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
+  SKIP_WITHOUT(folder);
+  Drone all = drone(*folder);
+  const DroneCase found = diagnosed(all, GetParam() / 100.0);
+  EXPECT_EQ(found.diagnosis.verdict, DiagnosisVerdict::effect_found) << found.diagnosis.description;
+  const FoundEffect* const fan = effect_of(found.diagnosis, "airflow");
+  ASSERT_TRUE(fan) << found.diagnosis.description;
   EXPECT_EQ(fan->node, "stator");
   EXPECT_THAT(fan->condition, testing::ElementsAre(testing::Pair("run", "run4")));
   EXPECT_GT(fan->parameters.front().low, 0.0);
-  const std::vector<MeasuredRun> run4 = input_of(model, {run["run4"]}, {}).train;
-  const std::vector<MeasuredRun> run2 = input_of(model, {run["run2"]}, {}).train;
+}
+INSTANTIATE_TEST_SUITE_P(MeasuredMotors, DroneWithFan, testing::Values(50, 60, 70),
+                         [](const auto& each) { return "first_" + std::to_string(each.param) + "_percent"; });
+
+/// The probe at the coils lies in the air that the propeller drives; the copper behind it is hotter, and after switch-off the probe rises.
+TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_comes_out_after_switch_off) {
+  const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
+  SKIP_WITHOUT(folder);
+  const std::filesystem::path map = kReports / "propeller_bench/recordings.map.toml";
+  const Recording january = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-01-27_105922.csv", map);
+  const Recording march = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-03-05_145559.csv", map);
+  const ModelOfLogs model = model_of_logs(read_motor(kReports / "propeller_bench/start.toml"), {january});
+  const DiagnosisInput input = input_of(model, {january}, {march});
+  const Diagnosis diagnosis = diagnose(input, {});
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
+  const FoundEffect* const propeller = effect_of(diagnosis, "speed_dependent_convection");
+  ASSERT_TRUE(propeller) << diagnosis.description;
+  EXPECT_EQ(propeller->node, "stator");
+  EXPECT_GT(propeller->parameters.front().low, 0.0);
+  EXPECT_LE(diagnosis.after_holdout.at("stator_C").rmse_K, 1.0);
+  const MeasuredRun& run = input.holdout.front();
+  const auto turns = [](const OperatingPoint<double>& at) { return at.speed_mean_rad_per_s > 10.0; };
+  const Eigen::MatrixXd foretold_C = open_loop_C(diagnosis.selection.after.model, run, {});
+  const Eigen::Index stopped = std::ranges::find_if(run.at.rbegin(), run.at.rend(), turns).base() - run.at.begin();
+  const double measured_rise_K = run.measured_C.col(0).tail(run.samples() - stopped).maxCoeff() - run.measured_C(stopped, 0);
+  EXPECT_GT(measured_rise_K, 4.0);
+  EXPECT_NEAR(foretold_C.col(0).tail(run.samples() - stopped).maxCoeff() - foretold_C(stopped, 0), measured_rise_K, 1.0);
+}
+
+TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_model) {
+  const std::optional<std::filesystem::path> folder = measured_data("umich_ri50");
+  SKIP_WITHOUT(folder);
+  const std::filesystem::path map = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "tests/data/mappings/umich_ri50.map.toml";
+  const Recording stall = read(*folder / "stall_staircase.csv", map);
+  const Recording no_load = read(*folder / "no_load_staircase.csv", map);
+  const Motor start = read_motor(kReports / "../calibration/ri50.toml");
+  constexpr double kAmbient_C = 22.0;
+  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{stall}, {}, {{}, kAmbient_C}));
+  const std::vector<Recording> train{stall, part_of(no_load, 0.0, 0.6)};
+  const ModelOfLogs model = model_of_logs(motor, train);
+  const DiagnosisInput input = input_of(model, train, {part_of(no_load, 0.6, 1.0)}, kAmbient_C);
+  const Diagnosis diagnosis = diagnose(input, {});
+  EXPECT_LE(diagnosis.after_holdout.at("winding_C").rmse_K, 0.4) << diagnosis.description;
+  EXPECT_LE(diagnosis.after_holdout.at("stator_C").rmse_K, 0.2) << diagnosis.description;
+  EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.5 * diagnosis.before_train.at("winding_C").rmse_K);
+}
+
+Diagnosis of_traction_motor(const std::filesystem::path& folder, double cut) {
+  const Recording all = read(folder / "profile24_2.5s.csv", kReports / "traction_motor/recording.map.toml");
+  const std::vector<Recording> train{part_of(all, 0.0, cut)};
+  const ModelOfLogs model = model_of_logs(read_motor(kReports / "traction_motor/start.toml"), train);
+  return diagnose(input_of(model, train, {part_of(all, cut, 1.0)}), {});
+}
+
+TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_foretold_once_two_loads_were_seen) {
+  const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
+  SKIP_WITHOUT(folder);
+  const Diagnosis diagnosis = of_traction_motor(*folder, 0.65);
   for (const char* const signal : {"winding_C", "stator_C"}) {
-    EXPECT_GT(rms_K(input.model, run4, signal), 40.0) << signal;
-    EXPECT_LE(rms_K(diagnosis.selection.after.model, run4, signal), 3.0) << signal;
-    EXPECT_LE(rms_K(diagnosis.selection.after.model, run2, signal), rms_K(input.model, run2, signal)) << signal;
+    EXPECT_GT(diagnosis.before_holdout.at(signal).rmse_K, 10.0) << signal;
+    EXPECT_LE(diagnosis.after_holdout.at(signal).rmse_K, 3.0) << signal << diagnosis.description;
   }
+  EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing);
+}
+
+TEST(MeasuredMotors, half_a_log_at_one_load_does_not_claim_to_know_another_load) {
+  const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
+  SKIP_WITHOUT(folder);
+  const Diagnosis diagnosis = of_traction_motor(*folder, 0.5);
+  for (const char* const signal : {"winding_C", "stator_C"}) {
+    EXPECT_LT(diagnosis.after_holdout.at(signal).rmse_K, diagnosis.before_holdout.at(signal).rmse_K) << signal;
+  }
+  EXPECT_THAT(diagnosis.beyond_training, testing::ElementsAre(testing::HasSubstr("the current")));
 }
 
 }  // namespace

@@ -143,8 +143,9 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.motor);
   std::vector<std::string> notes;
-  const std::vector<Recording> logs = read_logs(options.logs, options.how, notes);
-  const std::vector<Recording> holdout = read_logs(options.holdout, options.how, notes);
+  std::vector<Recording> logs = read_logs(options.logs, options.how, notes);
+  std::vector<Recording> holdout = read_logs(options.holdout, options.how, notes);
+  tell_apart(logs, holdout);
   if (!options.how.takes_logs_as_they_are) {
     refuse_runs_of_the_file(motor, logs, holdout);
   }

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
 #include <algorithm>
@@ -61,8 +62,9 @@ void hand_out(const Options& options, const Motor& extended, const Diagnosis& di
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.model);
   std::vector<std::string> notes;
-  const std::vector<Recording> train = read_logs(options.train, options.logs, notes);
-  const std::vector<Recording> holdout = read_logs(options.holdout, options.logs, notes);
+  std::vector<Recording> train = read_logs(options.train, options.logs, notes);
+  std::vector<Recording> holdout = read_logs(options.holdout, options.logs, notes);
+  tell_apart(train, holdout);
   std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are), std::back_inserter(notes));
   ModelOfLogs model = model_of_logs(motor, train);
   notes.insert(notes.end(), model.notes.begin(), model.notes.end());
@@ -75,7 +77,7 @@ ExitCode run(const Options& options, Session& session) {
   input.holdout = runs_of(holdout, how, nullptr, notes);
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   diagnosis.notes = notes;
-  session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), diagnosis.description));
+  session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), fmt::join(diagnosis.words, "\n")));
   if (!options.out.empty()) {
     hand_out(options, extended_motor(motor, model, diagnosis), diagnosis, input, session);
     session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));

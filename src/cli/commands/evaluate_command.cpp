@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -119,6 +120,22 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
   return text;
 }
 
+/// Effects of the files whose signal no prediction has.
+std::string silent_effects(const std::vector<Motor>& motors) {
+  std::string text;
+  for (const Motor& motor : motors) {
+    for (const MotorEffect& effect : motor.effects) {
+      const auto needs = [&](Signal signal) { return std::ranges::find(effect.type->needs, signal) != effect.type->needs.end(); };
+      const bool needs_neighbour = needs(Signal::neighbour_temperature);
+      if (needs_neighbour || needs(Signal::age)) {
+        text += fmt::format("{}: {} is not reckoned with: a duty says nothing of {}\n", motor.id, effect.name,
+                            needs_neighbour ? "the neighbour's temperature" : "the hours that the motor has run");
+      }
+    }
+  }
+  return text;
+}
+
 std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, double duration_s,
                    const Options& options) {
   std::string text =
@@ -196,7 +213,7 @@ ExitCode run(Options& options, Session& session) {
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
-  session.say(report(results, robot, duty, wheels.front().duration_s(), options));
+  session.say(report(results, robot, duty, wheels.front().duration_s(), options) + silent_effects(motors));
   if (!options.plot.empty()) {
     session.say(fmt::format("picture: {}\n", options.plot));
   }

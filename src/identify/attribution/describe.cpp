@@ -15,9 +15,9 @@ std::string errors_in_words(const Errors& before, const Errors& after, std::stri
   for (const auto& [signal, error] : before) {
     const auto found = after.find(signal);
     if (found != after.end()) {
-      text +=
-          fmt::format(" {} of the {}: {:.2g} K rms before, {:.2g} K after.", text.empty() ? fmt::format("On {}, error", where) : "Error",
-                      signal.substr(0, signal.rfind('_')), error.rmse_K, found->second.rmse_K);
+      text += fmt::format("{} of the {}: {:.2g} K rms before, {:.2g} K after.",
+                          text.empty() ? fmt::format("On {}, error", where) : std::string(" Error"), signal.substr(0, signal.rfind('_')),
+                          error.rmse_K, found->second.rmse_K);
     }
   }
   return text;
@@ -33,7 +33,7 @@ std::string condition_in_words(const std::map<std::string, std::string>& conditi
 }
 
 std::string effect_in_words(const FoundEffect& effect) {
-  std::string text = fmt::format(" Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
+  std::string text = fmt::format("Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
   for (const FittedParameter& parameter : effect.parameters) {
     if (parameter.low < parameter.high) {
       text += fmt::format("; {} {:.3g} {} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit, parameter.low,
@@ -80,59 +80,67 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
   return text;
 }
 
-}  // namespace
-
-std::string describe(const Diagnosis& diagnosis) {
-  std::string text;
+std::string verdict_in_words(const Diagnosis& diagnosis) {
   switch (diagnosis.verdict) {
     case DiagnosisVerdict::effect_found:
-      text = "The runs show heat that the model does not have, and it follows a known law.";
-      break;
+      return "The runs show heat that the model does not have, and it follows a known law.";
     case DiagnosisVerdict::nothing_missing:
-      text =
-          "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
-          "smooth heat of the size that every model leaves.";
-      break;
+      return "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
+             "smooth heat of the size that every model leaves.";
     case DiagnosisVerdict::unexplained:
-      text = "The runs show heat that the model does not have, and no law of the catalogue explains it.";
-      break;
+      return "The runs show heat that the model does not have, and no law of the catalogue explains it.";
     case DiagnosisVerdict::not_identifiable:
-      text = diagnosis.selection.refused.empty()
-                 ? fmt::format(
-                       "These runs cannot tell whether something is missing: at their usual size only {:.0f} % of the effects of "
-                       "the catalogue would show in them.",
-                       100.0 * diagnosis.selection.seen_share)
-                 : std::string(
-                       "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no "
-                       "name is given.");
       break;
   }
+  return diagnosis.selection.refused.empty()
+             ? fmt::format(
+                   "These runs cannot tell whether something is missing: at their usual size only {:.0f} % of the effects of the "
+                   "catalogue would show in them.",
+                   100.0 * diagnosis.selection.seen_share)
+             : std::string(
+                   "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no name "
+                   "is given.");
+}
+
+std::string unexplained_in_words(const Unexplained& heat) {
+  if (heat.drivers.empty()) {
+    return fmt::format("Unexplained: {} W rms into the {} that come and go within {:.0f} s; no measured signal follows them.",
+                       significant(heat.rms_W, 2), heat.node, heat.time_scale_s);
+  }
+  return fmt::format("Unnamed: heat at the {} that follows {}, {} W on average, up to {} W.", heat.node, fmt::join(heat.drivers, " or "),
+                     significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
+         (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
+         (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
+}
+
+}  // namespace
+
+std::vector<std::string> describe(const Diagnosis& diagnosis) {
+  std::vector<std::string> all{verdict_in_words(diagnosis)};
   for (const FoundEffect& effect : diagnosis.effects) {
     // What has no name in the catalogue is told below, with its driver.
-    text += effect.is_from_catalogue ? effect_in_words(effect) : "";
+    if (effect.is_from_catalogue) {
+      all.push_back(effect_in_words(effect));
+    }
   }
   for (const Unexplained& heat : diagnosis.unexplained) {
-    text += heat.drivers.empty()
-                ? fmt::format(" Unexplained: {} W rms into the {} that come and go within {:.0f} s; no measured signal follows them.",
-                              significant(heat.rms_W, 2), heat.node, heat.time_scale_s)
-                : fmt::format(" Unnamed: heat at the {} that follows {}, {} W on average, up to {} W.", heat.node,
-                              fmt::join(heat.drivers, " or "), significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
-                      (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
-                      (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
+    all.push_back(unexplained_in_words(heat));
   }
-  text += errors_in_words(diagnosis.before_holdout.empty() ? diagnosis.before_train : diagnosis.before_holdout,
-                          diagnosis.before_holdout.empty() ? diagnosis.after_train : diagnosis.after_holdout,
-                          diagnosis.before_holdout.empty() ? "the training runs" : "runs the fit never saw");
-  text += doubts_in_words(diagnosis);
+  const bool is_held_out = !diagnosis.before_holdout.empty();
+  all.push_back(errors_in_words(is_held_out ? diagnosis.before_holdout : diagnosis.before_train,
+                                is_held_out ? diagnosis.after_holdout : diagnosis.after_train,
+                                is_held_out ? "runs the fit never saw" : "the training runs") +
+                doubts_in_words(diagnosis));
+  all.insert(all.end(), diagnosis.beyond_training.begin(), diagnosis.beyond_training.end());
   for (const std::string& refused : diagnosis.selection.refused) {
-    text += fmt::format(" Not named: {}.", refused);
+    all.push_back(fmt::format("Not named: {}.", refused));
   }
   if (!diagnosis.experiments.empty()) {
     const Experiment& next = diagnosis.experiments.front();
-    text += fmt::format(" Next, to tell {}: {}", next.rivals, next.what);
-    text += next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".");
+    all.push_back(fmt::format("Next, to tell {}: {}", next.rivals, next.what) +
+                  (next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".")));
   }
-  return text;
+  return all;
 }
 
 }  // namespace heatsoak

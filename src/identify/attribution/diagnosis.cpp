@@ -1,12 +1,14 @@
 #include "identify/attribution/diagnosis.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "identify/attribution/advisor.h"
+#include "identify/attribution/coverage.h"
 #include "identify/attribution/terms.h"
 
 namespace heatsoak {
@@ -54,7 +56,9 @@ class Teller {
     tell_unexplained();
     out_.verdict = verdict();
     out_.experiments = next_experiments(out_.selection, input_.train);
-    out_.description = describe(out_);
+    out_.beyond_training = beyond_fitted(input_.train, input_.holdout);
+    out_.words = describe(out_);
+    out_.description = fmt::format("{}", fmt::join(out_.words, " "));
     return std::move(out_);
   }
 

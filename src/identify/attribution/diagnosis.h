@@ -111,13 +111,15 @@ struct Diagnosis {
   std::vector<BalanceRow> balance;
   std::vector<Experiment> experiments;
   std::vector<std::string> notes;
-  std::string description;
+  std::vector<std::string> beyond_training;  ///< sentences: where the runs held out go and those of the training do not
+  std::vector<std::string> words;            ///< what to say first, what was found, what it does to the error, what to do next
+  std::string description;                   ///< the same as one paragraph
   Selection selection;
 };
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
 
-/// One paragraph in words; fills Diagnosis::description.
-std::string describe(const Diagnosis& diagnosis);
+/// Of everything else in the diagnosis, for Diagnosis::words.
+std::vector<std::string> describe(const Diagnosis& diagnosis);
 
 }  // namespace heatsoak

@@ -55,7 +55,11 @@ std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, 
 }  // namespace
 
 Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
-  const LinearisedRun path = linearise(model, start_C(model, run, before_it), run);
+  // Nobody asks for derivatives by what is free.
+  ExtendedModel settled = model;
+  settled.model.free.clear();
+  settled.model.flux_nodes.clear();
+  const LinearisedRun path = linearise(settled, start_C(model, run, before_it), run);
   Eigen::MatrixXd predicted_C(run.samples(), static_cast<Eigen::Index>(run.sensors.size()));
   for (Eigen::Index k = 0; k < run.samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {

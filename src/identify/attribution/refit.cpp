@@ -239,7 +239,7 @@ class Fitter {
         EvidenceTable next_table = table_of(next);
         if (next_table.misfit_now(now_.place) < misfit + 1e-9) {
           now_ = std::move(next);
-          table = table_of(now_);
+          table = std::move(next_table);
           return true;
         }
       } catch (const Failure&) {
