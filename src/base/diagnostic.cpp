@@ -12,7 +12,7 @@ namespace {
 std::string with_list(const std::string& message, const std::vector<Diagnostic>& diagnostics) {
   std::string text = message;
   for (const Diagnostic& each : diagnostics) {
-    text += (text.empty() ? "" : "\n") + to_string(each);
+    text += fmt::format("{}{}", text.empty() ? "" : "\n", to_string(each));
   }
   return text;
 }
