@@ -113,8 +113,14 @@ std::optional<std::string> unit_at_end(std::string_view key) {
   }
   std::string unit;
   for (std::size_t i = first; i < words.size(); ++i) {
-    const bool divides = words[i] == "per";
-    unit += divides ? "/" : i > first && words[i - 1] != "per" ? " " + std::string(words[i]) : std::string(words[i]);
+    if (words[i] == "per") {
+      unit += '/';
+      continue;
+    }
+    if (i > first && words[i - 1] != "per") {
+      unit += ' ';
+    }
+    unit += words[i];
   }
   const bool is_symbol = std::isalpha(static_cast<unsigned char>(unit[0])) != 0;
   return is_symbol && parse_quantity("1 " + unit, unit).ok() ? std::optional(unit) : std::nullopt;
