@@ -2,6 +2,7 @@
 //   # expect: 7:23: error: figures.torque_constant.value: 'N m' is a unit of something else
 //   # expect: bad_csv_short_row.csv:3:1: error: has 2 cells
 // place and beginning of the message; a file that cannot hold a comment has them in <file>.expect.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -294,13 +295,15 @@ TEST(NoPermission, is_told) {
   write(folder.path() / "secret.toml", good_motor());
   fs::permissions(folder.path() / "secret.toml", fs::perms::none);
   fs::permissions(folder.path(), fs::perms::all);
-  const std::string lint = " lint '" + (folder.path() / "secret.toml").string() + "'";
-  // root may read everything, so it becomes somebody who may not
-  const ProgramRun result =
-      ::geteuid() != 0 ? run_line("heatsoak" + lint) : run_line("setpriv --reuid 65534 --regid 65534 --clear-groups heatsoak" + lint);
-  if (result.exit_code == 126 || result.exit_code == 127 || result.err.starts_with("setpriv")) {
-    GTEST_SKIP() << result.err;
+  write(folder.path() / "open.toml", good_motor());
+  // root may read everything, so it becomes somebody who may not; where that one does not even see the program there is no test
+  const std::string lint = fmt::format(
+      "{}heatsoak lint '{}/", ::geteuid() != 0 ? "" : "setpriv --reuid 65534 --regid 65534 --clear-groups ", folder.path().string());
+  const ProgramRun readable = run_line(lint + "open.toml'");
+  if (::geteuid() == 0 && readable.exit_code != 0) {
+    GTEST_SKIP() << readable.err;
   }
+  const ProgramRun result = run_line(lint + "secret.toml'");
   expect_refused(result, "Permission denied");
 }
 
