@@ -18,10 +18,15 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
+/// Long names in a cell may be broken behind their underscores.
 std::string row(const std::vector<std::string>& cells, std::string_view tag = "td") {
   std::string text = "<tr>";
   for (const std::string& cell : cells) {
-    text += fmt::format("<{0}>{1}</{0}>", tag, escaped(cell));
+    text += fmt::format("<{}>", tag);
+    for (const char c : escaped(cell)) {
+      text += c == '_' ? "_<wbr>" : std::string(1, c);
+    }
+    text += fmt::format("</{}>", tag);
   }
   return text + "</tr>\n";
 }
