@@ -1,10 +1,22 @@
-# add_layer(name USES … HIDES … ROOMS folder … REGISTERS folder:Type …): one static library from src/<name> and its rooms.
-# A folder that a layer registers is its registry: every file x.cpp in it defines `Type x()` in the
-# namespace heatsoak::<folder>, and a table of them is generated as <name>/<folder>_registry.h.
+# add_layer(name USES … HIDES … ROOMS folder … REGISTERS folder:Type … OPTION option): one static library from src/<name> and
+# its rooms. A folder that a layer registers is its registry: every file x.cpp in it, or in a room of it, defines `Type x()` in
+# the namespace heatsoak::<folder>, and a table of them is generated as <name>/<folder>_registry.h.
+# A layer with an option that is off is not built; who uses it goes without it and without the rooms written folder@layer.
 set_property(GLOBAL PROPERTY heatsoak_layers "")
+set_property(GLOBAL PROPERTY heatsoak_left_out "")
 
 function(add_layer name)
-  cmake_parse_arguments(LAYER "" "" "USES;HIDES;ROOMS;REGISTERS" ${ARGN})
+  cmake_parse_arguments(LAYER "" "OPTION" "USES;HIDES;ROOMS;REGISTERS" ${ARGN})
+  if(LAYER_OPTION AND NOT ${LAYER_OPTION})
+    set_property(GLOBAL APPEND PROPERTY heatsoak_left_out ${name})
+    return()
+  endif()
+  get_property(left_out GLOBAL PROPERTY heatsoak_left_out)
+  foreach(layer IN LISTS left_out)
+    list(REMOVE_ITEM LAYER_USES ${layer})
+    list(FILTER LAYER_ROOMS EXCLUDE REGEX "@${layer}$")
+  endforeach()
+  list(TRANSFORM LAYER_ROOMS REPLACE "@.*" "")
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/*.cpp" "${PROJECT_SOURCE_DIR}/src/${name}/*.h")
   foreach(room IN LISTS LAYER_ROOMS)
     file(GLOB in_room CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/${room}/*.cpp" "${PROJECT_SOURCE_DIR}/src/${name}/${room}/*.h")
@@ -28,6 +40,10 @@ function(add_layer name)
     list(GET registration 1 type)
     file(GLOB entries CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/${name}/${folder}/*.cpp")
     list(APPEND sources ${entries})
+    set(in_rooms ${sources})
+    list(FILTER in_rooms INCLUDE REGEX "/src/${name}/${folder}/.+/[^/]+\\.cpp$")
+    list(APPEND entries ${in_rooms})
+    list(SORT entries COMPARE FILE_BASENAME)
     generate_registry(${name} ${folder} ${type} ${entries})
   endforeach()
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")

@@ -15,6 +15,7 @@ endif()
 option(HEATSOAK_SANITIZE "Build with the address and undefined behaviour sanitizers" OFF)
 option(HEATSOAK_COVERAGE "Build with coverage counters (gcov)" OFF)
 option(HEATSOAK_WERROR "Treat warnings as errors" OFF)
+option(HEATSOAK_MEASURED "Build what learns from measured data: the verbs log, friction, calibrate and diagnose, and the tests" ON)
 option(HEATSOAK_PRECOMPILE "Compile the headers of libraries once for all files; off shows what a file forgot to include" ON)
 
 find_program(CCACHE_PROGRAM ccache)

@@ -28,6 +28,13 @@ constexpr std::string_view kFooter =
     "3 the data cannot answer the question, 4 the numerics failed, 70 a bug.\n\n"
     "Start here:\n  heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --plot verdict.svg\n";
 
+constexpr std::string_view kWithoutMeasured =
+    "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
+
+bool has_verb(std::string_view name) {
+  return std::ranges::any_of(all_commands(), [&](const Command& each) { return each.name == name; });
+}
+
 /// CLI11 throws on bad usage before any option is stored, so the target of a JSON error is looked up by hand.
 std::string json_target(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
@@ -73,7 +80,7 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
   CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
   app.set_version_flag("--version", std::string(kVersion));
   app.require_subcommand(1);
-  app.footer(std::string(kFooter));
+  app.footer(fmt::format("{}{}", kFooter, has_verb("log") ? "" : kWithoutMeasured));
   ExitCode code = ExitCode::done;
   for (const Command& command : all_commands()) {
     CLI::App* verb = app.add_subcommand(std::string(command.name), std::string(command.summary));

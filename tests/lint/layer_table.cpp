@@ -47,7 +47,7 @@ LayerTable read_layer_table(std::string_view cmake, const std::set<std::string>&
     std::set<std::string> reach;
     bool in_uses = false;
     for (const std::string& word : declaration) {
-      if (word == "USES" || word == "HIDES" || word == "REGISTERS" || word == "ROOMS") {
+      if (word == "USES" || word == "HIDES" || word == "REGISTERS" || word == "ROOMS" || word == "OPTION") {
         in_uses = word == "USES";
       } else if (in_uses && table.uses.contains(word)) {
         reach.insert(table.uses[word].begin(), table.uses[word].end());

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/diagnosis_answer.h"
-#include "cli/logs_option.h"
+#include "cli/measured/diagnosis_answer.h"
+#include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "identify/admission.h"
 #include "identify/attribution/model_file.h"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/log_chart.h"
-#include "cli/log_text.h"
+#include "cli/measured/log_chart.h"
+#include "cli/measured/log_text.h"
 #include "cli/quantity_option.h"
 #include "identify/measurement/quality.h"
 #include "identify/measurement/read_recording.h"

@@ -1,4 +1,4 @@
-#include "cli/logs_option.h"
+#include "cli/measured/logs_option.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/diagnosis_answer.h"
+#include "cli/measured/diagnosis_answer.h"
 
 namespace heatsoak {
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/diagnosis_answer.h"
+#include "cli/measured/diagnosis_answer.h"
 
 namespace heatsoak {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/friction_chart.h"
+#include "cli/measured/friction_chart.h"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.h"
-#include "cli/calibration_chart.h"
+#include "cli/measured/calibration_chart.h"
 #include "cli/command.h"
-#include "cli/logs_option.h"
+#include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "identify/admission.h"

@@ -1,4 +1,4 @@
-#include "cli/log_text.h"
+#include "cli/measured/log_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "cli/log_chart.h"
+#include "cli/measured/log_chart.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -10,7 +10,7 @@
 
 #include "base/quantity.h"
 #include "cli/command.h"
-#include "cli/friction_chart.h"
+#include "cli/measured/friction_chart.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "identify/friction/expected_voltage.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/quantity.h"
-#include "cli/diagnosis_answer.h"
+#include "cli/measured/diagnosis_answer.h"
 
 namespace heatsoak {
 namespace {

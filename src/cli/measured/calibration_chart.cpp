@@ -1,4 +1,4 @@
-#include "cli/calibration_chart.h"
+#include "cli/measured/calibration_chart.h"
 
 #include <fmt/format.h>
 
