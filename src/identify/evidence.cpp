@@ -105,7 +105,7 @@ LinearFit linear_fit(std::span<const RunEvidence> runs, const Eigen::VectorXd& p
   all.bottomLeftCorner(count, count) = root.asDiagonal() * prior.eigenvectors().transpose();
   all.bottomRightCorner(count, 1) = all.bottomLeftCorner(count, count) * prior_mean;
   const Eigen::MatrixXd triangle = triangle_of(std::move(all));
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(triangle.topLeftCorner(count, count), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(triangle.topLeftCorner(count, count), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double smallest = 1.0 / std::sqrt(kUnknownVariance);
   const Eigen::VectorXd singular = svd.singularValues().cwiseMax(smallest);
   const Eigen::VectorXd right = svd.matrixU().transpose() * triangle.topRightCorner(count, 1);
