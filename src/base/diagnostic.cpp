@@ -69,7 +69,8 @@ void Diagnostics::throw_if_any() const {
 }
 
 std::string did_you_mean(std::string_view given, std::span<const std::string> candidates) {
-  std::size_t best_distance = std::max<std::size_t>(2, given.size() / 3) + 1;
+  // Two letters of a short word are most of it.
+  std::size_t best_distance = std::max<std::size_t>(given.size() < 4 ? 1 : 2, given.size() / 3) + 1;
   const std::string* best = nullptr;
   const std::string* begins_alike = nullptr;
   for (const std::string& candidate : candidates) {

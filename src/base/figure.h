@@ -17,7 +17,7 @@ std::string_view to_string(Origin origin);
 std::optional<Origin> origin_from(std::string_view text);
 
 /// How far the true value may lie from the figure, declared in the file.
-/// `tolerance`: ± a share of the value that holds for 95 % of parts (normal, cut off there);
+/// `tolerance`: ± a share of the value that no part exceeds (normal, cut off at two standard deviations);
 /// `range`: between the bounds; as likely above the figure as below it, and on each side every ratio alike
 /// (every difference for temperatures).
 struct Spread {

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <sstream>
 
 #include "base/files.h"
 #include "cli/command.h"
@@ -56,7 +57,12 @@ std::string verb_of(const CLI::App& app) {
 }
 
 /// Unlike fmt::print this does not throw: a full disk is found at the end (see written_out), a full stderr is borne.
-void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
+/// What a terminal would obey, and names of files may hold, is shown as a question mark.
+void put(std::FILE* file, std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c == 0x7f; }, '?');
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), file));
+}
 
 /// Findings of layers that know the file and the key, but no longer the line.
 Failure with_places(const Failure& failure) {
@@ -152,6 +158,12 @@ void Session::answer_failure(const Failure& failure) {
   for (const Diagnostic& each : failure.diagnostics()) {
     diagnostics.push_back(
         {{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
+  }
+  if (diagnostics.empty()) {
+    std::istringstream lines(failure.message());
+    for (std::string line; std::getline(lines, line);) {
+      diagnostics.push_back({{"file", ""}, {"line", 0}, {"column", 0}, {"key", ""}, {"message", line}});
+    }
   }
   const std::string message = failure.message().empty() ? "the input is wrong" : failure.message();
   answer({{"error", {{"code", static_cast<int>(failure.code())}, {"message", message}, {"diagnostics", diagnostics}}}});

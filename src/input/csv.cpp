@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -114,6 +115,20 @@ class Table {
  private:
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
+  /// A column of the same quantity in another unit has to be converted, a misspelt one renamed.
+  [[nodiscard]] std::string look_alike(const std::string& name) const {
+    constexpr std::array<std::string_view, 8> kUnits{"_rad_per_s", "_Nm", "_rad", "_A", "_V", "_C", "_s", "_m"};
+    const auto unit = std::ranges::find_if(kUnits, [&](std::string_view each) { return name.ends_with(each); });
+    if (unit != kUnits.end()) {
+      const std::string quantity = name.substr(0, name.size() - unit->size()) + "_";
+      const auto other = std::ranges::find_if(header_, [&](const std::string& each) { return each.starts_with(quantity); });
+      if (other != header_.end()) {
+        return fmt::format("; '{}' is in another unit: convert its figures and name the column '{}'", *other, name);
+      }
+    }
+    return did_you_mean(name, header_);
+  }
+
   void word(std::string_view text, const std::vector<std::string>& words) {
     const auto found = std::ranges::find(words, text);
     if (found == words.end()) {
@@ -145,7 +160,7 @@ class Table {
       const auto found = std::ranges::find(header_, name);
       if (found == header_.end()) {
         if (is_required) {
-          problem(1, name, fmt::format("there is no such column{}", did_you_mean(name, header_)));
+          problem(1, name, fmt::format("there is no such column{}", look_alike(name)));
         }
         continue;
       }

@@ -15,6 +15,9 @@ std::string out_of_range(std::string_view text, const ParameterSpec& spec) {
   return fmt::format(R"("{}" is out of range; expected {} ({}))", text, to_string(spec.range, spec.unit), spec.meaning);
 }
 
+/// What TOML takes for numbers and nobody can put a unit to.
+bool is_no_quantity(std::string_view number) { return number.find("nan") != number.npos || number.find("inf") != number.npos; }
+
 }  // namespace
 
 Reader::Reader(const Value& table, std::string path, Diagnostics& diagnostics)
@@ -52,7 +55,9 @@ const Value* Reader::get(std::string_view key, Value::Kind kind, Need need) {
   }
   if (value->kind != kind) {
     const bool bare_number = kind == Value::Kind::text && value->kind == Value::Kind::number;
-    problem(key, bare_number
+    problem(key, bare_number && is_no_quantity(value->text)
+                     ? fmt::format("{} is no quantity; expected a number with its unit, as text", value->text)
+                 : bare_number
                      ? fmt::format("{} is a bare number; write it as text with its unit, such as \"{} …\"", value->text, value->text)
                      : fmt::format("is {}, expected {}", to_string(value->kind), to_string(kind)));
     return nullptr;
@@ -96,9 +101,12 @@ std::optional<std::string> Reader::choice(std::string_view key, std::span<const 
 std::optional<double> Reader::parse(const Value& value, std::string_view key, std::string_view unit) {
   if (value.kind != Value::Kind::text) {
     diagnostics_->add(value.at, full(key),
-                      value.kind == Value::Kind::number ? fmt::format("{} is a bare number; write it as text with its unit, \"{}{}{}\"",
-                                                                      value.text, value.text, unit.empty() ? "" : " ", unit)
-                                                        : fmt::format("is {}, expected a quantity as text", to_string(value.kind)));
+                      value.kind == Value::Kind::number && is_no_quantity(value.text)
+                          ? fmt::format("{} is no quantity; expected a number with its unit as text, \"1.5{}{}\"", value.text,
+                                        unit.empty() ? "" : " ", unit)
+                      : value.kind == Value::Kind::number ? fmt::format("{} is a bare number; write it as text with its unit, \"{}{}{}\"",
+                                                                        value.text, value.text, unit.empty() ? "" : " ", unit)
+                                                          : fmt::format("is {}, expected a quantity as text", to_string(value.kind)));
     return std::nullopt;
   }
   const ParsedQuantity parsed = parse_quantity(value.text, unit);

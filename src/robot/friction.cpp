@@ -61,7 +61,7 @@ double rolling_phase_rad(const WheelDirections& wheel) { return std::atan2(wheel
 
 DriveConstants drive_constants(const Robot& robot, const MotorValues& motor) {
   const MotorElectrics electrics = make_electrics(robot, motor);
-  const double driver_ohm = std::isnan(robot.driver_resistance_ohm) ? 0.0 : robot.driver_resistance_ohm;
+  const double driver_ohm = robot.series_resistance_ohm();
   return {electrics.heating_factor * electrics.resistance_25C_ohm + driver_ohm, electrics.torque_constant_25C_Nm_per_A,
           electrics.drag_torque_Nm, robot.gear_ratio, robot.gear_efficiency};
 }

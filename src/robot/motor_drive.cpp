@@ -23,8 +23,9 @@ DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wa
   point.current_wanted_A = wanted_A;
   point.motor_speed_rad_per_s = motor_speed_rad_per_s;
   const double back_emf_V = motor.torque_constant_Nm_per_A * motor_speed_rad_per_s;
-  const double most_A = (robot.available_V() - back_emf_V) / motor.terminal_resistance_ohm;
-  const double least_A = (-robot.available_V() - back_emf_V) / motor.terminal_resistance_ohm;
+  const double loop_ohm = motor.terminal_resistance_ohm + robot.series_resistance_ohm();
+  const double most_A = (robot.available_V() - back_emf_V) / loop_ohm;
+  const double least_A = (-robot.available_V() - back_emf_V) / loop_ohm;
   point.current_A = std::clamp(wanted_A, -robot.current_limit_A, robot.current_limit_A);
   if (point.current_A != wanted_A) {
     point.limit = DriveLimit::current;
@@ -54,6 +55,10 @@ double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, dou
   return point.current_A * resistance_ohm + motor.torque_constant_Nm_per_A * point.motor_speed_rad_per_s;
 }
 
+double driver_voltage_V(const MotorValues& motor, const Robot& robot, const DrivePoint& point, double winding_C) {
+  return terminal_voltage_V(motor, point, winding_C) + point.current_A * robot.series_resistance_ohm();
+}
+
 double heating_factor(const Robot& robot) {
   // 0.75·R·Î² against R·I² at equal torque, Î = I/(√3·π/6), is (3/π)².
   return robot.commutation == Commutation::sinusoidal ? 3.0 / std::numbers::pi : 1.0;
@@ -75,10 +80,11 @@ OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValue
           .speed_rms_rad_per_s = speed_rad_per_s,
           .ambient_C = ambient_C,
           .resistive_headroom_V = std::max(0.0, robot.available_V() - back_emf_V) * heating_factor(robot),
+          .series_resistance_ohm = robot.series_resistance_ohm(),
           .shaft_power_W = shaft_power_W,
           .input_power_W = input_power_W(motor, heating_A, shaft_power_W, speed_rad_per_s),
           .bus_V = robot.battery_V,
-          .modulation_ratio = std::min(1.0, std::abs(terminal_voltage_V(motor, point, kSheetTemperature_C)) / robot.battery_V),
+          .modulation_ratio = std::min(1.0, std::abs(driver_voltage_V(motor, robot, point, kSheetTemperature_C)) / robot.battery_V),
           .vehicle_speed_m_per_s = speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m,
           .velocity_rad_per_s = point.motor_speed_rad_per_s};
 }

@@ -26,7 +26,7 @@ struct DrivePoint {
 };
 
 /// Current for a motor torque at a speed: (M + K_t·I_0·sign ω)/K_t, so that drag helps when braking; clamped to
-/// |I| ≤ current limit and to |I·R25 + K_t·ω| ≤ available voltage.
+/// |I| ≤ current limit and to |I·(R25 + R_driver) + K_t·ω| ≤ available voltage.
 /// The cold resistance lets more current through than a hot winding would: the error is on the hot side.
 DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load);
 
@@ -41,6 +41,9 @@ double shaft_torque_factor(const Robot& robot, bool drives);
 
 /// Terminal voltage that the point needs with the winding at a temperature; signed like the torque.
 double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C);
+
+/// The driver's voltage for it: what the switches and traces take is added.
+double driver_voltage_V(const MotorValues& motor, const Robot& robot, const DrivePoint& point, double winding_C);
 
 /// Current that heats as much through the terminal resistance, per current that makes the torque.
 double heating_factor(const Robot& robot);

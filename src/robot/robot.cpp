@@ -224,6 +224,8 @@ Robot draw_sample(const Robot& robot, Random& random) {
 
 double Robot::available_V() const { return std::min(battery_V, voltage_limit_V); }
 
+double Robot::series_resistance_ohm() const { return std::isnan(driver_resistance_ohm) ? 0.0 : driver_resistance_ohm; }
+
 namespace {
 
 Robot robot_of(const Value& root, const std::filesystem::path& path) {

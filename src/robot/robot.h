@@ -81,6 +81,8 @@ struct Robot {
   std::map<std::string, Figure, std::less<>> figures;  ///< by "table.key", "friction.heading.wheel[0].key"
 
   [[nodiscard]] double available_V() const;
+  /// Between the battery and a motor's terminals; a robot that does not say has none.
+  [[nodiscard]] double series_resistance_ohm() const;
 };
 
 /// The one declaration of a robot figure: where the file has it, and where its number goes.

@@ -74,7 +74,7 @@ Feasibility feasibility(const MotorValues& motor, const Robot& robot, DutyKind k
                                  : drive_point_of_current(warm, robot, each.current_A * sample.load, each.speed_rad_per_s);
     DrivePoint wanted = point;
     wanted.current_A = point.current_wanted_A;
-    result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(terminal_voltage_V(warm, wanted, kSheetTemperature_C)));
+    result.highest_voltage_V = std::max(result.highest_voltage_V, std::abs(driver_voltage_V(warm, robot, wanted, kSheetTemperature_C)));
     const double share = point.limit == DriveLimit::none ? 1.0 : point.current_A / point.current_wanted_A;
     if (share < result.least_share) {
       result.least_share = share;

@@ -11,6 +11,7 @@
 
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
+#include "select/bearable_current.h"
 #include "select/drive_profile.h"
 #include "select/spread.h"
 #include "thermal/ensemble.h"
@@ -23,18 +24,22 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
 /// Half a minute of work; beyond, the intervals say how coarse the percentiles are.
 constexpr int kMostDraws = 256;
+/// Apart from those of motors, so that every motor meets the same robots.
+constexpr std::uint64_t kRobotStreams = std::uint64_t{1} << 40U;
 
 /// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
 class Block {
  public:
   Block(const Motor& motor, const Robot& robot, const Duty& duty, const WheelDemand& demand, const EvaluateOptions& options,
         int first_sample)
-      : robot_(robot), kind_(duty.kind), demand_(demand), name_(motor.id) {
+      : kind_(duty.kind), demand_(demand), name_(motor.id) {
     std::vector<Network> networks;
     for (int lane = 0; lane < kLanes; ++lane) {
       Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
       // The duty first: every motor, however many figures it has, then meets the same air and load.
       duties_.push_back(draw_sample(duty, random));
+      Random of_robot(options.seed, kRobotStreams + static_cast<std::uint64_t>(first_sample + lane));
+      robots_.push_back(draw_sample(robot, of_robot));
       motors_.push_back(draw_sample(motor, random));
       networks.push_back(datasheet_network(motor, motors_.back()));
       const std::vector<double> values = networks.back().values();
@@ -70,6 +75,7 @@ class Block {
     return run.peak_C();
   }
 
+  [[nodiscard]] const Robot& robot(int lane) const { return robots_[static_cast<std::size_t>(lane)]; }
   [[nodiscard]] const MotorSample& motor(int lane) const { return motors_[static_cast<std::size_t>(lane)]; }
   [[nodiscard]] const DutySample& duty(int lane) const { return duties_[static_cast<std::size_t>(lane)]; }
 
@@ -78,7 +84,7 @@ class Block {
     OperatingPoint<Lanes> at;
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
-      const OperatingPoint<double> one = operating_point(motors_[i].values, robot_, kind_, bin, duties_[i]);
+      const OperatingPoint<double> one = operating_point(motors_[i].values, robots_[i], kind_, bin, duties_[i]);
       for_each_quantity([lane](Lanes& to, const double& from) { to[lane] = from; }, at, one);
     }
     return at;
@@ -116,11 +122,11 @@ class Block {
     return step_s;
   }
 
-  const Robot& robot_;
   DutyKind kind_;
   const WheelDemand& demand_;
   const std::string& name_;
   Network network_;
+  std::vector<Robot> robots_;
   std::vector<MotorSample> motors_;
   std::vector<DutySample> duties_;
   std::vector<Lanes> parameters_;
@@ -145,54 +151,13 @@ struct Envelope {
 struct Work {
   const Motor* motor = nullptr;
   const WheelDemand* wheel = nullptr;  ///< the hottest one
+  double duration_s = 0.0;             ///< of its demand
   MotorEvaluation result;
   std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
   std::vector<char> over_limit;                       ///< per sample
   std::vector<DriveLimit> short_of_demand;            ///< per sample: what leaves the demand unmet, or none
   Envelope winding_envelope_C, stator_envelope_C;
 };
-
-/// The factor on all currents with which the winding just reaches its limit: eight factors at a time, each
-/// round between the two that enclose it, at last by their temperatures. Nothing where even no current is too much.
-std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals, double limit_C) {
-  constexpr int kRounds = 4;
-  double low = 0.0;
-  double high = 16.0;
-  double share = 0.5;
-  std::vector<Lanes> parameters;
-  for (const double value : network.values()) {
-    parameters.emplace_back(Lanes::Constant(value));
-  }
-  for (int round = 0; round < kRounds; ++round) {
-    const Lanes factor = Lanes::LinSpaced(low, high);
-    const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(intervals.front().at.ambient_C));
-    EnsembleRun run(network, parameters, start_C);
-    for (const Interval& interval : intervals) {
-      OperatingPoint<Lanes> at;
-      for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, at, interval.at);
-      at.current_rms_A *= factor;
-      at.input_power_W = at.shaft_power_W * factor + (at.input_power_W - at.shaft_power_W) * factor * factor;
-      at.shaft_power_W *= factor;
-      at.resistive_headroom_V = Lanes::Constant(std::numeric_limits<double>::infinity());
-      run.over(interval.duration_s, at, longest_step_s(network, parameters, at));
-    }
-    const Lanes& peak_C = run.peak_C()[winding];
-    int within = -1;
-    while (within + 1 < kLanes && peak_C[within + 1] <= limit_C) {
-      ++within;
-    }
-    if (within < 0) {
-      return std::nullopt;
-    }
-    if (within + 1 == kLanes) {
-      return high;
-    }
-    low = factor[within];
-    high = factor[within + 1];
-    share = (limit_C - peak_C[within]) / (peak_C[within + 1] - peak_C[within]);
-  }
-  return std::lerp(low, high, share);
-}
 
 LimitingFactor limiting_factor_of(DriveLimit limit) {
   return limit == DriveLimit::current ? LimitingFactor::current : LimitingFactor::voltage;
@@ -254,6 +219,7 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
       run = std::move(candidate);
     }
   }
+  work.duration_s = work.wheel->duration_s();
   const TransientResult& transient = run.transient;
   const DutySample demanded = nominal_sample(duty);
   const Feasibility hot = feasibility(sample.values, robot, duty.kind, *work.wheel, demanded,
@@ -272,7 +238,10 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   result.current_rms_A = run.current_rms_A;
   result.least_torque_share = hot.least_share;
   result.margin_K = result.winding_limit_C - transient.peak_C[winding];
-  if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, result.winding_limit_C)) {
+  if (result.stator_limit_C) {
+    result.stator_margin_K = *result.stator_limit_C - transient.peak_C[stator];
+  }
+  if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, limits)) {
     result.margin_A = *factor * current_rms_A(run.intervals) - result.current_rms_A;
   }
   std::size_t first_limit = 0;
@@ -307,7 +276,7 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
   const std::size_t turn = static_cast<std::size_t>(first_sample / kLanes);
   const WheelDemand& demand = options.draws.empty() ? *work.wheel : options.draws[turn % options.draws.size()];
   const Block block(*work.motor, robot, duty, demand, options, first_sample);
-  const double cell_s = work.wheel->duration_s() / static_cast<double>(kBandCells);
+  const double cell_s = work.duration_s / static_cast<double>(kBandCells);
   const auto samples = static_cast<std::size_t>(options.samples);
   std::size_t cell = 0;
   const auto take = [&](const std::vector<Lanes>& state_C) {
@@ -319,7 +288,7 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
   };
   const std::vector<Lanes> peak_C = block.peaks(
       options.with_curves ? cell_s : std::numeric_limits<double>::infinity(), [&](double time_s, const std::vector<Lanes>& state_C) {
-        if (!options.with_curves || time_s > work.wheel->duration_s() * (1.0 + 1e-9)) {
+        if (!options.with_curves || time_s > work.duration_s * (1.0 + 1e-9)) {
           return;  // the picture ends with the nominal duty, a draw may go on
         }
         take(state_C);
@@ -336,7 +305,7 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
     const bool is_over = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
     work.over_limit[place] = is_over ? 1 : 0;
     const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
-    const Feasibility each = feasibility(values, robot, duty.kind, demand, block.duty(lane), hottest_C);
+    const Feasibility each = feasibility(values, block.robot(lane), duty.kind, demand, block.duty(lane), hottest_C);
     work.short_of_demand[place] = each.short_time_share > kTolerableShortTime ? each.limit : DriveLimit::none;
   }
 }
@@ -364,13 +333,13 @@ void finish_band(Work& work, int samples) {
   curves.stator_p05_C = percentile(work.stator_envelope_C.low_C, samples, 0.05);
   curves.stator_p95_C = percentile(work.stator_envelope_C.high_C, samples, 0.95);
   for (std::size_t cell = 0; cell < curves.winding_p05_C.size(); ++cell) {
-    curves.band_time_s.push_back(work.wheel->duration_s() * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
+    curves.band_time_s.push_back(work.duration_s * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
   }
 }
 
 LimitingFactor hotter_limit(const MotorEvaluation& result) {
-  const bool winding_first = !result.stator_limit_C || result.margin_K < *result.stator_limit_C - result.stator_peak_C.nominal;
-  return winding_first ? LimitingFactor::winding_temperature : LimitingFactor::stator_temperature;
+  return result.margin_K <= result.stator_margin_K.value_or(result.margin_K) ? LimitingFactor::winding_temperature
+                                                                             : LimitingFactor::stator_temperature;
 }
 
 /// Where the duty itself is drawn, one game is no more than one game.
@@ -400,9 +369,13 @@ void conclude(Work& work, const EvaluateOptions& options) {
     result.winding_p95_interval_C = intervals.p95;
     result.probability_interval = intervals.probability;
     decide_by_majority(result);
+  } else if (options.samples > 0) {
+    const DrawIntervals intervals = sample_intervals(work.winding_peak_C, work.over_limit);
+    result.winding_p95_interval_C = intervals.p95;
+    result.probability_interval = intervals.probability;
   }
   // As many games as were drawn cannot rule more out than the interval says.
-  const double over = result.probability_interval ? result.probability_interval->high : result.probability_over_limit;
+  const double over = options.draws.empty() ? result.probability_over_limit : result.probability_interval->high;
   if (result.verdict == Verdict::pass && std::max(over, result.short_probability) > kMarginalProbability) {
     result.verdict = Verdict::marginal;
     result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit : hotter_limit(result);
@@ -413,6 +386,8 @@ void conclude(Work& work, const EvaluateOptions& options) {
 }
 
 }  // namespace
+
+double nearest_margin_K(const MotorEvaluation& motor) { return std::min(motor.margin_K, motor.stator_margin_K.value_or(motor.margin_K)); }
 
 std::string_view to_string(Verdict verdict) {
   constexpr std::array<std::string_view, 4> kNames{"pass", "marginal", "fail", "infeasible"};
@@ -462,9 +437,7 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     conclude(work, options);
     results.push_back(std::move(work.result));
   }
-  std::ranges::stable_sort(results, [](const MotorEvaluation& a, const MotorEvaluation& b) {
-    return std::tuple(a.verdict, -a.margin_K) < std::tuple(b.verdict, -b.margin_K);
-  });
+  std::ranges::stable_sort(results, {}, [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); });
   return results;
 }
 

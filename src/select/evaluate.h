@@ -73,13 +73,15 @@ struct MotorEvaluation {
   Spread95 winding_peak_C;
   Spread95 stator_peak_C;
   double probability_over_limit = 0.0;  ///< of any temperature limit; NaN without samples
-  /// Of the 95th percentile and of the probability: where a duty is drawn, few draws decide them. Nothing without draws.
+  /// Of the 95th percentile and of the probability: what other samples would give or, where a duty is drawn, other draws. Nothing
+  /// without samples.
   std::optional<Interval95> winding_p95_interval_C;
   std::optional<Interval95> probability_interval;
   std::optional<double> time_to_limit_s;                 ///< nominal, first of the limits
   double current_rms_A = 0.0;                            ///< heating current over the whole duty
   double margin_K = 0.0;                                 ///< winding limit minus nominal peak
-  std::optional<double> margin_A;                        ///< how much more rms current the winding bears at the same speeds
+  std::optional<double> stator_margin_K;                 ///< the same of the stator, where it has a limit
+  std::optional<double> margin_A;                        ///< how much more rms current both bear at the same speeds
   double least_torque_share = 1.0;                       ///< delivered over demanded, worst moment
   double short_time_share = 0.0;                         ///< part of the time in which the demand is not met, hot but within the limit
   LimitingFactor short_limit = LimitingFactor::voltage;  ///< what cuts the current first, if anything does
@@ -95,6 +97,9 @@ int draw_count(const Duty& duty, int samples);
 /// Of each draw the wheel that works hardest. The same for every number of threads.
 std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
                                       const Progress& progress = {});
+
+/// To the limit that is nearer.
+double nearest_margin_K(const MotorEvaluation& motor);
 
 /// Best first: pass, marginal, fail, infeasible; within them by margin. Without draws the nominal figures decide fail and
 /// infeasible; with draws, where the nominal run is one of many games, more than half of the samples do. `wheels` is the duty's demand;

@@ -1,6 +1,8 @@
 #include "select/spread.h"
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +24,21 @@ Spread95 spread(double nominal_C, std::vector<double> samples_C) {
   }
   std::ranges::sort(samples_C);
   return {nominal_C, quantile(samples_C, 0.05), quantile(samples_C, 0.5), quantile(samples_C, 0.95)};
+}
+
+DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<const char> is_over) {
+  constexpr double kTail = 0.025;
+  const auto count = static_cast<double>(samples_C.size());
+  const double z = -boost::math::quantile(boost::math::normal(), kTail);
+  const double share = static_cast<double>(std::ranges::count(is_over, char{1})) / count;
+  const double middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count);
+  const double half = z * std::sqrt(share * (1.0 - share) / count + z * z / (4.0 * count * count)) / (1.0 + z * z / count);
+  std::vector<double> sorted_C(samples_C.begin(), samples_C.end());
+  std::ranges::sort(sorted_C);
+  const boost::math::binomial_distribution<> below(count, 0.95);
+  const auto at = [&](double place) { return sorted_C[static_cast<std::size_t>(std::clamp(place, 0.0, count - 1.0))]; };
+  return {{at(boost::math::quantile(below, kTail) - 1.0), at(boost::math::quantile(boost::math::complement(below, kTail)))},
+          {std::max(0.0, middle - half), std::min(1.0, middle + half)}};
 }
 
 DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const char> is_over, const SharedDraws& shared) {

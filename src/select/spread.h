@@ -21,10 +21,14 @@ struct SharedDraws {
   std::size_t block_size = 1;
   std::uint64_t seed = 1;
 };
+/// 95 % confidence intervals, as far as the number of draws or samples goes.
 struct DrawIntervals {
   Interval95 p95;
   Interval95 probability;
 };
+/// Of samples that share nothing: the probability after Wilson (1927), the percentile between two of the sorted samples whose places
+/// the binomial distribution gives. There is at least one sample.
+DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<const char> is_over);
 /// Bootstrap over the draws, each with all samples that share it (Efron and Tibshirani 1993, section 8.5).
 DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const char> is_over, const SharedDraws& shared);
 

@@ -104,7 +104,7 @@ S Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, con
   }
   const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
   const S hot_ratio = resistance_ratio(parameters[copper.parameter_index[1]], temperature_C[copper.node_index[0]]);
-  const S most_A = at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * hot_ratio);
+  const S most_A = at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * hot_ratio + at.series_resistance_ohm);
   if constexpr (std::is_same_v<S, double>) {
     return std::min(at.current_rms_A, most_A);
   } else {

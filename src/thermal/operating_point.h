@@ -17,6 +17,7 @@ struct OperatingPoint {
   /// Voltage that is left for I·R beside the back-EMF, per current that heats: as the winding gets hot and its
   /// resistance rises, less current flows than is asked for. Infinite where voltage is no limit.
   S resistive_headroom_V = S(std::numeric_limits<double>::infinity());
+  S series_resistance_ohm = S(0.0);    ///< of the driver and the leads, which share that voltage and heat elsewhere
   S shaft_power_W = S(0.0);            ///< mean of M·ω: positive drives, negative brakes
   S input_power_W = S(0.0);            ///< electrical power that the motor (or its driver, see the log) takes in
   S bus_V = S(0.0);                    ///< supply of the driver
@@ -38,6 +39,7 @@ constexpr void for_each_quantity(F&& f, Point&... at) {
   f(at.speed_rms_rad_per_s...);
   f(at.ambient_C...);
   f(at.resistive_headroom_V...);
+  f(at.series_resistance_ohm...);
   f(at.shaft_power_W...);
   f(at.input_power_W...);
   f(at.bus_V...);

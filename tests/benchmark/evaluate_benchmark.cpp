@@ -33,6 +33,23 @@ BENCHMARK_CAPTURE(evaluate_database, nominal, 0, false)->Unit(benchmark::kMillis
 BENCHMARK_CAPTURE(evaluate_database, samples_500, 500, false)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(evaluate_database, samples_500_with_curves, 500, true)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// 40 minutes in pieces of 0.1 s, as a recorded duty has them, with everything that a picture needs.
+void evaluate_long_recording(benchmark::State& state, bool with_curves) {
+  constexpr int kPieces = 24'000;
+  const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  const std::vector<Motor> motors{read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml")};
+  WheelDemand wheel{.wheel = "wheel 1", .bins = {}, .points = {}};
+  for (int i = 0; i < kPieces; ++i) {
+    wheel.bins.push_back(constant_bin(0.1, 0.01 * (i % 20), 5.0 * (i % 17), 0.0));
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(evaluate(robot, duty, std::span(&wheel, 1), motors, {.samples = 500, .with_curves = with_curves}).data());
+  }
+}
+BENCHMARK_CAPTURE(evaluate_long_recording, figures, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(evaluate_long_recording, figures_and_curves, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void read_database(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(all_motors().data());

@@ -559,6 +559,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"option_twice", kSteady + Words{"--current-on", "5"}, "--current-on"},
         Mistake{"missing_option", {"steady", "--motor", "maxon_ec45_flat_70w_24v"}, "is required"},
         Mistake{"unknown_kind", {"list", "motor"}, "motors"}, Mistake{"no_kind", {"list"}, "motors, robots, duties, effects, formats"},
+        Mistake{"empty_name_of_a_motor",
+                {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ",", "--samples", "0"},
+                "there is no motor ''"},
+        Mistake{"lint_of_two_nothings", {"lint", "nosuch.toml", "maxon_foo"}, "nosuch.toml"},
         Mistake{"lint_of_nothing", {"lint", "maxon_ec45_flat_70w_24"}, "did you mean 'maxon_ec45_flat_70w_24v'?"},
         Mistake{"lint_of_an_empty_folder", {"lint", (kSource / "reports").string()}, "there is no .toml file in the folder"},
         Mistake{"unknown_motor",
@@ -779,6 +783,30 @@ TEST(Database, a_motor_may_be_a_path) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.json().at("motor"), "mine with blanks, ä");
   }
+}
+
+TEST(Database, a_comma_may_be_part_of_a_path) {
+  const TemporaryFolder folder;
+  RunOptions inside;
+  inside.folder = folder.path();
+  fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "small, fast.toml");
+  const ProgramRun result = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors",
+                                 "small, fast.toml", "--samples", "0", "--json", "-"},
+                                inside);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.json().at("motors").at(0).at("id"), "small, fast");
+}
+
+TEST(Database, two_motors_of_one_id_cannot_be_told_apart) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b"}) {
+    fs::create_directory(folder.path() / name);
+    fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / name / "x.toml");
+  }
+  const ProgramRun result = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors",
+                                 (folder.path() / "b/x.toml").string() + "," + (folder.path() / "a/x.toml").string()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, testing::HasSubstr("two motors of one id, 'x'"));
 }
 
 TEST(Database, a_broken_file_is_told_and_not_passed_over) {

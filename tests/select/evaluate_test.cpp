@@ -11,6 +11,7 @@
 #include "given_demand.h"
 #include "motor/datasheet_network.h"
 #include "select/drive_profile.h"
+#include "select/spread.h"
 #include "thermal/steady_state.h"
 
 namespace heatsoak {
@@ -432,6 +433,76 @@ std::vector<WheelDemand> steady_wheels(double torque_Nm, double duration_s) {
   WheelDemand idle{.wheel = "idle", .bins = {constant_bin(duration_s, 0.0, 0.0, 0.0)}, .points = {}};
   WheelDemand busy{.wheel = "busy", .bins = {constant_bin(duration_s, torque_Nm, 0.0, 0.0)}, .points = {}};
   return {idle, busy};
+}
+
+// With I = U/(R·(1 + α·ΔT) + R_driver) the winding comes to rest where its heat leaves; bisected, independent of the program's way.
+TEST(Evaluate, resistance_of_the_driver_takes_its_share_of_the_voltage) {
+  const Motor motor = simple_motor();
+  Robot robot = simple_robot();
+  robot.battery_V = 1.5;
+  robot.driver_resistance_ohm = 0.3;
+  double low_K = 0.0;
+  double high_K = 1000.0;
+  for (int i = 0; i < 60; ++i) {
+    const double rise_K = 0.5 * (low_K + high_K);
+    const double resistance_ohm = kResistance_ohm * (1.0 + kAlpha_per_K * rise_K);
+    const double current_A = 1.5 / (resistance_ohm + 0.3);
+    (current_A * current_A * resistance_ohm * (kInner_K_per_W + kOuter_K_per_W) > rise_K ? low_K : high_K) = rise_K;
+  }
+  const Duty duty = constant_current(5.0);
+  const MotorEvaluation result = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
+  EXPECT_NEAR(result.winding_peak_C.nominal, 25.0 + low_K, 0.01);
+}
+
+TEST(Evaluate, declared_range_of_the_driver_s_resistance_is_propagated) {
+  const Motor motor = simple_motor();
+  Robot robot = simple_robot();
+  robot.battery_V = 1.5;
+  robot.driver_resistance_ohm = 0.3;
+  const auto spread_K = [&] {
+    const Duty duty = constant_current(5.0);
+    const MotorEvaluation result = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 200}).front();
+    return result.winding_peak_C.p95 - result.winding_peak_C.p05;
+  };
+  EXPECT_NEAR(spread_K(), 0.0, 1e-9);
+  Figure figure;
+  figure.value = 0.3;
+  figure.spread = Spread{Spread::Kind::range, 0.1, 0.6, false};
+  robot.figures["drive.driver_resistance"] = figure;
+  EXPECT_GT(spread_K(), 5.0);
+}
+
+TEST(Evaluate, nearer_limit_decides_margins) {
+  Motor motor = simple_motor();
+  const Robot robot = simple_robot();
+  const Duty duty = constant_current(3.0, 2000.0);
+  const MotorEvaluation without = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
+  EXPECT_FALSE(without.stator_margin_K.has_value());
+  EXPECT_EQ(nearest_margin_K(without), without.margin_K);
+  motor.nominal.stator_limit_C = without.stator_peak_C.nominal + 5.0;
+  const MotorEvaluation with = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
+  EXPECT_NEAR(nearest_margin_K(with), 5.0, 1e-6);
+  EXPECT_LT(*with.margin_A, *without.margin_A);
+  // That much more current brings the stator to its limit.
+  const Duty more = constant_current(3.0 + *with.margin_A, 2000.0);
+  const MotorEvaluation at_limit = evaluate(robot, more, more.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
+  EXPECT_NEAR(at_limit.stator_peak_C.nominal, motor.nominal.stator_limit_C, 0.05);
+}
+
+// Wilson's interval of 10 of 100: 0.0552 to 0.1744 (Brown, Cai, DasGupta 2001); the percentile's places of 100 are those of the binomial.
+TEST(Spread, sampling_error_is_that_of_the_textbook) {
+  std::vector<double> samples_C(100);
+  std::vector<char> over(100, 0);
+  for (std::size_t i = 0; i < 100; ++i) {
+    samples_C[i] = static_cast<double>(99 - i);
+    over[i] = i < 10 ? 1 : 0;
+  }
+  const DrawIntervals intervals = sample_intervals(samples_C, over);
+  EXPECT_NEAR(intervals.probability.low, 0.0552, 5e-5);
+  EXPECT_NEAR(intervals.probability.high, 0.1744, 5e-5);
+  EXPECT_GE(intervals.p95.low, 88.0);
+  EXPECT_LE(intervals.p95.low, 91.0);
+  EXPECT_GE(intervals.p95.high, 98.0);
 }
 
 // Blocks of samples take the draws in turn: without other spread every peak is a closed form.

@@ -73,7 +73,7 @@ Description describe_motor(const Motor& motor) {
                       {"manufacturer", motor.manufacturer},
                       {"name", motor.name},
                       {"data_quality", data_quality(motor)}}};
-  result.text += "\nfigures (value, origin, 95 % band or range, source)\n";
+  result.text += "\nfigures (value, origin, tolerance or range, source)\n";
   for (const MotorFigureSpec& each : motor_figure_specs()) {
     if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
       result.text += figure_text(each.spec.key, each.spec.unit, found->second);

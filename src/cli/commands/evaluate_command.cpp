@@ -29,17 +29,29 @@ namespace {
 struct Options {
   std::string robot;
   std::string duty;
-  std::vector<std::string> motors;
+  std::optional<std::string> motors;
   std::string model;
   std::string plot;
   std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
 };
 
+/// A file whose name has commas is one motor.
+std::vector<std::string> listed_motors(const Options& options) {
+  if (!options.motors) {
+    return options.model.empty() ? std::vector<std::string>{"all"} : std::vector<std::string>{};
+  }
+  std::error_code unreadable;
+  if (options.motors->find(',') == std::string::npos || std::filesystem::exists(*options.motors, unreadable)) {
+    return {*options.motors};
+  }
+  return CLI::detail::split(*options.motors, ',');
+}
+
 /// A model takes the place of the motor that its fit began with, or stands alone where no motors are named.
 std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
   std::vector<std::string> names;
-  for (const std::string& name : options.motors.empty() && options.model.empty() ? std::vector<std::string>{"all"} : options.motors) {
+  for (const std::string& name : listed_motors(options)) {
     const std::vector<std::string> all = name == "all" ? ids_in(named.folders().motors) : std::vector<std::string>{name};
     names.insert(names.end(), all.begin(), all.end());
   }
@@ -54,6 +66,12 @@ std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
     const bool is_replaced = file && model && model->fit && model->fit->motor == file->stem();
     if (!file || is_replaced || !taken.insert(*file).second) {
       continue;
+    }
+    const auto same =
+        std::ranges::find_if(taken, [&](const std::filesystem::path& other) { return other != *file && other.stem() == file->stem(); });
+    if (same != taken.end()) {
+      throw Failure(ExitCode::bad_input, fmt::format("{} and {} are two motors of one id, '{}'; rename one of the files", same->string(),
+                                                     file->string(), file->stem().string()));
     }
     if (const std::optional<Motor> motor = named.motor(name)) {
       motors.push_back(options.model.empty() ? under(*motor, options.conditions) : *motor);
@@ -77,15 +95,30 @@ std::string time_text(const std::optional<double>& time_s) {
 std::string row(std::size_t rank, const MotorEvaluation& each) {
   const std::string probability =
       std::isfinite(each.probability_over_limit) ? fmt::format("{:.0f} %", 100.0 * each.probability_over_limit) : "–";
-  return fmt::format("{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank, each.motor_id,
-                     to_string(each.verdict), each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor),
-                     peak_text(each.winding_peak_C), each.winding_limit_C, probability, time_text(each.time_to_limit_s), each.margin_K,
-                     each.margin_A && each.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *each.margin_A) : "–",
-                     each.current_rms_A, each.data_quality);
+  return fmt::format(
+      "{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:6.0f} {:>5}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank, each.motor_id,
+      to_string(each.verdict), each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor),
+      peak_text(each.winding_peak_C), each.winding_limit_C, each.stator_peak_C.nominal,
+      each.stator_limit_C ? fmt::format("{:.0f}", *each.stator_limit_C) : "–", probability, time_text(each.time_to_limit_s),
+      nearest_margin_K(each), each.margin_A && each.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *each.margin_A) : "–",
+      each.current_rms_A, each.data_quality);
 }
 
-std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& robot) {
-  std::string text;
+/// How far the number of samples alone can be trusted.
+std::string sampling_error(const std::vector<MotorEvaluation>& results) {
+  double probability_ratio = 0.0;
+  double p95_K = 0.0;
+  for (const MotorEvaluation& each : results) {
+    probability_ratio = std::max(probability_ratio, 0.5 * (each.probability_interval->high - each.probability_interval->low));
+    p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
+  }
+  return fmt::format(
+      "other samples would give P over within ±{:.0f} points and the upper end of the peak within ±{:.0f} K at most (95 %)\n",
+      std::ceil(100.0 * probability_ratio), std::ceil(p95_K));
+}
+
+std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& robot, const EvaluateOptions& options) {
+  std::string text = options.samples > 0 && options.draws.empty() && !results.empty() ? sampling_error(results) : "";
   bool estimated = false;
   for (const MotorEvaluation& each : results) {
     estimated = estimated || each.data_quality == "estimated";
@@ -102,7 +135,7 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
       text += fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})\n", each.motor_id,
                           100.0 * each.short_probability, to_string(each.short_limit));
     }
-    if (each.probability_interval && each.probability_interval->high > 0.0 && each.verdict != Verdict::infeasible) {
+    if (!options.draws.empty() && each.probability_interval->high > 0.0 && each.verdict != Verdict::infeasible) {
       text += fmt::format(
           "{}: other draws of the duty would give P over {:.0f} to {:.0f} % and a 95th percentile of {:.0f} to {:.0f} °C (95 %)\n",
           each.motor_id, 100.0 * each.probability_interval->low, 100.0 * each.probability_interval->high, each.winding_p95_interval_C->low,
@@ -150,12 +183,13 @@ std::string report(const std::vector<MotorEvaluation>& results, const Robot& rob
         "of all of them\nthe first peak, reached, K left, A left and A rms are of one game, that of the seed\n",
         options.evaluate.draws.size(), options.evaluate.draws.size() == 1 ? "" : "s");
   }
-  text += fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict", "limited by",
-                      "winding peak °C", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
+  text +=
+      fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict",
+                  "limited by", "winding peak °C", "limit", "stator", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
   for (std::size_t i = 0; i < results.size(); ++i) {
     text += row(i + 1, results[i]);
   }
-  return text + "\n" + remarks(results, robot);
+  return text + "\n" + remarks(results, robot, options.evaluate);
 }
 
 nlohmann::ordered_json json(const Spread95& peak) {
@@ -184,6 +218,7 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"data_quality", each.data_quality},
           {"wheel", each.wheel},
           {"margin_K", rounded(each.margin_K, 2)},
+          {"stator_margin_K", optional(each.stator_margin_K, 2)},
           {"margin_A", optional(each.margin_A, 4)},
           {"stator_limit_C", optional(each.stator_limit_C, 2)},
           {"delivered_share", rounded(each.least_torque_share, 4)},
@@ -247,10 +282,7 @@ Command evaluate_command() {
         const auto options = std::make_shared<Options>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
-        app.add_option("--motors", options->motors, "ids or files separated by commas, or all")
-            ->delimiter(',')
-            ->type_name("M,M")
-            ->default_str("all");
+        app.add_option("--motors", options->motors, "ids or files separated by commas, or all")->type_name("M,M")->default_str("all");
         app.add_option("--model", options->model,
                        "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
             ->type_name("FILE.toml");

@@ -94,12 +94,18 @@ std::string counted(std::size_t count, std::string_view what) { return fmt::form
 
 ExitCode run(const std::vector<std::string>& names, Session& session) {
   std::vector<std::string> files;
+  std::vector<Diagnostic> unreadable;
+  std::string unknown;
   for (const std::string& name : names) {
-    const std::vector<std::string> named = files_named(name, session);
-    files.insert(files.end(), named.begin(), named.end());
+    try {
+      const std::vector<std::string> named = files_named(name, session);
+      files.insert(files.end(), named.begin(), named.end());
+    } catch (const Failure& failure) {
+      unknown += (unknown.empty() ? "" : "\n") + failure.message();
+      unreadable.insert(unreadable.end(), failure.diagnostics().begin(), failure.diagnostics().end());
+    }
   }
   const DataFolders folders = session.folders();
-  std::vector<Diagnostic> unreadable;
   std::string text;
   nlohmann::ordered_json findings = nlohmann::ordered_json::array();
   std::size_t errors = 0;
@@ -122,8 +128,8 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
       unreadable.insert(unreadable.end(), failure.diagnostics().begin(), failure.diagnostics().end());
     }
   }
-  if (!unreadable.empty()) {
-    throw Failure(ExitCode::bad_input, "", std::move(unreadable));
+  if (!unreadable.empty() || !unknown.empty()) {
+    throw Failure(ExitCode::bad_input, std::move(unknown), std::move(unreadable));
   }
   const bool sound = errors + warnings == 0;
   session.say(text + fmt::format("{}: {}\n", counted(files.size(), "file"),

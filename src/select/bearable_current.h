@@ -1,0 +1,17 @@
+// How much more current a motor bears.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "thermal/network.h"
+#include "thermal/transient.h"
+
+namespace heatsoak {
+
+/// The factor on all currents, at the same speeds, with which the first node just reaches its limit, 0 … 16: eight factors at a time, each
+/// round between the two that enclose it, at last by their temperatures. Nothing where even no current is too much.
+std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals,
+                                              std::span<const NodeLimit> limits);
+
+}  // namespace heatsoak
