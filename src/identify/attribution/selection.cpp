@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "identify/attribution/backward_check.h"
+#include "identify/attribution/effect_sets.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/averaged_run.h"
@@ -173,49 +174,52 @@ class Selector {
     return ladder;
   }
 
-  /// Evidence that effects of the catalogue reach together, one after the other, at the present fit.
-  double catalogue_gain_nats(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table,
-                             const SetScore& base) const {
-    std::vector<int> pool;
-    for (const JudgedCandidate& each : round.ladder) {
-      const auto found = std::ranges::find_if(
-          candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
-      pool.push_back(static_cast<int>(found - candidates.begin()));
-    }
-    SetScore best = base;
-    for (int term = 0; term < rules_.most_terms; ++term) {
-      SetScore next = best;
-      for (const int j : pool) {
-        std::vector<int> set = best.candidates;
-        if (std::ranges::find(set, j) != set.end()) {
-          continue;
-        }
-        set.push_back(j);
-        SetScore with = table.best(set, best.place);
-        if (with.is_allowed && with.evidence_nats > next.evidence_nats) {
-          next = std::move(with);
-        }
-      }
-      if (next.evidence_nats < best.evidence_nats + rules_.least_gain_nats) {
-        break;
-      }
-      best = std::move(next);
-    }
-    return best.evidence_nats - base.evidence_nats;
-  }
+  /// A judged candidate after its refit in the equations.
+  struct Tried {
+    const JudgedCandidate* judged;
+    RefitResult fit;
+    double gain_nats;
+  };
 
   bool take_best(Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
-    struct Tried {
-      const JudgedCandidate* judged;
-      RefitResult fit;
-      double gain_nats;
-    };
-    std::vector<Tried> tried;
-    double least = rules_.least_gain_nats;
+    double least_nats = rules_.least_gain_nats;
     for (const AcceptedTerm& term : out_.terms) {
-      least = std::max(least, term.curve ? rules_.beside_curve_share * term.gain_nats : 0.0);
+      least_nats = std::max(least_nats, term.curve ? rules_.beside_curve_share * term.gain_nats : 0.0);
     }
-    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least, 0.8 * round.ladder.front().gain_nats - 20.0);
+    std::vector<Tried> tried = try_ladder(round, least_nats);
+    const EffectSets sets(round.ladder, candidates, table, base, rules_);
+    out_.open_curve.reset();
+    const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
+    const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
+    const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
+    const bool is_ahead = best_scan_nats >= least_nats && best_scan_nats > best_nats + beyond_nats;
+    const double catalogue_nats = is_ahead ? sets.catalogue_gain_nats() : 0.0;
+    if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
+      if (take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
+        return true;
+      }
+      const ScanResult& front = round.scan.front();
+      const std::string& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)].name;
+      out_.open_curve = front;
+      // Heat that goes by the clock, or of which all laws together explain less than half, is none of theirs.
+      if (driver == kTimeDriver || front.gain_nats > 2.0 * std::max(best_nats, catalogue_nats)) {
+        return false;
+      }
+    }
+    if (take_set(sets, candidates, table, base, best_nats)) {
+      return true;
+    }
+    if (best_nats < least_nats) {
+      return false;
+    }
+    take_front(tried);
+    return true;
+  }
+
+  /// Refits of those that may be named, best first; tells which may not.
+  std::vector<Tried> try_ladder(Round& round, double least_nats) {
+    std::vector<Tried> tried;
+    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least_nats, 0.8 * round.ladder.front().gain_nats - 20.0);
     for (JudgedCandidate& each : round.ladder) {
       // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
       const bool is_variant = std::ranges::any_of(
@@ -225,7 +229,7 @@ class Selector {
       }
       const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
       if (each.visibility_ratio < rules_.least_visibility_ratio || fails_elsewhere) {
-        if (each.gain_nats >= least) {
+        if (each.gain_nats >= least_nats) {
           out_.refused.push_back(
               fmt::format("{}: {:.0f} nats, but {}", each.candidate.id, each.gain_nats,
                           each.visibility_ratio < rules_.least_visibility_ratio
@@ -239,36 +243,17 @@ class Selector {
       tried.push_back({&each, std::move(fit), each.gain_nats});
     }
     std::ranges::stable_sort(tried, [](const Tried& a, const Tried& b) { return a.gain_nats > b.gain_nats; });
-    out_.open_curve.reset();
-    const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
-    const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
-    const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
-    const bool is_ahead = best_scan_nats >= least && best_scan_nats > best_nats + beyond_nats;
-    const double catalogue_nats = is_ahead ? catalogue_gain_nats(round, candidates, table, base) : 0.0;
-    if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
-      if (take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
-        return true;
-      }
-      const ScanResult& front = round.scan.front();
-      const std::string& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)].name;
-      out_.open_curve = front;
-      // Heat that goes by the clock, or of which all laws together explain less than half, is none of theirs.
-      if (driver == kTimeDriver || front.gain_nats > 2.0 * std::max(best_nats, catalogue_nats)) {
-        return false;
-      }
-    }
-    if (take_set(round, candidates, table, base, best_nats)) {
-      return true;
-    }
-    if (best_nats < least) {
-      return false;
-    }
+    return tried;
+  }
+
+  /// The best one, and beside it what could stand in its place.
+  void take_front(std::vector<Tried>& tried) {
     AcceptedTerm term;
     term.candidate = tried.front().judged->candidate;
-    term.gain_nats = best_nats;
+    term.gain_nats = tried.front().gain_nats;
     term.visibility_ratio = tried.front().judged->visibility_ratio;
     for (const Tried& each : tried) {
-      if (each.judged->candidate.id != term.candidate->id && each.gain_nats > best_nats - rules_.ambiguous_within_nats &&
+      if (each.judged->candidate.id != term.candidate->id && each.gain_nats > term.gain_nats - rules_.ambiguous_within_nats &&
           std::ranges::find(term.confusable_with, each.judged->candidate.id) == term.confusable_with.end()) {
         term.confusable_with.push_back(each.judged->candidate.id);
         term.experiments.emplace_back(each.judged->candidate.experiment());
@@ -277,7 +262,6 @@ class Selector {
     term.effect_name = term.candidate->type ? std::string(tried.front().fit.model.model.network.effects().back().name) : std::string();
     out_.after = std::move(tried.front().fit);
     out_.terms.push_back(std::move(term));
-    return true;
   }
 
   /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
@@ -317,13 +301,8 @@ class Selector {
     return refit(std::move(model), input_.runs, out_.after.start_C, options);
   }
 
-  /// What a set of so many terms must be ahead: every term has to be worth the least gain.
-  [[nodiscard]] double worth_nats(double gain_nats, std::size_t terms) const {
-    return gain_nats - static_cast<double>(terms) * rules_.least_gain_nats;
-  }
-
   /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
-  bool take_set(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
+  bool take_set(const EffectSets& sets, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
                 double best_single_nats) {
     const LatentFlux flux = table.grid().at(base.place);
     if (*std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W) {
@@ -331,8 +310,9 @@ class Selector {
     }
     std::optional<RefitResult> best;
     std::vector<int> chosen;
-    double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1));
-    for (const SetScore& set : best_sets(round, candidates, table, base)) {
+    double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1, rules_));
+    const auto most = static_cast<std::size_t>(rules_.most_terms) - out_.terms.size();
+    for (const SetScore& set : sets.best(most)) {
       const Eigen::Index own = table.free_count();
       std::vector<Candidate> added;
       std::vector<double> size_share;
@@ -341,7 +321,7 @@ class Selector {
         size_share.push_back(set.coefficient[own + static_cast<Eigen::Index>(i)]);
       }
       RefitResult fit = try_terms(added, size_share, set.coefficient.head(own), set.place);
-      const double set_worth_nats = worth_nats(fit.evidence_nats - out_.after.evidence_nats, added.size());
+      const double set_worth_nats = worth_nats(fit.evidence_nats - out_.after.evidence_nats, added.size(), rules_);
       if (set_worth_nats > best_worth_nats) {
         best_worth_nats = set_worth_nats;
         best = std::move(fit);
@@ -359,88 +339,11 @@ class Selector {
       term.effect_name = term.candidate->type ? (name++)->name : std::string();
       term.gain_nats = (best->evidence_nats - out_.after.evidence_nats) / static_cast<double>(chosen.size());
       term.visibility_ratio = table.visibility_ratio(base.candidates, base.place, chosen[i]);
-      tell_rivals(round, candidates, table, base, chosen, i, term);
+      sets.tell_rivals(chosen, i, term);
       out_.terms.push_back(std::move(term));
     }
     out_.after = std::move(*best);
     return true;
-  }
-
-  /// Of effects that gain something by themselves and can be seen: sets that grow one by one from the best smaller ones.
-  std::vector<SetScore> best_sets(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table,
-                                  const SetScore& base) const {
-    constexpr std::size_t kKept = 6;
-    constexpr std::size_t kRefitted = 4;
-    const auto by_evidence = [](const SetScore& a, const SetScore& b) { return a.evidence_nats > b.evidence_nats; };
-    const std::vector<int> pool = visible_places(round, candidates);
-    std::vector<SetScore> all;
-    std::vector<SetScore> smaller{base};
-    for (std::size_t size = 1; out_.terms.size() + size <= static_cast<std::size_t>(rules_.most_terms); ++size) {
-      std::map<std::vector<int>, SetScore> larger;
-      for (const SetScore& from : smaller) {
-        for (const int j : pool) {
-          std::vector<int> set = from.candidates;
-          set.insert(std::ranges::lower_bound(set, j), j);
-          if (std::ranges::find(from.candidates, j) != from.candidates.end() || larger.contains(set)) {
-            continue;
-          }
-          SetScore score = table.best(set, from.place);
-          if (score.is_allowed) {
-            larger.emplace(std::move(set), std::move(score));
-          }
-        }
-      }
-      smaller.clear();
-      for (auto& [set, score] : larger) {
-        smaller.push_back(std::move(score));
-      }
-      std::ranges::stable_sort(smaller, by_evidence);
-      // Of single ones all go on: what they gain alone says little here.
-      smaller.resize(std::min(smaller.size(), size == 1 ? pool.size() : kKept));
-      if (size > 1) {
-        all.insert(all.end(), smaller.begin(), smaller.end());
-      }
-    }
-    std::ranges::stable_sort(all, [&](const SetScore& a, const SetScore& b) {
-      return worth_nats(a.evidence_nats, a.candidates.size()) > worth_nats(b.evidence_nats, b.candidates.size());
-    });
-    all.resize(std::min(all.size(), kRefitted));
-    return all;
-  }
-
-  [[nodiscard]] std::vector<int> visible_places(const Round& round, const std::vector<Candidate>& candidates) const {
-    std::vector<int> pool;
-    for (const JudgedCandidate& each : round.ladder) {
-      const auto found = std::ranges::find_if(
-          candidates, [&](const Candidate& c) { return c.id == each.candidate.id && c.variant == each.candidate.variant; });
-      // Shapes are free in a refit: one variant stands for all.
-      const bool is_variant =
-          std::ranges::any_of(pool, [&](int j) { return candidates[static_cast<std::size_t>(j)].id == each.candidate.id; });
-      if (each.visibility_ratio >= rules_.least_visibility_ratio && !is_variant) {
-        pool.push_back(static_cast<int>(found - candidates.begin()));
-      }
-    }
-    return pool;
-  }
-
-  /// What could stand in place of one of a set.
-  void tell_rivals(const Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
-                   const std::vector<int>& chosen, std::size_t own, AcceptedTerm& term) const {
-    const double chosen_nats = table.best(chosen, base.place).evidence_nats;
-    for (const int j : visible_places(round, candidates)) {
-      const Candidate& rival = candidates[static_cast<std::size_t>(j)];
-      std::vector<int> set = chosen;
-      set[own] = j;
-      if (std::ranges::find(chosen, j) != chosen.end() || rival.id == term.candidate->id ||
-          std::ranges::find(term.confusable_with, rival.id) != term.confusable_with.end()) {
-        continue;
-      }
-      const SetScore with = table.best(set, base.place);
-      if (with.is_allowed && with.evidence_nats > chosen_nats - rules_.ambiguous_within_nats) {
-        term.confusable_with.push_back(rival.id);
-        term.experiments.emplace_back(rival.experiment());
-      }
-    }
   }
 
   /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.
