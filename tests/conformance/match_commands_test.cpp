@@ -226,6 +226,22 @@ TEST(EvaluateMatch, a_match_and_its_own_export_give_the_same_temperature) {
   EXPECT_NEAR(peak_C("match.toml"), peak_C("division_b_match"), 0.5);
 }
 
+TEST(EvaluateMatch, a_recording_costs_what_its_match_does) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const Words robot{"--robot", "roboteam_twente_v2024"};
+  // Ten times the usual rows: half a gigabyte, if they were kept.
+  const ProgramRun written = run(Words{"duty", "--duty", "division_a_match", "--out", "match.csv", "--every", "1 ms"} + robot, options);
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  EXPECT_GT(std::filesystem::file_size(folder.path() / "match.csv"), 60'000'000U);
+  EXPECT_LT(written.memory_MB, 60.0);
+  options.time_limit_s = 60;
+  const ProgramRun evaluated = run(Words{"evaluate", "--duty", "match.toml", "--samples", "100"} + robot, options);
+  EXPECT_LE(evaluated.exit_code, 1) << evaluated.err;
+  EXPECT_LT(evaluated.memory_MB, 100.0);
+}
+
 TEST(EvaluateMatch, says_that_the_duty_s_spread_is_included) {
   const Words line{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "division_b_match", "--motors", "maxon_ecx_flat_42m_24v"};
   const ProgramRun sampled = run(line + Words{"--samples", "24", "--threads", "2", "--json", "-"});
