@@ -102,7 +102,6 @@ class DemandGatherer {
   void add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
   /// The same, kept as a bin and a point of its own.
   void add_alone(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
-  [[nodiscard]] std::size_t bin_count() const { return demand_.bins.size(); }
   [[nodiscard]] WheelDemand finish();
 
  private:

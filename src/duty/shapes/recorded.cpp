@@ -10,7 +10,11 @@
 namespace heatsoak::shapes {
 namespace {
 
-constexpr std::size_t kMostBins = 2'000'000;  ///< six days of condensed rows; more would fill the memory
+constexpr double kMostPieces = 2e6;  ///< more would fill the memory
+
+/// Rows are merged up to here. Shorter than a match's bins, because limits of voltage and current cut single rows, but of merged ones the
+/// mean: the less that smooths, the less heat is added.
+constexpr double kMerged_s = 0.1;
 
 constexpr int kMostWheels = 4;
 constexpr double kLongest_s = 1e6;
@@ -27,8 +31,8 @@ std::string column(DutyKind kind, int wheel, bool demand) {
 /// Finer than any verdict, as in a match.
 constexpr DemandGatherer::Grid kGrid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0, .current_step_A = 0.02};
 
-/// The duty of one wheel or several, as rows come in. A row holds until the next one; the last row only ends the duty. Rows that are
-/// shorter than a match's bins are merged into such.
+/// The duty of one wheel or several, as rows come in. A row holds until the next one; the last row only ends the duty. Rows
+/// shorter than kMerged_s are merged.
 class Recording {
  public:
   Recording(std::filesystem::path file, DutyKind kind) : file_(std::move(file)), kind_(kind) {}
@@ -44,7 +48,7 @@ class Recording {
           },
           {}, [this](const CsvRow& row) { take(row); });
     } catch (const Failure& failure) {
-      if (is_too_long_) {
+      if (pieces_ > kMostPieces) {
         throw;  // whatever else is wrong with it
       }
       for (const Diagnostic& each : failure.diagnostics()) {
@@ -83,7 +87,15 @@ class Recording {
 
   void take(const CsvRow& row) {
     const double now_s = row.values[0];
-    if (now_s <= before_s_) {
+    const double duration_s = now_s - before_s_;
+    pieces_ += rows_ > 0 ? std::min(1.0, std::abs(duration_s) / kMerged_s) : 0.0;
+    if (pieces_ > kMostPieces) {
+      throw bad_input(
+          {file_.string(), row.line, 1}, "",
+          fmt::format("has more than {:.0f} rows, those shorter than {} s counted as parts of one; expected something like a match",
+                      kMostPieces, kMerged_s));
+    }
+    if (duration_s <= 0.0) {
       problem(row, 0, fmt::format("{} s does not come after {} s; time must increase", now_s, before_s_));
     }
     if (++rows_ == 1) {
@@ -98,33 +110,26 @@ class Recording {
       }
     }
     if (problems_.empty()) {
-      hold_until(now_s, row);
+      hold(duration_s);
     }
     before_s_ = now_s;
     before_.assign(row.values.begin(), row.values.end());
   }
 
-  /// The row before lasted until now.
-  void hold_until(double now_s, const CsvRow& row) {
-    const double duration_s = now_s - before_s_;
+  /// The row before lasted so long.
+  void hold(double duration_s) {
     for (std::size_t i = 1; i + 1 < before_.size(); i += 2) {
       const std::size_t wheel = (i - 1) / 2;
       if (wheel == wheels_.size()) {
-        wheels_.emplace_back(before_.size() > 3 ? fmt::format("wheel {}", wheel + 1) : "recorded wheel", kBin_s, kGrid);
+        wheels_.emplace_back(before_.size() > 3 ? fmt::format("wheel {}", wheel + 1) : "recorded wheel", kMerged_s, kGrid);
       }
       const double torque_Nm = kind_ == DutyKind::torque ? before_[i] : 0.0;
       const double current_A = kind_ == DutyKind::current ? before_[i] : 0.0;
-      if (duration_s < kBin_s * (1.0 - 1e-9)) {
+      if (duration_s < kMerged_s * (1.0 - 1e-9)) {
         wheels_[wheel].add(duration_s, torque_Nm, before_[i + 1], current_A);
       } else {
         wheels_[wheel].add_alone(duration_s, torque_Nm, before_[i + 1], current_A);
       }
-    }
-    if (!wheels_.empty() && wheels_.front().bin_count() > kMostBins) {
-      is_too_long_ = true;
-      throw bad_input(
-          {file_.string(), row.line, 1}, "",
-          fmt::format("is the end of more than {} stretches of {} s or longer; expected something like a match", kMostBins, kBin_s));
     }
   }
 
@@ -141,7 +146,7 @@ class Recording {
   std::vector<Diagnostic> problems_;
   std::vector<double> before_;  ///< values of the row that still holds
   std::size_t rows_ = 0;
-  bool is_too_long_ = false;
+  double pieces_ = 0.0;
   double before_s_ = std::nan("");
   double first_s_ = 0.0;
 };
@@ -198,8 +203,8 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
     }
     return;
   }
-  if (static_cast<double>(wheels.front().bins.size()) * repeats > static_cast<double>(kMostBins)) {
-    table.problem("repeats", fmt::format("makes more than {} rows; expected something like a match", kMostBins));
+  if (static_cast<double>(wheels.front().bins.size()) * repeats > kMostPieces) {
+    table.problem("repeats", fmt::format("makes more than {:.0f} rows; expected something like a match", kMostPieces));
     return;
   }
   duty.shape_data = std::make_shared<Recorded>(std::move(wheels), static_cast<int>(repeats));
