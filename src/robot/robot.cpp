@@ -52,8 +52,8 @@ constexpr std::array<RobotFigureSpec, 28> kSpecs{{
      &Robot::driver_resistance_ohm},
     {"drive", {"driver_standby_power", "W", Range::between(0.0, 100.0), "of one motor's driver without current"}, &Robot::driver_standby_W},
     {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "how often the firmware commands the motors"}, &Robot::control_rate_Hz},
-    {"battery", {"full_voltage", "V", Range::between(1.0, 200.0), "open circuit, full"}, &Robot::battery_full_V},
-    {"battery", {"empty_voltage", "V", Range::between(1.0, 200.0), "open circuit, empty"}, &Robot::battery_empty_V},
+    {"battery", {"full_voltage", "V", Range::between(1.0, 5000.0), "open circuit, full"}, &Robot::battery_full_V},
+    {"battery", {"empty_voltage", "V", Range::between(1.0, 5000.0), "open circuit, empty"}, &Robot::battery_empty_V},
     {"battery", {"internal_resistance", "ohm", Range::between(0.0, 10.0), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
     {"battery", {"capacity", "A s", Range::between(30.0, 4e6), "from full to empty"}, &Robot::battery_capacity_A_s},
     {"limits", {"speed", "m/s", Range::between(0.01, 30.0), "largest speed that the team plans"}, &Robot::speed_limit_m_per_s},
@@ -185,7 +185,7 @@ void read_drive(Reader& top, Robot& robot) {
   robot.gear_efficiency =
       drive->quantity({"gear_efficiency", "", Range::between(0.1, 1.0), "torque that the gear hands on"}, Need::optional).value_or(1.0);
   robot.voltage_limit_V =
-      drive->quantity({"voltage_limit", "V", Range::between(0.5, 1000.0), "largest command to one motor"}, Need::optional)
+      drive->quantity({"voltage_limit", "V", Range::between(0.5, 5000.0), "largest command to one motor"}, Need::optional)
           .value_or(robot.voltage_limit_V);
   robot.current_limit_A =
       drive->quantity({"current_limit", "A", Range::between(0.01, 1000.0), "largest equivalent DC current of one motor"}, Need::optional)
@@ -253,7 +253,7 @@ Robot robot_of(const Value& root, const std::filesystem::path& path) {
   read_drive(top, robot);
   if (std::optional<Reader> battery = top.table("battery", Need::required)) {
     robot.battery_V =
-        battery->quantity({"nominal_voltage", "V", Range::between(1.0, 200.0), "of the battery"}, Need::required).value_or(1.0);
+        battery->quantity({"nominal_voltage", "V", Range::between(1.0, 5000.0), "of the battery"}, Need::required).value_or(1.0);
     read_figures(*battery, "battery", robot);
     battery->finish();
   }

@@ -137,6 +137,22 @@ TEST(DutyImport, other_units_are_suspected) {
   }
 }
 
+TEST(DutyImport, says_that_times_may_be_in_milliseconds) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  std::string text = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
+  for (int i = 0; i < 400; ++i) {
+    text += std::to_string(10 * i) + ",blue,3,1,1,0\n";
+  }
+  write(folder.path() / "game.csv", text);
+  const ProgramRun result = run({"duty", "--import", "game.csv", "--robot", "tigers_v2020", "--out", "duty.csv"}, options);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("t_s advances by 10 s from row to row of a robot"));
+  EXPECT_THAT(result.err, HasSubstr("is it in milliseconds"));
+  EXPECT_THAT(folder.names(), testing::ElementsAre("game.csv"));
+}
+
 TEST(Describe, a_duty_shape_is_a_file_to_start_from) {
   const TemporaryFolder folder;
   RunOptions options;
