@@ -186,17 +186,51 @@ Target target_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_files(std::span<const OutputFile> files) {
+struct StreamedFile::State {
+  explicit State(const std::filesystem::path& path) : target(target_of(path)), file(target.path, target.in_place) {}
+
+  void flush() {
+    file.write(buffer);
+    buffer.clear();
+  }
+
+  Target target;
+  UnfinishedFile file;
+  std::string buffer;
+};
+
+StreamedFile::StreamedFile(std::filesystem::path path) : path_(std::move(path)), state_(std::make_unique<State>(path_)) {}
+StreamedFile::~StreamedFile() = default;
+
+void StreamedFile::write(std::string_view content) {
+  constexpr std::size_t kChunk_bytes = 1 << 16;
+  state_->buffer += content;
+  if (state_->buffer.size() >= kChunk_bytes) {
+    state_->flush();
+  }
+}
+
+void write_files(std::span<const OutputFile> files, std::span<const std::unique_ptr<StreamedFile>> streamed) {
   std::vector<std::unique_ptr<UnfinishedFile>> unfinished;
   std::vector<std::filesystem::path> taken;
-  for (const OutputFile& file : files) {
-    const Target target = target_of(file.path);
+  const auto take = [&taken](const std::filesystem::path& path, const Target& target) {
     if (!target.in_place && std::ranges::find(taken, target.path) != taken.end()) {
-      throw bad_input({file.path.string()}, "", "is the target of two outputs");
+      throw bad_input({path.string()}, "", "is the target of two outputs");
     }
     taken.push_back(target.path);
+  };
+  for (const auto& each : streamed) {
+    take(each->path_, each->state_->target);
+    each->state_->flush();
+  }
+  for (const OutputFile& file : files) {
+    const Target target = target_of(file.path);
+    take(file.path, target);
     unfinished.push_back(std::make_unique<UnfinishedFile>(target.path, target.in_place));
     unfinished.back()->write(file.content);
+  }
+  for (const auto& each : streamed) {
+    each->state_->file.publish();
   }
   for (const auto& each : unfinished) {
     each->publish();

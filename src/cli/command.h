@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ class Session {
   void say(std::string_view text) { text_ += text; }
   /// A file that the user asked for.
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
+  /// The same for content that is put out as it is made. Lives as long as the session.
+  StreamedFile& stream(const std::filesystem::path& path) { return *streams_.emplace_back(std::make_unique<StreamedFile>(path)); }
   /// The answer, for where --json asks for it; nothing without --json.
   void answer(const nlohmann::ordered_json& json);
   void finish();
@@ -44,6 +47,7 @@ class Session {
   std::string text_;
   std::string json_text_;  ///< for stdout
   std::vector<OutputFile> files_;
+  std::vector<std::unique_ptr<StreamedFile>> streams_;
 };
 
 struct Command {

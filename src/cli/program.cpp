@@ -137,15 +137,21 @@ void Session::answer(const nlohmann::ordered_json& json) {
 
 void Session::finish() {
   std::vector<Diagnostic> read;
-  for (const OutputFile& each : files_) {
-    if (is_input(each.path)) {
-      read.push_back({{each.path.string()}, {}, "this command reads the file and would write over it; give the output another name"});
+  const auto check = [&read](const std::filesystem::path& path) {
+    if (is_input(path)) {
+      read.push_back({{path.string()}, {}, "this command reads the file and would write over it; give the output another name"});
     }
+  };
+  for (const auto& each : streams_) {
+    check(each->path());
+  }
+  for (const OutputFile& each : files_) {
+    check(each.path);
   }
   if (!read.empty()) {
     throw Failure(ExitCode::bad_input, "", std::move(read));
   }
-  write_files(files_);
+  write_files(files_, streams_);
   put(json_target_ == "-" ? stderr : stdout, text_);
   put(stdout, json_text_);
 }
@@ -154,6 +160,7 @@ void Session::answer_failure(const Failure& failure) {
   text_.clear();
   json_text_.clear();
   files_.clear();
+  streams_.clear();
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
   for (const Diagnostic& each : failure.diagnostics()) {
     diagnostics.push_back(

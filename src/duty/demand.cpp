@@ -1,5 +1,6 @@
 #include "duty/demand.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -39,40 +40,90 @@ LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s
           .power_mean_W = torque_Nm * speed_rad_per_s};
 }
 
-DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid) : bin_s_(bin_s), grid_(grid) {
-  demand_.wheel = std::move(wheel);
-}
-
-void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_per_s) {
+void LoadMeans::add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A) {
   const double direction = direction_of(speed_rad_per_s);
-  const double magnitude_rad_per_s = std::abs(speed_rad_per_s);
   const std::array<double, integral_count> now{1.0,
                                                torque_Nm,
                                                torque_Nm * torque_Nm,
                                                torque_Nm * direction,
                                                std::abs(direction),
                                                speed_rad_per_s,
-                                               magnitude_rad_per_s,
+                                               std::abs(speed_rad_per_s),
                                                speed_rad_per_s * speed_rad_per_s,
-                                               torque_Nm * speed_rad_per_s};
+                                               torque_Nm * speed_rad_per_s,
+                                               current_A * current_A};
   for (std::size_t i = 0; i < now.size(); ++i) {
     integrals_[i] += duration_s * now[i];
   }
   travelled_rad_per_s_ += std::abs(speed_rad_per_s - last_speed_rad_per_s_.value_or(speed_rad_per_s));
   last_speed_rad_per_s_ = speed_rad_per_s;
-  const double torque_with_motion_Nm = direction < 0.0 ? -torque_Nm : direction > 0.0 ? torque_Nm : std::abs(torque_Nm);
+}
+
+LoadBin LoadMeans::close() {
+  const double time_s = integrals_[time];
+  const auto mean = [&](Integral which) { return integrals_[which] / time_s; };
+  const LoadBin bin{.duration_s = time_s,
+                    .torque_rms_Nm = std::sqrt(mean(torque_squared)),
+                    .torque_along_motion_Nm = mean(torque_along_motion),
+                    .moving_share = mean(moving),
+                    .speed_mean_rad_per_s = mean(speed),
+                    .speed_rms_rad_per_s = std::sqrt(mean(speed_squared)),
+                    .torque_mean_Nm = mean(torque),
+                    .velocity_mean_rad_per_s = mean(velocity),
+                    .current_rms_A = std::sqrt(mean(current_squared)),
+                    .power_mean_W = mean(power),
+                    .acceleration_rad_per_s2 = travelled_rad_per_s_ / time_s};
+  integrals_ = {};
+  travelled_rad_per_s_ = 0.0;
+  return bin;
+}
+
+std::size_t DemandGatherer::CellHash::operator()(const Cell& cell) const {
+  constexpr std::size_t kSpread = 0x9e3779b97f4a7c15U;
+  std::size_t hash = 0;
+  for (const int step : cell) {
+    hash = hash * kSpread + static_cast<std::size_t>(step);
+  }
+  return hash;
+}
+
+DemandGatherer::DemandGatherer(std::string wheel, double bin_s, Grid grid)
+    : bin_s_(bin_s), step_{grid.torque_step_Nm, grid.speed_step_rad_per_s, grid.current_step_A} {
+  demand_.wheel = std::move(wheel);
+}
+
+void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A) {
+  means_.add(duration_s, torque_Nm, speed_rad_per_s, current_A);
+  const std::array<double, axis_count> size{std::abs(torque_Nm), std::abs(speed_rad_per_s), std::abs(current_A)};
+  for (const Axis axis : {torque, speed, current}) {
+    while (size[axis] > kMostSteps * step_[axis]) {
+      coarsen(axis);
+    }
+  }
   // Away from zero, so that a cell asks at least as much as anything in it.
-  const int torque_size = cell_of(std::abs(torque_with_motion_Nm), grid_.torque_step_Nm);
-  const int torque_cell = torque_with_motion_Nm < 0.0 ? -torque_size : torque_size;
-  const int speed_cell = cell_of(magnitude_rad_per_s, grid_.speed_step_rad_per_s);
-  if (const std::pair cell{torque_cell, speed_cell}; cell != cell_) {
+  Cell cell{cell_of(size[torque], step_[torque]), cell_of(size[speed], step_[speed]), cell_of(size[current], step_[current])};
+  if (torque_Nm * direction_of(speed_rad_per_s) < 0.0) {
+    cell[torque] = -cell[torque];
+  }
+  if (cell != cell_) {
     close_stay();
     cell_ = cell;
+    if (time_at_s_.size() > kMostCells) {
+      coarsen_the_finest();
+    }
   }
   stay_s_ += duration_s;
-  if (integrals_[time] >= bin_s_ * (1.0 - 1e-9)) {
+  if (means_.time_s() >= bin_s_ * (1.0 - 1e-9)) {
     close_bin();
   }
+}
+
+void DemandGatherer::add_alone(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A) {
+  close_bin();
+  means_.cut();
+  demand_.bins.push_back(constant_bin(duration_s, torque_Nm, speed_rad_per_s, current_A));
+  const double with_motion_Nm = speed_rad_per_s < 0.0 ? -torque_Nm : torque_Nm;
+  demand_.points.push_back({with_motion_Nm, std::abs(speed_rad_per_s), std::abs(current_A), duration_s});
 }
 
 void DemandGatherer::close_stay() {
@@ -81,31 +132,44 @@ void DemandGatherer::close_stay() {
   }
 }
 
+/// Two cells become one, which stands for the edge that asks more as both did.
+void DemandGatherer::coarsen(Axis axis) {
+  const auto halved = [axis](Cell cell) {
+    cell[axis] = (cell[axis] + (cell[axis] > 0 ? 1 : -1)) / 2;
+    return cell;
+  };
+  step_[axis] *= 2.0;
+  cell_ = halved(cell_);
+  // In order, so that sums do not hang on how the cells lie in memory.
+  const std::map<Cell, double> fine(time_at_s_.begin(), time_at_s_.end());
+  time_at_s_.clear();
+  for (const auto& [cell, time_s] : fine) {
+    time_at_s_[halved(cell)] += time_s;
+  }
+}
+
+void DemandGatherer::coarsen_the_finest() {
+  Cell most{};
+  for (const auto& [cell, time_s] : time_at_s_) {
+    for (const Axis axis : {torque, speed, current}) {
+      most[axis] = std::max(most[axis], std::abs(cell[axis]));
+    }
+  }
+  coarsen(static_cast<Axis>(std::ranges::max_element(most) - most.begin()));
+}
+
 void DemandGatherer::close_bin() {
-  const double time_s = integrals_[time];
-  const auto mean = [&](Integral which) { return integrals_[which] / time_s; };
-  demand_.bins.push_back({.duration_s = time_s,
-                          .torque_rms_Nm = std::sqrt(mean(torque_squared)),
-                          .torque_along_motion_Nm = mean(torque_along_motion),
-                          .moving_share = mean(moving),
-                          .speed_mean_rad_per_s = mean(speed),
-                          .speed_rms_rad_per_s = std::sqrt(mean(speed_squared)),
-                          .torque_mean_Nm = mean(torque),
-                          .velocity_mean_rad_per_s = mean(velocity),
-                          .power_mean_W = mean(power),
-                          .acceleration_rad_per_s2 = travelled_rad_per_s_ / time_s});
-  integrals_ = {};
-  travelled_rad_per_s_ = 0.0;
+  if (means_.time_s() > 0.0) {
+    demand_.bins.push_back(means_.close());
+  }
 }
 
 WheelDemand DemandGatherer::finish() {
-  if (integrals_[time] > 0.0) {
-    close_bin();
-  }
+  close_bin();
   close_stay();
   // In order, so that the same load gives the same points.
-  for (const auto& [cell, time_s] : std::map<std::pair<int, int>, double>(time_at_s_.begin(), time_at_s_.end())) {
-    demand_.points.push_back({cell.first * grid_.torque_step_Nm, cell.second * grid_.speed_step_rad_per_s, 0.0, time_s});
+  for (const auto& [cell, time_s] : std::map<Cell, double>(time_at_s_.begin(), time_at_s_.end())) {
+    demand_.points.push_back({cell[torque] * step_[torque], cell[speed] * step_[speed], cell[current] * step_[current], time_s});
   }
   return std::move(demand_);
 }

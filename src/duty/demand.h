@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 namespace heatsoak {
@@ -51,39 +50,77 @@ struct WheelDemand {
   [[nodiscard]] double duration_s() const;
 };
 
+/// So long are the bins into which moments are merged: short against a winding's time constant.
+inline constexpr double kBin_s = 0.25;
+
+/// Means over moments as they come.
+class LoadMeans {
+ public:
+  /// What is given holds for `duration_s`; torque · speed > 0 drives.
+  void add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
+  [[nodiscard]] double time_s() const { return integrals_[time]; }
+  /// What came since the last bin; the next one begins.
+  LoadBin close();
+  /// What comes does not follow on what came.
+  void cut() { last_speed_rad_per_s_.reset(); }
+
+ private:
+  /// Time integrals over the open bin.
+  enum Integral {
+    time,
+    torque,
+    torque_squared,
+    torque_along_motion,
+    moving,
+    velocity,
+    speed,
+    speed_squared,
+    power,
+    current_squared,
+    integral_count
+  };
+  std::array<double, integral_count> integrals_{};
+  double travelled_rad_per_s_ = 0.0;  ///< Σ|Δω| over the open bin
+  std::optional<double> last_speed_rad_per_s_;
+};
+
 /// Merges moments into bins and points as they come; memory grows with the number of bins only.
-/// Points are gathered on a grid of torque and speed and stand for the edge of their cell that asks more.
+/// Points are gathered on a grid of torque, speed and current and stand for the edge of their cell that asks more. The grid gets
+/// coarser where loads are so large or so many that it would have more than kMostSteps to a side or kMostCells in all.
 class DemandGatherer {
  public:
   struct Grid {
     double torque_step_Nm = 0.005;
     double speed_step_rad_per_s = 5.0;
+    double current_step_A = 0.05;
   };
+  static constexpr int kMostSteps = 1024;
+  static constexpr std::size_t kMostCells = 16384;
   DemandGatherer(std::string wheel, double bin_s, Grid grid);
 
-  /// `speed_rad_per_s` and `torque_Nm` hold for `duration_s`; torque · speed > 0 drives.
-  void add(double duration_s, double torque_Nm, double speed_rad_per_s);
+  /// What is given holds for `duration_s`; torque · speed > 0 drives.
+  void add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
+  /// The same, kept as a bin and a point of its own.
+  void add_alone(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
   [[nodiscard]] WheelDemand finish();
 
  private:
-  /// Time integrals over the open bin.
-  enum Integral { time, torque, torque_squared, torque_along_motion, moving, velocity, speed, speed_squared, power, integral_count };
+  enum Axis { torque, speed, current, axis_count };
+  using Cell = std::array<int, axis_count>;
+  struct CellHash {
+    std::size_t operator()(const Cell& cell) const;
+  };
   void close_bin();
   void close_stay();
+  void coarsen(Axis axis);
+  void coarsen_the_finest();
 
   WheelDemand demand_;
   double bin_s_;
-  Grid grid_;
-  std::array<double, integral_count> integrals_{};
-  struct CellHash {
-    std::size_t operator()(const std::pair<int, int>& cell) const {
-      return static_cast<std::size_t>(cell.first) * 0x9e3779b97f4a7c15U + static_cast<std::size_t>(cell.second);
-    }
-  };
-  std::unordered_map<std::pair<int, int>, double, CellHash> time_at_s_;
-  double travelled_rad_per_s_ = 0.0;  ///< Σ|Δω| over the open bin
-  std::optional<double> last_speed_rad_per_s_;
-  std::pair<int, int> cell_{0, 0};  ///< where the load is now; it seldom leaves a cell within milliseconds
+  std::array<double, axis_count> step_;
+  LoadMeans means_;
+  std::unordered_map<Cell, double, CellHash> time_at_s_;
+  Cell cell_{};  ///< where the load is now; it seldom leaves a cell within milliseconds
   double stay_s_ = 0.0;
 };
 

@@ -8,7 +8,6 @@
 
 #include "duty/motion.h"
 #include "duty/recorded_game.h"
-#include "robot/inverse_dynamics.h"
 
 namespace heatsoak {
 namespace {
@@ -43,7 +42,7 @@ struct WheelLoads {
   int jumps = 0;          ///< of the clock; left out
 };
 
-WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s) {
+WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s, const GameObserver& observer) {
   MotorValues no_rotor;
   no_rotor.rotor_inertia_kg_m2 = 0.0;
   const BodyConfig body = make_body(robot, no_rotor);
@@ -53,15 +52,21 @@ WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s)
                            DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});
   }
   WheelLoads loads;
+  const auto add = [&](double duration_s, const WheelDemands& wheels) {
+    for (std::size_t i = 0; i < gatherers.size(); ++i) {
+      gatherers[i].add(duration_s, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
+    }
+    if (observer) {
+      observer(duration_s, wheels);
+    }
+  };
   double time_s = motion.segments().front().front().time_s;
   motion.for_each(kRate_Hz, [&](const Motion& at, std::size_t /*segment*/) {
     if (const double gap_s = at.time_s - time_s; gap_s > kLongestAbsence_s) {
       ++loads.jumps;
     } else if (gap_s > 2.0 / kRate_Hz) {
       loads.unseen_s += gap_s;
-      for (DemandGatherer& each : gatherers) {
-        each.add(gap_s, 0.0, 0.0);
-      }
+      add(gap_s, {});
     }
     time_s = at.time_s;
     const BodyMotion local =
@@ -69,9 +74,7 @@ WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s)
                      {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
     const WheelDemands wheels = inverse_dynamics(body, local);
     loads.slip_s += wheels.transmitted_share < 1.0 ? 1.0 / kRate_Hz : 0.0;
-    for (std::size_t i = 0; i < gatherers.size(); ++i) {
-      gatherers[i].add(1.0 / kRate_Hz, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
-    }
+    add(1.0 / kRate_Hz, wheels);
   });
   for (DemandGatherer& each : gatherers) {
     loads.wheels.push_back(each.finish());
@@ -81,7 +84,8 @@ WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s)
 
 }  // namespace
 
-GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const Robot& robot, double bin_s) {
+GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const Robot& robot, double bin_s,
+                          const GameObserver& observer) {
   ImportOptions survey;
   survey.most_points = 0;
   const RecordedGame first = import_game(log, survey);
@@ -100,7 +104,7 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   }
   const MotionTrack motion = smooth(game.tracks.front());
   result.sentences.push_back(fmt::format("{}: {}", result.player, to_string(motion.report())));
-  WheelLoads loads = loads_of(motion, robot, bin_s);
+  WheelLoads loads = loads_of(motion, robot, bin_s, observer);
   result.wheels = std::move(loads.wheels);
   if (loads.jumps > 0) {
     result.sentences.push_back(fmt::format("{}: the time jumps ahead by more than {:.0f} s {} times; these gaps are left out",

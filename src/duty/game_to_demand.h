@@ -2,11 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "duty/demand.h"
-#include "robot/robot.h"
+#include "robot/inverse_dynamics.h"
 
 namespace heatsoak {
 
@@ -16,8 +17,12 @@ struct GameDemand {
   std::vector<std::string> sentences;  ///< quality of the log, bandwidth of the smoothing, share of untransmittable demand
 };
 
+/// Every moment of it in turn, and how long it lasts.
+using GameObserver = std::function<void(double duration_s, const WheelDemands& wheels)>;
+
 /// `player` empty: the robot with the largest ∫a². Motion is smoothed, evaluated at 1 kHz and put through the inverse dynamics;
 /// where the robot was not seen the wheels stand. Throws Failure (bad_input) for an unreadable log or an unknown player.
-GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const Robot& robot, double bin_s);
+GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const Robot& robot, double bin_s = kBin_s,
+                          const GameObserver& observer = {});
 
 }  // namespace heatsoak

@@ -70,12 +70,16 @@ Kinematics make_kinematics(const Robot& robot) {
     made.wheels[i] = {cosine, sine, -sine, cosine};
     jacobian.row(static_cast<Eigen::Index>(i)) << -sine, cosine, 1.0;
   }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(jacobian);
-  if (decomposition.rank() < 3) {
-    throw bad_input({robot.file.string()}, "wheels.axis_angles",
-                    "leave a direction in which no wheel can drive; expected axes that do not all lie in one line or circle the same way");
+  // A robot's worst direction takes a few times the rim speed of its best; milliradians between all axles take a thousand times.
+  constexpr double kWorstCondition = 1e3;
+  const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(jacobian.transpose() * jacobian).eigenvalues();
+  if (!(squares(2) <= kWorstCondition * kWorstCondition * squares(0))) {
+    throw bad_input(
+        {robot.file.string()}, "wheels.axis_angles",
+        "leave a direction in which no wheel can drive, or next to none; expected axes that do not all lie in one line or circle "
+        "the same way");
   }
-  const Eigen::Matrix3Xd inverse = decomposition.pseudoInverse();
+  const Eigen::Matrix3Xd inverse = jacobian.completeOrthogonalDecomposition().pseudoInverse();
   for (std::size_t i = 0; i < count; ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     made.inverse_x_factor[i] = inverse(0, column);

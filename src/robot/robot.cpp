@@ -12,17 +12,22 @@
 namespace heatsoak {
 namespace {
 
+/// Ranges hold whatever anybody builds for a lab floor, and leave out what another unit makes of it.
 constexpr std::array<RobotFigureSpec, 28> kSpecs{{
-    {"body", {"yaw_inertia", "kg m2", Range::positive(), "about the vertical through the centre of gravity"}, &Robot::yaw_inertia_kg_m2},
-    {"body", {"center_of_gravity_height", "m", Range::non_negative(), "above the ground"}, &Robot::center_of_gravity_height_m},
-    {"body", {"center_of_gravity_x", "m", Range::any(), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
-    {"body", {"center_of_gravity_y", "m", Range::any(), "left of the robot's axis"}, &Robot::center_of_gravity_y_m},
-    {"wheels", {"inertia", "kg m2", Range::positive(), "of one wheel about its axle, without the rotor"}, &Robot::wheel_inertia_kg_m2},
+    {"body",
+     {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0), "about the vertical through the centre of gravity; mind g cm2 and kg m2"},
+     &Robot::yaw_inertia_kg_m2},
+    {"body", {"center_of_gravity_height", "m", Range::between(0.0, 2.0), "above the ground"}, &Robot::center_of_gravity_height_m},
+    {"body", {"center_of_gravity_x", "m", Range::between(-1.0, 1.0), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
+    {"body", {"center_of_gravity_y", "m", Range::between(-1.0, 1.0), "left of the robot's axis"}, &Robot::center_of_gravity_y_m},
+    {"wheels",
+     {"inertia", "kg m2", Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; mind g cm2 and kg m2"},
+     &Robot::wheel_inertia_kg_m2},
     {"friction",
-     {"wheel_torque", "N m", Range::non_negative(), "against the turning of one wheel, without the motor's own drag"},
+     {"wheel_torque", "N m", Range::between(0.0, 20.0), "against the turning of one wheel, without the motor's own drag"},
      &Robot::wheel_friction_torque_Nm},
     {"friction",
-     {"wheel_damping", "N m s/rad", Range::non_negative(), "and what grows with the wheel's speed"},
+     {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "and what grows with the wheel's speed"},
      &Robot::wheel_damping_Nm_s_per_rad},
     {"friction",
      {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
@@ -31,37 +36,39 @@ constexpr std::array<RobotFigureSpec, 28> kSpecs{{
      {"rolling_efficiency", "", Range::between(0.1, 1.0), "of the wheel's torque that reaches the ground"},
      &Robot::rolling_efficiency},
     {"friction.heading",
-     {"constant", "N m", Range::non_negative(), "friction in translation, mean over the directions"},
+     {"constant", "N m", Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
      &Robot::heading_constant_Nm},
-    {"friction.heading", {"sine", "N m", Range::any(), "part that grows with the wheel's share of rolling"}, &Robot::heading_sine_Nm},
     {"friction.heading",
-     {"double_angle", "N m", Range::non_negative(), "amplitude of the part with twice the direction"},
+     {"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"},
+     &Robot::heading_sine_Nm},
+    {"friction.heading",
+     {"double_angle", "N m", Range::between(0.0, 20.0), "amplitude of the part with twice the direction"},
      &Robot::heading_double_angle_Nm},
-    {"friction.heading", {"rotation", "N m", Range::non_negative(), "friction in pure rotation"}, &Robot::heading_rotation_Nm},
-    {"traction", {"coefficient", "", Range::positive(), "largest rolling force per normal force"}, &Robot::traction_ratio},
-    {"traction", {"slip_speed", "m/s", Range::positive(), "slip at which 0.71 of it is used"}, &Robot::slip_speed_m_per_s},
+    {"friction.heading", {"rotation", "N m", Range::between(0.0, 20.0), "friction in pure rotation"}, &Robot::heading_rotation_Nm},
+    {"traction", {"coefficient", "", Range::between(0.01, 5.0), "largest rolling force per normal force"}, &Robot::traction_ratio},
+    {"traction", {"slip_speed", "m/s", Range::between(1e-4, 10.0), "slip at which 0.71 of it is used"}, &Robot::slip_speed_m_per_s},
     {"drive",
-     {"driver_resistance", "ohm", Range::non_negative(), "of switches and traces in series with one motor"},
+     {"driver_resistance", "ohm", Range::between(0.0, 10.0), "of switches and traces in series with one motor"},
      &Robot::driver_resistance_ohm},
-    {"drive", {"driver_standby_power", "W", Range::non_negative(), "of one motor's driver without current"}, &Robot::driver_standby_W},
+    {"drive", {"driver_standby_power", "W", Range::between(0.0, 100.0), "of one motor's driver without current"}, &Robot::driver_standby_W},
     {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "how often the firmware commands the motors"}, &Robot::control_rate_Hz},
-    {"battery", {"full_voltage", "V", Range::positive(), "open circuit, full"}, &Robot::battery_full_V},
-    {"battery", {"empty_voltage", "V", Range::positive(), "open circuit, empty"}, &Robot::battery_empty_V},
-    {"battery", {"internal_resistance", "ohm", Range::non_negative(), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
-    {"battery", {"capacity", "A s", Range::positive(), "from full to empty"}, &Robot::battery_capacity_A_s},
-    {"limits", {"speed", "m/s", Range::positive(), "largest speed that the team plans"}, &Robot::speed_limit_m_per_s},
-    {"limits", {"acceleration", "m/s2", Range::positive(), "when speeding up"}, &Robot::acceleration_limit_m_per_s2},
-    {"limits", {"braking", "m/s2", Range::positive(), "when slowing down"}, &Robot::braking_limit_m_per_s2},
-    {"limits", {"jerk", "m/s3", Range::positive(), "change of the acceleration"}, &Robot::jerk_limit_m_per_s3},
-    {"limits", {"yaw_rate", "rad/s", Range::positive(), "largest rate of turning"}, &Robot::yaw_rate_limit_rad_per_s},
+    {"battery", {"full_voltage", "V", Range::between(1.0, 5000.0), "open circuit, full"}, &Robot::battery_full_V},
+    {"battery", {"empty_voltage", "V", Range::between(1.0, 5000.0), "open circuit, empty"}, &Robot::battery_empty_V},
+    {"battery", {"internal_resistance", "ohm", Range::between(0.0, 10.0), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
+    {"battery", {"capacity", "A s", Range::between(30.0, 4e6), "from full to empty"}, &Robot::battery_capacity_A_s},
+    {"limits", {"speed", "m/s", Range::between(0.01, 30.0), "largest speed that the team plans"}, &Robot::speed_limit_m_per_s},
+    {"limits", {"acceleration", "m/s2", Range::between(0.1, 200.0), "when speeding up"}, &Robot::acceleration_limit_m_per_s2},
+    {"limits", {"braking", "m/s2", Range::between(0.1, 200.0), "when slowing down"}, &Robot::braking_limit_m_per_s2},
+    {"limits", {"jerk", "m/s3", Range::between(0.1, 1e5), "change of the acceleration"}, &Robot::jerk_limit_m_per_s3},
+    {"limits", {"yaw_rate", "rad/s", Range::between(0.01, 200.0), "largest rate of turning"}, &Robot::yaw_rate_limit_rad_per_s},
     {"limits",
-     {"yaw_acceleration", "rad/s2", Range::positive(), "change of the rate of turning"},
+     {"yaw_acceleration", "rad/s2", Range::between(0.01, 1e4), "change of the rate of turning"},
      &Robot::yaw_acceleration_limit_rad_per_s2},
 }};
 
 constexpr std::array<WheelFigureSpec, 3> kWheelSpecs{{
-    {{"constant", "N m", Range::non_negative(), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
-    {{"sine", "N m", Range::any(), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
+    {{"constant", "N m", Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
+    {{"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
     {{"phase", "rad", Range::any(), "of that part and of the sign, near the negative angle of the wheel's axle"}, &HeadingWheel::phase_rad},
 }};
 
@@ -152,9 +159,12 @@ void read_wheels(Reader& top, Robot& robot) {
   if (!wheels) {
     return;
   }
-  robot.wheel_radius_m = wheels->quantity({"radius", "m", Range::positive(), "of a wheel"}, Need::required).value_or(1.0);
+  robot.wheel_radius_m =
+      wheels->quantity({"radius", "m", Range::between(0.005, 0.5), "of a wheel; mind mm and m"}, Need::required).value_or(1.0);
   robot.wheel_contact_radius_m =
-      wheels->quantity({"contact_radius", "m", Range::positive(), "from the robot's axis to the contact points"}, Need::required)
+      wheels
+          ->quantity({"contact_radius", "m", Range::between(0.01, 2.0), "from the robot's axis to the contact points; mind mm and m"},
+                     Need::required)
           .value_or(1.0);
   robot.wheel_axis_rad = wheels->quantities({"axis_angles", "rad", Range::any(), "of the wheels' axes"}, Need::required);
   if (robot.wheel_axis_rad.size() < 3) {
@@ -170,13 +180,15 @@ void read_drive(Reader& top, Robot& robot) {
     return;
   }
   robot.drive_motor = drive->text("motor", Need::required).value_or("");
-  robot.gear_ratio = drive->quantity({"gear_ratio", "", Range::positive(), "motor turns per wheel turn"}, Need::required).value_or(1.0);
+  robot.gear_ratio =
+      drive->quantity({"gear_ratio", "", Range::between(0.1, 500.0), "motor turns per wheel turn"}, Need::required).value_or(1.0);
   robot.gear_efficiency =
       drive->quantity({"gear_efficiency", "", Range::between(0.1, 1.0), "torque that the gear hands on"}, Need::optional).value_or(1.0);
-  robot.voltage_limit_V = drive->quantity({"voltage_limit", "V", Range::positive(), "largest command to one motor"}, Need::optional)
-                              .value_or(robot.voltage_limit_V);
+  robot.voltage_limit_V =
+      drive->quantity({"voltage_limit", "V", Range::between(0.5, 5000.0), "largest command to one motor"}, Need::optional)
+          .value_or(robot.voltage_limit_V);
   robot.current_limit_A =
-      drive->quantity({"current_limit", "A", Range::positive(), "largest equivalent DC current of one motor"}, Need::optional)
+      drive->quantity({"current_limit", "A", Range::between(0.01, 1000.0), "largest equivalent DC current of one motor"}, Need::optional)
           .value_or(robot.current_limit_A);
   constexpr std::array<std::string_view, 2> kCommutations{"block", "sinusoidal"};
   robot.commutation =
@@ -237,11 +249,13 @@ Robot robot_of(const Value& root, const std::filesystem::path& path) {
   robot.name = top.text("name", Need::required).value_or("");
   robot.source = top.text("source", Need::required).value_or("");
   top.texts("notes", Need::optional);
-  robot.mass_kg = top.quantity({"mass", "kg", Range::positive(), "of the robot with battery"}, Need::required).value_or(1.0);
+  robot.mass_kg =
+      top.quantity({"mass", "kg", Range::between(0.1, 200.0), "of the robot with battery; mind g and kg"}, Need::required).value_or(1.0);
   read_wheels(top, robot);
   read_drive(top, robot);
   if (std::optional<Reader> battery = top.table("battery", Need::required)) {
-    robot.battery_V = battery->quantity({"nominal_voltage", "V", Range::positive(), "of the battery"}, Need::required).value_or(1.0);
+    robot.battery_V =
+        battery->quantity({"nominal_voltage", "V", Range::between(1.0, 5000.0), "of the battery"}, Need::required).value_or(1.0);
     read_figures(*battery, "battery", robot);
     battery->finish();
   }

@@ -87,5 +87,32 @@ TEST_F(Files, of_which_one_cannot_be_written_all_stay_away) {
   EXPECT_THAT(names(), ElementsAre());
 }
 
+TEST_F(Files, a_stream_has_no_name_before_it_is_whole) {
+  std::vector<std::unique_ptr<StreamedFile>> streams;
+  streams.push_back(std::make_unique<StreamedFile>(folder_ / "rows.csv"));
+  std::string all;
+  for (int i = 0; i < 100'000; ++i) {
+    all += std::to_string(i) + "\n";
+    streams[0]->write(std::to_string(i) + "\n");
+  }
+  EXPECT_THAT(names(), ElementsAre());
+  const std::vector<OutputFile> files{{folder_ / "rows.toml", "beside it"}};
+  write_files(files, streams);
+  EXPECT_EQ(read_file(folder_ / "rows.csv", all.size()), all);
+  EXPECT_THAT(names(), testing::UnorderedElementsAre("rows.csv", "rows.toml"));
+}
+
+TEST_F(Files, a_stream_stays_away_with_what_cannot_be_written_beside_it) {
+  std::vector<std::unique_ptr<StreamedFile>> streams;
+  streams.push_back(std::make_unique<StreamedFile>(folder_ / "rows.csv"));
+  streams[0]->write("row");
+  const std::vector<OutputFile> nowhere{{folder_ / "none" / "b", "2"}};
+  EXPECT_THROW(write_files(nowhere, streams), Failure);
+  const std::vector<OutputFile> same{{folder_ / "rows.csv", "2"}};
+  EXPECT_THROW(write_files(same, streams), Failure);
+  streams.clear();
+  EXPECT_THAT(names(), ElementsAre());
+}
+
 }  // namespace
 }  // namespace heatsoak

@@ -137,6 +137,22 @@ TEST(DutyImport, other_units_are_suspected) {
   }
 }
 
+TEST(DutyImport, says_that_times_may_be_in_milliseconds) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  std::string text = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
+  for (int i = 0; i < 400; ++i) {
+    text += std::to_string(10 * i) + ",blue,3,1,1,0\n";
+  }
+  write(folder.path() / "game.csv", text);
+  const ProgramRun result = run({"duty", "--import", "game.csv", "--robot", "tigers_v2020", "--out", "duty.csv"}, options);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("t_s advances by 10 s from row to row of a robot"));
+  EXPECT_THAT(result.err, HasSubstr("is it in milliseconds"));
+  EXPECT_THAT(folder.names(), testing::ElementsAre("game.csv"));
+}
+
 TEST(Describe, a_duty_shape_is_a_file_to_start_from) {
   const TemporaryFolder folder;
   RunOptions options;
@@ -224,6 +240,22 @@ TEST(EvaluateMatch, a_match_and_its_own_export_give_the_same_temperature) {
   };
   // Rows of 0.01 s in place of bins of 0.25 s.
   EXPECT_NEAR(peak_C("match.toml"), peak_C("division_b_match"), 0.5);
+}
+
+TEST(EvaluateMatch, a_recording_costs_what_its_match_does) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const Words robot{"--robot", "roboteam_twente_v2024"};
+  // Ten times the usual rows: half a gigabyte, if they were kept.
+  const ProgramRun written = run(Words{"duty", "--duty", "division_a_match", "--out", "match.csv", "--every", "1 ms"} + robot, options);
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  EXPECT_GT(std::filesystem::file_size(folder.path() / "match.csv"), 60'000'000U);
+  EXPECT_LT(written.memory_MB, 60.0);
+  options.time_limit_s = 60;
+  const ProgramRun evaluated = run(Words{"evaluate", "--duty", "match.toml", "--samples", "100"} + robot, options);
+  EXPECT_LE(evaluated.exit_code, 1) << evaluated.err;
+  EXPECT_LT(evaluated.memory_MB, 100.0);
 }
 
 TEST(EvaluateMatch, says_that_the_duty_s_spread_is_included) {

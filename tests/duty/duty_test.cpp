@@ -1,10 +1,13 @@
 #include "duty/duty.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
+#include <numeric>
 
 namespace heatsoak {
 namespace {
@@ -129,6 +132,76 @@ TEST_F(DutyTest, a_recording_of_current_is_repeated_whole) {
     EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(i).current_rms_A, i % 2 == 0 ? 1.0 : 3.0);
     EXPECT_DOUBLE_EQ(wheel_of(duty).bins.at(i).duration_s, i % 2 == 0 ? 2.0 : 1.0);
   }
+}
+
+/// Rows of 10 ms of two sines, as text and as the integrals that heat depends on.
+struct ShortRows {
+  std::string text;
+  double square_s = 0.0;  ///< ∫M²dt, or ∫I²dt
+  double along_s = 0.0;   ///< ∫M·sign ω dt
+  double power_s = 0.0;   ///< ∫M·ω dt
+  double duration_s = 0.0;
+};
+ShortRows short_rows(const std::string& header) {
+  ShortRows rows{header + "\n"};
+  for (int i = 0; i <= 6000; ++i) {
+    const double load = 0.25 * std::sin(0.037 * i);
+    const double speed_rad_per_s = 40.0 * std::sin(0.011 * i + 1.0);
+    rows.text += fmt::format("{:.10g},{:.17g},{:.17g}\n", 0.01 * i, load, speed_rad_per_s);
+    if (i < 6000) {
+      const double direction = std::abs(speed_rad_per_s) < kStandstill_rad_per_s ? 0.0 : std::copysign(1.0, speed_rad_per_s);
+      rows.square_s += 0.01 * load * load;
+      rows.along_s += 0.01 * load * direction;
+      rows.power_s += 0.01 * load * speed_rad_per_s;
+      rows.duration_s += 0.01;
+    }
+  }
+  return rows;
+}
+
+double integral(const WheelDemand& wheel, double (*of)(const LoadBin&)) {
+  return std::accumulate(wheel.bins.begin(), wheel.bins.end(), 0.0,
+                         [of](double sum, const LoadBin& bin) { return sum + of(bin) * bin.duration_s; });
+}
+
+TEST_F(DutyTest, short_rows_are_merged_and_keep_their_heat) {
+  const ShortRows rows = short_rows("time_s,torque_Nm,speed_rad_per_s");
+  write("log.csv", rows.text);
+  const WheelDemand wheel = wheel_of(read("recorded", "file = \"log.csv\"\nquantity = \"torque\"\n"));
+  EXPECT_THAT(wheel.bins, SizeIs(600));
+  EXPECT_LT(wheel.points.size(), 3000U);
+  EXPECT_NEAR(wheel.duration_s(), rows.duration_s, 1e-9);
+  EXPECT_NEAR(integral(wheel, [](const LoadBin& bin) { return bin.torque_rms_Nm * bin.torque_rms_Nm; }), rows.square_s, 1e-12);
+  EXPECT_NEAR(integral(wheel, [](const LoadBin& bin) { return bin.torque_along_motion_Nm; }), rows.along_s, 1e-12);
+  EXPECT_NEAR(integral(wheel, [](const LoadBin& bin) { return bin.power_mean_W; }), rows.power_s, 1e-9);
+}
+
+TEST_F(DutyTest, short_rows_of_current_keep_their_heat_and_their_largest_current) {
+  const ShortRows rows = short_rows("time_s,current_A,speed_rad_per_s");
+  write("log.csv", rows.text);
+  const WheelDemand wheel = wheel_of(read("recorded", "file = \"log.csv\"\nquantity = \"current\"\nrepeats = \"2\"\n"));
+  EXPECT_THAT(wheel.bins, SizeIs(1200));
+  EXPECT_NEAR(integral(wheel, [](const LoadBin& bin) { return bin.current_rms_A * bin.current_rms_A; }), 2.0 * rows.square_s, 1e-12);
+  double largest_A = 0.0;
+  double time_s = 0.0;
+  for (const LoadPoint& each : wheel.points) {
+    EXPECT_EQ(each.torque_Nm, 0.0);
+    largest_A = std::max(largest_A, each.current_A);
+    time_s += each.time_s;
+  }
+  EXPECT_GE(largest_A, 0.2499);
+  EXPECT_LE(largest_A, 0.27);
+  EXPECT_NEAR(time_s, 120.0, 1e-6);
+}
+
+TEST_F(DutyTest, a_long_row_among_short_ones_stays_what_it_is) {
+  write("log.csv", "time_s,torque_Nm,speed_rad_per_s\n0,0.1,10\n0.05,0.3,10\n0.1,-0.2,30\n5.1,0.4,10\n5.2,0,0\n");
+  const WheelDemand wheel = wheel_of(read("recorded", "file = \"log.csv\"\nquantity = \"torque\"\n"));
+  ASSERT_THAT(wheel.bins, SizeIs(3));
+  EXPECT_NEAR(wheel.bins.at(0).torque_rms_Nm, std::sqrt(0.05), 1e-12);
+  EXPECT_DOUBLE_EQ(wheel.bins.at(1).torque_mean_Nm, -0.2);
+  EXPECT_NEAR(wheel.bins.at(1).duration_s, 5.0, 1e-12);
+  EXPECT_NEAR(wheel.bins.at(2).duration_s, 0.1, 1e-12);
 }
 
 TEST_F(DutyTest, problems_of_the_log_have_their_place_in_the_log) {

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
+#include <numbers>
 
 #include "base/diagnostic.h"
 #include "duty/game_to_demand.h"
@@ -79,6 +82,110 @@ TEST(ImportCsv, LeavesOutRowsThatGoBackInTimeAndSaysWhichOnes) {
   ASSERT_EQ(game.report.problems.size(), 1U);
   EXPECT_EQ(game.report.problems[0].at, 302U);
   EXPECT_THAT(sentences(game.report), Contains(HasSubstr("line 302: blue 7 at 101 s")));
+}
+
+/// One robot on a circle, with the yaw that is given, 60 rows a second.
+std::string with_yaw(int rows, double (*yaw)(double time_s)) {
+  std::string text = kHeader;
+  for (int i = 0; i < rows; ++i) {
+    const double time_s = i / 60.0;
+    text += fmt::format("{:.4f},blue,7,{:.5f},{:.5f},{:.5f}\n", time_s, std::sin(time_s), std::cos(time_s), yaw(time_s));
+  }
+  return text;
+}
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+TEST(ImportCsv, AStepOf360IsInDegreesHoweverSlowTheTurn) {
+  // 0.25 rad/s from 0: past 180 degrees at 12.566 s, the 755th row, which begins with 12.5667,blue,7,0.00033,1.00000,
+  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return std::remainder(0.25 * kDegrees * time_s, 360.0); })),
+              HasSubstr("game.csv:756:32: error: yaw_rad: jumps by a full turn of 360: it is in degrees; expected radians"));
+  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return std::fmod(0.25 * kDegrees * time_s, 360.0); })),
+              HasSubstr("yaw_rad: jumps by a full turn of 360"));
+}
+
+TEST(ImportCsv, DegreesThatAreNotWrappedTurnMoreThanARobotKeepsUp) {
+  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return 0.25 * kDegrees * time_s; })), HasSubstr("is it in degrees?"));
+  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return kDegrees * (3.0 + 0.5 * std::sin(0.7 * time_s)); })),
+              HasSubstr("is it in degrees?"));
+}
+
+TEST(ImportCsv, RadiansAreTakenWrappedOrNot) {
+  for (double (*yaw)(double) : std::initializer_list<double (*)(double)>{
+           [](double time_s) { return 2.0 * time_s; },                                            // 120 rad in the end
+           [](double time_s) { return -3.9 * time_s; },                                           //
+           [](double time_s) { return 300.0 + 0.25 * time_s; },                                   // a day of turning before
+           [](double time_s) { return 40.0 * std::sin(0.07 * time_s); },                          // to and fro
+           [](double time_s) { return std::remainder(14.0 * time_s, 2.0 * std::numbers::pi); },   // spinning
+           [](double time_s) { return std::fmod(14.0 * time_s, 2.0 * std::numbers::pi); },        //
+           [](double time_s) { return 3.0 + 0.005 * std::sin(40.0 * time_s); },                   // a noisy camera
+           [](double time_s) { return time_s > 30.0 ? 0.4 * time_s - 330.0 : 0.4 * time_s; }}) {  // begins anew elsewhere
+    const TemporaryFile file("game.csv", with_yaw(3600, yaw));
+    EXPECT_NO_THROW((void)import_game(file.path())) << yaw(1.0) << " at 1 s";
+  }
+}
+
+TEST(ImportCsv, AClockThatStartsAgainLosesNothing) {
+  std::string text = kHeader;
+  for (int i = 0; i < 2000; ++i) {
+    for (const char* robot : {"blue,7", "yellow,1"}) {
+      text += fmt::format("{:.2f},{},{:.4f},1.5,0\n", 50.0 + 0.01 * (i % 1000), robot, 0.001 * i);
+    }
+  }
+  const TemporaryFile file("game.csv", text);
+  const RecordedGame game = import_game(file.path());
+  ASSERT_EQ(game.tracks.size(), 2U);
+  for (const RobotTrack& track : game.tracks) {
+    ASSERT_EQ(track.segments.size(), 2U);
+    EXPECT_EQ(track.segments[0].size(), 1000U);
+    EXPECT_EQ(track.segments[1].size(), 1000U);
+    EXPECT_NEAR(track.segments[1].front().time_s, 59.99 + 1.0, 1e-9);
+    EXPECT_NEAR(track.segments[1].back().time_s, 59.99 + 1.0 + 9.99, 1e-9);
+  }
+  EXPECT_EQ(game.report.out_of_order, 0U);
+  EXPECT_THAT(sentences(game.report), Contains(HasSubstr("line 2002: blue 7 at 50 s, after 59.99 s: its clock starts again")));
+}
+
+TEST(ImportCsv, RowsOutOfOrderAreNoClockThatStartsAgain) {
+  // Every tenth row comes again a second later, and at the end a stretch too short to be sure of.
+  std::string text = kHeader;
+  for (int i = 0; i < 1000; ++i) {
+    text += fmt::format("{:.2f},blue,7,1,1,0\n", 0.01 * i);
+    if (i % 10 == 0 && i >= 100) {
+      text += fmt::format("{:.2f},blue,7,1,1,0\n", 0.01 * (i - 100));
+    }
+  }
+  for (int i = 0; i < 9; ++i) {
+    text += fmt::format("{:.2f},blue,7,1,1,0\n", 0.01 * i);
+  }
+  const TemporaryFile file("game.csv", text);
+  const RecordedGame game = import_game(file.path());
+  EXPECT_EQ(game.tracks.at(0).segments.at(0).size(), 1000U);
+  EXPECT_EQ(game.report.out_of_order, 99U);
+}
+
+TEST(ImportCsv, SaysWhyNobodyCanBeFollowed) {
+  const auto said_of = [](const std::string& text) {
+    const TemporaryFile file("game.csv", text);
+    return sentences(import_game(file.path()).report);
+  };
+  std::string milliseconds = kHeader;
+  std::string shuffled = kHeader;
+  for (int i = 0; i < 600; ++i) {
+    milliseconds += fmt::format("{:.2f},blue,7,1,1,0\n", 16.6667 * i);
+    shuffled += fmt::format("{:.2f},blue,7,1,1,0\n", 0.01 * (i * 271 % 600));
+  }
+  EXPECT_THAT(said_of(milliseconds), Contains(HasSubstr("t_s advances by 16.7 s from row to row of a robot")));
+  EXPECT_THAT(said_of(milliseconds), Contains(HasSubstr("is it in milliseconds")));
+  EXPECT_THAT(said_of(shuffled), Contains(HasSubstr("sorted by t_s")));
+}
+
+TEST(ImportCsv, PlacesBeyondAllMeasureAreSaidShortly) {
+  std::string text = kHeader;
+  for (int i = 0; i < 300; ++i) {
+    text += fmt::format("{:.2f},blue,7,1e300,1e300,0\n", 0.01 * i);
+  }
+  EXPECT_THAT(failure_of(text), HasSubstr("reach 1e+300 m, and most places lie outside any field"));
 }
 
 TEST(ImportCsv, AJumpOfTheClockIsNoPause) {

@@ -271,5 +271,19 @@ TEST(Match, a_robot_without_figures_for_motion_is_refused_by_name) {
   EXPECT_THROW(play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited), Failure);
 }
 
+TEST(Match, limits_that_the_planner_cannot_hold_are_said_in_words) {
+  Robot robot = twente();
+  robot.jerk_limit_m_per_s3 = 1e12;
+  try {
+    (void)play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited);
+    FAIL() << "played";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::numerics_failed);
+    EXPECT_NE(std::string_view(failure.what()).find("limits and distances are too many orders of magnitude apart"), std::string_view::npos)
+        << failure.what();
+    EXPECT_NE(std::string_view(failure.what()).find("[limits]"), std::string_view::npos);
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak

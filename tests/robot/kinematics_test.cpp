@@ -161,5 +161,25 @@ TEST(Kinematics, robots_that_cannot_be_driven_are_refused) {
   EXPECT_THROW(make_kinematics(parallel), Failure);
 }
 
+// Two pairs of axles at an angle ε: ahead they roll with ε/2 per speed or so, and to the left with 1.
+TEST(Kinematics, axles_that_are_next_to_parallel_are_refused) {
+  Robot robot = bare_robot();
+  const auto with_angle = [&](double angle_rad) {
+    robot.wheel_axis_rad = {0.0, angle_rad, std::numbers::pi, std::numbers::pi + angle_rad};
+    return make_kinematics(robot);
+  };
+  for (const double angle_deg : {0.0, 1e-9, 1e-7, 1e-3, 0.03}) {
+    EXPECT_THROW((void)with_angle(angle_deg * kDeg), Failure) << angle_deg;
+  }
+  for (const double radius_m : {0.02, 0.08, 1.5}) {
+    robot.wheel_contact_radius_m = radius_m;
+    const PerWheel ahead = wheel_speeds_rad_per_s(with_angle(5.0 * kDeg), {1.0, 0.0, 0.0});
+    EXPECT_NEAR(ahead[1], -std::sin(5.0 * kDeg) / robot.wheel_radius_m, 1e-9);
+  }
+  for (const std::string& shipped : kShipped) {
+    EXPECT_NO_THROW((void)make_kinematics(shipped_robot(shipped)));
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak

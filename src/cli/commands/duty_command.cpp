@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "base/files.h"
 #include "cli/command.h"
@@ -12,6 +13,7 @@
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "duty/duty.h"
+#include "duty/duty_rows.h"
 #include "duty/game_to_demand.h"
 #include "duty/match/match_duty.h"
 #include "motor/motor.h"
@@ -30,49 +32,33 @@ struct Options {
   std::string planner = "jerk_limited";
 };
 
-/// Rows of all wheels: a row holds until the next, its torque is the rms with the sign of the mean, so that the heat stays.
-std::string to_csv(const std::vector<WheelDemand>& wheels) {
-  std::string text = "time_s";
-  for (std::size_t i = 1; i <= wheels.size(); ++i) {
-    text += fmt::format(",torque_{}_Nm,speed_{}_rad_per_s", i, i);
-  }
-  text += "\n";
-  double time_s = 0.0;
-  for (std::size_t row = 0; row < wheels.front().bins.size(); ++row) {
-    fmt::format_to(std::back_inserter(text), "{:.10g}", time_s);
-    for (const WheelDemand& wheel : wheels) {
-      const LoadBin& bin = wheel.bins[row];
-      fmt::format_to(std::back_inserter(text), ",{:.5g},{:.5g}", std::copysign(bin.torque_rms_Nm, bin.torque_mean_Nm),
-                     std::copysign(bin.speed_mean_rad_per_s, bin.velocity_mean_rad_per_s));
-    }
-    text += "\n";
-    time_s += wheels.front().bins[row].duration_s;
-  }
-  fmt::format_to(std::back_inserter(text), "{:.10g}", time_s);
-  for (std::size_t i = 0; i < wheels.size(); ++i) {
-    text += ",0,0";
-  }
-  return text + "\n";
-}
-
 /// The duty file beside the CSV, so that the next command is `evaluate --duty FILE.toml`.
-std::string duty_file(const std::filesystem::path& csv, const std::string& summary, const std::string& origin) {
+std::string duty_file(const std::filesystem::path& csv, DutyKind kind, const std::string& summary, const std::string& origin) {
   return fmt::format(
       "summary = {}\norigin = {}\nshape = \"recorded\"\n"
       "ambient = {{ value = \"25 degC\", origin = \"estimated\", derivation = \"not recorded\", range = [\"20 degC\", \"32 degC\"] }}\n\n"
-      "[recorded]\nfile = {}\nquantity = \"torque\"\n",
-      nlohmann::json(summary).dump(), nlohmann::json(origin).dump(), nlohmann::json(csv.filename().string()).dump());
+      "[recorded]\nfile = {}\nquantity = \"{}\"\n",
+      nlohmann::json(summary).dump(), nlohmann::json(origin).dump(), nlohmann::json(csv.filename().string()).dump(),
+      kind == DutyKind::torque ? "torque" : "current");
 }
 
-void write_duty(const Options& options, const std::vector<WheelDemand>& wheels, const std::string& summary, const std::string& origin,
-                Session& session) {
+/// The rows go to their file as they come; nothing without --out.
+std::optional<DutyRows> open_table(const Options& options, std::size_t wheel_count, DutyKind kind, Session& session) {
   if (options.out.empty()) {
+    return std::nullopt;
+  }
+  StreamedFile& file = session.stream(options.out);
+  return std::optional<DutyRows>(std::in_place, wheel_count, kind, options.every_s, [&file](std::string_view text) { file.write(text); });
+}
+
+void finish_table(std::optional<DutyRows>& rows, const Options& options, const std::string& description_text, Session& session) {
+  if (!rows) {
     return;
   }
+  rows->finish();
   std::filesystem::path description = options.out;
   description.replace_extension(".toml");
-  session.write(options.out, to_csv(wheels));
-  session.write(description, duty_file(options.out, summary, origin));
+  session.write(description, description_text);
   session.say(fmt::format("written: {} and {} (heatsoak evaluate --duty {})\n", options.out, description.string(), description.string()));
 }
 
@@ -90,24 +76,34 @@ nlohmann::ordered_json phase_json(const MatchLoad& load) {
   return phases;
 }
 
-ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, Session& session) {
-  const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
-  if (!match) {
-    const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
-    session.say(fmt::format("{}: {}\n{}, {:.0f} s\n", duty.id, duty.summary, duty.origin, wheels.front().duration_s()));
-    write_duty(options, wheels, duty.summary, duty.origin, session);
-    session.answer(
-        {{"schema", "heatsoak.duty/1"}, {"duty", duty.id}, {"origin", duty.origin}, {"duration_s", wheels.front().duration_s()}});
-    return ExitCode::done;
+/// A duty that is no match: its own rows.
+ExitCode put_out(const Options& options, const Robot& robot, const Duty& duty, Session& session) {
+  const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
+  session.say(fmt::format("{}: {}\n{}, {:.0f} s\n", duty.id, duty.summary, duty.origin, wheels.front().duration_s()));
+  std::optional<DutyRows> rows = open_table(options, wheels.size(), duty.kind, session);
+  std::vector<LoadBin> row(wheels.size());
+  for (std::size_t at = 0; rows && at < wheels.front().bins.size(); ++at) {
+    std::ranges::transform(wheels, row.begin(), [at](const WheelDemand& wheel) { return wheel.bins[at]; });
+    rows->add(row);
   }
+  finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);
+  session.answer({{"schema", "heatsoak.duty/1"}, {"duty", duty.id}, {"origin", duty.origin}, {"duration_s", wheels.front().duration_s()}});
+  return ExitCode::done;
+}
+
+ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, const MatchInputs& inputs, Session& session) {
   const Planner planner = options.planner == "bang_bang" ? Planner::bang_bang : Planner::jerk_limited;
-  const MatchLoad load =
-      play_match(match->inputs(), match->inputs().nominal(), robot, options.seed, planner, options.out.empty() ? 0.25 : options.every_s);
-  const RoleLoads roles = play_roles(match->inputs(), robot, options.seed, planner);
+  std::optional<DutyRows> rows = open_table(options, robot.wheel_axis_rad.size(), duty.kind, session);
+  MatchObserver observer;
+  if (rows) {
+    observer = [&rows](const MatchMoment& now) { rows->add(now.step_s, now.wheels->torque_Nm, now.wheels->speed_rad_per_s); };
+  }
+  const MatchLoad load = play_match(inputs, inputs.nominal(), robot, options.seed, planner, kBin_s, observer);
+  const RoleLoads roles = play_roles(inputs, robot, options.seed, planner);
   session.say(fmt::format("{} of {} as {}, seed {}: {:.0f} min, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
-                          kRoleNames[static_cast<std::size_t>(match->inputs().role)], options.seed, load.duration_s / 60.0, load.play_s,
+                          kRoleNames[static_cast<std::size_t>(inputs.role)], options.seed, load.duration_s / 60.0, load.play_s,
                           load.distance_m / 1e3, duty.origin, role_table(roles)));
-  write_duty(options, load.wheels, duty.summary, duty.origin, session);
+  finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);
   session.answer({{"schema", "heatsoak.duty/1"},
                   {"duty", duty.id},
                   {"robot", robot.id},
@@ -122,7 +118,12 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
 }
 
 ExitCode import(const Options& options, const Robot& robot, Session& session) {
-  const GameDemand game = demand_of_game(options.log, options.player, robot, options.every_s);
+  std::optional<DutyRows> rows = open_table(options, robot.wheel_axis_rad.size(), DutyKind::torque, session);
+  GameObserver observer;
+  if (rows) {
+    observer = [&rows](double duration_s, const WheelDemands& wheels) { rows->add(duration_s, wheels.torque_Nm, wheels.speed_rad_per_s); };
+  }
+  const GameDemand game = demand_of_game(options.log, options.player, robot, kBin_s, observer);
   std::string text;
   for (const std::string& line : game.sentences) {
     text += line + "\n";
@@ -134,7 +135,8 @@ ExitCode import(const Options& options, const Robot& robot, Session& session) {
   session.say(text);
   const std::string summary =
       fmt::format("{} of {}, driven by {}", game.player, std::filesystem::path(options.log).filename().string(), robot.name);
-  write_duty(options, game.wheels, summary, "measured motion of a recorded game, wheel torques computed from the robot's file", session);
+  const std::string origin = "measured motion of a recorded game, wheel torques computed from the robot's file";
+  finish_table(rows, options, duty_file(options.out, DutyKind::torque, summary, origin), session);
   session.answer({{"schema", "heatsoak.duty/1"},
                   {"log", options.log},
                   {"player", game.player},
@@ -152,7 +154,11 @@ ExitCode run(const Options& options, Session& session) {
   const std::optional<Robot> robot = named.robot(options.robot);
   const std::optional<Duty> duty = options.log.empty() ? named.duty(options.duty) : std::nullopt;
   named.throw_if_any();
-  return duty ? generate(options, *robot, *duty, session) : import(options, *robot, session);
+  if (!duty) {
+    return import(options, *robot, session);
+  }
+  const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty->shape_data);
+  return match ? generate(options, *robot, *duty, match->inputs(), session) : put_out(options, *robot, *duty, session);
 }
 
 }  // namespace

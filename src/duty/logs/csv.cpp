@@ -5,10 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
+#include "duty/capture_clock.h"
 #include "duty/log_type.h"
 
 namespace heatsoak::logs {
@@ -28,80 +34,244 @@ bool recognises(std::string_view head) {
   return found >= 3;
 }
 
-/// Tells metres from millimetres and radians from degrees by what a robot can do.
-class Scales {
+/// What a robot was last seen doing.
+struct Before {
+  Detection sight;
+  Detection window;  ///< its turn is taken over some frames, to which noise matters less
+};
+
+/// Tells metres from millimetres, radians from degrees and seconds from milliseconds by what a robot can do.
+class Units {
  public:
-  void take(double before_s, double before_yaw_rad, const Detection& sight) {
-    const double step_s = sight.time_s - before_s;
-    const double turn_rad = std::abs(sight.yaw_rad - before_yaw_rad);
-    // A yaw that wraps says nothing of the turn.
-    if (step_s > 0.0 && step_s < kLongestBridge_s && turn_rad < 0.5 * kWrap) {
-      turned_rad_ += turn_rad;
-      turned_s_ += step_s;
-    }
+  void take(Before& before, const Detection& sight, const CsvRow& row) {
     farthest_m_ = std::max({farthest_m_, std::abs(sight.x_m), std::abs(sight.y_m)});
     outside_ += std::abs(sight.x_m) > kField_m || std::abs(sight.y_m) > kField_m ? 1 : 0;
+    lowest_yaw_ = std::min(lowest_yaw_, sight.yaw_rad);
+    highest_yaw_ = std::max(highest_yaw_, sight.yaw_rad);
+    beyond_a_turn_ += std::abs(sight.yaw_rad) > 2.0 * std::numbers::pi + 0.05 ? 1 : 0;
     ++sights_;
+    if (const double step_s = sight.time_s - before.sight.time_s; step_s > 0.0) {
+      log_steps_ += std::log(step_s);
+      ++steps_;
+      take_turn(before, sight, row);
+    }
+    before.sight = sight;
   }
 
-  void say(const std::filesystem::path& file) const {
+  void say(const std::filesystem::path& file, ImportReport& report) const {
     Diagnostics problems;
     if (2 * outside_ > sights_) {
+      const std::string far = farthest_m_ < 1e6 ? significant(farthest_m_, 3) : fmt::format("{:.3g}", farthest_m_);
       problems.add({file.string(), 1, 1}, "x_m, y_m",
-                   fmt::format("reach {} m, and most places lie outside any field: are they in millimetres?", significant(farthest_m_, 3)));
+                   fmt::format("reach {} m, and most places lie outside any field: are they in millimetres?", far));
     }
-    constexpr double kNobodyTurns_rad_per_s = 15.0;
-    if (turned_s_ > 1.0 && turned_rad_ > kNobodyTurns_rad_per_s * turned_s_) {
-      problems.add({file.string(), 1, 1}, "yaw_rad",
-                   fmt::format("turns at {} rad/s on average over the game, which no robot does: is it in degrees?",
-                               significant(turned_rad_ / turned_s_, 2)));
+    // Radians seldom leave one turn, and degrees seldom stay within 6.
+    if (10 * beyond_a_turn_ > sights_) {
+      say_degrees(file, problems);
     }
     problems.throw_if_any();
+    say_times(report);
   }
 
  private:
-  static constexpr double kWrap = 360.0;
+  static constexpr double kFullTurn = 360.0;
   static constexpr double kField_m = 30.0;
+  static constexpr double kWindow_s = 0.1;
 
-  double turned_rad_ = 0.0;
+  void take_turn(Before& before, const Detection& sight, const CsvRow& row) {
+    const double turn = std::abs(sight.yaw_rad - before.sight.yaw_rad);
+    const bool is_lost = sight.time_s - before.sight.time_s > kLongestBridge_s;
+    if (!is_lost && std::abs(turn - kFullTurn) < 30.0 && wrap_.line == 0) {
+      wrap_ = {{}, row.line, row.cells[yaw]};
+    }
+    if (is_lost || turn > 0.5 * kFullTurn) {  // a turn that wraps says nothing
+      before.window = sight;
+    } else if (const double span_s = sight.time_s - before.window.time_s; span_s >= kWindow_s) {
+      turned_ += std::abs(sight.yaw_rad - before.window.yaw_rad);
+      turned_s_ += span_s;
+      before.window = sight;
+    }
+  }
+
+  void say_degrees(const std::filesystem::path& file, Diagnostics& problems) const {
+    constexpr double kNobodyTurns_rad_per_s = 15.0;
+    constexpr double kNobodyKeepsTurning_rad_per_s = 4.0;
+    const double mean_rad_per_s = turned_s_ > 1.0 ? turned_ / turned_s_ : 0.0;
+    if (wrap_.line > 0 && highest_yaw_ - lowest_yaw_ < 1.01 * kFullTurn) {
+      const Diagnostic there{{file.string(), wrap_.line, wrap_.column}, "yaw_rad", ""};
+      problems.add(with_characters({there}).front().at, there.key, "jumps by a full turn of 360: it is in degrees; expected radians");
+    } else if (mean_rad_per_s > kNobodyTurns_rad_per_s) {
+      problems.add({file.string(), 1, 1}, "yaw_rad",
+                   fmt::format("turns at {:.3g} rad/s on average over the game, which no robot does: is it in degrees?", mean_rad_per_s));
+    } else if (mean_rad_per_s > kNobodyKeepsTurning_rad_per_s && turned_s_ > 10.0) {
+      problems.add({file.string(), 1, 1}, "yaw_rad",
+                   fmt::format("turns at {:.3g} rad/s on average and lies between {:.4g} and {:.4g}: is it in degrees? Radians of a robot "
+                               "that does turn so much are expected between -pi and pi",
+                               mean_rad_per_s, lowest_yaw_, highest_yaw_));
+    }
+  }
+
+  /// Robots that cannot be followed are said elsewhere; this is why.
+  void say_times(ImportReport& report) const {
+    const double step_s = steps_ > 0 ? std::exp(log_steps_ / static_cast<double>(steps_)) : 0.0;
+    if (2 * report.out_of_order > report.messages) {
+      report.notes.emplace_back("most rows go back in time: expected the rows of each robot sorted by t_s");
+    } else if (step_s > kLongestBridge_s) {
+      const char* unit = step_s < 1e3 ? "milliseconds" : step_s < 1e6 ? "microseconds" : "nanoseconds";
+      report.notes.push_back(fmt::format(
+          "t_s advances by {:.3g} s from row to row of a robot, which is followed over at most {} s: is it in {}, or are rows missing?",
+          step_s, kLongestBridge_s, unit));
+    }
+  }
+
+  double log_steps_ = 0.0;
+  std::uint64_t steps_ = 0;
+  double turned_ = 0.0;  ///< over stretches of kWindow_s
   double turned_s_ = 0.0;
+  double lowest_yaw_ = std::numeric_limits<double>::infinity();
+  double highest_yaw_ = -std::numeric_limits<double>::infinity();
+  std::uint64_t beyond_a_turn_ = 0;
+  Location wrap_;  ///< the first step of 360; its column counts cells
   double farthest_m_ = 0.0;
   std::uint64_t outside_ = 0;
   std::uint64_t sights_ = 0;
 };
 
-void read(const std::filesystem::path& file, const ImportOptions& /*options*/, LogEvents& events) {
-  const std::array<CsvWords, 1> words{CsvWords{"team", {"yellow", "blue"}}};
-  std::map<RobotName, Detection> latest;
-  Scales scales;
-  ImportReport& report = events.report();
-  report.source = "positions in a table";
-  read_csv(file, kColumns, {}, words, [&](const CsvRow& row) {
-    ++report.messages;
-    ++report.frames;
-    const double id = row.values[robot_id];
-    if (!(id >= 0.0 && id <= kLargestRobotId) || id != static_cast<double>(static_cast<int>(id))) {
-      throw Failure(ExitCode::bad_input, "",
-                    with_characters({{{file.string(), row.line, row.cells[robot_id]},
-                                      "robot_id",
-                                      fmt::format("{} is no robot; expected a whole number from 0 to {}", id, kLargestRobotId)}}));
-    }
-    const RobotName name{row.values[team] == 0.0 ? Team::yellow : Team::blue, static_cast<int>(id)};
-    const Detection sight{
-        .robot = name, .time_s = row.values[time], .x_m = row.values[x], .y_m = row.values[y], .yaw_rad = row.values[yaw]};
-    const auto [before, is_new] = latest.try_emplace(name, sight);
-    if (!is_new && sight.time_s <= before->second.time_s) {
-      events.problem(static_cast<std::uint64_t>(row.line),
-                     fmt::format("{} at {} s, after {} s; time must increase for each robot; left out", to_string(name), sight.time_s,
-                                 before->second.time_s));
-      ++report.out_of_order;
+/// Takes the rows of one robot in the order of the file. Rows that go back in time are left out, but for a clock that starts again:
+/// some rows that follow each other make it one, and they are taken as a pause later.
+class RobotClock {
+ public:
+  struct Row {
+    Detection sight;
+    int line = 0;
+    double written_s = 0.0;  ///< as the file has it
+  };
+  /// Who hears of it; `after_s` is the latest time before, as the file has it.
+  struct Listener {
+    std::function<void(const Detection& in_time)> see;
+    std::function<void(const Row& row, double after_s)> left_out;
+    std::function<void(const Row& row, double after_s)> restarted;
+  };
+  static constexpr double kPause_s = 1.0;
+  static_assert(kPause_s > kLongestBridge_s, "tracks are cut there");
+
+  void take(Row row, const Listener& listener) {
+    row.sight.time_s += shift_s_;
+    if (!latest_s_ || row.sight.time_s > *latest_s_) {
+      leave_out(listener);
+      see(row.sight, listener);
       return;
     }
-    scales.take(before->second.time_s, before->second.yaw_rad, sight);
-    before->second = sight;
-    events.see(sight);
-  });
-  scales.say(file);
+    const double step_s = late_.empty() ? kPause_s : row.sight.time_s - late_.back().sight.time_s;
+    if (!late_.empty() && (step_s <= 0.0 || step_s > kLongestBridge_s)) {
+      leave_out(listener);
+    }
+    late_.push_back(row);
+    const double back_s = *latest_s_ - late_.front().sight.time_s;
+    if (late_.size() < static_cast<std::size_t>(CaptureClock::kConfirmed) || back_s < CaptureClock::kTolerance_s) {
+      return;
+    }
+    listener.restarted(late_.front(), *latest_s_ - shift_s_);
+    shift_s_ += back_s + kPause_s;
+    for (Row& each : late_) {
+      each.sight.time_s += back_s + kPause_s;
+      see(each.sight, listener);
+    }
+    late_.clear();
+  }
+
+  void leave_out(const Listener& listener) {
+    for (const Row& each : late_) {
+      listener.left_out(each, *latest_s_ - shift_s_);
+    }
+    late_.clear();
+  }
+
+ private:
+  void see(const Detection& sight, const Listener& listener) {
+    latest_s_ = sight.time_s;
+    listener.see(sight);
+  }
+
+  std::optional<double> latest_s_;
+  double shift_s_ = 0.0;
+  std::vector<Row> late_;
+};
+
+RobotName robot_of(const std::filesystem::path& file, const CsvRow& row) {
+  const double id = row.values[robot_id];
+  if (!(id >= 0.0 && id <= kLargestRobotId) || id != static_cast<double>(static_cast<int>(id))) {
+    throw Failure(ExitCode::bad_input, "",
+                  with_characters({{{file.string(), row.line, row.cells[robot_id]},
+                                    "robot_id",
+                                    fmt::format("{} is no robot; expected a whole number from 0 to {}", id, kLargestRobotId)}}));
+  }
+  return {row.values[team] == 0.0 ? Team::yellow : Team::blue, static_cast<int>(id)};
+}
+
+/// All rows of a file, to where they belong.
+class Rows {
+ public:
+  Rows(const std::filesystem::path& file, LogEvents& events) : file_(file), events_(events) {}
+
+  void take(const CsvRow& row) {
+    ++events_.report().messages;
+    ++events_.report().frames;
+    const Detection sight{
+        .robot = robot_of(file_, row), .time_s = row.values[time], .x_m = row.values[x], .y_m = row.values[y], .yaw_rad = row.values[yaw]};
+    row_ = &row;
+    robot_ = &robots_.try_emplace(sight.robot, Robot{{sight, sight}, {}}).first->second;
+    robot_->clock.take({sight, row.line, sight.time_s}, listener_);
+  }
+
+  void finish() {
+    for (auto& [name, robot] : robots_) {
+      robot.clock.leave_out(listener_);
+    }
+    units_.say(file_, events_.report());
+  }
+
+ private:
+  struct Robot {
+    Before before;
+    RobotClock clock;
+  };
+
+  void problem(const RobotClock::Row& row, double after_s, const std::string& what) {
+    events_.problem(static_cast<std::uint64_t>(row.line),
+                    fmt::format("{} at {} s, after {} s{}", to_string(row.sight.robot), row.written_s, after_s, what));
+  }
+
+  const std::filesystem::path& file_;
+  LogEvents& events_;
+  std::map<RobotName, Robot> robots_;
+  Units units_;
+  const CsvRow* row_ = nullptr;
+  Robot* robot_ = nullptr;  ///< that the row is of
+  RobotClock::Listener listener_{
+      .see =
+          [this](const Detection& in_time) {
+            units_.take(robot_->before, in_time, *row_);
+            events_.see(in_time);
+          },
+      .left_out =
+          [this](const RobotClock::Row& row, double after_s) {
+            ++events_.report().out_of_order;
+            problem(row, after_s, "; time must increase for each robot; left out");
+          },
+      .restarted =
+          [this](const RobotClock::Row& row, double after_s) {
+            problem(row, after_s, fmt::format(": its clock starts again; what follows is taken as {} s later", RobotClock::kPause_s));
+          }};
+};
+
+void read(const std::filesystem::path& file, const ImportOptions& /*options*/, LogEvents& events) {
+  const std::array<CsvWords, 1> words{CsvWords{"team", {"yellow", "blue"}}};
+  ImportReport& report = events.report();
+  report.source = "positions in a table";
+  Rows rows(file, events);
+  read_csv(file, kColumns, {}, words, [&rows](const CsvRow& row) { rows.take(row); });
+  rows.finish();
   std::error_code error;
   report.bytes = std::filesystem::file_size(file, error);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string_view>
 
 #include "robot_core/trajectory.h"
 
@@ -20,6 +21,26 @@ using robot_core::AxisState;
 using robot_core::PlaneLimits;
 using robot_core::PlanResult;
 using robot_core::Trajectory;
+
+std::string_view in_words(PlanResult result) {
+  switch (result) {
+    case PlanResult::ok:
+      return "nothing is wrong";
+    case PlanResult::not_finite:
+      return "a state, target or limit is not finite";
+    case PlanResult::limit_without_room:
+      return "a limit leaves no room to move";
+    case PlanResult::target_velocity_beyond_limit:
+      return "the target moves faster than the limits allow";
+    case PlanResult::target_acceleration_beyond_limit:
+      return "the target accelerates harder than the limits allow";
+    case PlanResult::target_without_approach:
+      return "the target cannot be approached within the limits";
+    case PlanResult::out_of_range:
+      return "limits and distances are too many orders of magnitude apart";
+  }
+  return "the planner says no more";
+}
 
 double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a; }
 
@@ -51,8 +72,8 @@ class IdealTracking final : public Follower {
                                   ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_)
                                   : robot_core::plan_plane_bang_bang(state_, target, plane, yaw_, trajectories_);
     if (result != PlanResult::ok) {
-      throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: planner code {}", command.x_m, command.y_m,
-                                                           static_cast<int>(result)));
+      throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: {}; look at [limits] of the robot",
+                                                           command.x_m, command.y_m, in_words(result)));
     }
     time_s_ = 0.0;
   }

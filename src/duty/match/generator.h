@@ -72,9 +72,9 @@ struct MatchLoad {
 
 using MatchObserver = std::function<void(const MatchMoment&)>;
 
-/// Runs one game at 1 kHz into bins of `bin_s`, short against a winding's time constant. The rotor's inertia is left out, so that the
+/// Runs one game at 1 kHz into bins of `bin_s`. The rotor's inertia is left out, so that the
 /// demand is the same for every motor. Throws Failure (bad_input) where the robot's file lacks what motion needs.
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
-                     double bin_s = 0.25, const MatchObserver& observer = {});
+                     double bin_s = kBin_s, const MatchObserver& observer = {});
 
 }  // namespace heatsoak

@@ -10,7 +10,11 @@
 namespace heatsoak::shapes {
 namespace {
 
-constexpr std::size_t kMostRows = 2'000'000;  ///< a day at 20 rows a second; more would fill the memory
+constexpr double kMostPieces = 2e6;  ///< more would fill the memory
+
+/// Rows are merged up to here. Shorter than a match's bins, because limits of voltage and current cut single rows, but of merged ones the
+/// mean: the less that smooths, the less heat is added.
+constexpr double kMerged_s = 0.1;
 
 constexpr int kMostWheels = 4;
 constexpr double kLongest_s = 1e6;
@@ -24,7 +28,11 @@ std::string column(DutyKind kind, int wheel, bool demand) {
                 : fmt::format("speed{}_rad_per_s", number);
 }
 
-/// The duty of one wheel or several, as rows come in. A row holds until the next one; the last row only ends the duty.
+/// Finer than any verdict, as in a match.
+constexpr DemandGatherer::Grid kGrid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0, .current_step_A = 0.02};
+
+/// The duty of one wheel or several, as rows come in. A row holds until the next one; the last row only ends the duty. Rows
+/// shorter than kMerged_s are merged.
 class Recording {
  public:
   Recording(std::filesystem::path file, DutyKind kind) : file_(std::move(file)), kind_(kind) {}
@@ -40,7 +48,7 @@ class Recording {
           },
           {}, [this](const CsvRow& row) { take(row); });
     } catch (const Failure& failure) {
-      if (rows_ > kMostRows) {
+      if (pieces_ > kMostPieces) {
         throw;  // whatever else is wrong with it
       }
       for (const Diagnostic& each : failure.diagnostics()) {
@@ -54,10 +62,11 @@ class Recording {
     if (rows_ < 2) {
       throw bad_input({file_.string()}, "", "has one row; expected at least two, the last one ends the duty");
     }
-    for (WheelDemand& wheel : wheels_) {
-      wheel.bins.pop_back();
+    std::vector<WheelDemand> wheels;
+    for (DemandGatherer& wheel : wheels_) {
+      wheels.push_back(wheel.finish());
     }
-    return std::move(wheels_);
+    return wheels;
   }
 
  private:
@@ -78,13 +87,18 @@ class Recording {
 
   void take(const CsvRow& row) {
     const double now_s = row.values[0];
-    if (++rows_ > kMostRows) {
-      throw bad_input({file_.string(), row.line, 1}, "", fmt::format("has more than {} rows; expected something like a match", kMostRows));
+    const double duration_s = now_s - before_s_;
+    pieces_ += rows_ > 0 ? std::min(1.0, std::abs(duration_s) / kMerged_s) : 0.0;
+    if (pieces_ > kMostPieces) {
+      throw bad_input(
+          {file_.string(), row.line, 1}, "",
+          fmt::format("has more than {:.0f} rows, those shorter than {} s counted as parts of one; expected something like a match",
+                      kMostPieces, kMerged_s));
     }
-    if (now_s <= before_s_) {
+    if (duration_s <= 0.0) {
       problem(row, 0, fmt::format("{} s does not come after {} s; time must increase", now_s, before_s_));
     }
-    if (rows_ == 1) {
+    if (++rows_ == 1) {
       first_s_ = now_s;
     }
     if (now_s - first_s_ > kLongest_s) {
@@ -95,19 +109,28 @@ class Recording {
         problem(row, i, fmt::format("{0} is beyond any motor; expected -{1:.0f} to {1:.0f}", row.values[i], kLargest));
       }
     }
-    for (std::size_t i = 1; i + 1 < row.values.size(); i += 2) {
-      const std::size_t wheel = (i - 1) / 2;
-      if (wheel == wheels_.size()) {
-        wheels_.push_back({row.values.size() > 3 ? fmt::format("wheel {}", wheel + 1) : "recorded wheel", {}, {}});
-      }
-      if (!wheels_[wheel].bins.empty()) {
-        wheels_[wheel].bins.back().duration_s = now_s - before_s_;
-      }
-      const double torque_Nm = kind_ == DutyKind::torque ? row.values[i] : 0.0;
-      const double current_A = kind_ == DutyKind::current ? row.values[i] : 0.0;
-      wheels_[wheel].bins.push_back(constant_bin(0.0, torque_Nm, row.values[i + 1], current_A));
+    if (problems_.empty()) {
+      hold(duration_s);
     }
     before_s_ = now_s;
+    before_.assign(row.values.begin(), row.values.end());
+  }
+
+  /// The row before lasted so long.
+  void hold(double duration_s) {
+    for (std::size_t i = 1; i + 1 < before_.size(); i += 2) {
+      const std::size_t wheel = (i - 1) / 2;
+      if (wheel == wheels_.size()) {
+        wheels_.emplace_back(before_.size() > 3 ? fmt::format("wheel {}", wheel + 1) : "recorded wheel", kMerged_s, kGrid);
+      }
+      const double torque_Nm = kind_ == DutyKind::torque ? before_[i] : 0.0;
+      const double current_A = kind_ == DutyKind::current ? before_[i] : 0.0;
+      if (duration_s < kMerged_s * (1.0 - 1e-9)) {
+        wheels_[wheel].add(duration_s, torque_Nm, before_[i + 1], current_A);
+      } else {
+        wheels_[wheel].add_alone(duration_s, torque_Nm, before_[i + 1], current_A);
+      }
+    }
   }
 
   void problem(const CsvRow& row, std::size_t value, std::string message) {
@@ -119,9 +142,11 @@ class Recording {
   std::filesystem::path file_;
   DutyKind kind_;
   std::vector<std::string> names_;  ///< of the columns that are read, as they are given
-  std::vector<WheelDemand> wheels_;
+  std::vector<DemandGatherer> wheels_;
   std::vector<Diagnostic> problems_;
+  std::vector<double> before_;  ///< values of the row that still holds
   std::size_t rows_ = 0;
+  double pieces_ = 0.0;
   double before_s_ = std::nan("");
   double first_s_ = 0.0;
 };
@@ -130,9 +155,8 @@ class Recorded final : public DutyShape {
  public:
   Recorded(std::vector<WheelDemand> once, int repeats) : once_(std::move(once)), repeats_(repeats) {
     for (WheelDemand& wheel : once_) {
-      for (const LoadBin& bin : wheel.bins) {
-        const double sign = bin.velocity_mean_rad_per_s < 0.0 ? -1.0 : 1.0;
-        wheel.points.push_back({sign * bin.torque_mean_Nm, bin.speed_mean_rad_per_s, bin.current_rms_A, bin.duration_s * repeats});
+      for (LoadPoint& point : wheel.points) {
+        point.time_s *= repeats;
       }
     }
   }
@@ -179,8 +203,8 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
     }
     return;
   }
-  if (static_cast<double>(wheels.front().bins.size()) * repeats > static_cast<double>(kMostRows)) {
-    table.problem("repeats", fmt::format("makes more than {} rows; expected something like a match", kMostRows));
+  if (static_cast<double>(wheels.front().bins.size()) * repeats > kMostPieces) {
+    table.problem("repeats", fmt::format("makes more than {:.0f} rows; expected something like a match", kMostPieces));
     return;
   }
   duty.shape_data = std::make_shared<Recorded>(std::move(wheels), static_cast<int>(repeats));
