@@ -49,7 +49,7 @@ DrawSvg open_plugin() {
   void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* function = library != nullptr ? dlsym(library, chart_plugin_function) : nullptr;
   if (function == nullptr) {
-    throw Failure(ExitCode::bug, fmt::format("cannot open the drawing library: {}", dlerror()));
+    throw Failure(ExitCode::bug, fmt::format("cannot open the drawing library: {}; is it of the same build as the program?", dlerror()));
   }
   return reinterpret_cast<DrawSvg>(function);
 }
@@ -77,7 +77,7 @@ void check_lengths(const Chart& chart) {
 std::string draw_svg(const Chart& chart) {
   check_lengths(chart);
   std::string text;
-  if (!open_plugin()(&chart, &text)) {
+  if (!open_plugin()(&chart, &text, chart_layout)) {
     throw Failure(ExitCode::bug, "drawing failed: " + text);
   }
   return text;

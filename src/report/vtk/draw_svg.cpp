@@ -297,7 +297,12 @@ std::string draw(const Chart& chart) {
 }  // namespace
 }  // namespace heatsoak
 
-extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_svg(const heatsoak::Chart* chart, std::string* text) {
+extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_chart(const heatsoak::Chart* chart, std::string* text,
+                                                                           std::size_t layout) {
+  if (layout != heatsoak::chart_layout) {
+    *text = std::string(heatsoak::chart_plugin_file) + " is of another build than the program; build or install both again";
+    return false;
+  }
   try {
     *text = heatsoak::draw(*chart);
     return true;
