@@ -50,7 +50,7 @@ enum class PlanResult : unsigned char {
 
 /// A stretch of constant jerk, with the state at its start.
 template <typename Real>
-struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): of sixteen in a Trajectory most hold no values
+struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): of those in a Trajectory most hold no values
   Real start_s;
   Real duration_s;
   Real jerk;  ///< m/s3 or rad/s3
@@ -60,8 +60,8 @@ struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): o
 /// A planned motion. Only the first `segment_count` segments hold values.
 template <typename Real>
 struct Trajectory {
-  /// Leaving a violated limit takes at most two segments; the widest motion of a given duration takes thirteen.
-  static constexpr int kMostSegments = 16;
+  /// A lead in the plane takes at most four segments, leaving a violated limit two; the widest motion of a given duration takes thirteen.
+  static constexpr int kMostSegments = 19;
 
   int segment_count = 0;
   Real duration_s = 0;

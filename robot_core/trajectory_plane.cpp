@@ -2,16 +2,13 @@
 
 #include "robot_core/trajectory.h"
 #include "robot_core/trajectory_arrival.h"
+#include "robot_core/trajectory_circle.h"
+#include "robot_core/trajectory_lead.h"
 #include "robot_core/trajectory_limits.h"
 
 namespace robot_core {
 namespace detail {
 namespace {
-
-template <typename Real>
-Real length(Real x, Real y) {
-  return square_root(x * x + y * y);
-}
 
 /// How x and y share a circle: x gets the cosine, y the sine of an angle that is told by the tangent t of its half;
 /// cos = (1 - t^2)/(1 + t^2), sin = 2 t/(1 + t^2), 0 < t < 1.
@@ -43,11 +40,16 @@ class Split {
   }
 
   /// The split of a vector's own direction, as near as the room allows.
-  [[nodiscard]] Real along(Real x, Real y) const { return clamped(absolute(y) / (length(x, y) + absolute(x)), low_, high_); }
+  [[nodiscard]] Real along(Real x, Real y) const { return near(absolute(y) / (length(x, y) + absolute(x))); }
+
+  /// As near as the room allows.
+  [[nodiscard]] Real near(Real t) const { return clamped(t, low_, high_); }
+
+  [[nodiscard]] static Real share(Real t, int axis) { return (axis == 0 ? Real(1) - t * t : Real(2) * t) / (Real(1) + t * t); }
 
   [[nodiscard]] AxisLimits<Real> limits(Real t, int axis) const {
-    const Real share = (axis == 0 ? Real(1) - t * t : Real(2) * t) / (Real(1) + t * t);
-    return AxisLimits<Real>::symmetric(share * plane_.speed_max, share * plane_.acceleration_max, share * plane_.jerk_max);
+    const Real part = share(t, axis);
+    return AxisLimits<Real>::symmetric(part * plane_.speed_max, part * plane_.acceleration_max, part * plane_.jerk_max);
   }
 
  private:
@@ -78,62 +80,168 @@ bool leave_room_for_acceleration(const AxisState<Real> (&target)[3], const Plane
   return split.leave_room(target[0].acceleration / plane.acceleration_max, target[1].acceleration / plane.acceleration_max);
 }
 
-/// What the lengths of velocity and acceleration may be.
+/// The best plan so far, by its split and the level of its lead.
 template <typename Real>
-struct Circle {
-  Real speed;
-  Real acceleration;
+struct Candidate {
+  Real split;
+  int level;
+  Real square;  ///< of the longest vectors, over the circle; not below 1
+  Real duration_s;
 };
 
-/// The limits, or, if that is more, what the start has. The tolerance is of the limits, so that whoever plans again and
-/// again gains nothing by it.
+/// The search for the shortest plan that stays inside of the circle, from where one can plan anew and still stay inside.
 template <typename Real>
-Circle<Real> circle_of(const PlaneLimits<Real>& plane, const AxisState<Real> (&start)[3]) {
-  constexpr Real kTolerance = Real(1) + Real(1e-4);
-  return {larger(kTolerance * plane.speed_max, length(start[0].velocity, start[1].velocity)),
-          larger(kTolerance * plane.acceleration_max, length(start[0].acceleration, start[1].acceleration))};
-}
-
-/// The longest vectors on the way: the square of the larger one's part of the circle, sampled.
-template <typename Real>
-Real square_on_the_way(const Trajectory<Real> (&trajectories)[3], const Circle<Real>& circle) {
-  constexpr int kSamples = 6;
-  int at[2] = {0, 0};
-  const auto end_s = [&](int axis) {
-    const Trajectory<Real>& motion = trajectories[axis];
-    return at[axis] + 1 < motion.segment_count ? motion.segments[at[axis] + 1].start_s : motion.duration_s;
-  };
-  const auto state = [&](int axis, Real time_s) {
-    const Trajectory<Real>& motion = trajectories[axis];
-    if (motion.segment_count == 0) {
-      return motion.at(time_s);
-    }
-    const TrajectorySegment<Real>& segment = motion.segments[at[axis]];
-    return Trajectory<Real>::advanced(segment.start, segment.jerk, time_s - segment.start_s);
-  };
-  Real most = 0;
-  for (Real from_s = 0; at[0] < larger(trajectories[0].segment_count, 1) && at[1] < larger(trajectories[1].segment_count, 1);) {
-    const Real until_s = smaller(end_s(0), end_s(1));
-    for (int i = 0; i < kSamples; ++i) {
-      const Real time_s = from_s + (until_s - from_s) * (Real(i) / Real(kSamples));
-      const AxisState<Real> x = state(0, time_s);
-      const AxisState<Real> y = state(1, time_s);
-      most = larger(most, (x.velocity * x.velocity + y.velocity * y.velocity) / (circle.speed * circle.speed));
-      most =
-          larger(most, (x.acceleration * x.acceleration + y.acceleration * y.acceleration) / (circle.acceleration * circle.acceleration));
-    }
-    ++at[end_s(0) <= end_s(1) ? 0 : 1];
-    from_s = until_s;
+class Inside {
+ public:
+  Inside(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane, const AxisLimits<Real>& yaw,
+         Target how, const Split<Real>& room, Trajectory<Real> (&trajectories)[3])
+      : start_(start),
+        target_(target),
+        plane_(plane),
+        yaw_(yaw),
+        how_(how),
+        room_(room),
+        trajectories_(trajectories),
+        circle_(Circle<Real>::around(plane)),
+        share_x_(least_share(start[0], circle_)),
+        share_y_(least_share(start[1], circle_)) {
+    left_speed_ = braked_speed(start[0], start[1], plane.jerk_max);
+    is_in_a_box_ = share_x_ * share_x_ + share_y_ * share_y_ <= Real(1);
+    can_stay_ = is_in_a_box_ || left_speed_ <= circle_.speed;
+    // Who is outside of the circle has to go no further out.
+    circle_.speed = larger(circle_.speed, length(start[0].velocity, start[1].velocity));
+    circle_.acceleration = larger(circle_.acceleration, length(start[0].acceleration, start[1].acceleration));
   }
-  return most;
-}
+
+  PlanResult search(Real fastest) {
+    if (const PlanResult result = plan(fastest, kNoLead); result != PlanResult::ok) {
+      return result;
+    }
+    if (keeps_shares(fastest)) {
+      return PlanResult::ok;
+    }
+    fastest_s_ = trajectories_[0].duration_s;
+    best_ = {fastest, kNoLead, std::numeric_limits<Real>::max(), fastest_s_};
+    if (consider_planned(fastest, kNoLead)) {
+      return PlanResult::ok;
+    }
+    turn_from(fastest);
+    // Worth the time where turning the split costs much.
+    constexpr Real kLittle = Real(5) / Real(4);
+    if (best_.square > Real(1) || best_.duration_s > kLittle * fastest_s_) {
+      for (int level = 0; level < kLevels; ++level) {
+        consider_lead(fastest, level);
+      }
+    }
+    return best_.split == planned_split_ && best_.level == planned_level_ ? PlanResult::ok : plan(best_.split, best_.level);
+  }
+
+ private:
+  static constexpr int kNoLead = -1;
+  static constexpr int kLevels = 4;
+
+  /// The speed in the end of a lead: what is left when the acceleration is gone, or parts of the limit.
+  [[nodiscard]] Real speed_of(int level) const {
+    const Real part = Real(kLevels - 1 - level) / Real(kLevels - 1) * Real(3) / Real(4);
+    return level == 0 ? left_speed_ : part * plane_.speed_max;
+  }
+
+  [[nodiscard]] bool keeps_shares(Real t) const { return share_x_ <= Split<Real>::share(t, 0) && share_y_ <= Split<Real>::share(t, 1); }
+
+  PlanResult plan(Real t, int level) {
+    planned_split_ = t;
+    planned_level_ = level;
+    const Split<Real> split(plane_);
+    const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw_};
+    const int leads = level == kNoLead ? 0 : 2;
+    if (leads > 0) {
+      lead_to(speed_of(level), start_, plane_, leads_);
+    }
+    return plan_together<Real>(3, start_, target_, limits, leads_, leads, trajectories_, how_, nullptr);
+  }
+
+  /// Whether the plan just made stays inside, also if it is planned anew on the way, and gets on.
+  bool consider_planned(Real t, int level) {
+    constexpr Real kMostDetour = 8;
+    const Real duration_s = trajectories_[0].duration_s;
+    const bool has_lead = level != kNoLead;
+    if (!has_lead && ((!can_stay_ && duration_s > kMostDetour * fastest_s_) ||
+                      !can_stay_inside(trajectories_, circle_, larger(plane_.speed_max, can_stay_ ? Real(0) : left_speed_),
+                                       Split<Real>::share(t, 0), Split<Real>::share(t, 1)))) {
+      return false;
+    }
+    const Real square = square_on_the_way(trajectories_, circle_);
+    // As far out but for rounding: the shorter one.
+    constexpr Real kAlike = Real(1e-4);
+    if (square < (Real(1) - kAlike) * best_.square || (square <= (Real(1) + kAlike) * best_.square && duration_s < best_.duration_s)) {
+      best_ = {t, level, square, duration_s};
+    }
+    return square <= Real(1);
+  }
+
+  bool consider(Real t, int level) { return plan(t, level) == PlanResult::ok && consider_planned(t, level); }
+
+  /// The split turns to where it fits the start, no further than needed.
+  void turn_from(Real fastest) {
+    constexpr int kHalvings = 5;
+    Split<Real> fitting = room_;
+    const bool fits = is_in_a_box_ && fitting.leave_room(share_x_, share_y_);
+    const AxisState<Real>& x = start_[0];
+    const AxisState<Real>& y = start_[1];
+    Real far = fits ? fitting.near(fastest) : room_.along(x.velocity, y.velocity);
+    if (!consider(far, kNoLead) && !fits) {
+      far = room_.along(x.acceleration, y.acceleration);
+      consider(far, kNoLead);
+    }
+    Real near = fastest;
+    for (int halving = 0; halving < kHalvings; ++halving) {
+      const Real middle = (near + far) / Real(2);
+      (consider(middle, kNoLead) ? far : near) = middle;
+    }
+  }
+
+  void consider_lead(Real fastest, int level) {
+    const Real speed = speed_of(level);
+    if (level > 0 && !(speed < left_speed_)) {
+      return;
+    }
+    const AxisState<Real>& x = start_[0];
+    const AxisState<Real>& y = start_[1];
+    const Real half_s = length(x.acceleration, y.acceleration) / plane_.jerk_max / Real(2);
+    const Real part = left_speed_ > Real(0) ? speed / left_speed_ / larger(circle_.speed, speed) : Real(0);
+    Split<Real> fitting = room_;
+    if (fitting.leave_room(smaller(part * absolute(x.velocity + half_s * x.acceleration), Real(1)),
+                           smaller(part * absolute(y.velocity + half_s * y.acceleration), Real(1)))) {
+      consider(fitting.near(fastest), level);
+    }
+  }
+
+  const AxisState<Real> (&start_)[3];
+  const AxisState<Real> (&target_)[3];
+  const PlaneLimits<Real>& plane_;
+  const AxisLimits<Real>& yaw_;
+  Target how_;
+  const Split<Real>& room_;
+  Trajectory<Real> (&trajectories_)[3];
+  Circle<Real> circle_;
+  Real share_x_;
+  Real share_y_;
+  Real left_speed_;
+  bool is_in_a_box_;
+  bool can_stay_;
+  Lead<Real> leads_[2];
+  Candidate<Real> best_{};
+  Real fastest_s_ = 0;
+  Real planned_split_ = 0;
+  int planned_level_ = kNoLead;
+};
 
 /// Plans with the fastest split. Where that would leave the circle, because x and y of the start do not fit it, the split
 /// turns towards the start's own direction, no further than needed, and not where the motion would then hardly get on.
 /// `plan(t)` fills the trajectories.
 template <typename Real, typename Plan>
-PlanResult plan_inside(const Split<Real>& split, Real fastest, const AxisState<Real> (&start)[3], const Circle<Real>& circle,
-                       const Trajectory<Real> (&trajectories)[3], const Plan& plan) {
+PlanResult plan_velocity_inside(const Split<Real>& split, Real fastest, const AxisState<Real> (&start)[3], const Circle<Real>& circle,
+                                const Trajectory<Real> (&trajectories)[3], const Plan& plan) {
   constexpr Real kInside = Real(1) + Real(8) * std::numeric_limits<Real>::epsilon();
   constexpr int kHalvings = 6;
   if (const PlanResult result = plan(fastest); result != PlanResult::ok) {
@@ -141,13 +249,13 @@ PlanResult plan_inside(const Split<Real>& split, Real fastest, const AxisState<R
   }
   Real best = fastest;
   Real last = fastest;
-  Real least = square_on_the_way(trajectories, circle);
+  Real least = square_on_the_way<Real>(trajectories, circle);
   constexpr Real kMostDetour = 8;
   const Real longest_s = kMostDetour * trajectories[0].duration_s;
   const auto square_at = [&](Real t) {
     last = t;
     const bool gets_on = plan(t) == PlanResult::ok && trajectories[0].duration_s <= longest_s;
-    const Real square = gets_on ? square_on_the_way(trajectories, circle) : std::numeric_limits<Real>::max();
+    const Real square = gets_on ? square_on_the_way<Real>(trajectories, circle) : std::numeric_limits<Real>::max();
     if (square < least || square <= kInside) {
       least = square;
       best = t;
@@ -196,11 +304,7 @@ PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (
   }
   const Real fastest =
       split.balanced([&](const AxisLimits<Real>& limits, int axis) { return earliest_arrival_s(start[axis], target[axis], limits, how); });
-  const Circle<Real> circle = circle_of(plane, start);
-  return plan_inside(split, fastest, start, circle, trajectories, [&](Real t) {
-    const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw};
-    return plan_synchronised(3, start, target, limits, trajectories, how);
-  });
+  return Inside<Real>(start, target, plane, yaw, how, split, trajectories).search(fastest);
 }
 
 template <typename Real>
@@ -217,8 +321,10 @@ PlanResult plan_plane_velocity(const AxisState<Real> (&start)[3], const AxisStat
     return plan_velocity(start[axis], target[axis], limits, trajectories[axis]) == PlanResult::ok ? trajectories[axis].duration_s
                                                                                                   : std::numeric_limits<Real>::max();
   });
-  const Circle<Real> circle{std::numeric_limits<Real>::max(), circle_of(plane, start).acceleration};
-  return plan_inside(split, fastest, start, circle, trajectories, [&](Real t) {
+  Circle<Real> circle = Circle<Real>::around(plane);
+  circle.speed = std::numeric_limits<Real>::max();
+  circle.acceleration = larger(circle.acceleration, length(start[0].acceleration, start[1].acceleration));
+  return plan_velocity_inside(split, fastest, start, circle, trajectories, [&](Real t) {
     const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw};
     return plan_velocity_synchronised(3, start, target, limits, trajectories);
   });
