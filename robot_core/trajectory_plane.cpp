@@ -28,11 +28,10 @@ class Split {
   /// `duration_s(limits, axis)` of axis 0 and 1: more of everything makes an axis faster, so the two cross once. An axis
   /// that cannot do with its part needs more.
   template <typename Duration>
-  [[nodiscard]] Real balanced(const Duration& duration_s) const {
-    constexpr int kHalvings = std::numeric_limits<Real>::digits > 32 ? 24 : 16;
+  [[nodiscard]] Real balanced(const Duration& duration_s, int halvings = std::numeric_limits<Real>::digits > 32 ? 24 : 16) const {
     Real low = low_;
     Real high = high_;
-    for (int i = 0; i < kHalvings; ++i) {
+    for (int i = 0; i < halvings; ++i) {
       const Real middle = (low + high) / Real(2);
       (duration_s(limits(middle, 0), 0) > duration_s(limits(middle, 1), 1) ? high : low) = middle;
     }
@@ -130,7 +129,7 @@ class Inside {
     constexpr Real kLittle = Real(5) / Real(4);
     if (best_.square > Real(1) || best_.duration_s > kLittle * fastest_s_) {
       for (int level = 0; level < kLevels; ++level) {
-        consider_lead(fastest, level);
+        consider_lead(level);
       }
     }
     return best_.split == planned_split_ && best_.level == planned_level_ ? PlanResult::ok : plan(best_.split, best_.level);
@@ -200,19 +199,29 @@ class Inside {
     }
   }
 
-  void consider_lead(Real fastest, int level) {
+  void consider_lead(int level) {
+    constexpr int kHalvings = 12;
     const Real speed = speed_of(level);
     if (level > 0 && !(speed < left_speed_)) {
       return;
     }
-    const AxisState<Real>& x = start_[0];
-    const AxisState<Real>& y = start_[1];
-    const Real half_s = length(x.acceleration, y.acceleration) / plane_.jerk_max / Real(2);
-    const Real part = left_speed_ > Real(0) ? speed / left_speed_ / larger(circle_.speed, speed) : Real(0);
+    Lead<Real> leads[2];
+    lead_to(speed, start_, plane_, leads);
+    const Real over = Real(1) / larger(circle_.speed, speed);
     Split<Real> fitting = room_;
-    if (fitting.leave_room(smaller(part * absolute(x.velocity + half_s * x.acceleration), Real(1)),
-                           smaller(part * absolute(y.velocity + half_s * y.acceleration), Real(1)))) {
-      consider(fitting.near(fastest), level);
+    if (!fitting.leave_room(smaller(over * absolute(leads[0].end.velocity), Real(1)),
+                            smaller(over * absolute(leads[1].end.velocity), Real(1)))) {
+      return;
+    }
+    const auto duration_s = [&](const AxisLimits<Real>& limits, int axis) {
+      AxisState<Real> met = target_[axis];
+      met.position += how_ == Target::moving_on ? target_[axis].velocity * leads[axis].duration_s : Real(0);
+      return leads[axis].duration_s + earliest_arrival_s(leads[axis].end, met, limits, how_);
+    };
+    const Real t = fitting.balanced(duration_s, kHalvings);
+    const bool is_inside = best_.square <= Real(1);
+    if (!is_inside || larger(duration_s(fitting.limits(t, 0), 0), duration_s(fitting.limits(t, 1), 1)) < best_.duration_s) {
+      consider(t, level);
     }
   }
 
