@@ -155,10 +155,13 @@ struct PlaneLimits {
 /// x, y and yaw of a robot, arriving together. A circle bounds speed, acceleration and jerk in the plane: x gets the
 /// share cos(split) of each, y the share sin(split), and the split is chosen so that both are equally slow, within what
 /// the target needs. A target may have all but 1e-6 of a limit; if no split leaves room for its velocity (or, with that,
-/// its acceleration), the result says so. Where the start does not fit that split (a turn at full speed), the split turns
-/// towards the start's own direction until speed and acceleration stay inside of the circle, or of what the start has if
-/// that is more; to 0.2 %. Only a start that is about to leave the circle by its acceleration may do so. A plan of the next
-/// tick then finds more room for the new direction. axes: 0 x, 1 y, 2 yaw.
+/// its acceleration), the result says so. Where the start does not fit that split (a turn at full speed), the split turns; where none fits
+/// or that takes long, x and y first bring the acceleration to zero along its own direction, then perhaps brake along the velocity's own,
+/// and then share the circle. The shortest of these plans that stays inside of the circle to 0.2 % is taken. There is one from every start
+/// with |v| <= speed_max, |a| <= acceleration_max and |v + a |a|/(2 jerk_max)| <= speed_max (its acceleration braked along its own
+/// direction), and from every state of such a plan: whoever plans anew in every tick stays inside. Other starts may leave the circle of
+/// speed, but no further than the largest of |v| and |v + a |a|/(2 jerk_max)|, and never that of acceleration beyond their own.
+/// A target whose own acceleration leads out of the circle is followed out of it. axes: 0 x, 1 y, 2 yaw.
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);

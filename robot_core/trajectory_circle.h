@@ -118,30 +118,38 @@ class PairOfSegments {
   Real until_s_ = 0;
 };
 
-/// The longest vectors on the way: the square of the larger one's part of the circle, or anything not above 1.
+/// The highest speed on the way: the square of its part of the circle, or anything not above 1.
 template <typename Real>
-Real square_on_the_way(const Trajectory<Real>* motions, const Circle<Real>& circle) {
+Real speed_square(const Trajectory<Real>* motions, const Circle<Real>& circle) {
   constexpr int kHalvings = 10;
   Real most = 1;
   PairOfSegments<Real> pair(motions);
   do {
     const Real time_s = pair.duration_s();
     Parabola<Real> velocity[2];
-    Real square_from = 0;
-    Real square_to = 0;
     for (int axis = 0; axis < 2; ++axis) {
       const AxisState<Real> from = pair.state(axis, Real(0));
-      const AxisState<Real> to = pair.state(axis, time_s);
       velocity[axis] = {from.velocity / circle.speed, (from.velocity + from.acceleration * time_s / Real(2)) / circle.speed,
-                        to.velocity / circle.speed};
-      // The acceleration goes along a line: it is longest at an end.
-      square_from += from.acceleration * from.acceleration;
-      square_to += to.acceleration * to.acceleration;
+                        pair.state(axis, time_s).velocity / circle.speed};
     }
-    most = larger(most, larger(square_from, square_to) / (circle.acceleration * circle.acceleration));
     most = larger(most, most_square(velocity[0], velocity[1], most, kHalvings));
   } while (pair.next());
   return most;
+}
+
+/// The same of the acceleration. It goes along a line between changes of a jerk, and so is longest at one of them.
+template <typename Real>
+Real acceleration_square(const Trajectory<Real>* motions, const Circle<Real>& circle) {
+  Real most = 0;
+  const auto look = [&](const AxisState<Real>& x, const AxisState<Real>& y) {
+    most = larger(most, x.acceleration * x.acceleration + y.acceleration * y.acceleration);
+  };
+  PairOfSegments<Real> pair(motions);
+  do {
+    look(pair.state(0, Real(0)), pair.state(1, Real(0)));
+    look(pair.state(0, pair.duration_s()), pair.state(1, pair.duration_s()));
+  } while (pair.next());
+  return most / (circle.acceleration * circle.acceleration);
 }
 
 /// Whether someone who plans anew anywhere on the way can stay inside: the state keeps some shares of the circle, or braking its

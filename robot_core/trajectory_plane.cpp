@@ -84,7 +84,7 @@ template <typename Real>
 struct Candidate {
   Real split;
   int level;
-  Real square;  ///< of the longest vectors, over the circle; not below 1
+  Real square;  ///< of the highest speed, over the circle's; not below 1
   Real duration_s;
 };
 
@@ -169,7 +169,10 @@ class Inside {
                                        Split<Real>::share(t, 0), Split<Real>::share(t, 1)))) {
       return false;
     }
-    const Real square = square_on_the_way(trajectories_, circle_);
+    if (acceleration_square(trajectories_, circle_) > Real(1) + Real(8) * std::numeric_limits<Real>::epsilon()) {
+      return false;
+    }
+    const Real square = speed_square(trajectories_, circle_);
     // As far out but for rounding: the shorter one.
     constexpr Real kAlike = Real(1e-4);
     if (square < (Real(1) - kAlike) * best_.square || (square <= (Real(1) + kAlike) * best_.square && duration_s < best_.duration_s)) {
@@ -258,29 +261,24 @@ PlanResult plan_velocity_inside(const Split<Real>& split, Real fastest, const Ax
   }
   Real best = fastest;
   Real last = fastest;
-  Real least = square_on_the_way<Real>(trajectories, circle);
+  Real least = acceleration_square(&trajectories[0], circle);
   constexpr Real kMostDetour = 8;
   const Real longest_s = kMostDetour * trajectories[0].duration_s;
   const auto square_at = [&](Real t) {
     last = t;
     const bool gets_on = plan(t) == PlanResult::ok && trajectories[0].duration_s <= longest_s;
-    const Real square = gets_on ? square_on_the_way<Real>(trajectories, circle) : std::numeric_limits<Real>::max();
+    const Real square = gets_on ? acceleration_square(&trajectories[0], circle) : std::numeric_limits<Real>::max();
     if (square < least || square <= kInside) {
       least = square;
       best = t;
     }
     return square;
   };
-  const Real own[2][2] = {{start[0].velocity, start[1].velocity}, {start[0].acceleration, start[1].acceleration}};
   // The direction of next to nothing is noise.
   constexpr Real kNoise = Real(1) / Real(128);
-  const Real limit[2] = {circle.speed, circle.acceleration};
-  for (int i = 0; i < 2 && least > kInside; ++i) {
-    if (!(length(own[i][0], own[i][1]) > kNoise * limit[i])) {
-      continue;
-    }
+  if (least > kInside && length(start[0].acceleration, start[1].acceleration) > kNoise * circle.acceleration) {
     Real near = fastest;
-    Real far = split.along(own[i][0], own[i][1]);
+    Real far = split.along(start[0].acceleration, start[1].acceleration);
     const Real square_of_far = square_at(far);
     const bool is_too_far = square_of_far == std::numeric_limits<Real>::max();
     const Real enough = is_too_far ? kInside : larger(square_of_far, kInside);
@@ -331,7 +329,6 @@ PlanResult plan_plane_velocity(const AxisState<Real> (&start)[3], const AxisStat
                                                                                                   : std::numeric_limits<Real>::max();
   });
   Circle<Real> circle = Circle<Real>::around(plane);
-  circle.speed = std::numeric_limits<Real>::max();
   circle.acceleration = larger(circle.acceleration, length(start[0].acceleration, start[1].acceleration));
   return plan_velocity_inside(split, fastest, start, circle, trajectories, [&](Real t) {
     const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw};
