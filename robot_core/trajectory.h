@@ -60,8 +60,8 @@ struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): o
 /// A planned motion. Only the first `segment_count` segments hold values.
 template <typename Real>
 struct Trajectory {
-  /// A lead in the plane takes at most four segments, leaving a violated limit two; the widest motion of a given duration takes thirteen.
-  static constexpr int kMostSegments = 19;
+  /// A lead in the plane takes at most five segments, leaving a violated limit two; the widest motion of a given duration takes thirteen.
+  static constexpr int kMostSegments = 20;
 
   int segment_count = 0;
   Real duration_s = 0;

@@ -38,8 +38,8 @@ Real least_share(const AxisState<Real>& state, const Circle<Real>& circle) {
   return larger(larger(absolute(state.velocity) / circle.speed, absolute(state.acceleration) / circle.acceleration), braked);
 }
 
-/// The speed that is left when the acceleration has been brought to zero along its own direction. Meanwhile it only rises or only falls
-/// from now's, or falls first: the velocity goes along a line.
+/// The speed that is left when the acceleration has been brought to zero along its own direction. Meanwhile the velocity goes along a line:
+/// it is never faster than at one end.
 template <typename Real>
 Real braked_speed(const AxisState<Real>& x, const AxisState<Real>& y, Real jerk) {
   const Real time_s = length(x.acceleration, y.acceleration) / jerk;
@@ -153,14 +153,19 @@ Real acceleration_square(const Trajectory<Real>* motions, const Circle<Real>& ci
 }
 
 /// Whether someone who plans anew anywhere on the way can stay inside: the state keeps some shares of the circle, or braking its
-/// acceleration leaves no more than `speed`. Sampled, until the shares of the plan itself are kept.
+/// acceleration leaves no more than `speed`. Sampled, as densely as the velocity changes, until the shares of the plan itself are kept.
 template <typename Real>
 bool can_stay_inside(const Trajectory<Real>* motions, const Circle<Real>& circle, Real speed, Real share_x, Real share_y) {
-  constexpr int kSamples = 8;
+  constexpr Real kFewest = 4;
+  constexpr Real kMost = 32;
+  constexpr Real kPerSpeed = 24;
   PairOfSegments<Real> pair(motions);
   do {
-    for (int i = 0; i < kSamples; ++i) {
-      const Real passed_s = pair.duration_s() * Real(i) / Real(kSamples);
+    const Real slope = larger(length(pair.state(0, Real(0)).acceleration, pair.state(1, Real(0)).acceleration),
+                              length(pair.state(0, pair.duration_s()).acceleration, pair.state(1, pair.duration_s()).acceleration));
+    const int samples = static_cast<int>(smaller(kMost, kFewest + kPerSpeed * slope * pair.duration_s() / circle.speed));
+    for (int i = 0; i < samples; ++i) {
+      const Real passed_s = pair.duration_s() * Real(i) / Real(samples);
       const AxisState<Real> x = pair.state(0, passed_s);
       const AxisState<Real> y = pair.state(1, passed_s);
       const Real least_x = least_share(x, circle);

@@ -5,6 +5,7 @@
 
 #include "robot_core/math.h"
 #include "robot_core/trajectory.h"
+#include "robot_core/trajectory_circle.h"
 #include "robot_core/trajectory_path.h"
 
 namespace robot_core::detail {
@@ -12,7 +13,7 @@ namespace robot_core::detail {
 /// An axis' part of the lead: stretches of constant jerk in m/s3 (or rad/s3), and where they end.
 template <typename Real>
 struct Lead {  // NOLINT(cppcoreguidelines-pro-type-member-init): only the first of the path's places hold values
-  Path<Real, 4> path;
+  Path<Real, 5> path;
   Real duration_s = 0;
   AxisState<Real> end{};
 
@@ -40,37 +41,56 @@ StraightBrake<Real> straight_brake(Real change, Real slope, const PlaneLimits<Re
   return {(deepest - slope) / plane.jerk_max, hold_s, deepest / plane.jerk_max};
 }
 
-/// x and y: the acceleration is brought to zero along its own direction, then the velocity down to `speed` along its own. Where it brakes
+/// How x and y bring their accelerations to zero, each with a share of the jerk, and the velocity that is left.
+template <typename Real>
+struct Calming {
+  Real share[2];
+  Real time_s[2];
+  Real velocity[2];
+  Real speed;
+};
+
+template <typename Real>
+Calming<Real> calming(const AxisState<Real>* start, Real jerk_max, Real share_x, Real share_y) {
+  Calming<Real> c{{share_x, share_y}, {}, {}, Real(0)};
+  for (int axis = 0; axis < 2; ++axis) {
+    const Real slope = start[axis].acceleration;
+    c.time_s[axis] = slope == Real(0) ? Real(0) : absolute(slope) / (c.share[axis] * jerk_max);
+    c.velocity[axis] = start[axis].velocity + slope * c.time_s[axis] / Real(2);
+  }
+  c.speed = length(c.velocity[0], c.velocity[1]);
+  return c;
+}
+
+/// x and y: the acceleration is brought to zero, then the velocity down to `speed` along its own direction. Where the acceleration brakes
 /// along the velocity already, it goes on from there.
 template <typename Real>
-void lead_to(Real speed, const AxisState<Real>* start, const PlaneLimits<Real>& plane, Lead<Real>* leads) {
+void lead_to(Real speed, const AxisState<Real>* start, const Calming<Real>& calm, const PlaneLimits<Real>& plane, Lead<Real>* leads) {
   constexpr Real kStraight = std::numeric_limits<Real>::digits > 32 ? Real(1e-9) : Real(1e-4);
   const AxisState<Real>& x = start[0];
   const AxisState<Real>& y = start[1];
-  const Real slope = square_root(x.acceleration * x.acceleration + y.acceleration * y.acceleration);
-  const Real slope_s = slope / plane.jerk_max;
-  const Real left[2] = {x.velocity + x.acceleration * slope_s / Real(2), y.velocity + y.acceleration * slope_s / Real(2)};
-  const Real left_speed = square_root(left[0] * left[0] + left[1] * left[1]);
-  const bool is_faster = left_speed > speed;
+  const bool is_faster = calm.speed > speed;
   const Real against = -(x.velocity * x.acceleration + y.velocity * y.acceleration);
   const bool is_straight = absolute(x.velocity * y.acceleration - y.velocity * x.acceleration) <= kStraight * against;
-  const bool goes_on = is_faster && is_straight && left[0] * x.velocity + left[1] * y.velocity > Real(0);
-  const Real braking = goes_on ? slope : Real(0);
-  const StraightBrake<Real> brake = straight_brake(left_speed - speed + braking * braking / plane.jerk_max / Real(2), braking, plane);
+  const bool goes_on = is_faster && is_straight && calm.velocity[0] * x.velocity + calm.velocity[1] * y.velocity > Real(0);
+  const Real braking = goes_on ? length(x.acceleration, y.acceleration) : Real(0);
+  const StraightBrake<Real> brake = straight_brake(calm.speed - speed + braking * braking / plane.jerk_max / Real(2), braking, plane);
+  const Real calm_s = larger(calm.time_s[0], calm.time_s[1]);
   for (int axis = 0; axis < 2; ++axis) {
     Lead<Real>& lead = leads[axis];
     lead.path.count = 0;
     lead.duration_s = 0;
-    if (!goes_on && slope > Real(0)) {
-      lead.add(slope_s, -start[axis].acceleration / slope * plane.jerk_max);
+    if (!goes_on) {
+      lead.add(calm.time_s[axis], (start[axis].acceleration > Real(0) ? -calm.share[axis] : calm.share[axis]) * plane.jerk_max);
+      lead.add(calm_s - calm.time_s[axis], Real(0));
     }
-    Real velocity = left[axis];
+    Real velocity = calm.velocity[axis];
     if (is_faster) {
-      const Real jerk = left[axis] / left_speed * plane.jerk_max;
+      const Real jerk = calm.velocity[axis] / calm.speed * plane.jerk_max;
       lead.add(brake.jerk_s, -jerk);
       lead.add(brake.hold_s, Real(0));
       lead.add(brake.back_s, jerk);
-      velocity = left[axis] / left_speed * speed;
+      velocity = calm.velocity[axis] / calm.speed * speed;
     }
     lead.end = start[axis];
     for (int i = 0; i < lead.path.count; ++i) {

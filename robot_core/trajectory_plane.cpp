@@ -104,9 +104,15 @@ class Inside {
         circle_(Circle<Real>::around(plane)),
         share_x_(least_share(start[0], circle_)),
         share_y_(least_share(start[1], circle_)) {
-    left_speed_ = braked_speed(start[0], start[1], plane.jerk_max);
-    is_in_a_box_ = share_x_ * share_x_ + share_y_ * share_y_ <= Real(1);
-    can_stay_ = is_in_a_box_ || left_speed_ <= circle_.speed;
+    const Real slope = length(start[0].acceleration, start[1].acceleration);
+    const Real over = slope > Real(0) ? Real(1) / slope : Real(0);
+    calm_ = calming(start_, plane.jerk_max, over * absolute(start[0].acceleration), over * absolute(start[1].acceleration));
+    const Real shares = length(share_x_, share_y_);
+    is_in_a_box_ = shares <= Real(1);
+    if (is_in_a_box_ && calm_.speed > circle_.speed) {
+      calm_ = calming(start_, plane.jerk_max, share_x_ / shares, share_y_ / shares);
+    }
+    can_stay_ = calm_.speed <= circle_.speed;
     // Who is outside of the circle has to go no further out.
     circle_.speed = larger(circle_.speed, length(start[0].velocity, start[1].velocity));
     circle_.acceleration = larger(circle_.acceleration, length(start[0].acceleration, start[1].acceleration));
@@ -142,7 +148,7 @@ class Inside {
   /// The speed in the end of a lead: what is left when the acceleration is gone, or parts of the limit.
   [[nodiscard]] Real speed_of(int level) const {
     const Real part = Real(kLevels - 1 - level) / Real(kLevels - 1) * Real(3) / Real(4);
-    return level == 0 ? left_speed_ : part * plane_.speed_max;
+    return level == 0 ? calm_.speed : part * plane_.speed_max;
   }
 
   [[nodiscard]] bool keeps_shares(Real t) const { return share_x_ <= Split<Real>::share(t, 0) && share_y_ <= Split<Real>::share(t, 1); }
@@ -154,7 +160,7 @@ class Inside {
     const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw_};
     const int leads = level == kNoLead ? 0 : 2;
     if (leads > 0) {
-      lead_to(speed_of(level), start_, plane_, leads_);
+      lead_to(speed_of(level), start_, calm_, plane_, leads_);
     }
     return plan_together<Real>(3, start_, target_, limits, leads_, leads, trajectories_, how_, nullptr);
   }
@@ -165,7 +171,7 @@ class Inside {
     const Real duration_s = trajectories_[0].duration_s;
     const bool has_lead = level != kNoLead;
     if (!has_lead && ((!can_stay_ && duration_s > kMostDetour * fastest_s_) ||
-                      !can_stay_inside(trajectories_, circle_, larger(plane_.speed_max, can_stay_ ? Real(0) : left_speed_),
+                      !can_stay_inside(trajectories_, circle_, larger(plane_.speed_max, can_stay_ ? Real(0) : calm_.speed),
                                        Split<Real>::share(t, 0), Split<Real>::share(t, 1)))) {
       return false;
     }
@@ -205,11 +211,11 @@ class Inside {
   void consider_lead(int level) {
     constexpr int kHalvings = 12;
     const Real speed = speed_of(level);
-    if (level > 0 && !(speed < left_speed_)) {
+    if (level > 0 && !(speed < calm_.speed)) {
       return;
     }
     Lead<Real> leads[2];
-    lead_to(speed, start_, plane_, leads);
+    lead_to(speed, start_, calm_, plane_, leads);
     const Real over = Real(1) / larger(circle_.speed, speed);
     Split<Real> fitting = room_;
     if (!fitting.leave_room(smaller(over * absolute(leads[0].end.velocity), Real(1)),
@@ -238,7 +244,7 @@ class Inside {
   Circle<Real> circle_;
   Real share_x_;
   Real share_y_;
-  Real left_speed_;
+  Calming<Real> calm_;
   bool is_in_a_box_;
   bool can_stay_;
   Lead<Real> leads_[2];
