@@ -102,14 +102,12 @@ void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_sh
   }
 }
 
-/// `value`, or the one of `low`, 0 and `high` that it differs from by a rounding error of `scale`.
+/// `value`, or the nearest of `low`, 0 and `high` that it differs from by a rounding error of `scale`.
 template <typename Real>
 Real snapped(Real value, Real low, Real high, Real scale) {
-  const Real tolerance = kTouch<Real> * scale;
-  if (absolute(value) <= tolerance) {
-    return Real(0);
-  }
-  return absolute(value - high) <= tolerance ? high : (absolute(value - low) <= tolerance ? low : value);
+  const Real limit = value < Real(0) ? low : high;
+  const Real nearest = absolute(value - limit) < absolute(value) ? limit : Real(0);
+  return absolute(value - nearest) <= kTouch<Real> * scale ? nearest : value;
 }
 
 /// The way as segments of the axis. False if the numbers do not hold.
@@ -140,9 +138,26 @@ bool lay_out(const Way<Real>& way, const AxisState<Real>& start, const AxisLimit
   return is_finite(state.position) && is_finite(state.velocity) && is_finite(time_s);
 }
 
+/// The change of segments that is farthest out, and how far the way leads.
+template <typename Real>
+int farthest_change(const Trajectory<Real>& trajectory, Real& farthest) {
+  int from = trajectory.segment_count;
+  Real farthest_start = 0;
+  for (int i = 0; i < trajectory.segment_count; ++i) {
+    const TrajectorySegment<Real>& s = trajectory.segments[i];
+    const Real far = absolute(s.start.position);
+    if (i > 0 && far > farthest_start) {
+      farthest_start = far;
+      from = i;
+    }
+    farthest = larger(farthest, larger(far, absolute(Trajectory<Real>::advanced(s.start, s.jerk, s.duration_s / Real(2)).position)));
+  }
+  return from;
+}
+
 /// What is left to the target at the end of a way is the sum of its rounding errors. Where that can be seen beside the positions asked for,
 /// the way has gone far beyond them, and the error goes where it came from: to the change of segments that is farthest out. False if even
-/// so the end is not the target; `trajectory` is then empty.
+/// so the end is not the target, or the error can be seen beside the whole way; `trajectory` is then empty.
 template <typename Real>
 bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
   AxisState<Real> end = trajectory.target;
@@ -151,15 +166,9 @@ bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const
   const Real velocity = larger(limits.velocity_max, -limits.velocity_min);
   const Real acceleration = larger(limits.acceleration_max, -limits.acceleration_min);
   const Real missed = target.position - end.position;
-  Real farthest = 0;
+  Real farthest = asked;
   if (absolute(missed) > kTouch<Real> * asked) {
-    int from = trajectory.segment_count;
-    for (int i = 1; i < trajectory.segment_count; ++i) {
-      if (const Real far = absolute(trajectory.segments[i].start.position); far > farthest) {
-        farthest = far;
-        from = i;
-      }
-    }
+    const int from = farthest_change(trajectory, farthest);
     for (int i = from; i < trajectory.segment_count; ++i) {
       trajectory.segments[i].start.position += missed;
     }
@@ -168,9 +177,8 @@ bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const
       end.position = Trajectory<Real>::advanced(last.start, last.jerk, last.duration_s).position;
     }
   }
-  const Real reach = asked + velocity * velocity / acceleration;
-  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * reach &&
-                        absolute(missed) <= kArrival<Real> * (reach + farthest + velocity * trajectory.duration_s) &&
+  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * (asked + velocity * velocity / acceleration) &&
+                        absolute(missed) <= kArrival<Real> * farthest &&
                         absolute(target.velocity - end.velocity) <= kArrival<Real> * velocity &&
                         absolute(target.acceleration - end.acceleration) <= kArrival<Real> * acceleration;
   trajectory.segment_count = is_there ? trajectory.segment_count : 0;
