@@ -110,7 +110,10 @@ enum class Target : unsigned char {
 /// If the result is ok, the last segment ends at the target but for 1e-8 (float: 1e-3) of the scales: of the limits for velocity and
 /// acceleration; for the position, of the larger of start's and target's, plus velocity^2/acceleration of the limits. Mostly it is 1e-15.
 /// Where the way leads far beyond those positions, its rounding errors are put where it is farthest: there, segments follow each other
-/// to that part of the farthest position. A target that is missed by a rounding error (1e-11, float 1e-5) of the velocities counts as met.
+/// to that part of the farthest position plus velocity^2/acceleration. Limits that the start keeps are kept to 1e-10 (float: 4e-3) of the
+/// larger one of both directions. Whatever cannot be had so is out_of_range: none of 10^6 problems whose scales are within four decades of
+/// each other, in any units; about 4 of 10^5 where velocity, acceleration and jerk are apart by up to twelve. A target that is missed by a
+/// rounding error (1e-11, float 1e-5) of the velocities counts as met.
 template <typename Real>
 PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
                          Trajectory<Real>& trajectory, Target how = Target::at_position);
@@ -159,9 +162,10 @@ struct PlaneLimits {
 /// or that takes long, x and y first bring the acceleration to zero along its own direction, then perhaps brake along the velocity's own,
 /// and then share the circle. The shortest of these plans that stays inside of the circle to 0.2 % is taken. There is one from every start
 /// with |v| <= speed_max, |a| <= acceleration_max and |v + a |a|/(2 jerk_max)| <= speed_max (its acceleration braked along its own
-/// direction), and from every state of such a plan: whoever plans anew in every tick stays inside. Other starts may leave the circle of
-/// speed, but no further than the largest of |v| and |v + a |a|/(2 jerk_max)|, and never that of acceleration beyond their own.
-/// A target whose own acceleration leads out of the circle is followed out of it. axes: 0 x, 1 y, 2 yaw.
+/// direction), from every start whose axes keep the shares of one split, and from every state of such a plan: whoever plans anew in every
+/// tick stays inside. Other starts may leave the circle of speed, but no further than the largest of |v| and |v + a |a|/(2 jerk_max)|, and
+/// never that of acceleration beyond their own. A target whose own acceleration leads out of the circle is followed out of it. axes: 0 x, 1
+/// y, 2 yaw.
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);

@@ -138,6 +138,32 @@ bool lay_out(const Way<Real>& way, const AxisState<Real>& start, const AxisLimit
   return is_finite(state.position) && is_finite(state.velocity) && is_finite(time_s);
 }
 
+/// Whether velocity and acceleration stay within the limits, but for rounding errors of the larger ones.
+template <typename Real>
+bool keeps_limits(const Trajectory<Real>& trajectory, const AxisLimits<Real>& limits) {
+  constexpr Real kRelative = std::numeric_limits<Real>::digits > 32 ? Real(1e-10) : Real(4e-3);
+  const Real velocity_room = kRelative * larger(limits.velocity_max, -limits.velocity_min);
+  const Real acceleration_room = kRelative * larger(limits.acceleration_max, -limits.acceleration_min);
+  const Real velocity_max = limits.velocity_max + velocity_room;
+  const Real velocity_min = limits.velocity_min - velocity_room;
+  const Real acceleration_max = limits.acceleration_max + acceleration_room;
+  const Real acceleration_min = limits.acceleration_min - acceleration_room;
+  unsigned breaks = 0;
+  for (int i = 0; i < trajectory.segment_count; ++i) {
+    const TrajectorySegment<Real>& s = trajectory.segments[i];
+    const Real velocity = s.start.velocity;
+    const Real slope = s.start.acceleration;
+    const Real change = s.jerk * s.duration_s;
+    // Where the acceleration passes zero, the velocity turns. All without a branch: there are no two ways alike.
+    const Real left = slope > Real(0) ? velocity_max - velocity : velocity - velocity_min;
+    const unsigned turns = static_cast<unsigned>(slope * (slope + change) < Real(0));
+    breaks |= turns & static_cast<unsigned>(slope * slope > Real(2) * absolute(s.jerk) * left);
+    breaks |= static_cast<unsigned>(velocity > velocity_max) | static_cast<unsigned>(velocity < velocity_min) |
+              static_cast<unsigned>(slope > acceleration_max) | static_cast<unsigned>(slope < acceleration_min);
+  }
+  return breaks == 0;
+}
+
 /// The change of segments that is farthest out, and how far the way leads.
 template <typename Real>
 int farthest_change(const Trajectory<Real>& trajectory, Real& farthest) {
@@ -157,9 +183,11 @@ int farthest_change(const Trajectory<Real>& trajectory, Real& farthest) {
 
 /// What is left to the target at the end of a way is the sum of its rounding errors. Where that can be seen beside the positions asked for,
 /// the way has gone far beyond them, and the error goes where it came from: to the change of segments that is farthest out. False if even
-/// so the end is not the target, or the error can be seen beside the whole way; `trajectory` is then empty.
+/// so the end is not the target, or the error can be seen beside the whole way; `trajectory` is then empty. An axis that waits for others
+/// is blended of motions that go further than itself, and has their rounding errors.
 template <typename Real>
-bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
+bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const AxisLimits<Real>& limits, bool waits,
+              Trajectory<Real>& trajectory) {
   AxisState<Real> end = trajectory.target;
   trajectory.target = target;
   const Real asked = larger(absolute(start.position), absolute(target.position));
@@ -177,8 +205,10 @@ bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const
       end.position = Trajectory<Real>::advanced(last.start, last.jerk, last.duration_s).position;
     }
   }
-  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * (asked + velocity * velocity / acceleration) &&
-                        absolute(missed) <= kArrival<Real> * farthest &&
+  const Real reach = velocity * velocity / acceleration;
+  const Real blended = waits ? velocity * trajectory.duration_s : Real(0);
+  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * (asked + reach) &&
+                        absolute(missed) <= kArrival<Real> * (farthest + reach + blended) &&
                         absolute(target.velocity - end.velocity) <= kArrival<Real> * velocity &&
                         absolute(target.acceleration - end.acceleration) <= kArrival<Real> * acceleration;
   trajectory.segment_count = is_there ? trajectory.segment_count : 0;

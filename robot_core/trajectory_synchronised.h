@@ -18,10 +18,18 @@ Real same_time_s(const Problem<Real>& p) {
   return kTogether * smaller(p.acceleration_max + p.acceleration_min, square_root(p.velocity_max + p.velocity_min)) / Real(2);
 }
 
-/// `way` as a trajectory that ends at the target.
+/// Whether the limits of an axis are kept from its start on.
 template <typename Real>
-PlanResult finish(const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
-                  Target how, Trajectory<Real>& trajectory) {
+bool starts_inside(const Axis<Real>& axis) {
+  const Problem<Real>& p = axis.problem;
+  // One that returns by its own acceleration has no brake.
+  return !axis.may_be_early && p.brake.count == 0 && p.v0 <= p.velocity_max && -p.v0 <= p.velocity_min;
+}
+
+/// `way` as a trajectory that ends at the target and, if it starts inside of the limits, keeps them.
+template <typename Real>
+PlanResult finish(bool is_inside, bool waits, const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target,
+                  const AxisLimits<Real>& limits, Target how, Trajectory<Real>& trajectory) {
   if (!lay_out(way, start, limits, trajectory)) {
     trajectory.segment_count = 0;
     return PlanResult::out_of_range;
@@ -31,7 +39,11 @@ PlanResult finish(const Way<Real>& way, const AxisState<Real>& start, const Axis
     met.position += target.velocity * trajectory.duration_s;
     met.acceleration = Real(0);
   }
-  return close_at(met, start, limits, trajectory) ? PlanResult::ok : PlanResult::out_of_range;
+  if (!close_at(met, start, limits, waits, trajectory) || (is_inside && !keeps_limits(trajectory, limits))) {
+    trajectory.segment_count = 0;
+    return PlanResult::out_of_range;
+  }
+  return PlanResult::ok;
 }
 
 /// Axes that arrive together. The first `lead_count` of them have a lead, behind which they are planned.
@@ -72,7 +84,9 @@ class Together {
       }
       append_arrival(axes_[i], arrivals_[i], way);
       failed_axis = i;
-      if (const PlanResult result = finish(way, start[i], target[i], limits[i], how_, trajectories[i]); result != PlanResult::ok) {
+      if (const PlanResult result =
+              finish(i >= lead_count_ && starts_inside(axes_[i]), true, way, start[i], target[i], limits[i], how_, trajectories[i]);
+          result != PlanResult::ok) {
         return result;
       }
       if (how_ == Target::moving_on) {
