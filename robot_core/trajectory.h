@@ -50,7 +50,7 @@ enum class PlanResult : unsigned char {
 
 /// A stretch of constant jerk, with the state at its start.
 template <typename Real>
-struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): of sixteen in a Trajectory most hold no values
+struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): of those in a Trajectory most hold no values
   Real start_s;
   Real duration_s;
   Real jerk;  ///< m/s3 or rad/s3
@@ -60,8 +60,8 @@ struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): o
 /// A planned motion. Only the first `segment_count` segments hold values.
 template <typename Real>
 struct Trajectory {
-  /// Leaving a violated limit takes at most two segments; the widest motion of a given duration takes thirteen.
-  static constexpr int kMostSegments = 16;
+  /// A lead in the plane takes at most five segments, leaving a violated limit two; the widest motion of a given duration takes thirteen.
+  static constexpr int kMostSegments = 20;
 
   int segment_count = 0;
   Real duration_s = 0;
@@ -110,7 +110,11 @@ enum class Target : unsigned char {
 /// If the result is ok, the last segment ends at the target but for 1e-8 (float: 1e-3) of the scales: of the limits for velocity and
 /// acceleration; for the position, of the larger of start's and target's, plus velocity^2/acceleration of the limits. Mostly it is 1e-15.
 /// Where the way leads far beyond those positions, its rounding errors are put where it is farthest: there, segments follow each other
-/// to that part of the farthest position. A target that is missed by a rounding error (1e-11, float 1e-5) of the velocities counts as met.
+/// to that part of the farthest position plus velocity^2/acceleration. Limits that the start keeps are kept to 1e-10 (float: 4e-3) of the
+/// larger one of both directions. Whatever cannot be had so is out_of_range: none of 10^6 problems whose scales are within four decades of
+/// each other, in any units; at most 5 of 10^5 where velocity, acceleration and jerk are apart by up to twelve
+/// (8 of 10^4 with many states at a limit). A target that is missed by a
+/// rounding error (1e-11, float 1e-5) of the velocities counts as met.
 template <typename Real>
 PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
                          Trajectory<Real>& trajectory, Target how = Target::at_position);
@@ -155,10 +159,14 @@ struct PlaneLimits {
 /// x, y and yaw of a robot, arriving together. A circle bounds speed, acceleration and jerk in the plane: x gets the
 /// share cos(split) of each, y the share sin(split), and the split is chosen so that both are equally slow, within what
 /// the target needs. A target may have all but 1e-6 of a limit; if no split leaves room for its velocity (or, with that,
-/// its acceleration), the result says so. Where the start does not fit that split (a turn at full speed), the split turns
-/// towards the start's own direction until speed and acceleration stay inside of the circle, or of what the start has if
-/// that is more; to 0.2 %. Only a start that is about to leave the circle by its acceleration may do so. A plan of the next
-/// tick then finds more room for the new direction. axes: 0 x, 1 y, 2 yaw.
+/// its acceleration), the result says so. Where the start does not fit that split (a turn at full speed), the split turns; where none fits
+/// or that takes long, x and y first bring the acceleration to zero along its own direction, then perhaps brake along the velocity's own,
+/// and then share the circle. The shortest of these plans that stays inside of the circle to 0.2 % is taken. There is one from every start
+/// with |v| <= speed_max, |a| <= acceleration_max and |v + a |a|/(2 jerk_max)| <= speed_max (its acceleration braked along its own
+/// direction), from every start whose axes keep the shares of one split, and from every state of such a plan: whoever plans anew in every
+/// tick stays inside. Other starts may leave the circle of speed, but no further than the largest of |v| and |v + a |a|/(2 jerk_max)|, and
+/// never that of acceleration beyond their own. A target whose own acceleration leads out of the circle is followed out of it. axes: 0 x, 1
+/// y, 2 yaw.
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);

@@ -165,7 +165,13 @@ inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Re
   const Real missing = a.low.entry * a.low.entry - a.rise;
   a.has_gap = a.starts_in_saddle && a.low.entry > Real(0) && missing > Real(0);
   a.gap = a.has_gap ? larger(-square_root(missing), a.high.entry) : Real(0);
-  a.ceiling = larger(velocity_max, larger(a.low.vertex + least_height(a.low), a.high.vertex + least_height(a.high)));
+  // What an end has beyond the limit; not its rounding errors, which a slow cruise would take for its velocity.
+  const auto beyond = [velocity_max](const Leg<Real>& leg) {
+    const Real least = least_height(leg);
+    const Real rounding = Real(4) * std::numeric_limits<Real>::epsilon() * (absolute(leg.vertex) + least);
+    return leg.vertex + least > velocity_max + rounding ? leg.vertex + least : velocity_max;
+  };
+  a.ceiling = larger(beyond(a.low), beyond(a.high));
   return a;
 }
 

@@ -87,7 +87,7 @@ PlanResult plan_bang_bang(const AxisState<Real>& start, const AxisState<Real>& t
   trajectory.duration_s = steps.time_s();
   trajectory.target = {steps.state().position, steps.state().velocity, Real(0)};
   const AxisState<Real> met{target.position + frame * steps.time_s(), target.velocity, Real(0)};
-  return is_finite(steps.time_s()) && close_at(met, start, limits, trajectory) ? PlanResult::ok : PlanResult::out_of_range;
+  return is_finite(steps.time_s()) && close_at(met, start, limits, false, trajectory) ? PlanResult::ok : PlanResult::out_of_range;
 }
 
 #define ROBOT_CORE_INSTANTIATE(Real) \

@@ -257,7 +257,9 @@ inline bool meet_at_edge(const Ascent<Real>& a, bool low_is_free, Real sign, Sha
       return false;
     }
   }
-  return shape.fall >= Real(0) && hold >= Real(0) && slope > free.entry && absolute(missed) <= kTouch<Real> * scale;
+  // Beside a large velocity that allows any slope; the limits do not.
+  return shape.fall >= Real(0) && hold >= Real(0) && slope > free.entry &&
+         slope <= free.bound * (Real(1) + kLimitTolerance<Real>)&&absolute(missed) <= kTouch<Real> * scale;
 }
 
 /// The shortest motion, if it meets the goal but for rounding errors, while longer ones at first fall behind it.

@@ -102,14 +102,12 @@ void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_sh
   }
 }
 
-/// `value`, or the one of `low`, 0 and `high` that it differs from by a rounding error of `scale`.
+/// `value`, or the nearest of `low`, 0 and `high` that it differs from by a rounding error of `scale`.
 template <typename Real>
 Real snapped(Real value, Real low, Real high, Real scale) {
-  const Real tolerance = kTouch<Real> * scale;
-  if (absolute(value) <= tolerance) {
-    return Real(0);
-  }
-  return absolute(value - high) <= tolerance ? high : (absolute(value - low) <= tolerance ? low : value);
+  const Real limit = value < Real(0) ? low : high;
+  const Real nearest = absolute(value - limit) < absolute(value) ? limit : Real(0);
+  return absolute(value - nearest) <= kTouch<Real> * scale ? nearest : value;
 }
 
 /// The way as segments of the axis. False if the numbers do not hold.
@@ -140,26 +138,65 @@ bool lay_out(const Way<Real>& way, const AxisState<Real>& start, const AxisLimit
   return is_finite(state.position) && is_finite(state.velocity) && is_finite(time_s);
 }
 
+/// Whether velocity and acceleration stay within the limits, but for rounding errors of the larger ones.
+template <typename Real>
+bool keeps_limits(const Trajectory<Real>& trajectory, const AxisLimits<Real>& limits) {
+  constexpr Real kRelative = std::numeric_limits<Real>::digits > 32 ? Real(1e-10) : Real(4e-3);
+  const Real velocity_room = kRelative * larger(limits.velocity_max, -limits.velocity_min);
+  const Real acceleration_room = kRelative * larger(limits.acceleration_max, -limits.acceleration_min);
+  const Real velocity_max = limits.velocity_max + velocity_room;
+  const Real velocity_min = limits.velocity_min - velocity_room;
+  const Real acceleration_max = limits.acceleration_max + acceleration_room;
+  const Real acceleration_min = limits.acceleration_min - acceleration_room;
+  unsigned breaks = 0;
+  for (int i = 0; i < trajectory.segment_count; ++i) {
+    const TrajectorySegment<Real>& s = trajectory.segments[i];
+    const Real velocity = s.start.velocity;
+    const Real slope = s.start.acceleration;
+    const Real change = s.jerk * s.duration_s;
+    // Where the acceleration passes zero, the velocity turns. All without a branch: there are no two ways alike.
+    const Real left = slope > Real(0) ? velocity_max - velocity : velocity - velocity_min;
+    const unsigned turns = static_cast<unsigned>(slope * (slope + change) < Real(0));
+    breaks |= turns & static_cast<unsigned>(slope * slope > Real(2) * absolute(s.jerk) * left);
+    breaks |= static_cast<unsigned>(velocity > velocity_max) | static_cast<unsigned>(velocity < velocity_min) |
+              static_cast<unsigned>(slope > acceleration_max) | static_cast<unsigned>(slope < acceleration_min);
+  }
+  return breaks == 0;
+}
+
+/// The change of segments that is farthest out, and how far the way leads.
+template <typename Real>
+int farthest_change(const Trajectory<Real>& trajectory, Real& farthest) {
+  int from = trajectory.segment_count;
+  Real farthest_start = 0;
+  for (int i = 0; i < trajectory.segment_count; ++i) {
+    const TrajectorySegment<Real>& s = trajectory.segments[i];
+    const Real far = absolute(s.start.position);
+    if (i > 0 && far > farthest_start) {
+      farthest_start = far;
+      from = i;
+    }
+    farthest = larger(farthest, larger(far, absolute(Trajectory<Real>::advanced(s.start, s.jerk, s.duration_s / Real(2)).position)));
+  }
+  return from;
+}
+
 /// What is left to the target at the end of a way is the sum of its rounding errors. Where that can be seen beside the positions asked for,
 /// the way has gone far beyond them, and the error goes where it came from: to the change of segments that is farthest out. False if even
-/// so the end is not the target; `trajectory` is then empty.
+/// so the end is not the target, or the error can be seen beside the whole way; `trajectory` is then empty. An axis that waits for others
+/// is blended of motions that go further than itself, and has their rounding errors.
 template <typename Real>
-bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
+bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const AxisLimits<Real>& limits, bool waits,
+              Trajectory<Real>& trajectory) {
   AxisState<Real> end = trajectory.target;
   trajectory.target = target;
   const Real asked = larger(absolute(start.position), absolute(target.position));
   const Real velocity = larger(limits.velocity_max, -limits.velocity_min);
   const Real acceleration = larger(limits.acceleration_max, -limits.acceleration_min);
   const Real missed = target.position - end.position;
-  Real farthest = 0;
+  Real farthest = asked;
   if (absolute(missed) > kTouch<Real> * asked) {
-    int from = trajectory.segment_count;
-    for (int i = 1; i < trajectory.segment_count; ++i) {
-      if (const Real far = absolute(trajectory.segments[i].start.position); far > farthest) {
-        farthest = far;
-        from = i;
-      }
-    }
+    const int from = farthest_change(trajectory, farthest);
     for (int i = from; i < trajectory.segment_count; ++i) {
       trajectory.segments[i].start.position += missed;
     }
@@ -168,9 +205,10 @@ bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const
       end.position = Trajectory<Real>::advanced(last.start, last.jerk, last.duration_s).position;
     }
   }
-  const Real reach = asked + velocity * velocity / acceleration;
-  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * reach &&
-                        absolute(missed) <= kArrival<Real> * (reach + farthest + velocity * trajectory.duration_s) &&
+  const Real reach = velocity * velocity / acceleration;
+  const Real blended = waits ? velocity * trajectory.duration_s : Real(0);
+  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * (asked + reach) &&
+                        absolute(missed) <= kArrival<Real> * (farthest + reach + blended) &&
                         absolute(target.velocity - end.velocity) <= kArrival<Real> * velocity &&
                         absolute(target.acceleration - end.acceleration) <= kArrival<Real> * acceleration;
   trajectory.segment_count = is_there ? trajectory.segment_count : 0;

@@ -2,16 +2,13 @@
 
 #include "robot_core/trajectory.h"
 #include "robot_core/trajectory_arrival.h"
+#include "robot_core/trajectory_circle.h"
+#include "robot_core/trajectory_lead.h"
 #include "robot_core/trajectory_limits.h"
 
 namespace robot_core {
 namespace detail {
 namespace {
-
-template <typename Real>
-Real length(Real x, Real y) {
-  return square_root(x * x + y * y);
-}
 
 /// How x and y share a circle: x gets the cosine, y the sine of an angle that is told by the tangent t of its half;
 /// cos = (1 - t^2)/(1 + t^2), sin = 2 t/(1 + t^2), 0 < t < 1.
@@ -31,11 +28,10 @@ class Split {
   /// `duration_s(limits, axis)` of axis 0 and 1: more of everything makes an axis faster, so the two cross once. An axis
   /// that cannot do with its part needs more.
   template <typename Duration>
-  [[nodiscard]] Real balanced(const Duration& duration_s) const {
-    constexpr int kHalvings = std::numeric_limits<Real>::digits > 32 ? 24 : 16;
+  [[nodiscard]] Real balanced(const Duration& duration_s, int halvings = std::numeric_limits<Real>::digits > 32 ? 24 : 16) const {
     Real low = low_;
     Real high = high_;
-    for (int i = 0; i < kHalvings; ++i) {
+    for (int i = 0; i < halvings; ++i) {
       const Real middle = (low + high) / Real(2);
       (duration_s(limits(middle, 0), 0) > duration_s(limits(middle, 1), 1) ? high : low) = middle;
     }
@@ -43,11 +39,16 @@ class Split {
   }
 
   /// The split of a vector's own direction, as near as the room allows.
-  [[nodiscard]] Real along(Real x, Real y) const { return clamped(absolute(y) / (length(x, y) + absolute(x)), low_, high_); }
+  [[nodiscard]] Real along(Real x, Real y) const { return near(absolute(y) / (length(x, y) + absolute(x))); }
+
+  /// As near as the room allows.
+  [[nodiscard]] Real near(Real t) const { return clamped(t, low_, high_); }
+
+  [[nodiscard]] static Real share(Real t, int axis) { return (axis == 0 ? Real(1) - t * t : Real(2) * t) / (Real(1) + t * t); }
 
   [[nodiscard]] AxisLimits<Real> limits(Real t, int axis) const {
-    const Real share = (axis == 0 ? Real(1) - t * t : Real(2) * t) / (Real(1) + t * t);
-    return AxisLimits<Real>::symmetric(share * plane_.speed_max, share * plane_.acceleration_max, share * plane_.jerk_max);
+    const Real part = share(t, axis);
+    return AxisLimits<Real>::symmetric(part * plane_.speed_max, part * plane_.acceleration_max, part * plane_.jerk_max);
   }
 
  private:
@@ -78,62 +79,187 @@ bool leave_room_for_acceleration(const AxisState<Real> (&target)[3], const Plane
   return split.leave_room(target[0].acceleration / plane.acceleration_max, target[1].acceleration / plane.acceleration_max);
 }
 
-/// What the lengths of velocity and acceleration may be.
+/// The best plan so far, by its split and the level of its lead.
 template <typename Real>
-struct Circle {
-  Real speed;
-  Real acceleration;
+struct Candidate {
+  Real split;
+  int level;
+  Real square;  ///< of the highest speed, over the circle's; not below 1
+  Real duration_s;
 };
 
-/// The limits, or, if that is more, what the start has. The tolerance is of the limits, so that whoever plans again and
-/// again gains nothing by it.
+/// The search for the shortest plan that stays inside of the circle, from where one can plan anew and still stay inside.
 template <typename Real>
-Circle<Real> circle_of(const PlaneLimits<Real>& plane, const AxisState<Real> (&start)[3]) {
-  constexpr Real kTolerance = Real(1) + Real(1e-4);
-  return {larger(kTolerance * plane.speed_max, length(start[0].velocity, start[1].velocity)),
-          larger(kTolerance * plane.acceleration_max, length(start[0].acceleration, start[1].acceleration))};
-}
-
-/// The longest vectors on the way: the square of the larger one's part of the circle, sampled.
-template <typename Real>
-Real square_on_the_way(const Trajectory<Real> (&trajectories)[3], const Circle<Real>& circle) {
-  constexpr int kSamples = 6;
-  int at[2] = {0, 0};
-  const auto end_s = [&](int axis) {
-    const Trajectory<Real>& motion = trajectories[axis];
-    return at[axis] + 1 < motion.segment_count ? motion.segments[at[axis] + 1].start_s : motion.duration_s;
-  };
-  const auto state = [&](int axis, Real time_s) {
-    const Trajectory<Real>& motion = trajectories[axis];
-    if (motion.segment_count == 0) {
-      return motion.at(time_s);
+class Inside {
+ public:
+  Inside(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane, const AxisLimits<Real>& yaw,
+         Target how, const Split<Real>& room, Trajectory<Real> (&trajectories)[3])
+      : start_(start),
+        target_(target),
+        plane_(plane),
+        yaw_(yaw),
+        how_(how),
+        room_(room),
+        trajectories_(trajectories),
+        circle_(Circle<Real>::around(plane)),
+        share_x_(least_share(start[0], circle_)),
+        share_y_(least_share(start[1], circle_)) {
+    const Real slope = length(start[0].acceleration, start[1].acceleration);
+    const Real over = slope > Real(0) ? Real(1) / slope : Real(0);
+    calm_ = calming(start_, plane.jerk_max, over * absolute(start[0].acceleration), over * absolute(start[1].acceleration));
+    const Real shares = length(share_x_, share_y_);
+    is_in_a_box_ = shares <= Real(1);
+    if (is_in_a_box_ && calm_.speed > circle_.speed) {
+      calm_ = calming(start_, plane.jerk_max, share_x_ / shares, share_y_ / shares);
     }
-    const TrajectorySegment<Real>& segment = motion.segments[at[axis]];
-    return Trajectory<Real>::advanced(segment.start, segment.jerk, time_s - segment.start_s);
-  };
-  Real most = 0;
-  for (Real from_s = 0; at[0] < larger(trajectories[0].segment_count, 1) && at[1] < larger(trajectories[1].segment_count, 1);) {
-    const Real until_s = smaller(end_s(0), end_s(1));
-    for (int i = 0; i < kSamples; ++i) {
-      const Real time_s = from_s + (until_s - from_s) * (Real(i) / Real(kSamples));
-      const AxisState<Real> x = state(0, time_s);
-      const AxisState<Real> y = state(1, time_s);
-      most = larger(most, (x.velocity * x.velocity + y.velocity * y.velocity) / (circle.speed * circle.speed));
-      most =
-          larger(most, (x.acceleration * x.acceleration + y.acceleration * y.acceleration) / (circle.acceleration * circle.acceleration));
-    }
-    ++at[end_s(0) <= end_s(1) ? 0 : 1];
-    from_s = until_s;
+    can_stay_ = calm_.speed <= circle_.speed;
+    // Who is outside of the circle has to go no further out.
+    circle_.speed = larger(circle_.speed, length(start[0].velocity, start[1].velocity));
+    circle_.acceleration = larger(circle_.acceleration, length(start[0].acceleration, start[1].acceleration));
   }
-  return most;
-}
+
+  PlanResult search(Real fastest) {
+    if (const PlanResult result = plan(fastest, kNoLead); result != PlanResult::ok) {
+      return result;
+    }
+    if (keeps_shares(fastest)) {
+      return PlanResult::ok;
+    }
+    fastest_s_ = trajectories_[0].duration_s;
+    best_ = {fastest, kNoLead, std::numeric_limits<Real>::max(), fastest_s_};
+    if (consider_planned(fastest, kNoLead)) {
+      return PlanResult::ok;
+    }
+    turn_from(fastest);
+    // Worth the time where turning the split costs much.
+    constexpr Real kLittle = Real(5) / Real(4);
+    if (best_.square > Real(1) || best_.duration_s > kLittle * fastest_s_) {
+      for (int level = 0; level < kLevels; ++level) {
+        consider_lead(level);
+      }
+    }
+    return best_.split == planned_split_ && best_.level == planned_level_ ? PlanResult::ok : plan(best_.split, best_.level);
+  }
+
+ private:
+  static constexpr int kNoLead = -1;
+  static constexpr int kLevels = 4;
+
+  /// The speed in the end of a lead: what is left when the acceleration is gone, or parts of the limit.
+  [[nodiscard]] Real speed_of(int level) const {
+    const Real part = Real(kLevels - 1 - level) / Real(kLevels - 1) * Real(3) / Real(4);
+    return level == 0 ? calm_.speed : part * plane_.speed_max;
+  }
+
+  [[nodiscard]] bool keeps_shares(Real t) const { return share_x_ <= Split<Real>::share(t, 0) && share_y_ <= Split<Real>::share(t, 1); }
+
+  PlanResult plan(Real t, int level) {
+    planned_split_ = t;
+    planned_level_ = level;
+    const Split<Real> split(plane_);
+    const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw_};
+    const int leads = level == kNoLead ? 0 : 2;
+    if (leads > 0) {
+      lead_to(speed_of(level), start_, calm_, plane_, leads_);
+    }
+    return plan_together<Real>(3, start_, target_, limits, leads_, leads, trajectories_, how_, nullptr);
+  }
+
+  /// Whether the plan just made stays inside, also if it is planned anew on the way, and gets on.
+  bool consider_planned(Real t, int level) {
+    constexpr Real kMostDetour = 8;
+    const Real duration_s = trajectories_[0].duration_s;
+    const bool has_lead = level != kNoLead;
+    if (!has_lead && ((!can_stay_ && duration_s > kMostDetour * fastest_s_) ||
+                      !can_stay_inside(trajectories_, circle_, larger(plane_.speed_max, can_stay_ ? Real(0) : calm_.speed),
+                                       Split<Real>::share(t, 0), Split<Real>::share(t, 1)))) {
+      return false;
+    }
+    if (acceleration_square(trajectories_, circle_) > Real(1) + Real(8) * std::numeric_limits<Real>::epsilon()) {
+      return false;
+    }
+    const Real square = speed_square(trajectories_, circle_);
+    // As far out but for rounding: the shorter one.
+    constexpr Real kAlike = Real(1e-4);
+    if (square < (Real(1) - kAlike) * best_.square || (square <= (Real(1) + kAlike) * best_.square && duration_s < best_.duration_s)) {
+      best_ = {t, level, square, duration_s};
+    }
+    return square <= Real(1);
+  }
+
+  bool consider(Real t, int level) { return plan(t, level) == PlanResult::ok && consider_planned(t, level); }
+
+  /// The split turns to where it fits the start, no further than needed.
+  void turn_from(Real fastest) {
+    constexpr int kHalvings = 5;
+    Split<Real> fitting = room_;
+    const bool fits = is_in_a_box_ && fitting.leave_room(share_x_, share_y_);
+    const AxisState<Real>& x = start_[0];
+    const AxisState<Real>& y = start_[1];
+    Real far = fits ? fitting.near(fastest) : room_.along(x.velocity, y.velocity);
+    if (!consider(far, kNoLead) && !fits) {
+      far = room_.along(x.acceleration, y.acceleration);
+      consider(far, kNoLead);
+    }
+    Real near = fastest;
+    for (int halving = 0; halving < kHalvings; ++halving) {
+      const Real middle = (near + far) / Real(2);
+      (consider(middle, kNoLead) ? far : near) = middle;
+    }
+  }
+
+  void consider_lead(int level) {
+    constexpr int kHalvings = 12;
+    const Real speed = speed_of(level);
+    if (level > 0 && !(speed < calm_.speed)) {
+      return;
+    }
+    Lead<Real> leads[2];
+    lead_to(speed, start_, calm_, plane_, leads);
+    const Real over = Real(1) / larger(circle_.speed, speed);
+    Split<Real> fitting = room_;
+    if (!fitting.leave_room(smaller(over * absolute(leads[0].end.velocity), Real(1)),
+                            smaller(over * absolute(leads[1].end.velocity), Real(1)))) {
+      return;
+    }
+    const auto duration_s = [&](const AxisLimits<Real>& limits, int axis) {
+      AxisState<Real> met = target_[axis];
+      met.position += how_ == Target::moving_on ? target_[axis].velocity * leads[axis].duration_s : Real(0);
+      return leads[axis].duration_s + earliest_arrival_s(leads[axis].end, met, limits, how_);
+    };
+    const Real t = fitting.balanced(duration_s, kHalvings);
+    const bool is_inside = best_.square <= Real(1);
+    if (!is_inside || larger(duration_s(fitting.limits(t, 0), 0), duration_s(fitting.limits(t, 1), 1)) < best_.duration_s) {
+      consider(t, level);
+    }
+  }
+
+  const AxisState<Real> (&start_)[3];
+  const AxisState<Real> (&target_)[3];
+  const PlaneLimits<Real>& plane_;
+  const AxisLimits<Real>& yaw_;
+  Target how_;
+  const Split<Real>& room_;
+  Trajectory<Real> (&trajectories_)[3];
+  Circle<Real> circle_;
+  Real share_x_;
+  Real share_y_;
+  Calming<Real> calm_;
+  bool is_in_a_box_;
+  bool can_stay_;
+  Lead<Real> leads_[2];
+  Candidate<Real> best_{};
+  Real fastest_s_ = 0;
+  Real planned_split_ = 0;
+  int planned_level_ = kNoLead;
+};
 
 /// Plans with the fastest split. Where that would leave the circle, because x and y of the start do not fit it, the split
 /// turns towards the start's own direction, no further than needed, and not where the motion would then hardly get on.
 /// `plan(t)` fills the trajectories.
 template <typename Real, typename Plan>
-PlanResult plan_inside(const Split<Real>& split, Real fastest, const AxisState<Real> (&start)[3], const Circle<Real>& circle,
-                       const Trajectory<Real> (&trajectories)[3], const Plan& plan) {
+PlanResult plan_velocity_inside(const Split<Real>& split, Real fastest, const AxisState<Real> (&start)[3], const Circle<Real>& circle,
+                                const Trajectory<Real> (&trajectories)[3], const Plan& plan) {
   constexpr Real kInside = Real(1) + Real(8) * std::numeric_limits<Real>::epsilon();
   constexpr int kHalvings = 6;
   if (const PlanResult result = plan(fastest); result != PlanResult::ok) {
@@ -141,29 +267,24 @@ PlanResult plan_inside(const Split<Real>& split, Real fastest, const AxisState<R
   }
   Real best = fastest;
   Real last = fastest;
-  Real least = square_on_the_way(trajectories, circle);
+  Real least = acceleration_square(&trajectories[0], circle);
   constexpr Real kMostDetour = 8;
   const Real longest_s = kMostDetour * trajectories[0].duration_s;
   const auto square_at = [&](Real t) {
     last = t;
     const bool gets_on = plan(t) == PlanResult::ok && trajectories[0].duration_s <= longest_s;
-    const Real square = gets_on ? square_on_the_way(trajectories, circle) : std::numeric_limits<Real>::max();
+    const Real square = gets_on ? acceleration_square(&trajectories[0], circle) : std::numeric_limits<Real>::max();
     if (square < least || square <= kInside) {
       least = square;
       best = t;
     }
     return square;
   };
-  const Real own[2][2] = {{start[0].velocity, start[1].velocity}, {start[0].acceleration, start[1].acceleration}};
   // The direction of next to nothing is noise.
   constexpr Real kNoise = Real(1) / Real(128);
-  const Real limit[2] = {circle.speed, circle.acceleration};
-  for (int i = 0; i < 2 && least > kInside; ++i) {
-    if (!(length(own[i][0], own[i][1]) > kNoise * limit[i])) {
-      continue;
-    }
+  if (least > kInside && length(start[0].acceleration, start[1].acceleration) > kNoise * circle.acceleration) {
     Real near = fastest;
-    Real far = split.along(own[i][0], own[i][1]);
+    Real far = split.along(start[0].acceleration, start[1].acceleration);
     const Real square_of_far = square_at(far);
     const bool is_too_far = square_of_far == std::numeric_limits<Real>::max();
     const Real enough = is_too_far ? kInside : larger(square_of_far, kInside);
@@ -196,11 +317,7 @@ PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (
   }
   const Real fastest =
       split.balanced([&](const AxisLimits<Real>& limits, int axis) { return earliest_arrival_s(start[axis], target[axis], limits, how); });
-  const Circle<Real> circle = circle_of(plane, start);
-  return plan_inside(split, fastest, start, circle, trajectories, [&](Real t) {
-    const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw};
-    return plan_synchronised(3, start, target, limits, trajectories, how);
-  });
+  return Inside<Real>(start, target, plane, yaw, how, split, trajectories).search(fastest);
 }
 
 template <typename Real>
@@ -217,8 +334,9 @@ PlanResult plan_plane_velocity(const AxisState<Real> (&start)[3], const AxisStat
     return plan_velocity(start[axis], target[axis], limits, trajectories[axis]) == PlanResult::ok ? trajectories[axis].duration_s
                                                                                                   : std::numeric_limits<Real>::max();
   });
-  const Circle<Real> circle{std::numeric_limits<Real>::max(), circle_of(plane, start).acceleration};
-  return plan_inside(split, fastest, start, circle, trajectories, [&](Real t) {
+  Circle<Real> circle = Circle<Real>::around(plane);
+  circle.acceleration = larger(circle.acceleration, length(start[0].acceleration, start[1].acceleration));
+  return plan_velocity_inside(split, fastest, start, circle, trajectories, [&](Real t) {
     const AxisLimits<Real> limits[3] = {split.limits(t, 0), split.limits(t, 1), yaw};
     return plan_velocity_synchronised(3, start, target, limits, trajectories);
   });
