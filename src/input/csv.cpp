@@ -118,7 +118,7 @@ class Table {
   /// A column of the same quantity in another unit has to be converted, a misspelt one renamed.
   [[nodiscard]] std::string look_alike(const std::string& name) const {
     constexpr std::array<std::string_view, 8> kUnits{"_rad_per_s", "_Nm", "_rad", "_A", "_V", "_C", "_s", "_m"};
-    const auto unit = std::ranges::find_if(kUnits, [&](std::string_view each) { return name.ends_with(each); });
+    const auto* const unit = std::ranges::find_if(kUnits, [&](std::string_view each) { return name.ends_with(each); });
     if (unit != kUnits.end()) {
       const std::string quantity = name.substr(0, name.size() - unit->size()) + "_";
       const auto other = std::ranges::find_if(header_, [&](const std::string& each) { return each.starts_with(quantity); });

@@ -38,9 +38,9 @@ std::string_view trimmed(std::string_view text) {
 /// Lines of a file, one buffer ahead.
 class LineReader {
  public:
-  explicit LineReader(const std::filesystem::path& path) : path_(path.string()) {
-    // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
+  explicit LineReader(const std::filesystem::path& path)
+      : path_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
     struct stat about {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &about) != 0) {
       fail(std::strerror(errno));
@@ -151,7 +151,7 @@ class LineReader {
 
 /// The cells of one record by libcsv, which knows the rules of quoting; nothing where a quote is wrong.
 std::optional<std::vector<std::string>> quoted_cells(std::string_view record, char separator) {
-  csv_parser parser;
+  csv_parser parser{};
   csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);
   csv_set_delim(&parser, static_cast<unsigned char>(separator));
@@ -215,7 +215,7 @@ struct NumberTable::State {
   }
 
   /// One cell; `at` is its place in the header.
-  void number(std::string_view cell, int slot, TableBlock& block) {
+  void number(std::string_view cell, int slot, TableBlock& block) const {
     cell = trimmed(cell);
     const std::string_view digits = cell.starts_with('+') && !cell.starts_with("+-") ? cell.substr(1) : cell;
     char copy[64];

@@ -16,7 +16,9 @@ std::string out_of_range(std::string_view text, const ParameterSpec& spec) {
 }
 
 /// What TOML takes for numbers and nobody can put a unit to.
-bool is_no_quantity(std::string_view number) { return number.find("nan") != number.npos || number.find("inf") != number.npos; }
+bool is_no_quantity(std::string_view number) {
+  return number.find("nan") != std::string_view::npos || number.find("inf") != std::string_view::npos;
+}
 
 }  // namespace
 
@@ -267,7 +269,7 @@ void Reader::read_spread(const ParameterSpec& spec, Figure& figure) {
     return;
   }
   if (range->kind != Value::Kind::array || range->items.size() != 2) {
-    problem("range", fmt::format("expected [\"lowest {}\", \"highest {}\"]", spec.unit, spec.unit));
+    problem("range", fmt::format(R"(expected ["lowest {}", "highest {}"])", spec.unit, spec.unit));
     return;
   }
   const std::optional<double> low = parse(range->items[0], "range", spec.unit);

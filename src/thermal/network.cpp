@@ -130,7 +130,7 @@ std::vector<double> Network::values() const {
 
 template <class S>
 void Network::rate_K_per_s(OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const {
-  std::array<S, kMostNodes> heat_W;
+  std::array<S, kMostNodes> heat_W;  // NOLINT(cppcoreguidelines-pro-type-member-init): those in use are set in the next lines
   const std::size_t states = node_names_.size();
   std::fill_n(heat_W.begin(), states + 1, S(0.0));
   temperature_C[states] = at.ambient_C;

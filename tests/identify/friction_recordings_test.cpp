@@ -47,7 +47,7 @@ PerWheel back_emf_V(const SteadyPart& part) {
 SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int end, Findings& findings) {
   std::vector<FrictionLog> logs;
   for (int n = first; n < end; ++n) {
-    const std::filesystem::path file = surface / ("exp" + (n < 10 ? "0" + std::to_string(n) : std::to_string(n)) + ".csv");
+    const std::filesystem::path file = surface / fmt::format("exp{:02}.csv", n);
     logs.push_back(log_of(file, "robotino_omni.map.toml", robotino(), {.voltage = true, .drive = robotino_drive()}, findings));
   }
   return find_steady_parts(logs, make_kinematics(robotino()));
