@@ -87,10 +87,10 @@ Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& ro
   const bool sampled = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
   const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
   return {.title = fmt::format("{} on {}", robot.name, duty.id),
-          .subtitle =
-              fmt::format("{}{}{}{}", shown.size() < results.size() ? fmt::format("{} of {} motors, ", shown.size(), results.size()) : "",
-                          duty.summary, sampled ? "; lines: nominal, areas: 5\u00a0% to 95\u00a0% of samples" : "; nominal figures",
-                          estimated ? "; thermal data partly estimated" : ""),
+          .subtitle = fmt::format(
+              "{}{}{}{}", shown.size() < results.size() ? fmt::format("{} of {} motors, ", shown.size(), results.size()) : "", duty.summary,
+              sampled ? "; lines: nominal, areas: 5\u00a0% to 95\u00a0% of samples at each moment" : "; nominal figures",
+              estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
           .panels = {panel(shown, false), panel(shown, true)}};
 }
