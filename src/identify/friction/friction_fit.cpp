@@ -231,6 +231,27 @@ void judge(const std::vector<Point>& points, const Eigen::VectorXd& weights, int
   found.r2_ratio = 1.0 - error_V2 / variance_V2;
 }
 
+/// What a wheel's points ask of its terms; `given_V_s_per_rad` is the damping that is taken as known.
+struct Regression {
+  Eigen::MatrixXd X;
+  Eigen::VectorXd voltage_V;
+  std::vector<int> legs;
+};
+
+Regression regression_of(const std::vector<Point>& points, int wheel, const std::vector<Term>& terms, double given_V_s_per_rad) {
+  Regression asked{design(points, wheel, terms), Eigen::VectorXd(points.size()), {}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SteadyPart& part = *points[i].part;
+    asked.voltage_V(static_cast<Eigen::Index>(i)) = part.voltage_V[wheel] - given_V_s_per_rad * part.wheel_speed_rad_per_s[wheel];
+    asked.legs.push_back(part.leg);
+  }
+  // Of a few long legs the scatter from leg to leg is not known; then stretches stand for themselves.
+  if (std::set<int>(asked.legs.begin(), asked.legs.end()).size() < kLegsPerTerm * terms.size()) {
+    std::iota(asked.legs.begin(), asked.legs.end(), 0);
+  }
+  return asked;
+}
+
 WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinematics, int wheel, const FitSettings& settings,
                         Eigen::VectorXd& weights) {
   const std::vector<Point>& points = wheel_points.points;
@@ -247,19 +268,8 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinem
   }
   found.damping_is_given = chosen.damping_is_given;
   found.phase_is_given = chosen.phase_is_given;
-  const Eigen::MatrixXd X = design(points, wheel, chosen.terms);
-  Eigen::VectorXd voltage_V(points.size());
-  std::vector<int> legs;
   const double given = chosen.damping_is_given ? settings.known_damping_V_s_per_rad : 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const SteadyPart& part = *points[i].part;
-    voltage_V(static_cast<Eigen::Index>(i)) = part.voltage_V[wheel] - given * part.wheel_speed_rad_per_s[wheel];
-    legs.push_back(part.leg);
-  }
-  // Of a few long legs the scatter from leg to leg is not known; then stretches stand for themselves.
-  if (std::set<int>(legs.begin(), legs.end()).size() < kLegsPerTerm * chosen.terms.size()) {
-    std::iota(legs.begin(), legs.end(), 0);
-  }
+  const auto [X, voltage_V, legs] = regression_of(points, wheel, chosen.terms, given);
   const RobustFit fit = robust_fit(X, voltage_V, legs);
   weights = fit.weights;
   const auto place = [&](Term term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
