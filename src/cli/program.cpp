@@ -32,10 +32,6 @@ constexpr std::string_view kFooter =
 constexpr std::string_view kWithoutMeasured =
     "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
 
-bool has_verb(std::string_view name) {
-  return std::ranges::any_of(all_commands(), [&](const Command& each) { return each.name == name; });
-}
-
 /// CLI11 throws on bad usage before any option is stored, so the target of a JSON error is looked up by hand.
 std::string json_target(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
@@ -86,9 +82,11 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
   CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
   app.set_version_flag("--version", std::string(kVersion));
   app.require_subcommand(1);
-  app.footer(fmt::format("{}{}", kFooter, has_verb("log") ? "" : kWithoutMeasured));
+  const std::vector<Command> commands = all_commands();
+  const bool reads_logs = std::ranges::find(commands, "log", &Command::name) != commands.end();
+  app.footer(fmt::format("{}{}", kFooter, reads_logs ? "" : kWithoutMeasured));
   ExitCode code = ExitCode::done;
-  for (const Command& command : all_commands()) {
+  for (const Command& command : commands) {
     CLI::App* verb = app.add_subcommand(std::string(command.name), std::string(command.summary));
     verb->footer(fmt::format("\nExample:\n  {}\n", command.example));
     const std::function<ExitCode()> run = command.declare(*verb, session);
