@@ -10,5 +10,6 @@ install(TARGETS heatsoak_charts LIBRARY DESTINATION "${CMAKE_INSTALL_BINDIR}/../
 install(DIRECTORY motor_db/ DESTINATION "${HEATSOAK_SHARE}/motor_db" ${DATA_ONLY})
 install(DIRECTORY duty_profiles/ DESTINATION "${HEATSOAK_SHARE}/duty_profiles" ${DATA_ONLY})
 install(DIRECTORY robot_core/robots/ DESTINATION "${HEATSOAK_SHARE}/robots" ${DATA_ONLY})
-install(DIRECTORY reports/soak/ DESTINATION "${HEATSOAK_SHARE}/reports/soak" ${DATA_ONLY})
+# The logs that the examples of the help begin from.
+install(DIRECTORY reports/soak reports/friction_test DESTINATION "${HEATSOAK_SHARE}/reports" ${DATA_ONLY})
 install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -44,6 +44,8 @@ function(add_layer name)
     list(FILTER in_rooms INCLUDE REGEX "/src/${name}/${folder}/.+/[^/]+\\.cpp$")
     list(APPEND entries ${in_rooms})
     list(SORT entries COMPARE FILE_BASENAME)
+    # They are written alike, down to the names inside, so none can share a file with another.
+    set_source_files_properties(${entries} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     generate_registry(${name} ${folder} ${type} ${entries})
   endforeach()
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")

@@ -81,7 +81,7 @@ Real most_square(const Parabola<Real>& x, const Parabola<Real>& y, Real floor, i
 template <typename Real>
 class PairOfSegments {
  public:
-  explicit PairOfSegments(const Trajectory<Real>* motions) : motions_(motions) { until_s_ = smaller(end_s(0), end_s(1)); }
+  explicit PairOfSegments(const Trajectory<Real>* motions) : motions_(motions), until_s_(smaller(end_s(0), end_s(1))) {}
 
   [[nodiscard]] Real duration_s() const { return until_s_ - from_s_; }
 

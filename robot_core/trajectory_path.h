@@ -156,7 +156,7 @@ bool keeps_limits(const Trajectory<Real>& trajectory, const AxisLimits<Real>& li
     const Real change = s.jerk * s.duration_s;
     // Where the acceleration passes zero, the velocity turns. All without a branch: there are no two ways alike.
     const Real left = slope > Real(0) ? velocity_max - velocity : velocity - velocity_min;
-    const unsigned turns = static_cast<unsigned>(slope * (slope + change) < Real(0));
+    const auto turns = static_cast<unsigned>(slope * (slope + change) < Real(0));
     breaks |= turns & static_cast<unsigned>(slope * slope > Real(2) * absolute(s.jerk) * left);
     breaks |= static_cast<unsigned>(velocity > velocity_max) | static_cast<unsigned>(velocity < velocity_min) |
               static_cast<unsigned>(slope > acceleration_max) | static_cast<unsigned>(slope < acceleration_min);

@@ -62,6 +62,9 @@ std::vector<Command> all_commands();
 /// A bar with the time left on stderr; silent where that is no terminal.
 Progress progress_bar(std::string what);
 
+/// "1 file", "2 files".
+std::string counted(std::size_t count, std::string_view what);
+
 /// The value of a JSON number that may be unknown: null for NaN, else rounded to `decimals`.
 nlohmann::ordered_json rounded(double value, int decimals);
 

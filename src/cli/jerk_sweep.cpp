@@ -56,10 +56,10 @@ void add_curves(ChartPanel& panel, const std::vector<StudyResult>& results, cons
 
 Chart picture(const std::vector<StudyResult>& results, const Robot& robot, const Motor& motor) {
   struct Shown {
-    const char* title;
-    const char* label;
-    double scale;
-    double StudyResult::*value;
+    const char* title = nullptr;
+    const char* label = nullptr;
+    double scale = 1.0;
+    double StudyResult::*value = nullptr;
     bool logarithmic = false;
   };
   constexpr Shown kShown[] = {{"Slip of a mean wheel", "slip / mm per m", 1e3, &StudyResult::slip_share, true},

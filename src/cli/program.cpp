@@ -210,6 +210,8 @@ Progress progress_bar(std::string what) {
   };
 }
 
+std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
 nlohmann::ordered_json rounded(double value, int decimals) {
   if (!std::isfinite(value)) {
     return nullptr;
@@ -220,7 +222,7 @@ nlohmann::ordered_json rounded(double value, int decimals) {
 
 int run_program(int argc, const char* const* argv) {
   // A file that grows beyond the user's limit then fails as on a full disk, with a message.
-  std::signal(SIGXFSZ, SIG_IGN);
+  (void)std::signal(SIGXFSZ, SIG_IGN);
   Session session;
   try {
     const int code = parse_and_run(argc, argv, session);

@@ -23,7 +23,7 @@ std::vector<const MotorEvaluation*> chosen(const std::vector<MotorEvaluation>& r
   for (const MotorEvaluation& each : results) {
     all.push_back(&each);
   }
-  std::ranges::stable_partition(all, [&](const MotorEvaluation* each) { return each->motor_id == robot.drive_motor; });
+  std::stable_partition(all.begin(), all.end(), [&](const MotorEvaluation* each) { return each->motor_id == robot.drive_motor; });
   all.resize(std::min(all.size(), kMostCurves));
   return all;
 }

@@ -27,7 +27,7 @@ constexpr double kRateMemory = 0.3;
 constexpr double kMissingFrames = 3.5;  // times the usual step: three frames are missing
 constexpr double kShortestSegment_s = 1.0;
 constexpr std::size_t kFewestPoints = 10;
-constexpr double kBin_s = 0.1;
+constexpr double kSummaryBin_s = 0.1;
 constexpr std::size_t kMostSights = 16;
 constexpr std::size_t kMostPhases = 100'000;
 constexpr std::size_t kMostProblems = 20;
@@ -279,7 +279,7 @@ void TrackBuilder::summarise(Robot& robot, const TrackPoint& point) {
   if (robot.last) {
     summary.seen_s += point.time_s - robot.last->time_s;
   }
-  const auto index = static_cast<std::int64_t>(std::floor(std::clamp(point.time_s, -1e9, 1e10) / kBin_s));
+  const auto index = static_cast<std::int64_t>(std::floor(std::clamp(point.time_s, -1e9, 1e10) / kSummaryBin_s));
   auto& [oldest, middle, newest] = robot.bins;
   if (newest.count > 0.0 && index != newest.index) {
     const auto mean = [](const Bin& bin) {
@@ -295,7 +295,7 @@ void TrackBuilder::summarise(Robot& robot, const TrackPoint& point) {
           return 2.0 * ((pc - pb) / (c.time_s - b.time_s) - (pb - pa) / (b.time_s - a.time_s)) / (c.time_s - a.time_s);
         };
         const double magnitude = std::hypot(second(a.x_m, b.x_m, c.x_m), second(a.y_m, b.y_m, c.y_m));
-        summary.effort_m2_per_s3 += magnitude * magnitude * kBin_s;
+        summary.effort_m2_per_s3 += magnitude * magnitude * kSummaryBin_s;
       }
     }
     oldest = middle;

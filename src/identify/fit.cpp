@@ -116,7 +116,7 @@ class Fitting {
     double usual_step_s = 0.0;
     for (const MeasuredRun& run : runs) {
       starts_.push_back(start_of(model.network, run));
-      fit_.weights.push_back(Eigen::VectorXd::Ones(run.measured_C.size()));
+      fit_.weights.emplace_back(Eigen::VectorXd::Ones(run.measured_C.size()));
       longest_s = std::max(longest_s, run.time_s.back() - run.time_s.front());
       usual_step_s = std::max(usual_step_s, (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size()));
     }

@@ -166,7 +166,7 @@ Curvature curvature(const Evidence& evidence, const Space& space, double width, 
     all.slope[i] = (up - down) / (2.0 * width);
     all.bend(i, i) = -(up + down - 2.0 * value) / (width * width);
   }
-  std::size_t pair = static_cast<std::size_t>(2 * n);
+  auto pair = static_cast<std::size_t>(2 * n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = i + 1; j < n; ++j, pair += 2) {
       const double mixed = (values[pair] + values[pair + 1] - 2.0 * value) / (width * width);

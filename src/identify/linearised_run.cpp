@@ -9,7 +9,13 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 class Recorder {
  public:
-  Recorder(LinearisedRun& out, const MeasuredRun& run, Eigen::Index wanted) : out_(out), run_(run) {
+  Recorder(LinearisedRun& out, const MeasuredRun& run, Eigen::Index wanted)
+      : out_(out),
+        run_(run),
+        by_start_(Eigen::MatrixXd::Identity(out.states, out.states)),
+        next_by_start_(by_start_),
+        by_parameter_(Eigen::MatrixXd::Zero(out.states, wanted)),
+        next_by_parameter_(by_parameter_) {
     const Eigen::Index samples = run.samples();
     const Eigen::Index rows = samples * out.sensors();
     out.state_C.resize(out.states, samples);
@@ -19,10 +25,6 @@ class Recorder {
     out.transition.resize(static_cast<std::size_t>((samples - 1) * out.states * out.states));
     out.injection.resize(static_cast<std::size_t>((samples - 1) * out.states * out.fluxes));
     out.duration_s.resize(static_cast<std::size_t>(samples - 1));
-    by_start_.setIdentity(out.states, out.states);
-    by_parameter_.setZero(out.states, wanted);
-    next_by_start_ = by_start_;
-    next_by_parameter_ = by_parameter_;
   }
 
   void note(Eigen::Index sample) {

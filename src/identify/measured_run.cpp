@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "base/diagnostic.h"
+#include "base/unknown.h"
 #include "identify/measurement/noise.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// A stretch with fewer samples has nothing to say about thermal time constants.
 constexpr std::size_t kLeastSamples = 10;
 
@@ -60,9 +60,9 @@ bool is_there(const Recording& recording, Signal signal) {
 }
 
 /// Operating points of single rows; NaN where a quantity is not known there.
-class Rows {
+class MeasuredRows {
  public:
-  Rows(const Recording& recording, const MeasuredRunOptions& options)
+  MeasuredRows(const Recording& recording, const MeasuredRunOptions& options)
       : current_A_(values("current_A", recording)),
         speed_rad_per_s_(values("speed_rad_per_s", recording)),
         torque_Nm_(values("torque_Nm", recording)),
@@ -365,7 +365,7 @@ class Builder {
 
   const Recording& recording_;
   const MeasuredRunOptions& options_;
-  Rows rows_;
+  MeasuredRows rows_;
   std::vector<Signal> signals_;
   std::vector<Sensor> sensors_;
   std::vector<const std::vector<double>*> sensor_values_;

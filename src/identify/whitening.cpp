@@ -16,7 +16,7 @@ template <int Size>
 using Square = Eigen::Matrix<double, Size, Size, Eigen::RowMajor, Size == Eigen::Dynamic ? kMostSize : Size,
                              Size == Eigen::Dynamic ? kMostSize : Size>;
 
-using RowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+using ConstRowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
 }  // namespace
 
@@ -25,12 +25,12 @@ Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const Sen
       flux_(flux),
       wander_K_(noise.wander_K),
       wanders_(std::ranges::any_of(noise.wander_K, [](double each_K) { return each_K > 0.0; })),
-      size_(run.states + run.fluxes + (wanders_ ? run.sensors() : 0)) {
+      size_(run.states + run.fluxes + (wanders_ ? run.sensors() : 0)),
+      noise_K_(noise.noise_K) {
   const Eigen::Index rows = run.samples() * run.sensors();
   gain_.resize(static_cast<std::size_t>(rows * size_));
   inverse_sd_per_K_.assign(static_cast<std::size_t>(rows), 0.0);
   expected_K2_.assign(static_cast<std::size_t>(rows), 0.0);
-  noise_K_ = noise.noise_K;
   forget_ratio_.resize(run.duration_s.size());
   for (std::size_t k = 0; k < run.duration_s.size(); ++k) {
     forget_ratio_[k] = std::exp(-run.duration_s[k] / flux.time_scale_s);
@@ -60,8 +60,8 @@ void Whitening::set_transition(Eigen::Index interval, Matrix& transition) const 
   const Eigen::Index q = run_->fluxes;
   const auto place = static_cast<std::size_t>(interval);
   transition.setZero();
-  transition.topLeftCorner(x, x) = RowMajorMap(run_->transition.data() + interval * x * x, x, x);
-  transition.block(0, x, x, q) = RowMajorMap(run_->injection.data() + interval * x * q, x, q);
+  transition.topLeftCorner(x, x) = ConstRowMajorMap(run_->transition.data() + interval * x * x, x, x);
+  transition.block(0, x, x, q) = ConstRowMajorMap(run_->injection.data() + interval * x * q, x, q);
   transition.diagonal().segment(x, q).setConstant(forget_ratio_[place]);
   if (wanders_) {
     transition.diagonal().tail(run_->sensors()).setConstant(wander_forget_ratio_[place]);

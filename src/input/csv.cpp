@@ -27,7 +27,6 @@ namespace {
 
 constexpr std::size_t kMostProblems = 20;
 constexpr std::size_t kHopeless = 1000;  ///< problems after which the rest is not read
-constexpr std::size_t kMostColumns = 1000;
 constexpr std::size_t kLongestCell_bytes = 1 << 16;
 
 /// Enough of a cell for a message.
@@ -191,8 +190,6 @@ class Table {
   bool is_header_sound_ = false;
   bool is_bad_row_ = false;
 };
-
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::path& path) {
   const auto cannot_read = [&](const char* reason) { return bad_input({path.string()}, "", fmt::format("cannot be read: {}", reason)); };

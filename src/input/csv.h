@@ -5,11 +5,17 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/diagnostic.h"
 
 namespace heatsoak {
+
+/// A header with more is no log.
+inline constexpr std::size_t kMostColumns = 1000;
+/// What some editors put before UTF-8 text.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// One row: the wanted columns in the wanted order. `line` counts from 1 as an editor does.
 struct CsvRow {

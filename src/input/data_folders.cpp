@@ -10,9 +10,9 @@ namespace heatsoak {
 namespace fs = std::filesystem;
 namespace {
 
-DataFolders source_tree(const fs::path& root) { return {root / "motor_db", root / "robot_core" / "robots", root / "duty_profiles"}; }
+DataFolders source_tree(const fs::path& root) { return {root / "motor_db", root / "robot_core" / "robots", root / "duty_profiles", root}; }
 
-DataFolders installed(const fs::path& share) { return {share / "motor_db", share / "robots", share / "duty_profiles"}; }
+DataFolders installed(const fs::path& share) { return {share / "motor_db", share / "robots", share / "duty_profiles", share}; }
 
 /// Never throws: a folder that may not be looked into is none.
 bool is_folder(const fs::path& path) {
@@ -86,6 +86,12 @@ fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view
                                                    folder.string(), did_you_mean(name, ids), kind == "duty" ? "dutie" : kind));
   }
   return folder / fmt::format("{}.toml", name);
+}
+
+fs::path log_named(const DataFolders& folders, const fs::path& name) {
+  std::error_code error;
+  const bool is_only_there = name.is_relative() && !fs::exists(name, error) && fs::exists(folders.shipped / name, error);
+  return is_only_there ? folders.shipped / name : name;
 }
 
 }  // namespace heatsoak

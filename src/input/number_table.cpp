@@ -18,6 +18,8 @@
 
 #include "base/diagnostic.h"
 #include "base/files.h"
+#include "base/unknown.h"
+#include "input/csv.h"
 
 namespace heatsoak {
 namespace {
@@ -25,10 +27,7 @@ namespace {
 constexpr std::size_t kBlockRows = 4096;
 constexpr std::size_t kChunk_bytes = 1 << 20;
 constexpr std::size_t kLongestLine_bytes = 1 << 20;
-constexpr std::size_t kMostColumns = 1000;
 constexpr std::size_t kLongestExample_bytes = 40;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -226,10 +225,10 @@ struct NumberTable::State {
       begin = copy;
       end = copy + digits.size();
     }
-    double value = kNoNumber;
+    double value = kUnknown;
     const auto [stopped, error] = std::from_chars(begin, end, value);
     if (error != std::errc() || stopped != end || !std::isfinite(value)) {
-      value = kNoNumber;
+      value = kUnknown;
       block.bad_cells.push_back({block.rows(), static_cast<std::size_t>(slot), std::string(cell.substr(0, kLongestExample_bytes))});
     }
     block.columns[static_cast<std::size_t>(slot)].push_back(value);

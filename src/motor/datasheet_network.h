@@ -9,6 +9,11 @@
 
 namespace heatsoak {
 
+/// The states of every motor's network; nodes of its own effects follow.
+namespace states {
+enum State : int { winding, stator, first_own };
+}  // namespace states
+
 /// Names of the effects that every datasheet network has.
 inline constexpr std::array<std::string_view, 4> kDatasheetEffects{"copper_loss", "no_load_loss", "winding_stator", "stator_ambient"};
 

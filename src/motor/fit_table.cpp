@@ -14,7 +14,7 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::array<std::string_view, 2> kNodes{"winding", "stator"};
+constexpr std::array<std::string_view, 2> kHeatedNodes{"winding", "stator"};
 constexpr double kLargest_W = 1e6;
 
 /// Rows of a lower triangle with 1 on the diagonal: "1", "0.2 1", …
@@ -65,7 +65,7 @@ MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
     }
   }
   fit.correlation = read_correlation(table, fit.figures.size());
-  for (const std::string_view node : kNodes) {
+  for (const std::string_view node : kHeatedNodes) {
     const std::string noise = fmt::format("noise_{}", node);
     if (const std::optional<double> noise_K = table.quantity({noise, "K", Range::non_negative(), "of one sample"}, Need::optional)) {
       fit.noise_K.emplace_back(node, *noise_K);
@@ -98,8 +98,8 @@ std::string to_toml(const MotorFit& fit) {
   for (const auto& [node, noise_K] : fit.noise_K) {
     text += fmt::format("noise_{} = \"{} K\"\n", node, significant(noise_K, 2));
   }
-  for (std::size_t i = 0; i < std::min(kNodes.size(), fit.latent_flux_W.size()); ++i) {
-    text += fmt::format("latent_flux_{} = \"{} W\"\n", kNodes[i], significant(fit.latent_flux_W[i], 2));
+  for (std::size_t i = 0; i < std::min(kHeatedNodes.size(), fit.latent_flux_W.size()); ++i) {
+    text += fmt::format("latent_flux_{} = \"{} W\"\n", kHeatedNodes[i], significant(fit.latent_flux_W[i], 2));
   }
   return text + fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
 }

@@ -89,14 +89,14 @@ struct Robot {
 struct RobotFigureSpec {
   std::string_view table;
   ParameterSpec spec;
-  double Robot::*value;
+  double Robot::*value = nullptr;
 };
 std::span<const RobotFigureSpec> robot_figure_specs();
 
 /// The same for the figures of one [[friction.heading.wheel]].
 struct WheelFigureSpec {
   ParameterSpec spec;
-  double HeadingWheel::*value;
+  double HeadingWheel::*value = nullptr;
 };
 std::span<const WheelFigureSpec> wheel_figure_specs();
 

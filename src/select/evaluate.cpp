@@ -19,7 +19,9 @@
 namespace heatsoak {
 namespace {
 
-enum Node { winding, stator };
+using states::stator;
+using states::winding;
+
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
 /// Half a minute of work; beyond, the intervals say how coarse the percentiles are.
@@ -273,7 +275,7 @@ WheelDemand hardest(std::vector<WheelDemand> wheels) {
 }
 
 void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
-  const std::size_t turn = static_cast<std::size_t>(first_sample / kLanes);
+  const auto turn = static_cast<std::size_t>(first_sample / kLanes);
   const WheelDemand& demand = options.draws.empty() ? *work.wheel : options.draws[turn % options.draws.size()];
   const Block block(*work.motor, robot, duty, demand, options, first_sample);
   const double cell_s = work.duration_s / static_cast<double>(kBandCells);

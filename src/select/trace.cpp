@@ -10,7 +10,8 @@
 namespace heatsoak {
 namespace {
 
-enum Node { winding, stator, first_own };
+using states::stator;
+using states::winding;
 
 /// The same demand in bins no longer than `every_s`.
 WheelDemand subdivided(const WheelDemand& demand, double every_s) {
@@ -62,7 +63,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
   options.with_ledger = true;
   const double end_s = wheel.duration_s() * (1.0 - 1e-12);
   Trace trace;
-  for (int node = first_own; node < network.state_count(); ++node) {
+  for (int node = states::first_own; node < network.state_count(); ++node) {
     trace.own_nodes.emplace_back(network.node_name(node));
   }
   const auto add_row = [&](const TransientMoment& moment) {
@@ -80,7 +81,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
                  .torque_Nm = point.motor_torque_Nm,
                  .motor_V = terminal_voltage_V(sample.values, point, moment.state_C[winding])};
     row.power_in_W = row.motor_V * row.current_A;
-    row.own_C.assign(moment.state_C.begin() + first_own, moment.state_C.end());
+    row.own_C.assign(moment.state_C.begin() + states::first_own, moment.state_C.end());
     trace.rows.push_back(row);
   };
   const TransientResult result = run_transient(network, parameters, all, options, add_row);

@@ -15,7 +15,7 @@ const int kPeriodsPerThermal = static_cast<int>(std::lround(SimulatedRobot::kThe
 std::vector<Lanes> same_in_all_lanes(const std::vector<double>& values) {
   std::vector<Lanes> lanes;
   for (const double value : values) {
-    lanes.push_back(Lanes::Constant(value));
+    lanes.emplace_back(Lanes::Constant(value));
   }
   return lanes;
 }

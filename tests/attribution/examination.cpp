@@ -3,13 +3,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/unknown.h"
 #include "drive_rows.h"
 #include "identify/measured_run.h"
 
 namespace heatsoak::truth {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// As reading a log does: a sample that stands out of its neighbours by six of their deviations is no measurement.
 void leave_out_outliers(std::vector<double>& values) {

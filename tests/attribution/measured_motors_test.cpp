@@ -10,11 +10,12 @@
 #include "identify/calibration/calibrate.h"
 #include "identify/measurement/mapping.h"
 #include "identify/measurement/read_recording.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
 
-const std::filesystem::path kReports = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "reports/diagnosis";
+const std::filesystem::path kReports = kSource / "reports/diagnosis";
 
 Recording read(const std::filesystem::path& log, const std::filesystem::path& map) {
   RecordingReport report;
@@ -149,7 +150,7 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
 TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_model) {
   const std::optional<std::filesystem::path> folder = measured_data("umich_ri50");
   SKIP_WITHOUT(folder);
-  const std::filesystem::path map = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "tests/data/mappings/umich_ri50.map.toml";
+  const std::filesystem::path map = kSource / "tests/data/mappings/umich_ri50.map.toml";
   const Recording stall = read(*folder / "stall_staircase.csv", map);
   const Recording no_load = read(*folder / "no_load_staircase.csv", map);
   const Motor start = read_motor(kReports / "../calibration/ri50.toml");

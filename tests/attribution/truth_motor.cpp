@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "base/unknown.h"
 
 namespace heatsoak::truth {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Shares of copper and iron: parts of one kind sit close together, so that two nodes can stand for all eight to 0.1 K.
 constexpr PerPart kCopperShare{0.66, 0.17, 0.17};

@@ -4,11 +4,10 @@
 #include <filesystem>
 
 #include "select/evaluate.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
-
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 
 std::vector<Motor> all_motors() {
   std::vector<Motor> motors;

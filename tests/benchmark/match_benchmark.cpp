@@ -6,14 +6,12 @@
 #include <filesystem>
 
 #include "simulate/match_run.h"
+#include "support/shipped.h"
 
 namespace heatsoak {
 namespace {
 
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 constexpr double kLength_s = 2400.0;
-
-Robot robot() { return read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"); }
 
 /// Division A with overtime, its stops stretched until the game has the length.
 MatchInputs forty_minutes(MatchValues& values) {
@@ -44,7 +42,7 @@ void match_40_minutes_generated(benchmark::State& state) {
   const MatchInputs inputs = forty_minutes(values);
   MatchLoad load;
   for (auto _ : state) {
-    load = play_match(inputs, values, robot(), 1, Planner::jerk_limited);
+    load = play_match(inputs, values, twente(), 1, Planner::jerk_limited);
   }
   state.counters["length_s"] = load.duration_s;
   state.counters["resident_MB"] = resident_MB();
@@ -57,7 +55,7 @@ void match_40_minutes_closed_loop(benchmark::State& state) {
   const Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
   MatchRun run;
   for (auto _ : state) {
-    run = run_match(inputs, robot(), motor, {});
+    run = run_match(inputs, twente(), motor, {});
   }
   state.counters["length_s"] = run.score.time_s;
   state.counters["resident_MB"] = resident_MB();

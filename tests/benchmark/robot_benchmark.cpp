@@ -7,14 +7,12 @@
 #include "motor/motor.h"
 #include "robot/inverse_dynamics.h"
 #include "robot/plant.h"
+#include "support/shipped.h"
 
 namespace heatsoak {
 namespace {
 
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
-
-Robot robot(const char* id) { return read_robot(kSource / "robot_core/robots" / (std::string(id) + ".toml")); }
-MotorValues motor() { return read_motor(kSource / "motor_db/nanotec_df45l024048_a2.toml").nominal; }
+const char* const kMotor = "nanotec_df45l024048_a2";
 
 /// Another motion at every step, within what the ground passes on.
 BodyMotion motion_at(double time_s) {
@@ -23,7 +21,7 @@ BodyMotion motion_at(double time_s) {
 }
 
 void wheel_demands(benchmark::State& state, const char* id) {
-  const BodyConfig body = make_body(robot(id), motor());
+  const BodyConfig body = make_body(shipped_robot(id), shipped_motor(kMotor).nominal);
   double time_s = 0.0;
   for (auto each : state) {
     (void)each;
@@ -34,7 +32,7 @@ BENCHMARK_CAPTURE(wheel_demands, roller_drag, "tigers_v2020");
 BENCHMARK_CAPTURE(wheel_demands, measured_heading, "roboteam_twente_v2024");
 
 void plant_step(benchmark::State& state, double command_V) {
-  const PlantConfig plant = make_plant(robot("tigers_v2020"), motor(), 0.001);
+  const PlantConfig plant = make_plant(shipped_robot("tigers_v2020"), shipped_motor(kMotor).nominal, 0.001);
   PlantState at = plant_at_rest(plant);
   PlantInput input;
   for (int i = 0; i < kMostWheels; ++i) {

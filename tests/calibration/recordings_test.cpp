@@ -6,6 +6,7 @@
 #include "../support/measured_data.h"
 #include "identify/calibration/calibrate.h"
 #include "identify/measurement/read_recording.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -15,8 +16,8 @@ using testing::Contains;
 using testing::Field;
 using testing::HasSubstr;
 
-const fs::path kReports = fs::path(HEATSOAK_SOURCE_DIR) / "reports";
-const fs::path kMappings = fs::path(HEATSOAK_SOURCE_DIR) / "tests/data/mappings";
+const fs::path kReports = kSource / "reports";
+const fs::path kMappings = kSource / "tests/data/mappings";
 
 class Recordings : public testing::Test {
  protected:

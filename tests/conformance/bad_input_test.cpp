@@ -14,6 +14,7 @@
 
 #include "base/diagnostic.h"
 #include "program_run.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -25,7 +26,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::UnorderedElementsAre;
 
-const fs::path kData = fs::path(HEATSOAK_SOURCE_DIR) / "tests" / "data";
+const fs::path kData = kSource / "tests" / "data";
 
 /// Whole lines of stderr that are expected to begin so.
 std::vector<std::string> expectations(const std::string& file) {
@@ -150,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(tests_data, BadFile, testing::ValuesIn(bad_files()),
 
 // Files that are made when the test runs: too large to store, or no files at all.
 
-std::string good_motor() { return content_of(fs::path(HEATSOAK_SOURCE_DIR) / "motor_db" / "maxon_ec45_flat_70w_24v.toml"); }
+std::string good_motor() { return content_of(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml"); }
 
 std::string recorded(const std::string& csv) {
   return "summary = \"x\"\norigin = \"x\"\nshape = \"recorded\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = "

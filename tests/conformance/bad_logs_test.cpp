@@ -10,13 +10,12 @@
 #include "motor/motor.h"
 #include "program_run.h"
 #include "robot/robot.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kSource = HEATSOAK_SOURCE_DIR;
-
 const std::vector<DriveRow>& driven_rows() {
   static const std::vector<DriveRow> rows = [] {
     TestDrive drive;

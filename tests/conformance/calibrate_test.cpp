@@ -14,17 +14,17 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-using Cells = std::vector<std::string>;
+using CsvCells = std::vector<std::string>;
 
 /// A shipped log with its rows changed: time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s.
-std::string spoilt(const std::function<void(std::vector<Cells>&)>& change) {
+std::string spoilt(const std::function<void(std::vector<CsvCells>&)>& change) {
   std::istringstream lines(content_of(kSoak / "match_1.csv"));
   std::string line;
   std::getline(lines, line);
   std::string text = line + '\n';
-  std::vector<Cells> rows;
+  std::vector<CsvCells> rows;
   while (std::getline(lines, line)) {
-    Cells cells;
+    CsvCells cells;
     std::istringstream in(line + ',');
     for (std::string cell; std::getline(in, cell, ',');) {
       cells.push_back(cell);
@@ -32,7 +32,7 @@ std::string spoilt(const std::function<void(std::vector<Cells>&)>& change) {
     rows.push_back(std::move(cells));
   }
   change(rows);
-  for (const Cells& cells : rows) {
+  for (const CsvCells& cells : rows) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       text += (i > 0 ? "," : "") + cells[i];
     }
@@ -41,9 +41,9 @@ std::string spoilt(const std::function<void(std::vector<Cells>&)>& change) {
   return text;
 }
 
-std::function<void(std::vector<Cells>&)> each_cell(std::size_t column, const std::function<std::string(double)>& change) {
-  return [=](std::vector<Cells>& rows) {
-    for (Cells& cells : rows) {
+std::function<void(std::vector<CsvCells>&)> each_cell(std::size_t column, const std::function<std::string(double)>& change) {
+  return [=](std::vector<CsvCells>& rows) {
+    for (CsvCells& cells : rows) {
       cells[column] = cells[column].empty() ? "" : change(std::stod(cells[column]));
     }
   };
@@ -51,7 +51,7 @@ std::function<void(std::vector<Cells>&)> each_cell(std::size_t column, const std
 
 struct BadLog {
   const char* name;
-  std::function<void(std::vector<Cells>&)> change;
+  std::function<void(std::vector<CsvCells>&)> change;
   int exit_code;
   const char* message;
 };
@@ -84,22 +84,22 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLog{"SmallMilliamps", each_cell(4, [](double current_A) { return std::to_string(30.0 * current_A); }), 2,
                            "is it in milliamperes"},
                     BadLog{"SwappedSensors",
-                           [](std::vector<Cells>& rows) {
-                             for (Cells& cells : rows) {
+                           [](std::vector<CsvCells>& rows) {
+                             for (CsvCells& cells : rows) {
                                std::swap(cells[1], cells[2]);
                              }
                            },
                            2, "are the two swapped?"},
                     BadLog{"AllConstant",
-                           [](std::vector<Cells>& rows) {
-                             for (Cells& cells : rows) {
+                           [](std::vector<CsvCells>& rows) {
+                             for (CsvCells& cells : rows) {
                                std::copy(rows.front().begin() + 1, rows.front().end(), cells.begin() + 1);
                              }
                            },
                            3, "winding_C is constant"},
-                    BadLog{"TooShort", [](std::vector<Cells>& rows) { rows.resize(12); }, 3, "12 rows; at least 20"},
+                    BadLog{"TooShort", [](std::vector<CsvCells>& rows) { rows.resize(12); }, 3, "12 rows; at least 20"},
                     BadLog{"Unexcited",
-                           [](std::vector<Cells>& rows) {
+                           [](std::vector<CsvCells>& rows) {
                              for (std::size_t row = 0; row < rows.size(); ++row) {
                                rows[row][1] = std::to_string(22.0 + 0.1 * static_cast<double>(row * 7 % 5));
                                rows[row][2] = std::to_string(22.0 + 0.1 * static_cast<double>(row * 11 % 5));
@@ -108,20 +108,20 @@ INSTANTIATE_TEST_SUITE_P(
                            },
                            3, "no heat goes in"},
                     BadLog{"NothingButNan",
-                           [](std::vector<Cells>& rows) {
-                             for (Cells& cells : rows) {
+                           [](std::vector<CsvCells>& rows) {
+                             for (CsvCells& cells : rows) {
                                std::fill(cells.begin() + 1, cells.end(), "NaN");
                              }
                            },
                            3, "holds a number"},
                     BadLog{"NoTemperatures",
-                           [](std::vector<Cells>& rows) {
-                             for (Cells& cells : rows) {
+                           [](std::vector<CsvCells>& rows) {
+                             for (CsvCells& cells : rows) {
                                cells[1] = cells[2] = "";
                              }
                            },
                            3, "no temperature of the motor"},
-                    BadLog{"Unsorted", [](std::vector<Cells>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase"}),
+                    BadLog{"Unsorted", [](std::vector<CsvCells>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase"}),
     [](const auto& instance) { return instance.param.name; });
 
 TEST(Calibrate, LogsThatLookWrongAreTakenAsTheyAreWhereAsked) {

@@ -6,9 +6,9 @@
 #include <regex>
 #include <sstream>
 
-#include "../identify/test_drive.h"
 #include "motor/motor.h"
 #include "program_run.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -21,14 +21,6 @@ using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::Not;
 using testing::UnorderedElementsAre;
-using Words = std::vector<std::string>;
-
-const fs::path kSource = HEATSOAK_SOURCE_DIR;
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 const Words kSteady{"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6A", "--time-on", "4s", "--time-off", "6s"};
 const Words kEvaluate{"evaluate",
@@ -40,29 +32,7 @@ const Words kEvaluate{"evaluate",
                       "maxon_ec45_flat_70w_24v,maxon_ecx_flat_32l_48v"};
 const Words kSimulate{"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent"};
 
-/// A log of a friction test, driven by the plant.
-const std::string& friction_log_text() {
-  static const std::string text = [] {
-    const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
-    TestDrive drive;
-    for (int i = 0; i < 8; ++i) {
-      drive.headings_rad.push_back(0.2 + i * std::numbers::pi / 4.0);
-    }
-    drive.speeds_m_per_s = {0.5, 1.0};
-    drive.bad_row_share = 0.1;
-    const Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
-    return csv_of(DriveOnPlant(make_plant(robot, motor.nominal, 0.001), drive, 1).rows(), 4);
-  }();
-  return text;
-}
-
-/// A folder as the examples expect it: the data folders and a log within reach.
-void link_data(const fs::path& folder) {
-  write(folder / "steady_state_test.csv", friction_log_text());
-  for (const char* each : {"motor_db", "duty_profiles", "robot_core", "reports"}) {
-    fs::create_directory_symlink(kSource / each, folder / each);
-  }
-}
+const fs::path kFrictionLog = kSource / "reports/friction_test/steady_state_test.csv";
 
 // Verbs.
 
@@ -108,12 +78,12 @@ TEST_P(Verb, has_help_on_stdout) {
   }
 }
 
+// Anywhere: what it needs came with the program.
 TEST_P(Verb, has_an_example_that_runs) {
   const std::vector<std::string> lines = examples(GetParam());
   ASSERT_THAT(lines, Not(IsEmpty()));
   for (const std::string& line : lines) {
     const TemporaryFolder folder;
-    link_data(folder.path());
     RunOptions options;
     options.folder = folder.path();
     options.environment = {"DISPLAY", "WAYLAND_DISPLAY"};
@@ -343,10 +313,8 @@ TEST(Json, of_steady_keeps_the_contract) {
 
 TEST(Json, of_friction_keeps_the_contract) {
   const TemporaryFolder folder;
-  link_data(folder.path());
-  const std::string log = (folder.path() / "steady_state_test.csv").string();
   const std::string out = (folder.path() / "measured.toml").string();
-  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", log, "--out", out, "--json", "-"});
+  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", kFrictionLog.string(), "--out", out, "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json answer = result.json();
   EXPECT_EQ(answer.at("schema"), "heatsoak.friction/1");
@@ -376,10 +344,9 @@ TEST(Json, of_friction_keeps_the_contract) {
 
 TEST(ExitCode, of_friction_refuses_a_log_that_is_given_twice) {
   const TemporaryFolder folder;
-  const std::string log = (folder.path() / "drive.csv").string();
+  const std::string log = kFrictionLog.string();
   const std::string copy = (folder.path() / "copy.csv").string();
-  write(log, friction_log_text());
-  write(copy, friction_log_text());
+  fs::copy_file(log, copy);
   const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", log, copy});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("holds the same rows as " + log));

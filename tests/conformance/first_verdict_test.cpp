@@ -6,13 +6,12 @@
 #include <sstream>
 
 #include "program_run.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kSource = HEATSOAK_SOURCE_DIR;
 
 /// The command of the demo, from the script itself, with another name for its picture.
 std::vector<std::string> demo_words(const fs::path& picture) {

@@ -6,20 +6,15 @@
 #include <sstream>
 
 #include "program_run.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using Words = std::vector<std::string>;
 
 const Words kMatch{"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--robot", "roboteam_twente_v2024", "--duty", "division_b_match"};
-
-Words operator+(Words first, const Words& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
 
 TEST(SimulateMatch, writes_every_signal_in_bounded_memory) {
   const TemporaryFolder folder;
@@ -85,7 +80,7 @@ TEST(SimulateMatch, an_empty_battery_is_no_pass) {
   const TemporaryFolder folder;
   RunOptions options;
   options.folder = folder.path();
-  std::string text = content_of(std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots/roboteam_twente_v2024.toml");
+  std::string text = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
   const std::size_t at = text.find("capacity = { value = \"1300 mA h\"");
   ASSERT_NE(at, std::string::npos);
   const std::size_t end = text.find('\n', at);
@@ -170,7 +165,7 @@ TEST(Outputs, never_replace_what_the_command_reads) {
   const TemporaryFolder folder;
   RunOptions options;
   options.folder = folder.path();
-  const std::string robot = content_of(std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots/roboteam_twente_v2024.toml");
+  const std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
   write(folder.path() / "mine.toml", robot);
   const Words duty{"--robot", "mine.toml", "--duty", "paper_intermittent"};
   const Words evaluate{"--motors", "maxon_ecx_flat_42m_24v", "--samples", "0", "--json", "./mine.toml"};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "program_run.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -12,9 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-using Words = std::vector<std::string>;
 
-const fs::path kSource = HEATSOAK_SOURCE_DIR;
 const std::string kMotorFile = (kSource / "motor_db/maxon_ec45_flat_70w_24v.toml").string();
 const std::string kRobotFile = (kSource / "robot_core/robots/tigers_v2020.toml").string();
 const std::string kDutyFile = (kSource / "duty_profiles/paper_intermittent.toml").string();

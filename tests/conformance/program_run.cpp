@@ -39,8 +39,9 @@ void redirect(int descriptor, const fs::path& file) {
   std::vector<char*> words;
   std::string program = options.program;
   words.push_back(program.data());
-  for (const std::string& each : arguments) {
-    words.push_back(const_cast<char*>(each.c_str()));
+  Words own = arguments;
+  for (std::string& each : own) {
+    words.push_back(each.data());
   }
   words.push_back(nullptr);
   ::alarm(options.time_limit_s);  // survives execv: whatever hangs is ended

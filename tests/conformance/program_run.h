@@ -17,6 +17,14 @@ struct RunOptions {
   unsigned time_limit_s = 120;
 };
 
+/// What stands on a command line.
+using Words = std::vector<std::string>;
+
+inline Words operator+(Words first, const Words& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 struct ProgramRun {
   int exit_code = -1;  ///< 128 + signal where a signal ended it
   std::string out;
@@ -27,7 +35,7 @@ struct ProgramRun {
   [[nodiscard]] nlohmann::json json() const;
 };
 
-ProgramRun run(const std::vector<std::string>& arguments, const RunOptions& options = {});
+ProgramRun run(const Words& arguments, const RunOptions& options = {});
 /// Through bash, as the example lines of the help are written; `heatsoak` is the program.
 ProgramRun run_line(const std::string& line, const RunOptions& options = {});
 

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 
+#include "support/source_folder.h"
+
 namespace heatsoak {
 
-inline const std::filesystem::path kSoak = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "reports/soak";
+inline const std::filesystem::path kSoak = kSource / "reports/soak";
 inline constexpr const char* kMotor = "maxon_ec45_flat_70w_24v";
 
 }  // namespace heatsoak

@@ -9,7 +9,9 @@
 #include "base/diagnostic.h"
 #include "duty/game_to_demand.h"
 #include "duty/recorded_game.h"
+#include "import_failure.h"
 #include "ssl_log_writer.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -28,16 +30,7 @@ std::string table(int rows) {
   return text;
 }
 
-std::string failure_of(const std::string& text) {
-  const TemporaryFile file("game.csv", text);
-  try {
-    (void)import_game(file.path());
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
-    return failure.what();
-  }
-  return "no failure";
-}
+std::string failure_of_table(const std::string& text) { return failure_of(text, "game.csv"); }
 
 TEST(ImportCsv, ReadsATableWithItsOwnTime) {
   const TemporaryFile file("game.csv", table(300));
@@ -65,13 +58,14 @@ TEST(ImportCsv, TakesColumnsInAnyOrderAndRobotsOneAfterTheOther) {
 }
 
 TEST(ImportCsv, NamesThePlaceOfWhatIsWrong) {
-  EXPECT_THAT(failure_of(table(3) + "101,yelow,7,0,0,0\n"),
+  EXPECT_THAT(failure_of_table(table(3) + "101,yelow,7,0,0,0\n"),
               HasSubstr("game.csv:5:5: error: team: \"yelow\" is not yellow or blue; did you mean 'yellow'?"));
-  EXPECT_THAT(failure_of(table(3) + "101,blue,7,zero,0,0\n"), HasSubstr("game.csv:5:12: error: x_m: \"zero\" is not a finite number"));
-  EXPECT_THAT(failure_of(table(3) + "101,blue,1.5,0,0,0\n"), HasSubstr("game.csv:5:10: error: robot_id: 1.5 is no robot"));
-  EXPECT_THAT(failure_of(table(3) + "101,blue,7,0,0\n"), HasSubstr("game.csv:5:1: error: has 5 cells where the header has 6"));
-  EXPECT_THAT(failure_of("t_s,team,robot,x_m,y_m,yaw_rad\n0,blue,1,0,0,0\n"), HasSubstr("robot_id: there is no such column"));
-  EXPECT_THAT(failure_of(kHeader), HasSubstr("holds no row"));
+  EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,zero,0,0\n"),
+              HasSubstr("game.csv:5:12: error: x_m: \"zero\" is not a finite number"));
+  EXPECT_THAT(failure_of_table(table(3) + "101,blue,1.5,0,0,0\n"), HasSubstr("game.csv:5:10: error: robot_id: 1.5 is no robot"));
+  EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,0,0\n"), HasSubstr("game.csv:5:1: error: has 5 cells where the header has 6"));
+  EXPECT_THAT(failure_of_table("t_s,team,robot,x_m,y_m,yaw_rad\n0,blue,1,0,0,0\n"), HasSubstr("robot_id: there is no such column"));
+  EXPECT_THAT(failure_of_table(kHeader), HasSubstr("holds no row"));
 }
 
 TEST(ImportCsv, LeavesOutRowsThatGoBackInTimeAndSaysWhichOnes) {
@@ -98,15 +92,15 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 TEST(ImportCsv, AStepOf360IsInDegreesHoweverSlowTheTurn) {
   // 0.25 rad/s from 0: past 180 degrees at 12.566 s, the 755th row, which begins with 12.5667,blue,7,0.00033,1.00000,
-  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return std::remainder(0.25 * kDegrees * time_s, 360.0); })),
+  EXPECT_THAT(failure_of_table(with_yaw(3600, [](double time_s) { return std::remainder(0.25 * kDegrees * time_s, 360.0); })),
               HasSubstr("game.csv:756:32: error: yaw_rad: jumps by a full turn of 360: it is in degrees; expected radians"));
-  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return std::fmod(0.25 * kDegrees * time_s, 360.0); })),
+  EXPECT_THAT(failure_of_table(with_yaw(3600, [](double time_s) { return std::fmod(0.25 * kDegrees * time_s, 360.0); })),
               HasSubstr("yaw_rad: jumps by a full turn of 360"));
 }
 
 TEST(ImportCsv, DegreesThatAreNotWrappedTurnMoreThanARobotKeepsUp) {
-  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return 0.25 * kDegrees * time_s; })), HasSubstr("is it in degrees?"));
-  EXPECT_THAT(failure_of(with_yaw(3600, [](double time_s) { return kDegrees * (3.0 + 0.5 * std::sin(0.7 * time_s)); })),
+  EXPECT_THAT(failure_of_table(with_yaw(3600, [](double time_s) { return 0.25 * kDegrees * time_s; })), HasSubstr("is it in degrees?"));
+  EXPECT_THAT(failure_of_table(with_yaw(3600, [](double time_s) { return kDegrees * (3.0 + 0.5 * std::sin(0.7 * time_s)); })),
               HasSubstr("is it in degrees?"));
 }
 
@@ -185,7 +179,7 @@ TEST(ImportCsv, PlacesBeyondAllMeasureAreSaidShortly) {
   for (int i = 0; i < 300; ++i) {
     text += fmt::format("{:.2f},blue,7,1e300,1e300,0\n", 0.01 * i);
   }
-  EXPECT_THAT(failure_of(text), HasSubstr("reach 1e+300 m, and most places lie outside any field"));
+  EXPECT_THAT(failure_of_table(text), HasSubstr("reach 1e+300 m, and most places lie outside any field"));
 }
 
 TEST(ImportCsv, AJumpOfTheClockIsNoPause) {
@@ -195,8 +189,7 @@ TEST(ImportCsv, AJumpOfTheClockIsNoPause) {
     text += std::to_string(time_s) + ",blue,7," + std::to_string(0.5 * std::sin(0.02 * i)) + ",1.5,0\n";
   }
   const TemporaryFile file("game.csv", text);
-  const GameDemand demand = demand_of_game(
-      file.path(), "blue 7", read_robot(std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots/tigers_v2020.toml"), 0.01);
+  const GameDemand demand = demand_of_game(file.path(), "blue 7", read_robot(kSource / "robot_core/robots/tigers_v2020.toml"), 0.01);
   ASSERT_FALSE(demand.wheels.empty());
   EXPECT_NEAR(demand.wheels.front().duration_s(), 20.0 + 120.0, 0.1);
   EXPECT_THAT(demand.sentences, Contains(HasSubstr("jumps ahead by more than 3600 s 1 times")));

@@ -9,16 +9,16 @@
 #include "base/diagnostic.h"
 #include "base/random.h"
 #include "duty/recorded_game.h"
+#include "import_failure.h"
 #include "ssl_log_writer.h"
 
 namespace heatsoak {
 namespace {
 
 using namespace testing_logs;
+using namespace std::string_literals;
 using testing::Contains;
 using testing::HasSubstr;
-
-constexpr double kFrame_s = 1.0 / 75.0;
 
 SeenRobot robot_at(double time_s) { return {true, 3, std::sin(time_s), 0.5, 0.1}; }
 
@@ -35,17 +35,6 @@ LogWriter small_log(int frames = 100) {
     }
   }
   return log;
-}
-
-std::string failure_of(const std::string& bytes, const std::string& name = "game.log") {
-  const TemporaryFile file(name, bytes);
-  try {
-    (void)import_game(file.path());
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
-    return failure.what();
-  }
-  return "no failure";
 }
 
 void expect_sane(const RecordedGame& game) {
@@ -115,8 +104,9 @@ TEST(ImportDamage, SurvivesFlippedBitsAnywhere) {
     std::string bytes = i % 4 == 3 ? packed : plain;
     const int flips = 1 + static_cast<int>(random.uniform() * 8.0);
     for (int k = 0; k < flips; ++k) {
-      bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(bytes.size()))] ^=
-          static_cast<char>(1 << static_cast<int>(random.uniform() * 8.0));
+      char& hit = bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(bytes.size()))];
+      const auto bit = static_cast<unsigned>(random.uniform() * 8.0);
+      hit = static_cast<char>(static_cast<unsigned char>(hit) ^ (1U << bit));
     }
     file.write(bytes);
     try {
@@ -168,7 +158,7 @@ TEST(ImportDamage, FindsNoMoreMessagesInRubbish) {
 }
 
 TEST(ImportDamage, SaysWhatAForeignFileIs) {
-  EXPECT_THAT(failure_of("SSL_LOG_FILR\0\0\0\1 and so on"), HasSubstr("begins with \"SSL_LOG_FILR\"; did you mean 'SSL_LOG_FILE'?"));
+  EXPECT_THAT(failure_of("SSL_LOG_FILR\0\0\0\1 and so on"s), HasSubstr("begins with \"SSL_LOG_FILR\"; did you mean 'SSL_LOG_FILE'?"));
   EXPECT_THAT(failure_of(LogWriter(2).bytes()), HasSubstr("byte 12: SSL log of version 2; expected version 1"));
   EXPECT_THAT(failure_of("PK\x03\x04 something", "game.log.gz"), HasSubstr("is a zip archive; unpack it first"));
   EXPECT_THAT(failure_of("\xfd"
@@ -213,7 +203,8 @@ TEST(ImportHuge, StreamsALogOfAQuarterOfAGigabyte) {
   for (int block = 0; block < 50; ++block) {
     LogWriter log;
     for (; log.bytes().size() < 5'000'000; ++messages) {
-      const double time_s = static_cast<double>(messages / 4) * kFrame_s;
+      const std::uint64_t frame = messages / 4;
+      const double time_s = static_cast<double>(frame) * kFrame_s;
       std::vector<SeenRobot> robots;
       for (int id = 0; id < 16; ++id) {
         robots.push_back({true, id, 0.5 * std::sin(0.3 * time_s + id), 0.2 * id, 0.1});

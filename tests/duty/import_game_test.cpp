@@ -10,13 +10,13 @@
 #include "duty/game_to_demand.h"
 #include "robot/inverse_dynamics.h"
 #include "ssl_log_writer.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
 
 using namespace testing_logs;
 
-constexpr double kFrame_s = 1.0 / 75.0;
 constexpr double kLength_s = 60.0;
 /// Away for two seconds, which cuts the track, and for a moment, which is bridged.
 bool is_lost(double time_s) { return (time_s > 30.0 && time_s < 32.0) || (time_s > 45.0 && time_s < 45.2); }
@@ -65,7 +65,7 @@ std::string recording() {
 // ∫M²dt of every wheel is what heats its motor.
 TEST(ImportGame, a_damaged_recording_gives_the_wheels_work) {
   const TemporaryFile file("game.log.gz", recording());
-  const Robot robot = read_robot(std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots/tigers_v2020.toml");
+  const Robot robot = read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
   const GameDemand game = demand_of_game(file.path(), "yellow 3", robot, 0.05);
   ASSERT_EQ(game.wheels.size(), 4U);
   const double seen_until_s = game.wheels[0].duration_s();

@@ -14,8 +14,6 @@ using namespace testing_logs;
 using testing::Contains;
 using testing::HasSubstr;
 
-constexpr double kFrame_s = 1.0 / 75.0;
-
 SeenRobot on_a_line(double time_s) { return {true, 3, 0.5 * time_s - 1.0, 0.25, 0.1}; }
 
 /// `seconds` of one robot on a line, seen by camera 0.

@@ -13,8 +13,6 @@ namespace {
 
 using namespace testing_logs;
 
-constexpr double kFrame_s = 1.0 / 75.0;
-
 RecordedGame import_log(const LogWriter& log) {
   const TemporaryFile file("tracks.log", log.bytes());
   return import_game(file.path());

@@ -6,11 +6,10 @@
 #include <numeric>
 
 #include "duty/match/match_duty.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
-
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 
 const MatchInputs& division_a() {
   static const Duty kDuty = read_duty(kSource / "duty_profiles/division_a_match.toml");

@@ -47,7 +47,7 @@ class LimitedMotion {
     }
   }
   [[nodiscard]] const State& at(double time_s) const {
-    return states_[std::min(states_.size() - 1, static_cast<std::size_t>(time_s / kStep_s + 0.5))];
+    return states_[std::min(states_.size() - 1, static_cast<std::size_t>(std::lround(time_s / kStep_s)))];
   }
 
  private:
@@ -59,7 +59,7 @@ struct Game {
   LimitedMotion x;
   LimitedMotion y;
   LimitedMotion yaw;
-  double duration_s;
+  double duration_s = 0.0;
 };
 
 Game game(double play_share, double most_acceleration_m_per_s2, double most_jerk_m_per_s3, double duration_s = 300.0) {

@@ -13,6 +13,9 @@
 
 namespace heatsoak::testing_logs {
 
+/// Between two pictures of a camera.
+inline constexpr double kFrame_s = 1.0 / 75.0;
+
 /// A protobuf message under construction.
 class Message {
  public:
@@ -115,10 +118,7 @@ inline Message referee(double time_s, int stage, int command) {
 
 class LogWriter {
  public:
-  explicit LogWriter(std::int32_t version = 1) {
-    bytes_ = "SSL_LOG_FILE";
-    number(static_cast<std::uint32_t>(version), 4);
-  }
+  explicit LogWriter(std::int32_t version = 1) { number(static_cast<std::uint32_t>(version), 4); }
   /// Received 12 ms after `time_s`.
   LogWriter& add(double time_s, int type, const std::string& message) {
     starts_.push_back(bytes_.size());
@@ -139,7 +139,7 @@ class LogWriter {
       bytes_ += static_cast<char>(value >> (8 * i));
     }
   }
-  std::string bytes_;
+  std::string bytes_ = "SSL_LOG_FILE";
   std::vector<std::size_t> starts_;
 };
 
@@ -176,11 +176,11 @@ class TemporaryFile {
 };
 
 /// One gzip member.
-inline std::string gzip(const std::string& bytes) {
+inline std::string gzip(std::string bytes) {
   z_stream zip{};
   deflateInit2(&zip, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
   std::string packed(deflateBound(&zip, bytes.size()), '\0');
-  zip.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  zip.next_in = reinterpret_cast<Bytef*>(bytes.data());
   zip.avail_in = static_cast<uInt>(bytes.size());
   zip.next_out = reinterpret_cast<Bytef*>(packed.data());
   zip.avail_out = static_cast<uInt>(packed.size());

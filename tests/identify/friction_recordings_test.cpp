@@ -8,11 +8,10 @@
 #include "identify/friction/friction_fit.h"
 #include "identify/friction/read_friction_log.h"
 #include "identify/measurement/read_recording.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
-
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 
 std::filesystem::path data_or_skip(const std::string& folder) {
   const std::optional<std::filesystem::path> found = measured_data(folder);

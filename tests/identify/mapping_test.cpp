@@ -11,6 +11,7 @@
 #include "base/diagnostic.h"
 #include "identify/measurement/read_recording.h"
 #include "log_files.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -154,7 +155,7 @@ TEST(Mapping, IsFoundBesideTheLog) {
 
 /// The example of the README is read as it stands there.
 TEST(Mapping, ExampleOfTheReadme) {
-  std::ifstream file(std::string(HEATSOAK_SOURCE_DIR) + "/README.md");
+  std::ifstream file(kSource / "README.md");
   const std::string readme{std::istreambuf_iterator<char>(file), {}};
   const std::size_t begin = readme.find("motor = \"ri50\"");
   ASSERT_NE(begin, std::string::npos);

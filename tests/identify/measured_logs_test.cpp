@@ -7,6 +7,7 @@
 #include "../support/measured_data.h"
 #include "identify/measurement/quality.h"
 #include "identify/measurement/read_recording.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -27,8 +28,7 @@ class MeasuredLogs : public testing::Test {
   Recording read(const std::string& folder, const std::string& file) {
     const fs::path log = *measured_data() / folder / file;
     report_ = {};
-    Recording recording =
-        read_recording(log, read_mapping(fs::path(HEATSOAK_SOURCE_DIR) / "tests/data/mappings" / (folder + ".map.toml"), log), report_);
+    Recording recording = read_recording(log, read_mapping(kSource / "tests/data/mappings" / (folder + ".map.toml"), log), report_);
     quality_ = assess(recording, report_);
     return recording;
   }
@@ -80,7 +80,7 @@ TEST_F(MeasuredLogs, FramelessMotorStalledAndSpinning) {
   EXPECT_EQ(spin.rows(), 7766U);
   EXPECT_EQ(spin.run_begins.size(), 1U) << "the mapping bridges the bus's hiccups of 20 ms";
   EXPECT_NEAR(channel("speed_rad_per_s").high, 134.4, 0.1);
-  Mapping strict = read_mapping(fs::path(HEATSOAK_SOURCE_DIR) / "tests/data/mappings/umich_ri50.map.toml", spin.file);
+  Mapping strict = read_mapping(kSource / "tests/data/mappings/umich_ri50.map.toml", spin.file);
   strict.longest_gap_s.reset();
   RecordingReport report;
   EXPECT_EQ(read_recording(spin.file, strict, report).run_begins.size(), 1U + 194U) << "gaps of more than three usual periods";

@@ -226,6 +226,23 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"upside_down", [](int, auto& cells) { cells[winding] = 120.0 - cells[winding]; }, "is the sign of the sensor wrong?"}),
     [](const auto& instance) { return instance.param.name; });
 
+/// Only the cool-down after a heat; with the columns of winding and stator in this order.
+std::string cool_down(const char* columns) {
+  SyntheticLog log;
+  log.current_A = [](double time_s) { return time_s < 120.0 ? 12.0 : 0.0; };
+  const auto rows_C = log.temperatures_C();
+  std::string text = fmt::format("time_s,{},ambient_C,current_A\n", columns);
+  for (std::size_t row = 121; row < 1200; ++row) {
+    text += fmt::format("{},{:.3f},{:.3f},22,0\n", row, rows_C[row].first, rows_C[row].second);
+  }
+  return text;
+}
+
+TEST(Suspicions, SwappedWhereNothingHeats) {
+  EXPECT_THAT(read(cool_down("stator_C,winding_C")).quality.suspicions, testing::Contains(HasSubstr("are the two swapped?")));
+  EXPECT_THAT(read(cool_down("winding_C,stator_C")).quality.suspicions, testing::Not(testing::Contains(HasSubstr("swapped"))));
+}
+
 TEST(Suspicions, PowerThatCannotBe) {
   std::string text = "time_s,winding_C,torque_Nm,speed_rad_per_s,power_in_W,bus_V,bus_A\n";
   for (int i = 0; i < 200; ++i) {

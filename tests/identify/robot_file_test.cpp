@@ -9,6 +9,7 @@
 
 #include "base/files.h"
 #include "robot/body.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 const std::filesystem::path kFile = kSource / "robot_core/robots/roboteam_twente_v2024.toml";
 
 std::string file_text() { return read_file(kFile, 1'000'000); }
@@ -28,7 +28,7 @@ FrictionFit any_fit(const Robot& robot) {
   FrictionFit fit;
   for (std::size_t i = 0; i < robot.wheel_axis_rad.size(); ++i) {
     WheelFriction& wheel = fit.wheels.emplace_back();
-    const double n = static_cast<double>(i);
+    const auto n = static_cast<double>(i);
     wheel.damping_V_s_per_rad = around(0.0375, 0.0004);
     wheel.sine_V = around(0.30 - 0.2 * n, 0.05);
     wheel.constant_V = around(1.1 + 0.05 * n, 0.03);

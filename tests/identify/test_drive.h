@@ -42,7 +42,6 @@ class DriveOnPlant {
   DriveOnPlant(const PlantConfig& plant, const TestDrive& drive, std::uint64_t seed)
       : plant_(plant), drive_(drive), state_(plant_at_rest(plant)), engine_(seed) {
     state_.pose.yaw_rad = drive.yaw_rad;
-    battery_V_ = 24.0;
   }
 
   std::vector<DriveRow> rows() {
@@ -176,7 +175,7 @@ class DriveOnPlant {
   std::normal_distribution<double> normal_;
   Wrench push_;
   PerWheel integral_rad_{};
-  double battery_V_ = 0.0;
+  double battery_V_ = 24.0;
   double time_s_ = 0.0;
   std::vector<DriveRow> rows_;
 };

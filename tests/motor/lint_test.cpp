@@ -11,14 +11,14 @@
 #include <regex>
 #include <set>
 
+#include "support/source_folder.h"
+
 namespace heatsoak {
 namespace {
 
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 
 Motor motor_of_database(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
 Motor wrong_motor(const std::string& name) { return read_motor(kSource / "tests" / "data" / ("lint_" + name + ".toml")); }

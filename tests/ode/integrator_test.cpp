@@ -301,12 +301,13 @@ TEST_P(IntegratorTest, each_crossing_is_found_once_at_its_time) {
       const OdeStep reached = by_step ? integrator.step(5.0) : integrator.advance(5.0);
       if (reached.at_event) {
         const bool rises = found % 2 == 0;
-        const double turn_rad = 2.0 * std::numbers::pi * (found / 2);
+        const int turns = found / 2;
+        const double turn_rad = 2.0 * std::numbers::pi * turns;
         const double phase_rad = turn_rad + (rises ? std::asin(0.3) : std::numbers::pi - std::asin(0.3));
         EXPECT_NEAR(reached.time_s, phase_rad / kAngular_rad_per_s, 1e-6);
         EXPECT_EQ(reached.time_s, integrator.time_s());
         EXPECT_NEAR(integrator.state()[0], 0.3, 1e-6);
-        ASSERT_EQ(reached.crossed.size(), 1u);
+        ASSERT_EQ(reached.crossed.size(), 1U);
         EXPECT_EQ(reached.crossed[0], rises ? 1 : -1);
         ++found;
       } else {
@@ -344,7 +345,7 @@ TEST_P(IntegratorTest, several_events_in_one_step_come_in_order) {
     }
 
     EXPECT_EQ(crossed, (std::vector<std::vector<int>>{{1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, 1, 1}}));
-    ASSERT_EQ(time_s.size(), 3u);
+    ASSERT_EQ(time_s.size(), 3U);
     EXPECT_NEAR(time_s[0], 0.3, 1e-9);
     EXPECT_NEAR(time_s[1], 0.6, 1e-9);
     EXPECT_NEAR(time_s[2], 0.7, 1e-9);

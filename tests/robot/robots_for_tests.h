@@ -8,13 +8,9 @@
 #include "motor/motor.h"
 #include "robot/plant.h"
 #include "robot/robot.h"
+#include "support/shipped.h"
 
 namespace heatsoak {
-
-inline const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
-
-inline Robot shipped_robot(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
-inline Motor shipped_motor(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
 
 /// Four wheels at right angles to each other, no friction anywhere: every loss that a test is about is put in by it.
 inline Robot bare_robot() {

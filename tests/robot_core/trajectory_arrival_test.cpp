@@ -13,8 +13,6 @@
 namespace robot_core::reference {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
-
 /// Log-uniform between 1/span and span.
 double scale_within(std::mt19937_64& random, double span) { return std::exp(uniform(random, -std::log(span), std::log(span))); }
 

@@ -12,8 +12,6 @@
 namespace robot_core::reference {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
-
 const Limits kYaw = Limits::symmetric(20, 50, 500);
 /// What trajectory.h grants.
 constexpr double kMost = 1.002;

@@ -94,13 +94,13 @@ TEST(TrajectoryPlane, ReplannedEveryTickItStaysOnItsWay) {
 }
 
 /// The longest vectors on the way, each over its limit.
-struct Longest {
+struct LongestOverLimit {
   double speed = 0.0;
   double acceleration = 0.0;
 };
 
-Longest longest(const Motion (&motions)[3], const PlaneLimits<double>& plane) {
-  Longest most;
+LongestOverLimit longest(const Motion (&motions)[3], const PlaneLimits<double>& plane) {
+  LongestOverLimit most;
   for (double time_s = 0; time_s < motions[0].duration_s; time_s += 1e-3) {
     const State x = motions[0].at(time_s);
     const State y = motions[1].at(time_s);
@@ -122,7 +122,7 @@ TEST(TrajectoryPlane, ATurnAtFullSpeedKeepsTheCircle) {
     const State target[3] = {{6 * uniform(random), 0, 0}, {6 * uniform(random), 0, 0}, {uniform(random), 0, 0}};
     Motion motions[3];
     ASSERT_EQ(plan_plane(start, target, plane, yaw, motions), PlanResult::ok);
-    const Longest most = longest(motions, plane);
+    const LongestOverLimit most = longest(motions, plane);
     EXPECT_LE(most.speed, 1.002) << direction;
     EXPECT_LE(most.acceleration, 1.002) << direction;
     for (int axis = 0; axis < 3; ++axis) {
@@ -172,7 +172,7 @@ TEST(TrajectoryPlane, ALowerLimitIsApproachedFromAbove) {
   const State target[3] = {{-1, 0, 0}, {4, 0, 0}, {}};
   Motion motions[3];
   ASSERT_EQ(plan_plane(start, target, plane, Limits::symmetric(20, 50, 500), motions), PlanResult::ok);
-  const Longest most = longest(motions, plane);
+  const LongestOverLimit most = longest(motions, plane);
   EXPECT_LE(most.speed, 3.0 / 1.5 * 1.002);
   EXPECT_LE(most.acceleration, 1.002);
 }

@@ -8,8 +8,6 @@
 namespace robot_core::reference {
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
-
 double decades(std::mt19937_64& random, double low, double high) { return std::pow(10.0, uniform(random, low, high)); }
 
 /// A state that can be kept from breaking the velocity limits, before (-1) or after (+1) it is met.

@@ -14,6 +14,10 @@ using State = AxisState<double>;
 using Limits = AxisLimits<double>;
 using Motion = Trajectory<double>;
 
+inline double uniform(std::mt19937_64& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
 struct Task {
   State start;
   State target;

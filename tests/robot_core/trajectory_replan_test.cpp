@@ -42,7 +42,7 @@ TEST(TrajectoryReplan, OnTheWayTheArrivalStays) {
 /// Each of these was once sent around: on the way, at `share` of its duration, it was planned to take seconds longer.
 TEST(TrajectoryReplan, CasesThatWentWrong) {
   struct Case {
-    double share;
+    double share = 0.0;
     Task task;
   };
   const Case cases[] = {

@@ -11,11 +11,11 @@
 #include "motor/conditions.h"
 #include "select/evaluate.h"
 #include "select/trace.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
 
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 constexpr const char* kBase = "maxon_ecx_flat_42m_24v";
 
 class MotorFile {

@@ -12,12 +12,11 @@
 #include "motor/datasheet_network.h"
 #include "select/drive_profile.h"
 #include "select/spread.h"
+#include "support/source_folder.h"
 #include "thermal/steady_state.h"
 
 namespace heatsoak {
 namespace {
-
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 
 Motor motor_of_file(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
 Robot robot_of_file(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
@@ -78,7 +77,7 @@ double rest_C(double resistance_ohm, double current_A) {
 
 double quantile_of(std::vector<double> values, double share) {
   std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
 // --- nominal ----------------------------------------------------------------------------------------------

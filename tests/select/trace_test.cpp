@@ -7,11 +7,10 @@
 
 #include "given_demand.h"
 #include "motor/datasheet_network.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
-
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 
 class PaperTrace : public testing::Test {
  protected:

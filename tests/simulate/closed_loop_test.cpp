@@ -9,16 +9,10 @@
 #include "robot/inverse_dynamics.h"
 #include "simulate/match_run.h"
 #include "simulate/match_trace.h"
+#include "support/shipped.h"
 
 namespace heatsoak {
 namespace {
-
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
-
-Robot shipped_robot(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
-Motor shipped_motor(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
-Robot twente() { return shipped_robot("roboteam_twente_v2024"); }
-Motor ecx_32() { return shipped_motor("maxon_ecx_flat_32l_48v"); }
 
 /// Twente's with three wheels at equal angles and the rollers' drag in place of the measured curve of four.
 Robot three_wheels() {

@@ -8,15 +8,12 @@
 
 #include "duty/match/match_duty.h"
 #include "simulate/match_run.h"
+#include "support/shipped.h"
 
 namespace heatsoak {
 namespace {
 
-const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
 constexpr double kBangBang = std::numeric_limits<double>::infinity();
-
-Robot twente() { return read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"); }
-Motor ecx_32() { return read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml"); }
 
 // A jerk without bound is bang-bang, though other code plans it. (At 100 Hz a command that is held from a start without
 // acceleration would tell them apart.)

@@ -8,7 +8,7 @@
 namespace heatsoak {
 namespace {
 
-const TwoNode kMotor;
+const TwoNode kPlainMotor;
 
 TEST(Allocation, is_seen_at_all) {
   if (!allocations_are_counted()) {
@@ -21,7 +21,7 @@ TEST(Allocation, is_seen_at_all) {
 }
 
 TEST(Allocation, none_in_the_rate_of_a_network) {
-  const Network network = kMotor.network();
+  const Network network = kPlainMotor.network();
   const std::vector<double> values = network.values();
   std::vector<double> temperature_C{80.0, 50.0, 25.0};
   std::vector<double> rate(2);
@@ -35,10 +35,10 @@ TEST(Allocation, none_in_the_rate_of_a_network) {
 }
 
 TEST(Allocation, none_in_the_rate_of_lanes_and_in_the_ensemble_run) {
-  const Network network = kMotor.network();
+  const Network network = kPlainMotor.network();
   std::vector<Lanes> values;
   for (const double value : network.values()) {
-    values.push_back(Lanes::Constant(value));
+    values.emplace_back(Lanes::Constant(value));
   }
   std::vector<Lanes> temperature_C(3, Lanes::Constant(30.0));
   std::vector<Lanes> rate(2);
@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, TransientAllocation,
                          testing::Combine(testing::Values(OdeMethod::cvodes_adams, OdeMethod::arkode_erk), testing::Bool()));
 
 TEST_P(TransientAllocation, none_after_the_first_interval) {
-  const Network network = kMotor.network();
+  const Network network = kPlainMotor.network();
   const std::vector<double> values = network.values();
   const std::vector<Interval> duty = on_off(3.0, 4.0, 6.0, 100);
   TransientOptions options;

@@ -10,8 +10,6 @@
 namespace heatsoak {
 namespace {
 
-enum Node { winding, stator };
-
 /// Eight motors side by side, each with a duty of its own: the lengths are shared, the operating points not.
 struct Eight {
   std::array<TwoNode, kLanes> motors;

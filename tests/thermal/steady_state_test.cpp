@@ -7,8 +7,6 @@
 namespace heatsoak {
 namespace {
 
-enum Node { winding, stator };
-
 TwoNodeMotor closed_form_motor(const TwoNode& motor) {
   return {motor.resistance_25C_ohm, motor.temperature_coefficient_per_K, motor.winding_stator_K_per_W, motor.stator_ambient_K_per_W};
 }
@@ -142,21 +140,23 @@ TwoNode::Pair periodic_mean_K(const TwoNode& motor, double current_A, double on_
   options.with_ledger = true;
   const TransientResult cycle = run_transient(network, values, on_off(current_A, on_s, off_s, 1, ambient_C), options);
   enum Effect { copper, drag, inner, outer };
-  const auto heat_J = [&](int effect, int node) { return cycle.heat_J[static_cast<std::size_t>(effect * network.node_count() + node)]; };
+  const auto heat_J = [&](int effect, int node) {
+    return cycle.heat_J[static_cast<std::size_t>(effect) * static_cast<std::size_t>(network.node_count()) + static_cast<std::size_t>(node)];
+  };
   const double stator_K = heat_J(outer, network.state_count()) / cycle.end_s * motor.stator_ambient_K_per_W;
   const double inner_K = heat_J(inner, stator) / cycle.end_s * motor.winding_stator_K_per_W;
   return {stator_K + inner_K, stator_K};
 }
 
-constexpr TwoNode kMotor{.resistance_25C_ohm = 0.9,
-                         .temperature_coefficient_per_K = 0.0039,
-                         .winding_stator_K_per_W = 3.8,
-                         .stator_ambient_K_per_W = 2.8,
-                         .winding_J_per_K = 3.2,
-                         .stator_J_per_K = 28.0};
+constexpr TwoNode kCycledMotor{.resistance_25C_ohm = 0.9,
+                               .temperature_coefficient_per_K = 0.0039,
+                               .winding_stator_K_per_W = 3.8,
+                               .stator_ambient_K_per_W = 2.8,
+                               .winding_J_per_K = 3.2,
+                               .stator_J_per_K = 28.0};
 
 TEST(OnOffSteadyState, is_the_mean_of_the_integrated_model_exactly_where_alpha_is_zero) {
-  TwoNode motor = kMotor;
+  TwoNode motor = kCycledMotor;
   motor.temperature_coefficient_per_K = 0.0;
   for (const double cycle_s : {0.5, 10.0, 80.0}) {
     const OnOffSteadyState closed = on_off_steady_state(closed_form_motor(motor), {6.0, 0.4 * cycle_s, 0.6 * cycle_s, 31.0});
@@ -171,8 +171,8 @@ TEST(OnOffSteadyState, is_the_mean_of_the_integrated_model_exactly_where_alpha_i
 TEST(OnOffSteadyState, is_the_mean_of_the_integrated_model_for_short_cycles_with_order_two) {
   std::vector<double> error_K;
   for (const double cycle_s : {8.0, 4.0, 2.0, 1.0}) {
-    const OnOffSteadyState closed = on_off_steady_state(closed_form_motor(kMotor), {6.0, 0.4 * cycle_s, 0.6 * cycle_s, 31.0});
-    const TwoNode::Pair mean_K = periodic_mean_K(kMotor, 6.0, 0.4 * cycle_s, 0.6 * cycle_s, 31.0);
+    const OnOffSteadyState closed = on_off_steady_state(closed_form_motor(kCycledMotor), {6.0, 0.4 * cycle_s, 0.6 * cycle_s, 31.0});
+    const TwoNode::Pair mean_K = periodic_mean_K(kCycledMotor, 6.0, 0.4 * cycle_s, 0.6 * cycle_s, 31.0);
     error_K.push_back(std::abs(static_cast<double>(mean_K[winding]) - (closed.winding_C - 31.0)));
     RecordProperty("error_K_at_cycle_" + std::to_string(static_cast<int>(cycle_s)) + "_s", std::to_string(error_K.back()));
   }

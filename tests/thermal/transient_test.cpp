@@ -11,7 +11,6 @@
 namespace heatsoak {
 namespace {
 
-enum Node { winding, stator, ambient };
 enum Effect { copper, drag, inner, outer };
 
 constexpr TwoNode kMotor{.resistance_25C_ohm = 0.9,
@@ -123,7 +122,9 @@ TEST_P(EveryMethod, ledger_closes_for_random_duties) {
     options.with_ledger = true;
     const TransientResult result = run(motor, duty, options);
     ASSERT_EQ(result.heat_J.size(), 12U);
-    const auto heat_J = [&](int effect, int node) { return result.heat_J[static_cast<std::size_t>(3 * effect + node)]; };
+    const auto heat_J = [&](int effect, int node) {
+      return result.heat_J[3 * static_cast<std::size_t>(effect) + static_cast<std::size_t>(node)];
+    };
     const double scale_J = heat_J(copper, winding) + heat_J(drag, stator) + 1e-3;
     const std::array<double, 2> capacity_J_per_K{motor.winding_J_per_K, motor.stator_J_per_K};
     for (const int node : {winding, stator}) {
@@ -252,7 +253,7 @@ TEST_P(EveryMethod, a_limit_crossed_at_a_crawl_is_found) {
       TransientOptions options = tight(1e-10);
       options.limits = {{static_cast<int>(node), static_cast<double>(rest_C[node]) - below_K}};
       const auto above = [&](long double time_s) { return kMotor.after(time_s, {25.0L, 25.0L}, at)[node] - options.limits[0].limit_C; };
-      const double expected_s = static_cast<double>(bisected(0.0L, 1e5L, above));
+      const auto expected_s = static_cast<double>(bisected(0.0L, 1e5L, above));
       const TransientResult result = run(kMotor, std::vector<Interval>{{1e5, at}}, options);
       ASSERT_TRUE(result.time_to_limit_s[0].has_value()) << below_K;
       EXPECT_EQ(result.end_s, 1e5);
@@ -342,7 +343,7 @@ TEST_P(EveryMethod, a_peak_above_a_limit_has_a_time_to_limit) {
       ASSERT_GT(result.peak_C[stator], options.limits[0].limit_C);
       ASSERT_TRUE(result.time_to_limit_s[0].has_value()) << below_K << " K below the peak, tolerance " << tolerance;
       EXPECT_FALSE(result.time_to_limit_s[1].has_value());
-      const double expected_s = static_cast<double>(bisected(0.0L, peak_s, above));
+      const auto expected_s = static_cast<double>(bisected(0.0L, peak_s, above));
       if (tolerance < 1e-8 && below_K >= 1.0) {
         EXPECT_NEAR(*result.time_to_limit_s[0] - 12.0, expected_s, 1e-3);
       }
@@ -380,7 +381,7 @@ TEST_P(EveryMethod, above_the_critical_current_the_run_ends_destroyed) {
   EXPECT_EQ(result.peak_C[winding], kDestroyed_C);
   EXPECT_TRUE(result.time_to_limit_s[0].has_value());
   const auto above = [&](long double time_s) { return kMotor.after(time_s, {25.0L, 25.0L}, duty[0].at)[winding] - kDestroyed_C; };
-  const double expected_s = static_cast<double>(bisected(0.0L, 5000.0L, above));
+  const auto expected_s = static_cast<double>(bisected(0.0L, 5000.0L, above));
   EXPECT_GE(result.end_s, expected_s * (1.0 - 1e-9));
   EXPECT_LT(result.end_s, 2.0 * expected_s) << "it should not go far beyond";
 }
@@ -484,7 +485,8 @@ TEST(Transient, the_observer_sees_both_ends_of_every_interval) {
   });
   ASSERT_EQ(begins_s.size(), duty.size());
   for (std::size_t i = 0; i < begins_s.size(); ++i) {
-    EXPECT_NEAR(begins_s[i], 2.0 * static_cast<double>(i / 2) + 0.7 * static_cast<double>(i % 2), 1e-12);
+    const std::size_t cycles = i / 2;
+    EXPECT_NEAR(begins_s[i], 2.0 * static_cast<double>(cycles) + 0.7 * static_cast<double>(i % 2), 1e-12);
   }
   EXPECT_NEAR(latest_s, 10.0, 1e-12);
 }

@@ -13,6 +13,8 @@
 
 namespace heatsoak {
 
+enum Node { winding, stator, ambient };
+
 /// Under a constant current the network is linear, also with α: dT/dt = A·T + b, T(t) = T∞ + exp(A·t)·(T0 − T∞).
 /// All of it in long double.
 struct TwoNode {

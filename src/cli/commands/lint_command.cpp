@@ -90,8 +90,6 @@ std::vector<std::string> files_named(const std::string& name, const Session& ses
   return files;
 }
 
-std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
-
 ExitCode run(const std::vector<std::string>& names, Session& session) {
   std::vector<std::string> files;
   std::vector<Diagnostic> unreadable;

@@ -11,8 +11,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// JSON knows no infinity and no NaN.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 Json errors_json(const Errors& errors) {
   Json json = Json::object();
   for (const auto& [signal, error] : errors) {
@@ -38,9 +36,9 @@ Json effect_json(const FoundEffect& effect) {
   for (const FittedParameter& parameter : effect.parameters) {
     const bool is_fitted = parameter.low < parameter.high;
     parameters.push_back({{"name", parameter.name},
-                          {"value", number(parameter.value)},
+                          {"value", parameter.value},
                           {"unit", parameter.unit},
-                          {"ci95", is_fitted ? Json::array({number(parameter.low), number(parameter.high)}) : Json()}});
+                          {"ci95", is_fitted ? Json::array({parameter.low, parameter.high}) : Json()}});
   }
   return {{"id", effect.id},
           {"name", effect.name},
@@ -64,7 +62,7 @@ Json tests_json(const std::vector<InnovationTests>& tests) {
     }
     json[test.signal] = {{"samples", test.count},
                          {"variance_ratio", rounded(test.variance_ratio, 4)},
-                         {"ljung_box_p", number(test.ljung_box_probability)},
+                         {"ljung_box_p", test.ljung_box_probability},
                          {"cumulated_periodogram_over_band", rounded(test.periodogram_ratio, 3)},
                          {"kurtosis_over_normal", rounded(test.kurtosis_ratio, 3)},
                          {"correlated_with", correlated}};

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cli/measured/diagnosis_answer.h"
+#include "identify/interval.h"
 
 namespace heatsoak {
 namespace {
@@ -34,7 +35,7 @@ ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before
       continue;
     }
     const Eigen::Index sensor = found - run.sensors.begin();
-    for (auto& [curve, model] : {std::pair(&old, &before), std::pair(&now, &after)}) {
+    for (const auto& [curve, model] : {std::pair(&old, &before), std::pair(&now, &after)}) {
       const Eigen::VectorXd off_K = run.measured_C.col(sensor) - open_loop_C(*model, run, before_them).col(sensor);
       curve->y.insert(curve->y.end(), off_K.begin(), off_K.end());
       curve->y.push_back(kGap);
@@ -82,8 +83,8 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
         old.x.push_back(x), old.y.push_back(trace.before_W[k]);
         now.x.push_back(x), now.y.push_back(trace.after_W[k]);
         band.x.push_back(x);
-        band.low.push_back(trace.after_W[k] - 1.96 * trace.after_sd_W[k]);
-        band.high.push_back(trace.after_W[k] + 1.96 * trace.after_sd_W[k]);
+        band.low.push_back(trace.after_W[k] - kInterval_sd * trace.after_sd_W[k]);
+        band.high.push_back(trace.after_W[k] + kInterval_sd * trace.after_sd_W[k]);
       }
       old.x.push_back(old.x.back()), old.y.push_back(kGap);
       now.x.push_back(now.x.back()), now.y.push_back(kGap);
@@ -112,8 +113,8 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, con
     ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};
     ChartBand band{"95 %", heat.knots, {}, {}, 0};
     for (std::size_t i = 0; i < heat.curve.size(); ++i) {
-      band.low.push_back(heat.curve[i] - 1.96 * heat.curve_sd[i]);
-      band.high.push_back(heat.curve[i] + 1.96 * heat.curve_sd[i]);
+      band.low.push_back(heat.curve[i] - kInterval_sd * heat.curve_sd[i]);
+      band.high.push_back(heat.curve[i] + kInterval_sd * heat.curve_sd[i]);
     }
     panel.curves = {{"curve", heat.knots, heat.curve, 0, false}};
     panel.bands = {band};

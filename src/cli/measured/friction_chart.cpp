@@ -33,7 +33,7 @@ void add_interval(ChartCurve& bars, double x, const Estimate& estimate) {
 }
 
 /// f(θ), broken where its sign changes.
-ChartCurve fitted(const WheelFriction& wheel, std::size_t index) {
+ChartCurve fitted_curve(const WheelFriction& wheel, std::size_t index) {
   ChartCurve curve;
   curve.color_index = static_cast<int>(index);
   double before_V = kNaN;
@@ -73,7 +73,7 @@ ChartPanel heading_panel(const FrictionFit& fit, bool of_damping) {
                               .color_index = static_cast<int>(i),
                               .dashed = true});
     } else if (wheel.is_learned() && std::isfinite(wheel.constant_V.value)) {
-      panel.curves.push_back(fitted(wheel, i));
+      panel.curves.push_back(fitted_curve(wheel, i));
     }
   }
   return panel;

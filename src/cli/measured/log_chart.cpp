@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <set>
 
@@ -32,7 +32,7 @@ TimeScale scale_for(double duration_s) {
 }
 
 /// Channels that share axes: all temperatures, the wheels' speeds, …
-struct Group {
+struct ChannelGroup {
   std::string title;
   std::string y_label;
   bool is_of_wheels = false;  ///< then a wheel has its colour and is named once
@@ -44,12 +44,19 @@ std::string stem_of(const std::string& key) {
   return end != std::string::npos && end + 1 < key.size() && key[end] == '_' ? key.substr(0, end) : key;
 }
 
+/// From 0, of "…_1".
+std::size_t wheel_of(const std::string& key) {
+  std::size_t number = 1;
+  std::from_chars(key.data() + stem_of(key).size() + 1, key.data() + key.size(), number);
+  return std::max<std::size_t>(number, 1) - 1;
+}
+
 bool is_temperature(const Channel& channel) {
   return channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings;
 }
 
-std::vector<Group> groups_of(const Recording& recording) {
-  std::vector<Group> groups;
+std::vector<ChannelGroup> groups_of(const Recording& recording) {
+  std::vector<ChannelGroup> groups;
   std::vector<std::string> names;
   for (const QuantityKind kind : {QuantityKind::temperature, QuantityKind::surroundings, QuantityKind::heat_input, QuantityKind::signal}) {
     for (std::size_t place = 0; place < recording.channels.size(); ++place) {
@@ -70,7 +77,7 @@ std::vector<Group> groups_of(const Recording& recording) {
       }
     }
   }
-  for (Group& group : groups) {
+  for (ChannelGroup& group : groups) {
     if (group.title.empty()) {
       std::vector<std::string> keys;
       for (const std::size_t place : group.channels) {
@@ -99,7 +106,7 @@ class LogChart {
     chart.x_label = scale_.label;
     chart.panel_height_px = 220;
     std::set<std::string> named;
-    for (const Group& group : groups_of(recording_)) {
+    for (const ChannelGroup& group : groups_of(recording_)) {
       chart.panels.push_back(panel(group, named));
     }
     return chart;
@@ -115,15 +122,14 @@ class LogChart {
                               quality_.runs == 1 ? "" : "s", report_.left_out.empty() ? "" : "; shaded: left out");
   }
 
-  ChartPanel panel(const Group& group, std::set<std::string>& named) const {
+  ChartPanel panel(const ChannelGroup& group, std::set<std::string>& named) const {
     ChartPanel result{.title = group.title, .y_label = group.y_label, .curves = {}, .bands = {}, .levels = {}};
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t i = 0; i < group.channels.size(); ++i) {
       const std::size_t place = group.channels[i];
       const std::string& key = recording_.channels[place].quantity.key;
-      const std::size_t wheel =
-          group.is_of_wheels ? static_cast<std::size_t>(std::max(1, std::atoi(key.c_str() + stem_of(key).size() + 1))) - 1 : i;
+      const std::size_t wheel = group.is_of_wheels ? wheel_of(key) : i;
       const std::string name = group.is_of_wheels ? fmt::format("wheel {}", wheel + 1) : key;
       const bool is_listed = (group.is_of_wheels || group.channels.size() > 1) && named.insert(name).second;
       result.curves.push_back(curve(place, is_listed ? name : "", static_cast<int>(wheel % kCurveColors), wheel >= kCurveColors));
@@ -160,11 +166,11 @@ class LogChart {
   }
 
   /// Of whole rows and of the group's channels, merged.
-  [[nodiscard]] std::vector<std::pair<double, double>> marks(const Group& group) const {
+  [[nodiscard]] std::vector<std::pair<double, double>> marks(const ChannelGroup& group) const {
     std::vector<std::pair<double, double>> found;
     for (const auto& [what, entry] : report_.left_out) {
-      const bool is_here = what.first.empty() || std::ranges::any_of(group.channels, [&](std::size_t place) {
-                             return recording_.channels[place].quantity.key == what.first;
+      const bool is_here = what.first.empty() || std::ranges::any_of(group.channels, [this, &key = what.first](std::size_t place) {
+                             return recording_.channels[place].quantity.key == key;
                            });
       for (const LineRange& lines : is_here ? entry.lines : std::vector<LineRange>{}) {
         const double begin_s = time_of(lines.first);

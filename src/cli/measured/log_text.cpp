@@ -101,8 +101,6 @@ std::string fitness_text(const char* what, const Fitness& fitness) {
   return fitness.is_good() ? fmt::format("{}: yes\n", what) : fmt::format("{}: no, {}\n", what, fmt::join(fitness.lacks, "; "));
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json channels_json(const DataQuality& quality) {
   Json channels = Json::array();
   for (const ChannelQuality& channel : quality.channels) {
@@ -111,10 +109,10 @@ Json channels_json(const DataQuality& quality) {
                         {"unit", channel.quantity.unit},
                         {"samples", channel.samples},
                         {"left_out", channel.left_out},
-                        {"lowest", number(channel.low)},
-                        {"highest", number(channel.high)},
+                        {"lowest", channel.low},
+                        {"highest", channel.high},
                         {"step", channel.step > 0.0 ? Json(channel.step) : Json(nullptr)},
-                        {"noise", number(channel.noise)}});
+                        {"noise", channel.noise}});
   }
   return channels;
 }
@@ -140,8 +138,8 @@ Json clocks_json(const DataQuality& quality) {
   for (const ClockOffset& offset : quality.clock_offsets) {
     clocks.push_back({{"temperature", offset.temperature},
                       {"heat_input", offset.heat_input},
-                      {"delay_s", offset.delay_s ? number(*offset.delay_s) : Json(nullptr)},
-                      {"standard_error_s", offset.delay_s ? number(offset.delay_uncertainty_s) : Json(nullptr)},
+                      {"delay_s", offset.delay_s ? Json(*offset.delay_s) : Json()},
+                      {"standard_error_s", offset.delay_s ? Json(offset.delay_uncertainty_s) : Json()},
                       {"why_not", offset.why_not}});
   }
   return clocks;

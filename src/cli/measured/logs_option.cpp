@@ -53,12 +53,14 @@ void add_log_options(CLI::App& app, LogOptions& options) {
   app.add_flag("--as-is", options.takes_logs_as_they_are, "go on where units or sensors of a log look wrong: they are right");
 }
 
-std::vector<Recording> read_logs(const std::vector<std::string>& texts, const LogOptions& options, std::vector<std::string>& notes) {
+std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<std::string>& texts, const LogOptions& options,
+                                 std::vector<std::string>& notes) {
   std::vector<Recording> all;
   for (const std::string& text : texts) {
     const LogPart part = log_part(text);
     RecordingReport report;
-    Recording recording = read_recording(part.file, mapping_for(part.file, options.map), report);
+    const std::filesystem::path file = log_named(folders, part.file);
+    Recording recording = read_recording(file, mapping_for(file, options.map), report);
     for (const std::string& note : report.notes) {
       notes.push_back(fmt::format("{}: {}", recording.name, note));
     }

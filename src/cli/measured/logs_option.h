@@ -7,6 +7,7 @@
 
 #include "identify/measured_run.h"
 #include "identify/measurement/recording.h"
+#include "input/data_folders.h"
 
 namespace heatsoak {
 
@@ -19,9 +20,10 @@ struct LogOptions {
 /// --map, --ambient and --as-is.
 void add_log_options(CLI::App& app, LogOptions& options);
 
-/// `texts` are LOG or LOG@FROM-TO%, that part of its time. Notes of the reader are added to `notes`.
+/// `texts` are LOG or LOG@FROM-TO%, that part of its time; see log_named. Notes of the reader are added to `notes`.
 /// Throws Failure (bad_input).
-std::vector<Recording> read_logs(const std::vector<std::string>& texts, const LogOptions& options, std::vector<std::string>& notes);
+std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<std::string>& texts, const LogOptions& options,
+                                 std::vector<std::string>& notes);
 
 /// Files of one name in different folders are no parts of one run: where there are such, all of the name get that of their folder, too
 /// ("monday/run").

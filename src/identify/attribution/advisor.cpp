@@ -44,16 +44,20 @@ struct Primitive {
   std::function<std::pair<double, double>(int)> shares;
 };
 
+/// Of a staircase with steps of this length, from 0.
+int step_of(int time_s, int length_s) { return time_s / length_s; }
+
 const std::vector<Primitive>& menu() {
   static const std::vector<Primitive> all{
-      {"ten minutes of a no-load staircase of speed", [](int s) { return std::pair(0.2 * (1 + s / 120), 0.05); }},
-      {"ten minutes of current pulses at standstill", [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * (s / 120) : 0.0); }},
+      {"ten minutes of a no-load staircase of speed", [](int s) { return std::pair(0.2 * (1 + step_of(s, 120)), 0.05); }},
+      {"ten minutes of current pulses at standstill",
+       [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * step_of(s, 120) : 0.0); }},
       {"heat at standstill for five minutes, then spin without load while hot",
        [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.9, 0.05); }},
       {"spin without load while cold for five minutes, then rest",
        [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
-      {"one current at four speeds", [](int s) { return std::pair(0.25 * (1 + s / 150), 0.5); }},
-      {"one speed at four currents", [](int s) { return std::pair(0.6, 0.2 * (1 + s / 150)); }},
+      {"one current at four speeds", [](int s) { return std::pair(0.25 * (1 + step_of(s, 150)), 0.5); }},
+      {"one speed at four currents", [](int s) { return std::pair(0.6, 0.2 * (1 + step_of(s, 150))); }},
       {"heat at standstill for five minutes, then rest", [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.0, 0.0); }},
   };
   return all;

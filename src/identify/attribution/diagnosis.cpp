@@ -10,11 +10,11 @@
 #include "identify/attribution/advisor.h"
 #include "identify/attribution/coverage.h"
 #include "identify/attribution/terms.h"
+#include "identify/interval.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr double kInterval_sd = 1.959964;
 /// Unknown heat below this share of the heat that the model knows is what every model leaves.
 constexpr double kTolerableUnknown_share = 0.03;
 

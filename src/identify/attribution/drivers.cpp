@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
+
+#include "base/unknown.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// Two drivers whose values go together more than this are one; the earlier name stays.
 constexpr double kSameCorrelation_ratio = 0.9995;
 /// A curve over a driver has seven knots: with fewer samples than a few for each it says nothing.

@@ -29,7 +29,7 @@ Eigen::VectorXd apply(const SensorTerm& term, Eigen::Index sensor, const Measure
   for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
     shown_C[k] = std::isnan(true_C[k]) ? shown_C[k] : true_C[k];
   }
-  const Eigen::VectorXd by_size = term.type->typical_size * term.type->law.by_size(run.time_s, term.value, shown_C);
+  Eigen::VectorXd by_size = term.type->typical_size * term.type->law.by_size(run.time_s, term.value, shown_C);
   term.type->law.apply(run.time_s, term.value, false, shown_C);
   const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, sensors);
   out.residual_K(rows) = run.measured_C.col(sensor) - shown_C;

@@ -8,11 +8,10 @@
 #include <set>
 
 #include "base/diagnostic.h"
+#include "identify/interval.h"
 
 namespace heatsoak {
 namespace {
-
-constexpr double kInterval_sd = 1.959964;
 
 bool has_signal(const Recording& recording, Signal signal) {
   const std::vector<Signal> signals = signals_of(recording);
@@ -156,7 +155,7 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
     }
   }
   motor.fit.reset();
-  notes.push_back("the model was fitted to some of these runs: its intervals do not count a second time");
+  notes.emplace_back("the model was fitted to some of these runs: its intervals do not count a second time");
 }
 
 }  // namespace

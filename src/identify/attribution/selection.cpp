@@ -64,7 +64,7 @@ class Selector {
     }
   }
 
-  [[nodiscard]] std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) const {
+  [[nodiscard]] static std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) {
     std::vector<CandidateColumn> rules;
     for (const Candidate& each : candidates) {
       rules.push_back({each.size_spec().range.low < 0.0, 2.0});
@@ -140,7 +140,8 @@ class Selector {
   }
 
   /// The best few candidates with their unknown heat re-maximised.
-  std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
+  [[nodiscard]] std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table,
+                                                   const SetScore& base) const {
     const std::vector<double> gain_nats = table.single_gains_nats(base);
     std::vector<int> order(candidates.size());
     std::iota(order.begin(), order.end(), 0);

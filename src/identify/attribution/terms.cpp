@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace heatsoak {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// What a candidate's size may be before anything is measured: within some two typical sizes of nothing.
 constexpr double kSizeSpread_share = 2.0;
 /// Of a shape parameter's logarithm before anything is measured.
@@ -40,8 +38,7 @@ const EffectInPlace& add(Model& model, const std::string& name, const EffectType
 
 /// Free around nothing.
 void set_free_around_zero(Model& model, int place, double scale, const Range& range, double spread) {
-  const double low = range.low > -kInfinity ? range.low : -kInfinity;
-  model.set_free({.place = place, .by_log = false, .scale = scale, .low = low, .high = range.high}, spread);
+  model.set_free({.place = place, .by_log = false, .scale = scale, .low = range.low, .high = range.high}, spread);
   model.prior.mean[model.free_count() - 1] = 0.0;
 }
 

@@ -12,12 +12,12 @@
 #include "base/quantity.h"
 #include "identify/calibration/identifiability.h"
 #include "identify/calibration/profile.h"
+#include "identify/interval.h"
 #include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr double kQuantile = 1.959964;
 /// Beyond this standard deviation of a logarithm the parabola at the optimum is no picture of the likelihood.
 constexpr double kCurvatureHolds_sd = 0.1;
 
@@ -221,8 +221,8 @@ class Calibrating {
       }
       CalibratedFigure figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
       figure.value = each.before * std::exp(moved);
-      double below = kQuantile * sd;
-      double above = kQuantile * sd;
+      double below = kInterval_sd * sd;
+      double above = kInterval_sd * sd;
       Eigen::Index only = 0;
       if (sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 && each.exponents.cwiseAbs().sum() == 1.0) {
         const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only), options_.fit.threads);
@@ -327,8 +327,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   fit.motor = motor.id;
   fit.runs = names_of(calibration.runs);
   result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(fit.runs, ", "));
-  for (std::size_t i = 0; i < calibration.figures.size(); ++i) {
-    const CalibratedFigure& each = calibration.figures[i];
+  for (const CalibratedFigure& each : calibration.figures) {
     if (!each.is_of_file) {
       continue;
     }

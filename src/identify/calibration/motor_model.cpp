@@ -36,9 +36,9 @@ int place_of(const Network& network, std::string_view parameter) {
   return found == all.end() ? -1 : static_cast<int>(found - all.begin());
 }
 
-class Builder {
+class ModelBuilder {
  public:
-  Builder(const Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
+  ModelBuilder(const Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
     all_.heat = heat;
     all_.model.network = datasheet_network(motor, nominal_sample(motor));
     if (heat == HeatInput::input_power) {
@@ -257,6 +257,6 @@ HeatInput heat_input_for(std::span<const Recording> recordings) {
   throw Failure(ExitCode::bad_input, "the logs do not tell how much heat goes in", std::move(lacking));
 }
 
-MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed) { return Builder(motor, heat, with_speed).build(); }
+MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed) { return ModelBuilder(motor, heat, with_speed).build(); }
 
 }  // namespace heatsoak

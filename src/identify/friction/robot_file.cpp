@@ -52,7 +52,7 @@ std::string figure(const Estimate& estimate, double scale, const std::string& un
 bool is_header(const std::string& line) { return std::regex_search(line, std::regex(R"(^\s*\[)")); }
 bool is_header_of(const std::string& line, const std::string& table) {
   return std::regex_search(line,
-                           std::regex(R"(^\s*\[\[?\s*)" + std::regex_replace(table, std::regex("\\."), "\\s*\\.\\s*") + R"(\s*[\].])"));
+                           std::regex(R"(^\s*\[\[?\s*)" + std::regex_replace(table, std::regex(R"(\.)"), R"(\s*\.\s*)") + R"(\s*[\].])"));
 }
 
 Failure other_form(const Robot& robot, const std::string& table) {

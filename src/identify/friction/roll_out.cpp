@@ -16,10 +16,10 @@ namespace {
 constexpr double kOff_share = 0.02;
 constexpr double kEnd_share = 0.15;
 constexpr double kMoving_share = 0.3;
-constexpr std::size_t kLeastRows = 15;
+constexpr std::size_t kLeastRollOutRows = 15;
 constexpr std::size_t kReach = 4;
 constexpr double kTrusted_share = 0.1;
-constexpr int kMostRounds = 5;
+constexpr int kMostRollOutRounds = 5;
 
 /// Median of each value and its four neighbours on both sides: single bad rows vanish.
 std::vector<double> without_spikes(const std::vector<double>& values) {
@@ -68,14 +68,14 @@ struct Rolling {
       : speed(rows), energy_J(rows), smooth_energy_J(rows), turning_rad_per_s(rows), turning_rad2_per_s2(rows) {}
 };
 
-struct Stretch {
+struct RollOutStretch {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
 /// Where the drivers are off and the speed is not yet gone, each to the end of its roll-out.
-std::vector<Stretch> stretches(const FrictionLog& log, const std::vector<bool>& off, const std::vector<double>& speed) {
-  std::vector<Stretch> found;
+std::vector<RollOutStretch> stretches(const FrictionLog& log, const std::vector<bool>& off, const std::vector<double>& speed) {
+  std::vector<RollOutStretch> found;
   double top = 0.0;
   std::ranges::for_each(speed, [&](double each) { top = std::isfinite(each) ? std::max(top, std::abs(each)) : top; });
   const auto end_of = [&](std::size_t begin, std::size_t limit) {
@@ -105,7 +105,7 @@ std::vector<Stretch> stretches(const FrictionLog& log, const std::vector<bool>& 
       }
     }
   }
-  std::erase_if(found, [](const Stretch& stretch) { return stretch.end - stretch.begin < kLeastRows; });
+  std::erase_if(found, [](const RollOutStretch& stretch) { return stretch.end - stretch.begin < kLeastRollOutRows; });
   return found;
 }
 
@@ -115,7 +115,7 @@ struct Turned {
   std::vector<double> sum_rad2_per_s;  ///< Σ∫ω_i² dt
 };
 
-Turned turned_by(const FrictionLog& log, const Rolling& rolling, const Stretch& stretch, const std::vector<bool>& trusted) {
+Turned turned_by(const FrictionLog& log, const Rolling& rolling, const RollOutStretch& stretch, const std::vector<bool>& trusted) {
   Turned turned{std::vector<double>(trusted.size()), std::vector<double>(trusted.size())};
   std::optional<std::size_t> last;
   for (std::size_t row = stretch.begin; row < stretch.end; ++row) {
@@ -141,7 +141,7 @@ struct EnergyFit {
 };
 
 /// Rows count by 1/√E, so that the noise of the speed is the same in all.
-std::optional<EnergyFit> energy_fit(const Rolling& rolling, const Stretch& stretch, const Turned& turned,
+std::optional<EnergyFit> energy_fit(const Rolling& rolling, const RollOutStretch& stretch, const Turned& turned,
                                     const std::vector<bool>& trusted) {
   const double least_J = kEnd_share * kEnd_share * rolling.smooth_energy_J[stretch.begin];
   EnergyFit made{{}, Eigen::MatrixXd(trusted.size(), 3), Eigen::VectorXd(trusted.size())};
@@ -154,7 +154,7 @@ std::optional<EnergyFit> energy_fit(const Rolling& rolling, const Stretch& stret
       made.energy(used++) = weight * rolling.energy_J[row];
     }
   }
-  if (used < static_cast<Eigen::Index>(kLeastRows)) {
+  if (used < static_cast<Eigen::Index>(kLeastRollOutRows)) {
     return std::nullopt;
   }
   made.X.conservativeResize(used, 3);
@@ -167,7 +167,7 @@ std::optional<EnergyFit> energy_fit(const Rolling& rolling, const Stretch& stret
 
 /// Rows whose speed is within a tenth of the first one of what is expected; the others take no part.
 template <typename Expected>
-std::vector<bool> trusted_rows(const Rolling& rolling, const Stretch& stretch, Expected expected_J) {
+std::vector<bool> trusted_rows(const Rolling& rolling, const RollOutStretch& stretch, Expected expected_J) {
   std::vector<bool> trusted(stretch.end - stretch.begin);
   const double most = kTrusted_share * std::sqrt(std::max(0.0, expected_J(0)));
   for (std::size_t i = 0; i < trusted.size(); ++i) {
@@ -177,10 +177,10 @@ std::vector<bool> trusted_rows(const Rolling& rolling, const Stretch& stretch, E
   return trusted;
 }
 
-std::optional<RollOutRun> fitted(const FrictionLog& log, const Rolling& rolling, const Stretch& stretch) {
+std::optional<RollOutRun> fitted(const FrictionLog& log, const Rolling& rolling, const RollOutStretch& stretch) {
   std::vector<bool> trusted = trusted_rows(rolling, stretch, [&](std::size_t i) { return rolling.smooth_energy_J[stretch.begin + i]; });
   std::optional<EnergyFit> found;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostRollOutRounds; ++round) {
     const Turned turned = turned_by(log, rolling, stretch, trusted);
     found = energy_fit(rolling, stretch, turned, trusted);
     if (!found) {
@@ -234,7 +234,7 @@ void add_robot(const FrictionLog& log, const BodyConfig& body, RollOutResult& re
       rolling.turning_rad2_per_s2[row] += measured[i] * measured[i];
     }
   }
-  for (const Stretch& stretch : stretches(log, rows_off(log, kinematics.wheel_count), rolling.speed)) {
+  for (const RollOutStretch& stretch : stretches(log, rows_off(log, kinematics.wheel_count), rolling.speed)) {
     const BodyVelocity& first = velocity[stretch.begin];
     const double moving_m_per_s = std::hypot(first.x_m_per_s, first.y_m_per_s);
     const bool turns = kinematics.contact_radius_m * std::abs(first.yaw_rad_per_s) > moving_m_per_s;
@@ -262,7 +262,7 @@ void add_lifted(const FrictionLog& log, const BodyConfig& body, RollOutResult& r
       rolling.energy_J[row] = 0.5 * body.wheel_inertia_kg_m2 * rolling.turning_rad2_per_s2[row];
       rolling.smooth_energy_J[row] = 0.5 * body.wheel_inertia_kg_m2 * rolling.speed[row] * rolling.speed[row];
     }
-    for (const Stretch& stretch : stretches(log, off, rolling.speed)) {
+    for (const RollOutStretch& stretch : stretches(log, off, rolling.speed)) {
       if (std::optional<RollOutRun> run = fitted(log, rolling, stretch)) {
         result.runs.push_back(*run);
       }

@@ -19,10 +19,10 @@ constexpr double kAtRest_share = 0.03;
 constexpr double kRestless_share = 0.3;
 constexpr double kTurn_rad = 30.0 * std::numbers::pi / 180.0;
 
-enum class Kind { standing, translating, rotating, unknown };
+enum class Movement { standing, translating, rotating, unknown };
 
 struct Block {
-  Kind kind = Kind::unknown;
+  Movement kind = Movement::unknown;
   BodyVelocity velocity;
   double direction_rad = 0.0;
 };
@@ -30,7 +30,7 @@ struct Block {
 struct Leg {
   Eigen::Index begin = 0;
   Eigen::Index end = 0;
-  Kind kind = Kind::unknown;
+  Movement kind = Movement::unknown;
   bool is_return = false;
 };
 
@@ -49,11 +49,11 @@ std::vector<Block> classified(const BlockMedians& medians, const Kinematics& kin
     const double turning_m_per_s = kinematics.contact_radius_m * std::abs(block.velocity.yaw_rad_per_s);
     block.direction_rad = std::atan2(block.velocity.y_m_per_s, block.velocity.x_m_per_s);
     if (!std::isfinite(moving_m_per_s + turning_m_per_s)) {
-      block.kind = Kind::unknown;
+      block.kind = Movement::unknown;
     } else if (std::max(moving_m_per_s, turning_m_per_s) <= kAtRest_share * rim_m_per_s) {
-      block.kind = Kind::standing;
+      block.kind = Movement::standing;
     } else {
-      block.kind = turning_m_per_s > moving_m_per_s ? Kind::rotating : Kind::translating;
+      block.kind = turning_m_per_s > moving_m_per_s ? Movement::rotating : Movement::translating;
     }
   }
   return blocks;
@@ -63,16 +63,17 @@ std::vector<Leg> legs_of(const std::vector<Block>& blocks) {
   std::vector<Leg> legs;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const Block& block = blocks[k];
-    const bool goes_on = k > 0 && block.kind == blocks[k - 1].kind &&
-                         (block.kind != Kind::translating || angle_between(block.direction_rad, blocks[k - 1].direction_rad) < kTurn_rad) &&
-                         (block.kind != Kind::rotating || block.velocity.yaw_rad_per_s * blocks[k - 1].velocity.yaw_rad_per_s > 0.0);
+    const bool goes_on =
+        k > 0 && block.kind == blocks[k - 1].kind &&
+        (block.kind != Movement::translating || angle_between(block.direction_rad, blocks[k - 1].direction_rad) < kTurn_rad) &&
+        (block.kind != Movement::rotating || block.velocity.yaw_rad_per_s * blocks[k - 1].velocity.yaw_rad_per_s > 0.0);
     const auto at = static_cast<Eigen::Index>(k);
     if (!goes_on) {
       legs.push_back({at, at, block.kind, false});
     }
     legs.back().end = at + 1;
   }
-  std::erase_if(legs, [](const Leg& leg) { return leg.kind == Kind::standing || leg.kind == Kind::unknown; });
+  std::erase_if(legs, [](const Leg& leg) { return leg.kind == Movement::standing || leg.kind == Movement::unknown; });
   return legs;
 }
 
@@ -89,7 +90,7 @@ void mark_returns(std::vector<Leg>& legs, const std::vector<Block>& blocks, cons
       if (static_cast<Eigen::Index>(k) == leg.begin) {
         begin_m = std::hypot(x_m, y_m);
       }
-      if (blocks[k].kind == Kind::unknown) {
+      if (blocks[k].kind == Movement::unknown) {
         continue;
       }
       const double measured_rad = log.yaw_rad.empty() ? std::numeric_limits<double>::quiet_NaN() : log.yaw_rad[medians.first_row[k]];
@@ -101,7 +102,7 @@ void mark_returns(std::vector<Leg>& legs, const std::vector<Block>& blocks, cons
       path_m += static_cast<Eigen::Index>(k) >= leg.begin ? std::hypot(field.x_m_per_s, field.y_m_per_s) * duration_s : 0.0;
     }
     // As long as the way back, so that a short correction near home is no return.
-    leg.is_return = leg.kind == Kind::translating && std::hypot(x_m, y_m) < 0.5 * begin_m && path_m > 0.5 * begin_m;
+    leg.is_return = leg.kind == Movement::translating && std::hypot(x_m, y_m) < 0.5 * begin_m && path_m > 0.5 * begin_m;
     if (leg.is_return) {
       x_m = y_m = 0.0;
     }
@@ -117,7 +118,7 @@ struct Change {
 std::vector<bool> turning_signals(const BlockMedians& medians, const std::vector<Block>& blocks, const Leg& leg,
                                   const Kinematics& kinematics) {
   std::vector<bool> turns(static_cast<std::size_t>(medians.values.rows()), true);
-  if (leg.kind != Kind::translating) {
+  if (leg.kind != Movement::translating) {
     return turns;
   }
   std::vector<double> x, y;
@@ -236,7 +237,7 @@ SteadyPart measured_part(const FrictionLog& log, const Kinematics& kinematics, S
 
 /// Noise as large as a good part of the speed itself is a swinging controller.
 bool is_restless(const SteadyPart& part) {
-  const auto fastest = std::ranges::max_element(part.wheel_speed_rad_per_s, {}, [](double speed) { return std::abs(speed); });
+  const auto* const fastest = std::ranges::max_element(part.wheel_speed_rad_per_s, {}, [](double speed) { return std::abs(speed); });
   return part.speed_noise_rad_per_s[static_cast<std::size_t>(fastest - part.wheel_speed_rad_per_s.begin())] >
          kRestless_share * std::abs(*fastest);
 }
@@ -269,7 +270,7 @@ void add_run(const FrictionLog& log, const Kinematics& kinematics, std::size_t b
       SteadyPart part;
       part.leg = found.legs;
       part.is_return = leg.is_return;
-      part.is_rotation = leg.kind == Kind::rotating;
+      part.is_rotation = leg.kind == Movement::rotating;
       part.first_row = medians.first_row[static_cast<std::size_t>(first)];
       part.row_count = static_cast<std::size_t>(last - first) * medians.rows_per_block;
       part = measured_part(log, kinematics, part, medians);

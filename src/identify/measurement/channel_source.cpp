@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/unknown.h"
+
 namespace heatsoak {
 namespace {
-
-constexpr double kLeftOut = std::numeric_limits<double>::quiet_NaN();
 
 std::optional<std::size_t> place_of(std::span<const std::string> header, const std::string& name) {
   const auto found = std::ranges::find(header, name);
@@ -138,15 +138,15 @@ void ChannelSource::append(const TableBlock& block, const BadCells& bad, const s
       }
     } else if (valid != nullptr && !is_true((*valid)[row])) {
       leave_out(LeftOutReason::not_valid, block.lines[row], nullptr, report);
-      value = kLeftOut;
+      value = kUnknown;
     } else if (!mapping_.quantity.possible.contains(value)) {
       const std::string shown = fmt::format("{:g}", value);
       leave_out(LeftOutReason::impossible, block.lines[row], &shown, report);
-      value = kLeftOut;
+      value = kUnknown;
     } else if ((mapping_.saturates_low && value <= *mapping_.saturates_low) ||
                (mapping_.saturates_high && value >= *mapping_.saturates_high)) {
       leave_out(LeftOutReason::saturated, block.lines[row], nullptr, report);
-      value = kLeftOut;
+      value = kUnknown;
     }
     values.push_back(value);
   }

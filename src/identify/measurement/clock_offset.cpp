@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "base/quantity.h"
+#include "base/unknown.h"
 #include "identify/measurement/noise.h"
 #include "identify/measurement/row_order.h"
 
@@ -19,7 +19,6 @@ constexpr int kDelays = 61;
 constexpr int kParts = 8;  ///< of the log, left out in turn
 constexpr std::size_t kMostWindows = 600;
 constexpr std::size_t kFewestWindows = 40;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// The integral of a channel from the run's first row to any moment; held or, for temperatures, straight between rows.
 class Integral {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
+
+#include "base/unknown.h"
 
 namespace heatsoak {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Group {
   std::size_t begin = 0;
@@ -84,8 +83,8 @@ CondensedRecording::Rows CondensedRecording::merged(const Recording& rows, const
     for (std::vector<double>* const each : {&values, &low, &high}) {
       each->reserve(groups.size());
     }
-    for (const auto& [begin, end] : groups) {
-      const auto of = [begin, count = end - begin](const std::vector<double>& all) { return std::span(all).subspan(begin, count); };
+    for (const auto& group : groups) {
+      const auto of = [&group](const std::vector<double>& all) { return std::span(all).subspan(group.begin, group.end - group.begin); };
       values.push_back(is_mean ? mean_of(of(channel.values), counted ? of(counted->weight_ratio) : std::span(ones), by_square)
                                : first_of(of(channel.values)));
       low.push_back(lowest_of(of(counted ? counted->low[c] : channel.values)));

@@ -79,7 +79,7 @@ class Rewriter {
     if (end == std::string_view::npos) {
       return "a quote is not closed";
     }
-    const std::string problem = column(text_.substr(at + 1, end - at - 1));
+    std::string problem = column(text_.substr(at + 1, end - at - 1));
     at = problem.empty() ? end + 1 : at;
     return problem;
   }
@@ -164,24 +164,24 @@ Expression::~Expression() = default;
 Expression::Expression(Expression&&) noexcept = default;
 Expression& Expression::operator=(Expression&&) noexcept = default;
 
-void Expression::evaluate(std::span<const std::vector<double>* const> inputs, std::vector<double>& values) {
-  const std::size_t rows = inputs[0]->size();
+void Expression::evaluate(std::span<const std::vector<double>* const> columns, std::vector<double>& values) {
+  const std::size_t rows = columns[0]->size();
   values.resize(rows);
   if (rows == 0) {
     return;
   }
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
     const bool moves = compiled_->inputs[i].capacity() < rows;
-    compiled_->inputs[i] = *inputs[i];
+    compiled_->inputs[i] = *columns[i];
     if (moves) {
       compiled_->parser.DefineVar(fmt::format("c{}_", i), compiled_->inputs[i].data());
     }
   }
   compiled_->parser.Eval(values.data(), static_cast<int>(rows));
-  for (const std::vector<double>* input : inputs) {
+  for (const std::vector<double>* column : columns) {
     for (std::size_t row = 0; row < rows; ++row) {
       // min(a, NaN) and comparisons would hide that a cell is blank.
-      values[row] = std::isnan((*input)[row]) || !std::isfinite(values[row]) ? std::numeric_limits<double>::quiet_NaN() : values[row];
+      values[row] = std::isnan((*column)[row]) || !std::isfinite(values[row]) ? std::numeric_limits<double>::quiet_NaN() : values[row];
     }
   }
 }

@@ -25,7 +25,7 @@ class Expression {
   [[nodiscard]] bool ok() const { return is_ok_; }
   /// Places in the header, each once.
   [[nodiscard]] const std::vector<std::size_t>& columns() const { return columns_; }
-  /// One value per row; `columns` are those of columns() in their order. NaN where a column is, or where the value is not finite.
+  /// One value per row; `columns` are the values of columns() in their order. NaN where a column is, or where the value is not finite.
   void evaluate(std::span<const std::vector<double>* const> columns, std::vector<double>& values);
 
  private:

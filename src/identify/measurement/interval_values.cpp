@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "base/unknown.h"
 
 namespace heatsoak {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 bool stands_for_an_interval(const Quantity& quantity) {
   return quantity.kind == QuantityKind::heat_input || quantity.kind == QuantityKind::surroundings;

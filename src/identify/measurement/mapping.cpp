@@ -42,8 +42,7 @@ TableFormat read_format(Reader& file) {
     } else if (separator->size() == 1 && std::string_view("\"\n\r.#+-").find(*separator) == std::string_view::npos) {
       format.separator = separator->front();
     } else {
-      file.problem("separator",
-                   fmt::format("'{}' separates no cells; expected one character such as \",\" or \";\", or \"tab\"", *separator));
+      file.problem("separator", fmt::format(R"('{}' separates no cells; expected one character such as "," or ";", or "tab")", *separator));
     }
   }
   if (const std::optional<std::string> decimal = file.choice("decimal", kDecimals, Need::optional)) {

@@ -63,7 +63,7 @@ struct Mapping {
 
 /// The mapping of `log` that this TOML file gives: its [[files]] may change motor and conditions by the log's name.
 /// Throws Failure (bad_input) with every problem of the file.
-Mapping read_mapping(const std::filesystem::path& mapping, const std::filesystem::path& log);
+Mapping read_mapping(const std::filesystem::path& file, const std::filesystem::path& log);
 
 /// `chosen` (--map), or else LOG.map.toml beside the log (run1.csv.map.toml, run1.map.toml), or else the canonical form.
 Mapping mapping_for(const std::filesystem::path& log, const std::filesystem::path& chosen);

@@ -95,7 +95,7 @@ NoiseLevel NoiseGauge::level() const {
   NoiseLevel level;
   std::vector<double> sorted = sorted_of(values_.values());
   level.step = resolution_of_sorted(sorted);
-  level.distinct = sorted.size() - std::ranges::unique(sorted).size();
+  level.distinct = static_cast<std::size_t>(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
   std::vector<double> changes = changes_.values();
   const auto pairs = static_cast<double>(changes.size());
   std::erase(changes, 0.0);

@@ -274,7 +274,7 @@ class RecordingStream::Intake {
       const std::vector<char> later = increasing_rows(later_s);
       std::size_t at = 0;
       for (std::size_t row = context_; row < rows_.size(); ++row) {
-        stays[row] = is_done(rows_.time_s[row]) ? 0 : later[at++];
+        stays[row] = is_done(rows_.time_s[row]) ? '\0' : later[at++];
       }
     }
     for (std::size_t row = context_; row < judged; ++row) {

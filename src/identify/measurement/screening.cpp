@@ -7,12 +7,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/unknown.h"
 #include "identify/measurement/noise.h"
 
 namespace heatsoak {
 namespace {
-
-constexpr double kLeftOut = std::numeric_limits<double>::quiet_NaN();
 
 /// Rows [begin, end) with one value; NaN inside do not end it.
 struct Stretch {
@@ -162,7 +161,7 @@ bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habi
 bool never_rests(std::span<const double> values, double& low, double& high) {
   std::size_t longest = 0;
   std::size_t equal = 0;
-  double before = kLeftOut;
+  double before = kUnknown;
   for (const double value : values) {
     if (!std::isnan(value)) {
       equal = value == before ? equal + 1 : 1;
@@ -187,14 +186,14 @@ struct Reported {
     if (row >= first && row < last) {
       report.left_out[{channel.quantity.key, reason}].add(part.line[row]);
     }
-    channel.values[row] = kLeftOut;
+    channel.values[row] = kUnknown;
   }
 };
 
 /// `frozen_at` of the row before the first that is reported, and then of the last.
 void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high, double& frozen_at,
                          const Reported& reported) {
-  const double was_frozen_at = std::exchange(frozen_at, kLeftOut);
+  const double was_frozen_at = std::exchange(frozen_at, kUnknown);
   if (never_rests(channel.values, low, high)) {
     return;
   }
@@ -233,12 +232,12 @@ void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& no
 
 constexpr std::size_t kWindow = 7;
 
-double median(std::array<double, kWindow>& values, std::size_t count) {
+double window_median(std::array<double, kWindow>& values, std::size_t count) {
   std::sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
   return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
-/// Three of the six neighbours within the distance: then the median of the seven is within it too, and there is nothing to sort.
+/// Three of the six neighbours within the distance: then the window_median of the seven is within it too, and there is nothing to sort.
 bool has_near_majority(std::span<const double> values, std::span<const std::size_t> rows, std::size_t k, double distance) {
   constexpr std::size_t kSide = kWindow / 2;
   if (k < kSide || k + kSide >= rows.size()) {
@@ -252,7 +251,7 @@ bool has_near_majority(std::span<const double> values, std::span<const std::size
   return near > kSide;
 }
 
-/// Hampel's rule on the samples that are there, window 7, 6 median deviations.
+/// Hampel's rule on the samples that are there, window 7, 6 window_median deviations.
 void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noise, const Reported& reported) {
   constexpr double kDeviations = 6.0;
   constexpr double kSigmaToMedian = 0.6745;
@@ -276,7 +275,7 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
       for (std::size_t j = first; j < last; ++j) {
         window[j - first] = channel.values[rows[j]];
       }
-      const double middle = median(window, last - first);
+      const double middle = window_median(window, last - first);
       const double deviation = std::abs(channel.values[rows[k]] - middle);
       if (deviation <= kDeviations * least_deviation) {
         continue;
@@ -284,7 +283,7 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
       for (double& value : std::span(window).first(last - first)) {
         value = std::abs(value - middle);
       }
-      if (deviation > kDeviations * median(window, last - first)) {
+      if (deviation > kDeviations * window_median(window, last - first)) {
         outliers.push_back(rows[k]);
       }
     }

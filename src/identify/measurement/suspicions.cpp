@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "base/quantity.h"
+#include "base/unknown.h"
 #include "identify/measurement/row_order.h"
 
 namespace heatsoak {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A percentile of what is there, 0 … 1; NaN where nothing is.
 double percentile(std::span<const double> values, double share) {
@@ -32,7 +30,7 @@ double percentile(std::span<const double> values, double share) {
   return *place;
 }
 
-double median(std::span<const double> values) { return percentile(values, 0.5); }
+double middle_of(std::span<const double> values) { return percentile(values, 0.5); }
 
 std::vector<double> first_samples(const Channel& channel) {
   std::vector<double> first;
@@ -44,7 +42,7 @@ std::vector<double> first_samples(const Channel& channel) {
   return first;
 }
 
-double at_start(const Channel& channel) { return median(first_samples(channel)); }
+double at_start(const Channel& channel) { return middle_of(first_samples(channel)); }
 /// Before the first heat warms it.
 double coolest_at_start(const Channel& channel) { return percentile(first_samples(channel), 0.0); }
 
@@ -57,6 +55,7 @@ class Suspector {
     motor_in_fahrenheit();
     ambient_against_motor();
     answer_to_heat();
+    cooling_down();
     currents();
     speeds();
     clock();
@@ -69,7 +68,7 @@ class Suspector {
   }
 
  private:
-  [[nodiscard]] bool is_thermal(const Channel& channel) const {
+  [[nodiscard]] static bool is_thermal(const Channel& channel) {
     return channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings;
   }
   [[nodiscard]] const ChannelQuality* quality(const std::string& key) const {
@@ -171,9 +170,9 @@ class Suspector {
       for (std::size_t i = 0; i < recording_.rows(); ++i) {
         above_K.push_back(channel.values[i] - ambient->values[i]);
       }
-      if (median(above_K) < -2.0) {
+      if (middle_of(above_K) < -2.0) {
         found_.push_back(fmt::format("ambient_C is hotter than {} most of the time (by {} K): are the channels swapped?",
-                                     channel.quantity.key, significant(-median(above_K), 2)));
+                                     channel.quantity.key, significant(-middle_of(above_K), 2)));
       }
     }
   }
@@ -258,6 +257,52 @@ class Suspector {
     }
   }
 
+  /// Where nothing heats, the winding falls the faster of the two and stays the hotter: it has only the stator to lose its heat to.
+  void cooling_down() {
+    constexpr std::size_t kEnoughBlocks = 10;
+    constexpr double kLittleHeat = 0.01;  // W or A²
+    constexpr double kLittleHeat_share = 1e-3;
+    const Channel* const input = heat_input_of(recording_);
+    const Channel* const winding = recording_.find("winding_C");
+    const Channel* const stator = recording_.find("stator_C");
+    if (winding == nullptr || stator == nullptr || recording_.rows() < 2) {
+      return;
+    }
+    const std::vector<double> heat = input != nullptr ? relative_heat(*input) : std::vector<double>(recording_.rows(), 0.0);
+    const double little = std::max(kLittleHeat, kLittleHeat_share * percentile(heat, 1.0));
+    const Channel* const speed = recording_.find("speed_rad_per_s");
+    const double block_s =
+        std::max(5.0 * usual_period_s(recording_.time_s), (recording_.time_s.back() - recording_.time_s.front()) / 200.0);
+    const auto rests = [&](std::size_t row) {
+      return std::abs(heat[row]) < little && (speed == nullptr || std::abs(speed->values[row]) < 1.0) &&
+             std::isfinite(winding->values[row]) && std::isfinite(stator->values[row]);
+    };
+    std::vector<double> apart_K;
+    std::vector<double> winding_falls_K_per_s;
+    std::vector<double> stator_falls_K_per_s;
+    for (const auto& [begin, end] : recording_.runs()) {
+      std::size_t from = begin;
+      for (std::size_t row = begin; row < end; ++row) {
+        const double elapsed_s = recording_.time_s[row] - recording_.time_s[from];
+        if (!rests(row) || !rests(from)) {
+          from = row;
+        } else if (elapsed_s >= block_s) {
+          apart_K.push_back(winding->values[row] - stator->values[row]);
+          winding_falls_K_per_s.push_back((winding->values[from] - winding->values[row]) / elapsed_s);
+          stator_falls_K_per_s.push_back((stator->values[from] - stator->values[row]) / elapsed_s);
+          from = row;
+        }
+      }
+    }
+    const double steepest_K_per_s = percentile(stator_falls_K_per_s, 0.95);
+    if (apart_K.size() >= kEnoughBlocks && middle_of(apart_K) < -1.0 && steepest_K_per_s * block_s > 1.0 &&
+        steepest_K_per_s > 1.3 * std::max(0.0, percentile(winding_falls_K_per_s, 0.95))) {
+      found_.push_back(
+          fmt::format("while nothing heats, stator_C is hotter than winding_C (by {} K) and falls faster: are the two swapped?",
+                      significant(-middle_of(apart_K), 2)));
+    }
+  }
+
   void currents() {
     constexpr double kLargestCurrent_A = 300.0;
     for (const char* key : {"current_A", "current_q_A", "bus_A"}) {
@@ -283,7 +328,7 @@ class Suspector {
           ratios.push_back(power->values[i] / product_W);
         }
       }
-      const double ratio = median(ratios);
+      const double ratio = middle_of(ratios);
       if (std::abs(ratio) < 0.5 || std::abs(ratio) > 2.0) {
         found_.push_back(fmt::format("power_in_W is {} times bus_V × bus_A: is one of them in another unit?", significant(ratio, 3)));
       } else if (ratio < 0.0) {
@@ -333,7 +378,7 @@ class Suspector {
         ratios.push_back(std::abs(speed->values[i] * torque->values[i]) / power->values[i]);
       }
     }
-    if (const double ratio = median(ratios); ratio > 1.1) {
+    if (const double ratio = middle_of(ratios); ratio > 1.1) {
       found_.push_back(
           fmt::format("torque_Nm × speed_rad_per_s is {} times power_in_W, more than goes in: is the speed in rpm (÷ 9.55) or "
                       "degrees per second (÷ 57.3)?",

@@ -189,9 +189,9 @@ class Lettering : public vtkContextItem {
  private:
   static void paint(vtkContext2D* painter, const LegendSwatch& swatch) {
     const Color color = palette_color(swatch.color_index);
-    const float left_px = static_cast<float>(swatch.x_px);
-    const float right_px = static_cast<float>(swatch.x_px + swatch_width_px);
-    const float y_px = static_cast<float>(swatch.y_px);
+    const auto left_px = static_cast<float>(swatch.x_px);
+    const auto right_px = static_cast<float>(swatch.x_px + swatch_width_px);
+    const auto y_px = static_cast<float>(swatch.y_px);
     if (swatch.is_band) {
       // A strip, because VTK gives quads and polygons an outline.
       float corners[] = {left_px, y_px - 5, left_px, y_px + 5, right_px, y_px - 5, right_px, y_px + 5};

@@ -121,10 +121,12 @@ bool is_taken(const Box& box, const std::vector<Box>& names, const std::vector<s
 std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box>& names,
                               const std::vector<std::vector<CurvePoint>>& curves) {
   constexpr double step_px = 10.0;
-  for (; box.left_px > left_end_px; box.left_px -= step_px, box.right_px -= step_px) {
+  while (box.left_px > left_end_px) {
     if (!is_taken(box, names, curves)) {
       return box;
     }
+    box.left_px -= step_px;
+    box.right_px -= step_px;
   }
   return std::nullopt;
 }
@@ -331,7 +333,7 @@ class PageBuilder {
 
   void add(PlacedText text) { page_.texts.push_back(std::move(text)); }
 
-  [[nodiscard]] double panel_title_height_px(const std::string& title) const { return title.empty() ? 12.0 : 28.0; }
+  [[nodiscard]] static double panel_title_height_px(const std::string& title) { return title.empty() ? 12.0 : 28.0; }
 
   [[nodiscard]] double plot_height_px(const ChartPanel& panel) const {
     return std::max(least_plot_height_px, chart_.panel_height_px - panel_title_height_px(panel.title) - tick_row_px);

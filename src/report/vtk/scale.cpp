@@ -71,9 +71,10 @@ namespace {
 std::vector<AxisTick> logarithmic_ticks(const AxisRange& range, double count) {
   const bool has_room = 2.0 * std::log10(range.high / range.low) <= std::max(3.0, count);
   std::vector<AxisTick> result;
-  for (double decade = std::pow(10.0, std::floor(std::log10(range.low))); decade <= range.high; decade *= 10.0) {
+  const int last = static_cast<int>(std::floor(std::log10(range.high)));
+  for (int exponent = static_cast<int>(std::floor(std::log10(range.low))); exponent <= last; ++exponent) {
     for (const double multiple : {1.0, 2.0, 5.0}) {
-      const double value = multiple * decade;
+      const double value = multiple * std::pow(10.0, exponent);
       if (value >= range.low * (1.0 - 1e-9) && value <= range.high * (1.0 + 1e-9) && (multiple == 1.0 || has_room)) {
         result.push_back({value, fmt::format("{:g}", value)});
       }
@@ -94,8 +95,8 @@ std::vector<AxisTick> ticks(const AxisRange& range, double count) {
   const double last = std::floor(range.high / step + 1e-6);
   const double largest = std::max(std::abs(range.low), std::abs(range.high));
   std::vector<AxisTick> result;
-  for (double i = first; i <= last; i += 1.0) {
-    const double value = i == 0.0 ? 0.0 : i * step;  // no "-0"
+  for (int i = 0; first + i <= last; ++i) {
+    const double value = (first + i) * step + 0.0;  // no "-0"
     result.push_back({value, tick_label(value, step, largest)});
   }
   return result;

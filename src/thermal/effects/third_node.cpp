@@ -9,7 +9,7 @@ enum Parameter { conductance, leak_ratio, heat_capacity };
 struct ThirdNode {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S coupling_W_per_K = x.parameter(conductance);
+    const S& coupling_W_per_K = x.parameter(conductance);
     heat.flow(node, body, coupling_W_per_K * (x.temperature_C(node) - x.temperature_C(body)));
     heat.flow(body, ambient, coupling_W_per_K * x.parameter(leak_ratio) * (x.temperature_C(body) - x.temperature_C(ambient)));
   }

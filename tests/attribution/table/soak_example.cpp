@@ -1,4 +1,4 @@
-// Writes the logs of examples/soak: a wheel motor whose stator is screwed to a chassis that soaks heat, which the data sheet's two
+// Writes the logs of reports/soak: a wheel motor whose stator is screwed to a chassis that soaks heat, which the data sheet's two
 // nodes do not know. Synthetic; the same bytes on every run.
 //   heatsoak_soak_example FOLDER
 #include <fmt/format.h>

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.h"
-#include "cli/measured/calibration_chart.h"
 #include "cli/command.h"
+#include "cli/measured/calibration_chart.h"
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
@@ -143,8 +143,8 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.motor);
   std::vector<std::string> notes;
-  std::vector<Recording> logs = read_logs(options.logs, options.how, notes);
-  std::vector<Recording> holdout = read_logs(options.holdout, options.how, notes);
+  std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, notes);
+  std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.how, notes);
   tell_apart(logs, holdout);
   if (!options.how.takes_logs_as_they_are) {
     refuse_runs_of_the_file(motor, logs, holdout);

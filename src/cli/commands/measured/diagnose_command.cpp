@@ -62,8 +62,8 @@ void hand_out(const Options& options, const Motor& extended, const Diagnosis& di
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.model);
   std::vector<std::string> notes;
-  std::vector<Recording> train = read_logs(options.train, options.logs, notes);
-  std::vector<Recording> holdout = read_logs(options.holdout, options.logs, notes);
+  std::vector<Recording> train = read_logs(session.folders(), options.train, options.logs, notes);
+  std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.logs, notes);
   tell_apart(train, holdout);
   std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are), std::back_inserter(notes));
   ModelOfLogs model = model_of_logs(motor, train);

@@ -89,8 +89,6 @@ void refuse_what_looks_wrong(const Options& options, const Input& input) {
   }
 }
 
-std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
-
 Input read_input(const Options& options, const Session& session) {
   const DataFolders folders = session.folders();
   Input input{.robot = robot_named(folders, options.robot),
@@ -114,7 +112,8 @@ Input read_input(const Options& options, const Session& session) {
   std::vector<std::pair<std::filesystem::path, std::size_t>> seen;
   for (std::size_t i = 0; i < options.logs.size(); ++i) {
     RecordingReport report;
-    const Recording recording = read_recording(options.logs[i], mapping_for(options.logs[i], options.map), report);
+    const std::filesystem::path file = log_named(folders, options.logs[i]);
+    const Recording recording = read_recording(file, mapping_for(file, options.map), report);
     input.logs.push_back(friction_log(recording, input.robot, needs, input.findings));
     const DataQuality quality = assess(recording, report);
     for (const std::string& suspicion : quality.suspicions) {
@@ -132,8 +131,7 @@ Input read_input(const Options& options, const Session& session) {
 }
 
 /// null where unknown.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json json(const Estimate& estimate) { return {{"value", number(estimate.value)}, {"ci95", {number(estimate.low), number(estimate.high)}}}; }
+Json json(const Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
 
 std::string text(const Estimate& estimate, int decimals, double scale = 1.0) {
   if (!std::isfinite(estimate.value)) {
@@ -241,8 +239,8 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
                       {"b_V", json(wheel.constant_V)},
                       {"phase_rad", json(wheel.phase_rad)},
                       {"rotation_V", json(wheel.rotation_V)},
-                      {"r2", number(wheel.r2_ratio)},
-                      {"rmse_V", number(wheel.rmse_V)},
+                      {"r2", wheel.r2_ratio},
+                      {"rmse_V", wheel.rmse_V},
                       {"rows_used", wheel.rows_used},
                       {"rows_left_out", rows - wheel.rows_used},
                       {"legs_used", wheel.parts_used},
@@ -251,8 +249,8 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
                       {"damping_given", wheel.damping_is_given},
                       {"phase_given", wheel.phase_is_given},
                       {"phase_bounded", wheel.phase_is_bounded},
-                      {"before_rmse_V", number(error.before_of_wheel_V[i])},
-                      {"after_rmse_V", number(error.after_of_wheel_V[i])},
+                      {"before_rmse_V", error.before_of_wheel_V[i]},
+                      {"after_rmse_V", error.after_of_wheel_V[i]},
                       {"problem", wheel.problem}});
   }
   return wheels;
@@ -280,8 +278,8 @@ void answer(const Input& input, const SteadyParts& steady, const FrictionFit& fi
                   {"robot", input.robot.id},
                   {"motor", input.motor ? Json(input.motor_id) : Json()},
                   {"wheels", wheels_json(fit, error, steady.rows)},
-                  {"before", {{"rmse", number(error.before_V)}, {"unit", "V"}, {"from", from}}},
-                  {"after", {{"rmse", number(error.after_V)}, {"unit", "V"}}},
+                  {"before", {{"rmse", error.before_V}, {"unit", "V"}, {"from", from}}},
+                  {"after", {{"rmse", error.after_V}, {"unit", "V"}}},
                   {"headings", fit.headings},
                   {"headings_held_out", error.headings},
                   {"rows", steady.rows},
@@ -424,7 +422,9 @@ Command friction() {
           .summary =
               "Damping and friction of every wheel over the direction of travel, from logs of a steady-state test; exit 3 if nothing is "
               "learned",
-          .example = "heatsoak friction --robot roboteam_twente_v2024 steady_state_test.csv --out my_robot.toml --plot friction.svg",
+          .example =
+              "heatsoak friction --robot roboteam_twente_v2024 reports/friction_test/steady_state_test.csv --out my_robot.toml "
+              "--plot friction.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("logs", options->logs,

@@ -40,7 +40,8 @@ void check(const Options& options) {
 ExitCode inspect(const Options& options, Session& session) {
   ExitCode code = ExitCode::done;
   nlohmann::ordered_json logs = nlohmann::ordered_json::array();
-  for (const std::string& file : options.files) {
+  for (const std::string& name : options.files) {
+    const std::filesystem::path file = log_named(session.folders(), name);
     RecordingReport report;
     const Mapping mapping = mapping_for(file, options.map);
     RecordingStream stream(file, mapping, report);
@@ -65,14 +66,14 @@ ExitCode inspect(const Options& options, Session& session) {
 }
 
 ExitCode convert(const Options& options, Session& session) {
-  const std::string& file = options.files.front();
+  const std::filesystem::path file = log_named(session.folders(), options.files.front());
   RecordingReport report;
   const Recording recording = read_recording(file, mapping_for(file, options.map), report);
   session.write(options.out, to_canonical_csv(recording));
   session.say(fmt::format("written: {} ({} of {} rows, {} channels)\n", options.out, report.rows_kept, report.rows_in_file,
                           recording.channels.size()));
   session.answer({{"schema", "heatsoak.log_convert/1"},
-                  {"file", file},
+                  {"file", file.string()},
                   {"out", options.out},
                   {"rows_in_file", report.rows_in_file},
                   {"rows_kept", report.rows_kept},

@@ -1,0 +1,10 @@
+// Where the checkout lies that is tested.
+#pragma once
+
+#include <filesystem>
+
+namespace heatsoak {
+
+inline const std::filesystem::path kSource = HEATSOAK_SOURCE_DIR;
+
+}  // namespace heatsoak
