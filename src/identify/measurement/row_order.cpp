@@ -25,8 +25,7 @@ double usual_period_s(std::span<const double> time_s) {
 
 std::vector<char> increasing_rows(std::span<const double> time_s) {
   if (std::ranges::adjacent_find(time_s, std::greater_equal<>()) == time_s.end()) {
-    std::vector<char> all(time_s.size(), 1);
-    return all;
+    return std::vector<char>(time_s.size(), 1);
   }
   // Patience from the end: tails[k] begins the best sequence of k + 1 rows. Replaced by what stands before it where either
   // would do, so that the first rows stay.
