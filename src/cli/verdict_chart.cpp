@@ -52,7 +52,8 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const TemperatureCurves& curves = shown[i]->curves;
     const std::string name =
-        of_winding ? fmt::format("{}, {:.0f} °C", shown[i]->motor_id, shown[i]->winding_peak_C.nominal) : std::string();
+        of_winding ? fmt::format("{}, {:.0f} °C, {}", shown[i]->motor_id, shown[i]->winding_peak_C.nominal, to_string(shown[i]->verdict))
+                   : std::string();
     const int color = static_cast<int>(i);
     const auto values_of = [of_winding](const TemperatureCurves& c) -> const std::vector<double>& {
       return of_winding ? c.winding_C : c.stator_C;
@@ -88,8 +89,8 @@ Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& ro
   const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
   return {.title = fmt::format("{} on {}", robot.name, duty.id),
           .subtitle = fmt::format(
-              "{}{}{}{}", shown.size() < results.size() ? fmt::format("{} of {} motors, ", shown.size(), results.size()) : "", duty.summary,
-              sampled ? "; lines: nominal, areas: 5\u00a0% to 95\u00a0% of samples at each moment" : "; nominal figures",
+              "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
+              duty.summary, sampled ? "; lines: nominal, areas: 5\u00a0% to 95\u00a0% of samples at each moment" : "; nominal figures",
               estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
           .panels = {panel(shown, false), panel(shown, true)}};

@@ -37,6 +37,8 @@ LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s
           .torque_mean_Nm = torque_Nm,
           .velocity_mean_rad_per_s = speed_rad_per_s,
           .current_rms_A = std::abs(current_A),
+          .current_along_motion_A = current_A * direction,
+          .current_mean_A = current_A,
           .power_mean_W = torque_Nm * speed_rad_per_s};
 }
 
@@ -51,7 +53,9 @@ void LoadMeans::add(double duration_s, double torque_Nm, double speed_rad_per_s,
                                                std::abs(speed_rad_per_s),
                                                speed_rad_per_s * speed_rad_per_s,
                                                torque_Nm * speed_rad_per_s,
-                                               current_A * current_A};
+                                               current_A,
+                                               current_A * current_A,
+                                               current_A * direction};
   for (std::size_t i = 0; i < now.size(); ++i) {
     integrals_[i] += duration_s * now[i];
   }
@@ -71,6 +75,8 @@ LoadBin LoadMeans::close() {
                     .torque_mean_Nm = mean(torque),
                     .velocity_mean_rad_per_s = mean(velocity),
                     .current_rms_A = std::sqrt(mean(current_squared)),
+                    .current_along_motion_A = mean(current_along_motion),
+                    .current_mean_A = mean(current),
                     .power_mean_W = mean(power),
                     .acceleration_rad_per_s2 = travelled_rad_per_s_ / time_s};
   integrals_ = {};
@@ -102,9 +108,9 @@ void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_p
   }
   // Away from zero, so that a cell asks at least as much as anything in it.
   Cell cell{cell_of(size[torque], step_[torque]), cell_of(size[speed], step_[speed]), cell_of(size[current], step_[current])};
-  if (torque_Nm * direction_of(speed_rad_per_s) < 0.0) {
-    cell[torque] = -cell[torque];
-  }
+  const double direction = direction_of(speed_rad_per_s);
+  cell[torque] *= torque_Nm * direction < 0.0 ? -1 : 1;
+  cell[current] *= current_A * direction < 0.0 ? -1 : 1;
   if (cell != cell_) {
     close_stay();
     cell_ = cell;
@@ -122,8 +128,8 @@ void DemandGatherer::add_alone(double duration_s, double torque_Nm, double speed
   close_bin();
   means_.cut();
   demand_.bins.push_back(constant_bin(duration_s, torque_Nm, speed_rad_per_s, current_A));
-  const double with_motion_Nm = speed_rad_per_s < 0.0 ? -torque_Nm : torque_Nm;
-  demand_.points.push_back({with_motion_Nm, std::abs(speed_rad_per_s), std::abs(current_A), duration_s});
+  const double direction = speed_rad_per_s < 0.0 ? -1.0 : 1.0;
+  demand_.points.push_back({direction * torque_Nm, std::abs(speed_rad_per_s), direction * current_A, duration_s});
 }
 
 void DemandGatherer::close_stay() {

@@ -21,7 +21,10 @@ struct LoadBin {
   double speed_rms_rad_per_s = 0.0;
   double torque_mean_Nm = 0.0;           ///< signed
   double velocity_mean_rad_per_s = 0.0;  ///< signed mean of ω
-  double current_rms_A = 0.0;            ///< only of duties that are given as current
+  // Only of duties that are given as current:
+  double current_rms_A = 0.0;
+  double current_along_motion_A = 0.0;  ///< mean of I·sign ω: positive drives, negative brakes
+  double current_mean_A = 0.0;          ///< signed
   double power_mean_W = 0.0;             ///< mean of M·ω
   double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between stretches of constant speed are not in it
 };
@@ -34,7 +37,7 @@ inline constexpr double kStandstill_rad_per_s = 0.1;
 LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A);
 
 /// How long a wheel is asked for a torque at a speed: tells what voltage and current are needed, and how often.
-/// speed_rad_per_s ≥ 0; a torque < 0 brakes.
+/// speed_rad_per_s ≥ 0; a torque or current < 0 brakes.
 struct LoadPoint {
   double torque_Nm = 0.0;
   double speed_rad_per_s = 0.0;
@@ -56,7 +59,7 @@ inline constexpr double kBin_s = 0.25;
 /// Means over moments as they come.
 class LoadMeans {
  public:
-  /// What is given holds for `duration_s`; torque · speed > 0 drives.
+  /// What is given holds for `duration_s`; torque · speed > 0 drives, and so does current · speed > 0.
   void add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
   [[nodiscard]] double time_s() const { return integrals_[time]; }
   /// What came since the last bin; the next one begins.
@@ -76,7 +79,9 @@ class LoadMeans {
     speed,
     speed_squared,
     power,
+    current,
     current_squared,
+    current_along_motion,
     integral_count
   };
   std::array<double, integral_count> integrals_{};

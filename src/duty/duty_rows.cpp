@@ -39,7 +39,8 @@ void DutyRows::close() {
 void DutyRows::add(std::span<const LoadBin> bins) {
   std::string text = fmt::format("{:.10g}", time_s_);
   for (const LoadBin& bin : bins) {
-    const double load = kind_ == DutyKind::torque ? std::copysign(bin.torque_rms_Nm, bin.torque_mean_Nm) : bin.current_rms_A;
+    const double load = kind_ == DutyKind::torque ? std::copysign(bin.torque_rms_Nm, bin.torque_mean_Nm)
+                                                  : std::copysign(bin.current_rms_A, bin.current_mean_A);
     fmt::format_to(std::back_inserter(text), ",{:.5g},{:.5g}", load, std::copysign(bin.speed_mean_rad_per_s, bin.velocity_mean_rad_per_s));
   }
   put_(text + "\n");

@@ -257,7 +257,7 @@ void Reader::read_spread(const ParameterSpec& spec, Figure& figure) {
       problem("range", "stands beside a tolerance; expected one of them");
     }
     const std::optional<double> share = quantity({"tolerance", is_temperature ? "K" : "", Range::between(0.0, is_temperature ? 100.0 : 0.9),
-                                                  "± part of the value that 95 % of parts keep"},
+                                                  "± part of the value that no part exceeds"},
                                                  Need::required);
     if (share) {
       const double half = is_temperature ? *share : *share * std::abs(figure.value);

@@ -24,8 +24,9 @@ DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wa
   point.motor_speed_rad_per_s = motor_speed_rad_per_s;
   const double back_emf_V = motor.torque_constant_Nm_per_A * motor_speed_rad_per_s;
   const double loop_ohm = motor.terminal_resistance_ohm + robot.series_resistance_ohm();
-  const double most_A = (robot.available_V() - back_emf_V) / loop_ohm;
-  const double least_A = (-robot.available_V() - back_emf_V) / loop_ohm;
+  // Where the back-EMF is beyond the supply the demand is out of reach, which turns no current round.
+  const double most_A = std::max(0.0, (robot.available_V() - back_emf_V) / loop_ohm);
+  const double least_A = std::min(0.0, (-robot.available_V() - back_emf_V) / loop_ohm);
   point.current_A = std::clamp(wanted_A, -robot.current_limit_A, robot.current_limit_A);
   if (point.current_A != wanted_A) {
     point.limit = DriveLimit::current;

@@ -26,7 +26,7 @@ struct DrivePoint {
 };
 
 /// Current for a motor torque at a speed: (M + K_t·I_0·sign ω)/K_t, so that drag helps when braking; clamped to
-/// |I| ≤ current limit and to |I·(R25 + R_driver) + K_t·ω| ≤ available voltage.
+/// |I| ≤ current limit and to |I·(R25 + R_driver) + K_t·ω| ≤ available voltage; 0 where the back-EMF alone is more than that.
 /// The cold resistance lets more current through than a hot winding would: the error is on the hot side.
 DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load);
 

@@ -26,7 +26,7 @@ OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& ro
       torque_rms_Nm * torque_rms_Nm + 2.0 * drag_Nm * bin.torque_along_motion_Nm * to_shaft + drag_Nm * drag_Nm * bin.moving_share;
   const double wanted_A =
       kind == DutyKind::torque ? std::sqrt(std::max(0.0, torque2)) / motor.torque_constant_Nm_per_A : bin.current_rms_A * sample.load;
-  const double direction = bin.torque_along_motion_Nm < 0.0 ? -1.0 : 1.0;
+  const double direction = bin.torque_along_motion_Nm < 0.0 || bin.current_along_motion_A < 0.0 ? -1.0 : 1.0;
   const double speed_rad_per_s = bin.speed_mean_rad_per_s * robot.gear_ratio;
   const DrivePoint point = clamped_point(motor, robot, direction * wanted_A, speed_rad_per_s);
   OperatingPoint<double> at = operating_point(point, motor, robot, sample.ambient_C);

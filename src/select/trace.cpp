@@ -29,7 +29,9 @@ WheelDemand subdivided(const WheelDemand& demand, double every_s) {
 DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin& bin, double heating_A) {
   DrivePoint point;
   point.motor_speed_rad_per_s = bin.velocity_mean_rad_per_s * robot.gear_ratio;
-  const double direction = bin.torque_mean_Nm != 0.0 ? bin.torque_mean_Nm : bin.velocity_mean_rad_per_s;
+  const double direction = bin.torque_mean_Nm != 0.0   ? bin.torque_mean_Nm
+                           : bin.current_mean_A != 0.0 ? bin.current_mean_A
+                                                       : bin.velocity_mean_rad_per_s;
   point.current_A = std::copysign(heating_A / heating_factor(robot), direction);
   const double drag_Nm = bin.velocity_mean_rad_per_s == 0.0 ? 0.0 : std::copysign(drag_torque_Nm(motor), bin.velocity_mean_rad_per_s);
   point.motor_torque_Nm = motor.torque_constant_Nm_per_A * point.current_A - drag_Nm;

@@ -40,7 +40,7 @@ TEST(DemandGatherer, acceleration_is_the_mean_of_its_magnitude_through_reversals
   }
 }
 
-// 2 A for 1 s and 6 A for 3 s: (4·1 + 36·3)/4 = 28 A².
+// −2 A, which brakes, for 1 s and 6 A for 3 s: (4·1 + 36·3)/4 = 28 A².
 TEST(DemandGatherer, current_is_merged_by_its_square) {
   DemandGatherer gatherer("wheel", 4.0, kGrid);
   gatherer.add(1.0, 0.0, 10.0, -2.0);
@@ -49,8 +49,28 @@ TEST(DemandGatherer, current_is_merged_by_its_square) {
   ASSERT_EQ(demand.bins.size(), 1U);
   EXPECT_NEAR(demand.bins[0].current_rms_A, std::sqrt(28.0), 1e-14);
   ASSERT_EQ(demand.points.size(), 2U);
-  EXPECT_NEAR(demand.points[0].current_A, 2.0, 1e-12);
+  EXPECT_NEAR(demand.points[0].current_A, -2.0, 1e-12);
   EXPECT_NEAR(demand.points[1].current_A, 6.0, 1e-12);
+}
+
+// 4 A that brakes stays so, as a bin, as a point and where rows are merged.
+TEST(DemandGatherer, current_against_the_motion_brakes) {
+  DemandGatherer gatherer("wheel", 1.0, kGrid);
+  for (int i = 0; i < 200; ++i) {
+    gatherer.add(0.01, 0.0, -100.0, 4.0);
+  }
+  gatherer.add_alone(1.0, 0.0, 100.0, -4.0);
+  const WheelDemand demand = gatherer.finish();
+  for (const LoadBin& bin : demand.bins) {
+    EXPECT_NEAR(bin.current_rms_A, 4.0, 1e-12);
+    EXPECT_NEAR(bin.current_along_motion_A, -4.0, 1e-12);
+  }
+  EXPECT_NEAR(demand.bins.front().current_mean_A, 4.0, 1e-12);
+  ASSERT_FALSE(demand.points.empty());
+  for (const LoadPoint& point : demand.points) {
+    EXPECT_NEAR(point.current_A, -4.0, 0.05);
+    EXPECT_GE(point.speed_rad_per_s, 0.0);
+  }
 }
 
 TEST(DemandGatherer, a_stretch_of_its_own_ends_the_bin_before_it) {

@@ -33,10 +33,10 @@ TEST(DutyRows, are_put_out_as_soon_as_they_are_whole) {
 TEST(DutyRows, of_a_current_name_a_current) {
   Written written;
   DutyRows rows(1, DutyKind::current, 0.02, written.put());
-  const std::vector<LoadBin> bins{constant_bin(4.0, 0.0, 62.0, 6.0)};
-  rows.add(bins);
+  rows.add(std::vector{constant_bin(4.0, 0.0, 62.0, 6.0)});
+  rows.add(std::vector{constant_bin(1.0, 0.0, 62.0, -3.0)});
   rows.finish();
-  EXPECT_THAT(written.lines, ElementsAre("time_s,current_1_A,speed_1_rad_per_s\n", "0,6,62\n", "4,0,0\n"));
+  EXPECT_THAT(written.lines, ElementsAre("time_s,current_1_A,speed_1_rad_per_s\n", "0,6,62\n", "4,-3,62\n", "5,0,0\n"));
 }
 
 }  // namespace

@@ -146,6 +146,28 @@ TEST(Evaluate, infeasible_by_voltage) {
   EXPECT_NEAR(result.least_torque_share, 0.3 / hot_ratio, 1e-9);
 }
 
+// At 780 rad/s the motor makes 23.4 V: 1.2 A is what the rest drives through 0.5 Ω, braking has 95 A.
+TEST(Evaluate, a_current_that_brakes_is_helped_by_the_back_emf) {
+  Duty duty = constant_current(0.0);
+  give(duty, {{600.0, 0.0, 780.0, -3.0}});
+  const MotorEvaluation brakes = evaluate_one(simple_motor(), simple_robot(), duty);
+  EXPECT_EQ(brakes.least_torque_share, 1.0);
+  EXPECT_NEAR(brakes.winding_peak_C.nominal, rest_C(kResistance_ohm, 3.0), 0.1);
+  give(duty, {{600.0, 0.0, 780.0, 3.0}});
+  const MotorEvaluation drives = evaluate_one(simple_motor(), simple_robot(), duty);
+  EXPECT_LT(drives.least_torque_share, 0.41);
+}
+
+// At 1000 rad/s the motor would make 30 V: nothing flows, neither way.
+TEST(Evaluate, a_speed_out_of_reach_takes_no_current) {
+  Duty duty = constant_current(0.0);
+  give(duty, {{600.0, 0.0, 1000.0, 5.0}});
+  const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
+  EXPECT_EQ(result.verdict, Verdict::infeasible);
+  EXPECT_EQ(result.least_torque_share, 0.0);
+  EXPECT_NEAR(result.winding_peak_C.nominal, 25.0, 1e-6);
+}
+
 TEST(Evaluate, infeasible_by_current) {
   Robot robot = simple_robot();
   robot.current_limit_A = 4.0;

@@ -127,6 +127,7 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
     }
   }
   if (!unreadable.empty() || !unknown.empty()) {
+    session.say(text);
     throw Failure(ExitCode::bad_input, std::move(unknown), std::move(unreadable));
   }
   const bool sound = errors + warnings == 0;
