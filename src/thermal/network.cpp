@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 
 #include "thermal/copper.h"
@@ -104,11 +105,13 @@ S Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, con
   }
   const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
   const S hot_ratio = resistance_ratio(parameters[copper.parameter_index[1]], temperature_C[copper.node_index[0]]);
-  const S most_A = at.resistive_headroom_V / (parameters[copper.parameter_index[0]] * hot_ratio + at.series_resistance_ohm);
+  const S loop_ohm = parameters[copper.parameter_index[0]] * hot_ratio + at.series_resistance_ohm;
+  // A trial step of a solver may look where copper's line is below zero: an infinite headroom must not turn into -inf A there.
+  constexpr double kLeast_ohm = std::numeric_limits<double>::min();
   if constexpr (std::is_same_v<S, double>) {
-    return std::min(at.current_rms_A, most_A);
+    return std::min(at.current_rms_A, at.resistive_headroom_V / std::max(loop_ohm, kLeast_ohm));
   } else {
-    return at.current_rms_A.min(most_A);
+    return at.current_rms_A.min(at.resistive_headroom_V / loop_ohm.max(kLeast_ohm));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "thermal/steady_state.h"
@@ -406,6 +407,35 @@ TEST_P(EveryMethod, without_current_and_speed_it_stays_at_ambient) {
   EXPECT_NEAR(result.end_C[winding], 31.5, 1e-9);
   EXPECT_NEAR(result.end_C[stator], 31.5, 1e-9);
   EXPECT_EQ(result.end_s, 3600.0);
+}
+
+// A trial step that is too long for an explicit method may look below the zero of copper's line, where a headroom without
+// limit has no current.
+TEST_P(EveryMethod, long_rests_after_long_loads_come_to_ambient) {
+  for (const double current_A : {2.0, 4.0, 5.5, 5.9, 6.0, 6.1}) {
+    for (const double phase_s : {900.0, 1200.0, 1800.0, 3600.0}) {
+      const TwoNode motor{.resistance_25C_ohm = 0.608,
+                          .winding_stator_K_per_W = 4.1,
+                          .stator_ambient_K_per_W = 3.56,
+                          .winding_J_per_K = 29.6 / 4.1,
+                          .stator_J_per_K = 50.0};
+      Network network = motor.network();
+      network.limit_current_by("copper");
+      const std::vector<Interval> duty = on_off(current_A, phase_s, phase_s, 3);
+      const TransientResult result = run_transient(network, network.values(), duty, tight(1e-9));
+      EXPECT_NEAR(result.end_C[winding], static_cast<double>(motor.after(duty, {25.0L, 25.0L})[winding]), 1e-4) << current_A;
+    }
+  }
+}
+
+TEST(Transient, a_headroom_without_limit_limits_nowhere) {
+  Network network = kMotor.network();
+  network.limit_current_by("copper");
+  const std::vector<double> values = network.values();
+  OperatingPoint<double> at = current_point(6.0);
+  for (const double winding_C : {-1e6, -300.0, 25.0 - 1.0 / kMotor.temperature_coefficient_per_K, 25.0, 1e6}) {
+    EXPECT_EQ(network.within_headroom(at, values.data(), std::array{winding_C, 25.0, 25.0}.data()), 6.0) << winding_C;
+  }
 }
 
 TEST_P(EveryMethod, behind_a_huge_resistance_all_heat_stays) {
