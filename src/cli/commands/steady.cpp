@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "base/quantity.h"
 #include "cli/command.h"
@@ -13,8 +12,8 @@
 #include "cli/quantity_option.h"
 #include "motor/datasheet_network.h"
 #include "motor/motor.h"
+#include "thermal/periodic_state.h"
 #include "thermal/steady_state.h"
-#include "thermal/transient.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -24,63 +23,89 @@ struct Options {
   OnOffCurrent current;
 };
 
-/// The highest temperature of the winding in a cycle, once all cycles are alike: (8) to (12) are means over one.
-double cycle_peak_C(const Motor& motor, const OnOffCurrent& current, const OnOffSteadyState& mean) {
-  // At standstill, so that only copper loss heats, as in the equations.
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+/// What a constant current or an on/off current heats: at standstill, so that only copper loss heats, as in the equations.
+std::vector<Interval> cycle_of(const OnOffCurrent& current) {
   OperatingPoint<double> on;
   on.current_rms_A = current.current_on_A;
   on.ambient_C = current.ambient_C;
   OperatingPoint<double> off;
   off.ambient_C = current.ambient_C;
-  const std::vector<Interval> cycle{{current.time_on_s, on}, {std::max(current.time_off_s, 1e-9), off}};
-  TransientOptions options;
-  options.start_C = {mean.winding_C, mean.stator_C};
-  constexpr int kMostCycles = 200;
-  constexpr double kAlike_K = 0.01;
-  double peak_C = mean.winding_C;
-  for (int i = 0; i < kMostCycles; ++i) {
-    const TransientResult result = run_transient(network, network.values(), cycle, options);
-    const double change_K = std::abs(result.peak_C.front() - std::exchange(peak_C, result.peak_C.front()));
-    options.start_C = result.end_C;
-    if (result.destroyed || (i > 0 && change_K < kAlike_K)) {
-      break;
+  return {{current.time_on_s, on}, {current.time_off_s, off}};
+}
+
+/// The closed equations, and what stands for them where the motor's file adds effects: the network's rest under the rms current.
+OnOffSteadyState rest_under_rms(const MotorValues& values, const Network& network, bool is_bare, const OnOffCurrent& current) {
+  OnOffSteadyState state =
+      on_off_steady_state({.terminal_resistance_25C_ohm = values.terminal_resistance_ohm,
+                           .temperature_coefficient_per_K = values.temperature_coefficient_per_K,
+                           .thermal_resistance_winding_stator_K_per_W = values.thermal_resistance_winding_stator_K_per_W,
+                           .thermal_resistance_stator_ambient_K_per_W = values.thermal_resistance_stator_ambient_K_per_W},
+                          current);
+  if (!is_bare) {
+    OnOffCurrent constant = current;
+    constant.current_on_A = state.current_rms_A;
+    constant.time_off_s = 0.0;
+    const PeriodicState rest = periodic_state(network, cycle_of(constant));
+    state.runaway = rest.runaway;
+    if (!rest.runaway) {
+      state.winding_C = rest.mean_C[states::winding];
+      state.stator_C = rest.mean_C[states::stator];
     }
   }
-  return peak_C;
+  return state;
+}
+
+std::string in_words(const MotorValues& values, const OnOffSteadyState& rms, bool is_bare, const PeriodicState& periodic, bool over) {
+  if (periodic.destroyed_s) {
+    return fmt::format(
+        "thermal runaway within a single cycle: {:.3g} s after the current comes on at ambient temperature, {:.0f} °C are passed and the "
+        "motor is destroyed\n",
+        *periodic.destroyed_s, kDestroyed_C);
+  }
+  if (periodic.runaway) {
+    return fmt::format("thermal runaway: there is no steady state, it gets hotter from cycle to cycle until {:.0f} °C are passed\n",
+                       kDestroyed_C);
+  }
+  std::string text = fmt::format(
+      "winding {:.1f} °C on average, {:.1f} °C at its highest in each cycle (limit {:.0f} °C, {})\nstator  {:.1f} °C on average\n",
+      periodic.mean_C[states::winding], periodic.peak_C[states::winding], values.winding_limit_C, over ? "exceeded" : "kept",
+      periodic.mean_C[states::stator]);
+  if (!rms.runaway) {
+    text += fmt::format("{}, where a cycle is short against the winding's {:.3g} s: winding {:.1f} °C, stator {:.1f} °C\n",
+                        is_bare ? "equations (8) to (12)" : "under the rms current, held", values.thermal_time_constant_winding_s,
+                        rms.winding_C, rms.stator_C);
+  }
+  return text;
 }
 
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.motor);
   const MotorValues& values = motor.nominal;
-  const OnOffSteadyState state =
-      on_off_steady_state({.terminal_resistance_25C_ohm = values.terminal_resistance_ohm,
-                           .temperature_coefficient_per_K = values.temperature_coefficient_per_K,
-                           .thermal_resistance_winding_stator_K_per_W = values.thermal_resistance_winding_stator_K_per_W,
-                           .thermal_resistance_stator_ambient_K_per_W = values.thermal_resistance_stator_ambient_K_per_W},
-                          options.current);
-  const double peak_C = state.runaway ? 0.0 : cycle_peak_C(motor, options.current, state);
-  const bool over = state.runaway || peak_C > values.winding_limit_C;
-  std::string text = fmt::format("{} ({} thermal data), rms current {:.2f} A, ambient {:.0f} °C\n", motor.id, data_quality(motor),
-                                 state.current_rms_A, options.current.ambient_C);
-  if (state.runaway) {
-    text += "thermal runaway: there is no steady state, the winding's loss grows faster than heat can leave\n";
-  } else {
-    text += fmt::format(
-        "winding {:.1f} °C on average, {:.1f} °C at the end of each time on (limit {:.0f} °C, {})\nstator  {:.1f} °C on average\n",
-        state.winding_C, peak_C, values.winding_limit_C, over ? "exceeded" : "kept", state.stator_C);
-  }
-  session.say(text);
-  const auto temperature = [&](double value_C) { return state.runaway ? nlohmann::ordered_json() : nlohmann::ordered_json(value_C); };
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const bool is_bare = network.effects().size() == kDatasheetEffects.size();
+  const OnOffSteadyState rms = rest_under_rms(values, network, is_bare, options.current);
+  PeriodicState periodic = periodic_state(network, cycle_of(options.current));
+  periodic.runaway = periodic.runaway || (is_bare && rms.runaway);
+  const bool runaway = periodic.runaway;
+  const bool over = runaway || !(periodic.peak_C[states::winding] <= values.winding_limit_C);
+  session.say(fmt::format("{} ({} thermal data), rms current {:.2f} A, ambient {:.0f} °C\n", motor.id, data_quality(motor),
+                          rms.current_rms_A, options.current.ambient_C) +
+              in_words(values, rms, is_bare, periodic, over));
+  using Json = nlohmann::ordered_json;
+  const auto rest = [&](double value_C) { return runaway || rms.runaway ? Json() : Json(value_C); };
+  const auto of_winding = [&](const std::vector<double>& value_C) { return runaway ? Json() : Json(value_C[states::winding]); };
   session.answer({{"schema", "heatsoak.steady/1"},
                   {"motor", motor.id},
                   {"ambient_C", options.current.ambient_C},
-                  {"current_rms_A", state.current_rms_A},
-                  {"winding_C", temperature(state.winding_C)},
-                  {"stator_C", temperature(state.stator_C)},
-                  {"winding_peak_C", temperature(peak_C)},
+                  {"current_rms_A", rms.current_rms_A},
+                  {"winding_C", rest(rms.winding_C)},
+                  {"stator_C", rest(rms.stator_C)},
+                  {"winding_mean_C", of_winding(periodic.mean_C)},
+                  {"stator_mean_C", runaway ? Json() : Json(periodic.mean_C[states::stator])},
+                  {"winding_peak_C", of_winding(periodic.peak_C)},
                   {"winding_limit_C", values.winding_limit_C},
-                  {"runaway", state.runaway}});
+                  {"destroyed_after_s", periodic.destroyed_s ? Json(*periodic.destroyed_s) : Json()},
+                  {"runaway", runaway}});
   return over ? ExitCode::limit_exceeded : ExitCode::done;
 }
 
@@ -88,7 +113,9 @@ ExitCode run(const Options& options, Session& session) {
 
 Command steady() {
   return {.name = {},
-          .summary = "Steady temperatures under an on/off current: equations (8) to (12) of the RoboTeam Twente paper (copper loss only)",
+          .summary =
+              "Temperatures once an on/off current has settled, mean and highest; and equations (8) to (12) of the RoboTeam Twente paper "
+              "(copper loss only)",
           .example = "heatsoak steady --motor maxon_ec45_flat_70w_24v --current-on 6A --time-on 4s --time-off 6s --ambient 25degC",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
