@@ -207,6 +207,12 @@ struct NumberTable::State {
     for (std::string& name : header) {
       name = trimmed(name);
     }
+    for (const std::string& name : header) {
+      const std::size_t end = name.find('\r');
+      if (end != std::string::npos && end + 1 < name.size() && name[end + 1] != '\n') {
+        throw bad_input({lines.path(), header_line, 1}, "", "its lines end with a carriage return alone; expected a line feed, or both");
+      }
+    }
     if (header.size() > kMostColumns) {
       throw bad_input({lines.path(), header_line, 1}, "", fmt::format("has more than {} columns, which no log has", kMostColumns));
     }

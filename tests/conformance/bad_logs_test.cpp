@@ -90,6 +90,8 @@ INSTANTIATE_TEST_SUITE_P(
                                std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);
                              }),
                              2, "are they in another order"},
+                    BadDrive{"milliseconds", of_each([](DriveRow& row) { row.time_s *= 1e3; }), 2, "is the time in milliseconds?", 0,
+                             "is the time in milliseconds?"},
                     BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
                              "time does not increase"},
                     BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3,

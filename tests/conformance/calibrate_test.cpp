@@ -114,6 +114,14 @@ INSTANTIATE_TEST_SUITE_P(
                              }
                            },
                            3, "holds a number"},
+                    BadLog{"BlankHeatInputs",
+                           [](std::vector<CsvCells>& rows) {
+                             for (CsvCells& cells : rows) {
+                               cells[4] = "nan";
+                               cells[5] = "";
+                             }
+                           },
+                           2, "is no column of this log, or one without a number"},
                     BadLog{"NoTemperatures",
                            [](std::vector<CsvCells>& rows) {
                              for (CsvCells& cells : rows) {

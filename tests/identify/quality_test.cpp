@@ -218,6 +218,20 @@ INSTANTIATE_TEST_SUITE_P(
                 }
               },
               "are they in degrees Fahrenheit (22"},
+        Fault{"fahrenheit_motor_that_starts_warm",
+              [](int, auto& cells) {
+                cells[winding] = 32.0 + 1.8 * cells[winding];
+                cells[stator] = 32.0 + 1.8 * (cells[stator] + 3.0);
+              },
+              "are they in degrees Fahrenheit (22"},
+        Fault{"tenths",
+              [](int, auto& cells) {
+                cells[winding] *= 10.0;
+                cells[stator] *= 10.0;
+              },
+              "is it in tenths of degrees (22"},
+        Fault{"constant", [](int, auto& cells) { cells[winding] = 25.0; }, "winding_C is constant, 25 °C, while stator_C moves"},
+        Fault{"microseconds", [](int, auto& cells) { cells[time] *= 1e6; }, "is the time in microseconds?"},
         Fault{"kelvin", [](int, auto& cells) { cells[stator] += 273.15; }, "is it in kelvin"},
         Fault{"milliampere", [](int, auto& cells) { cells[current] *= 1000.0; }, "is it in milliamperes?"},
         Fault{"milliseconds", [](int, auto& cells) { cells[time] *= 1000.0; }, "is the time in milliseconds?"},
@@ -226,21 +240,130 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"upside_down", [](int, auto& cells) { cells[winding] = 120.0 - cells[winding]; }, "is the sign of the sensor wrong?"}),
     [](const auto& instance) { return instance.param.name; });
 
-/// Only the cool-down after a heat; with the columns of winding and stator in this order.
-std::string cool_down(const char* columns) {
-  SyntheticLog log;
-  log.current_A = [](double time_s) { return time_s < 120.0 ? 12.0 : 0.0; };
-  const auto rows_C = log.temperatures_C();
-  std::string text = fmt::format("time_s,{},ambient_C,current_A\n", columns);
-  for (std::size_t row = 121; row < 1200; ++row) {
-    text += fmt::format("{},{:.3f},{:.3f},22,0\n", row, rows_C[row].first, rows_C[row].second);
+/// A run with a column more or less than SyntheticLog writes; `row` gives the cells behind the time.
+std::string run_of(const std::string& columns, std::size_t first, const std::vector<std::pair<double, double>>& rows_C,
+                   const std::function<std::string(double winding_C, double stator_C, std::size_t row)>& cells) {
+  std::string text = "time_s," + columns + "\n";
+  for (std::size_t row = first; row < rows_C.size(); ++row) {
+    text += fmt::format("{},{}\n", row, cells(rows_C[row].first, rows_C[row].second, row));
   }
   return text;
 }
 
-TEST(Suspicions, SwappedWhereNothingHeats) {
-  EXPECT_THAT(read(cool_down("stator_C,winding_C")).quality.suspicions, testing::Contains(HasSubstr("are the two swapped?")));
-  EXPECT_THAT(read(cool_down("winding_C,stator_C")).quality.suspicions, testing::Not(testing::Contains(HasSubstr("swapped"))));
+/// Only the cool-down after a heat of so long; with the columns of winding and stator in this order.
+std::string cool_down(const char* columns, double heated_s, int rest_s, double stator_offset_K = 0.0) {
+  SyntheticLog log;
+  log.rows = static_cast<int>(heated_s) + 1 + rest_s;
+  log.current_A = [heated_s](double time_s) { return time_s < heated_s ? 8.0 : 0.0; };
+  return run_of(fmt::format("{},ambient_C,current_A", columns), static_cast<std::size_t>(heated_s) + 1, log.temperatures_C(),
+                [=](double winding_C, double stator_C, std::size_t) {
+                  return fmt::format("{:.3f},{:.3f},22,0", winding_C, stator_C + stator_offset_K);
+                });
+}
+
+class CoolDown : public testing::TestWithParam<std::tuple<double, int, double>> {};
+
+TEST_P(CoolDown, IsSwappedOrNotHoweverLongItsTail) {
+  const auto& [heated_s, rest_s, offset_K] = GetParam();
+  EXPECT_THAT(read(cool_down("stator_C,winding_C", heated_s, rest_s, offset_K)).quality.suspicions,
+              testing::Contains(HasSubstr("are the two swapped?")));
+  EXPECT_THAT(read(cool_down("winding_C,stator_C", heated_s, rest_s, offset_K)).quality.suspicions, IsEmpty());
+}
+INSTANTIATE_TEST_SUITE_P(Synthetic, CoolDown,
+                         testing::Combine(testing::Values(60.0, 1500.0), testing::Values(400, 1100, 3000), testing::Values(0.0, 2.0)));
+
+/// The resistance rises with the temperature, and so does the power: while the motor levels out the one falls as the other
+/// rises, without a wrong sign.
+TEST(Suspicions, NoneInAWarmUpAtConstantCurrent) {
+  SyntheticLog log;
+  log.current_A = [](double) { return 6.0; };
+  for (const int rows : {240, 900, 1800}) {
+    log.rows = rows;
+    EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,power_in_W", 0, log.temperatures_C(),
+                            [](double winding_C, double stator_C, std::size_t) {
+                              return fmt::format("{:.3f},{:.3f},22,{:.3f}", winding_C, stator_C,
+                                                 16.2 * (1.0 + 0.0039 * (winding_C - 25.0)));
+                            }))
+                    .quality.suspicions,
+                IsEmpty())
+        << rows;
+    EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
+                            [rows](double winding_C, double stator_C, std::size_t row) {
+                              return fmt::format("{:.3f},{:.3f},22,{:.4f}", winding_C, stator_C,
+                                                 6.0 * (1.0 + 0.01 * static_cast<double>(row) / rows));
+                            }))
+                    .quality.suspicions,
+                IsEmpty())
+        << rows;
+  }
+}
+
+/// Without load the iron is heated, and the stator answers first: to the speed, or to a current that comes and goes with it.
+/// A mirrored network: the part of 60 J/K is heated, that of 12 J/K follows.
+TEST(Suspicions, NoneWhereTheIronIsHeated) {
+  for (const int period_s : {40, 80, 150, 300, 600}) {
+    const auto turns = [period_s](std::size_t row) {
+      return row % static_cast<std::size_t>(period_s) < static_cast<std::size_t>(period_s) / 2;
+    };
+    std::vector<std::pair<double, double>> rows_C;
+    double winding_C = 22.0;
+    double stator_C = 22.0;
+    Random random(5, 0);
+    for (std::size_t row = 0; row < 600; ++row) {
+      rows_C.emplace_back(winding_C + 0.1 * random.uniform(), stator_C + 0.1 * random.uniform());
+      for (int i = 0; i < 100; ++i) {
+        const double flow_W = (winding_C - stator_C) / 3.0;
+        winding_C -= 0.01 * flow_W / 12.0;
+        stator_C += 0.01 * ((turns(row) ? 8.0 : 0.0) + flow_W - (stator_C - 22.0) / 4.0) / 60.0;
+      }
+    }
+    for (const auto& [current_turning_A, current_resting_A] : {std::pair(0.0, 0.0), std::pair(0.3, 0.3), std::pair(0.3, 0.0)}) {
+      const double turning_A = current_turning_A;
+      const double resting_A = current_resting_A;
+      EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,current_A,speed_rad_per_s", 0, rows_C,
+                              [=](double of_winding_C, double of_stator_C, std::size_t row) {
+                                return fmt::format("{:.3f},{:.3f},22,{},{}", of_winding_C, of_stator_C, turns(row) ? turning_A : resting_A,
+                                                   turns(row) ? 500 : 0);
+                              }))
+                      .quality.suspicions,
+                  IsEmpty())
+          << period_s << " s, " << turning_A << " A";
+    }
+  }
+}
+
+/// Fallen to what is room temperature in degrees Fahrenheit when the log begins; a motor at the air's temperature cannot fall.
+TEST(Suspicions, NoneWhereOneSensorStartsWarm) {
+  SyntheticLog log;
+  log.current_A = [](double time_s) { return time_s < 900.0 ? 8.0 : 0.0; };
+  const auto rows_C = log.temperatures_C();
+  std::size_t first = 910;
+  while (rows_C[first].second > 73.0) {
+    ++first;
+  }
+  for (const bool of_winding : {false, true}) {
+    EXPECT_THAT(read(run_of(of_winding ? "winding_C,ambient_C,current_A" : "stator_C,ambient_C,current_A", first, rows_C,
+                            [of_winding](double winding_C, double stator_C, std::size_t) {
+                              return fmt::format("{:.3f},22,0", of_winding ? winding_C : stator_C);
+                            }))
+                    .quality.suspicions,
+                IsEmpty());
+  }
+}
+
+/// 15 K colder than the air it comes into.
+TEST(Suspicions, NoneOfAMotorBroughtInCold) {
+  SyntheticLog log;
+  log.current_A = [](double time_s) { return time_s < 60.0 ? 0.0 : 1.0; };
+  log.rows = 600;
+  EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
+                          [&log](double winding_C, double stator_C, std::size_t row) {
+                            const auto time_s = static_cast<double>(row);
+                            const double below_K = 15.0 * std::exp(-time_s / 300.0);
+                            return fmt::format("{:.3f},{:.3f},22,{}", winding_C - below_K, stator_C - below_K, log.current_A(time_s));
+                          }))
+                  .quality.suspicions,
+              IsEmpty());
 }
 
 TEST(Suspicions, PowerThatCannotBe) {

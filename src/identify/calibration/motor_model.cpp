@@ -251,7 +251,8 @@ HeatInput heat_input_for(std::span<const Recording> recordings) {
     if (std::ranges::find(signals, Signal::current) == signals.end()) {
       lacking.push_back({{each.file.string()},
                          "current_A",
-                         "is no column of this log, and not all logs have power_in_W instead; heat cannot be computed"});
+                         "is no column of this log, or one without a number, and not all logs have power_in_W instead; heat cannot be "
+                         "computed"});
     }
   }
   throw Failure(ExitCode::bad_input, "the logs do not tell how much heat goes in", std::move(lacking));

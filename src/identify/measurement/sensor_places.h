@@ -1,0 +1,15 @@
+// Temperatures that answer to heat as no motor does: swapped channels, a wrong sign.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identify/measurement/quality.h"
+#include "identify/measurement/recording.h"
+
+namespace heatsoak {
+
+std::vector<std::string> suspicious_places(const Recording& recording, std::span<const ChannelQuality> channels);
+
+}  // namespace heatsoak

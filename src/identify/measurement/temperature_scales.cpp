@@ -1,0 +1,139 @@
+#include "identify/measurement/temperature_scales.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/quantity.h"
+#include "identify/measurement/spread.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kApart_K = 15.0;
+/// Between what starts at one temperature, of which one may be heated at once.
+constexpr double kAlike_K = 4.0;
+/// A motor that is as warm as the room falls by no more.
+constexpr double kFalls_K = 1.5;
+
+double from_kelvin_C(double value) { return value - 273.15; }
+double from_fahrenheit_C(double value) { return (value - 32.0) / 1.8; }
+double from_tenths_C(double value) { return 0.1 * value; }
+bool is_of_a_room(double value_C) { return value_C > 12.0 && value_C < 40.0; }
+
+/// A motor that starts at the temperature of the room never falls below it, one that starts warm does; in steps of `degree`.
+bool never_falls(const Channel& channel, double degree) {
+  return percentile(channel.values, 0.02) > coolest_at_start(channel) - kFalls_K * degree;
+}
+
+class Scales {
+ public:
+  explicit Scales(const Recording& recording) : ambient_(recording.find("ambient_C")) {
+    for (const Channel& channel : recording.channels) {
+      if (channel.quantity.kind == QuantityKind::temperature) {
+        sensors_.push_back(&channel);
+      }
+      if (channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings) {
+        channels_.push_back(&channel);
+      }
+    }
+  }
+
+  std::vector<std::string> run() {
+    const bool in_tenths = std::ranges::any_of(channels_, [this](const Channel* each) { return is_in_tenths(*each); });
+    constexpr double kColdest_K = 240.0;
+    for (const Channel* each : channels_) {
+      const std::string& key = each->quantity.key;
+      const double start = at_start(*each);
+      if (is_in_tenths(*each) || (in_tenths && is_of_a_room(from_tenths_C(start)) && start > 250.0)) {
+        found_.push_back(fmt::format("{} starts at {} °C: is it in tenths of degrees ({} °C)?", key, significant(start, 4),
+                                     significant(from_tenths_C(start), 3)));
+      } else if (start > 250.0 && from_kelvin_C(start) > -25.0 && from_kelvin_C(start) < 60.0 &&
+                 percentile(each->values, 0.02) > kColdest_K) {
+        found_.push_back(
+            fmt::format("{} starts at {} °C: is it in kelvin ({} °C)?", key, significant(start, 4), significant(from_kelvin_C(start), 3)));
+      } else if (is_in_fahrenheit(*each)) {
+        found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", key, significant(start, 3),
+                                     significant(from_fahrenheit_C(start), 3)));
+      }
+    }
+    motor_in_fahrenheit();
+    return std::move(found_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> other_starts_C(const Channel& channel) const {
+    std::vector<double> starts_C;
+    for (const Channel* each : channels_) {
+      if (each != &channel) {
+        starts_C.push_back(at_start(*each));
+      }
+    }
+    return starts_C;
+  }
+
+  /// Where kelvin would be far from a room, and the others, in °C, start at a tenth of it.
+  [[nodiscard]] bool is_in_tenths(const Channel& channel) const {
+    constexpr double kLeast = 180.0;
+    const double start = coolest_at_start(channel);
+    return start > kLeast && is_of_a_room(from_tenths_C(start)) && !is_of_a_room(from_kelvin_C(start)) && never_falls(channel, 10.0) &&
+           std::ranges::any_of(other_starts_C(channel), [start](double other_C) {
+             return std::abs(other_C - from_tenths_C(start)) < kAlike_K || std::abs(other_C - start) < 10.0 * kAlike_K;
+           });
+  }
+
+  /// A log mostly starts cold, all of its temperatures at that of the room.
+  [[nodiscard]] bool is_in_fahrenheit(const Channel& channel) const {
+    const double start = at_start(channel);
+    const double coolest_C = from_fahrenheit_C(coolest_at_start(channel));
+    const std::vector<double> others_C = other_starts_C(channel);
+    const auto all_within = [&others_C](double value_C, double within_K) {
+      return std::ranges::all_of(others_C, [=](double other_C) { return std::abs(other_C - value_C) < within_K; });
+    };
+    const bool stands_apart = std::ranges::none_of(others_C, [start](double other_C) { return std::abs(other_C - start) < kApart_K; });
+    // Where the others start warm too, this one may as well.
+    const bool others_are_alike = std::ranges::all_of(others_C, [&](double one_C) { return all_within(one_C, kApart_K); });
+    // One other alone may by chance be where a warm motor's Fahrenheit is.
+    const double alike_K = others_C.size() > 1 ? kAlike_K : 0.5 * kAlike_K;
+    const bool one_agrees = std::ranges::any_of(others_C, [=](double other_C) { return std::abs(other_C - coolest_C) < alike_K; });
+    if (stands_apart && others_are_alike && one_agrees && never_falls(channel, 1.8)) {
+      return true;
+    }
+    constexpr double kAllAlike_K = 10.0;
+    const bool is_room = &channel == ambient_;
+    const bool all_are_alike = !others_C.empty() && all_within(start, kAllAlike_K);
+    return (is_room || (all_are_alike && never_falls(channel, 1.8))) && start > 55.0 && start < 105.0 &&
+           is_of_a_room(from_fahrenheit_C(start));
+  }
+
+  /// All of the motor's sensors start alike and far above the room, and in Fahrenheit at the room's temperature.
+  void motor_in_fahrenheit() {
+    if (ambient_ == nullptr || sensors_.size() < 2) {
+      return;
+    }
+    const double room_C = at_start(*ambient_);
+    const double first = coolest_at_start(*sensors_.front());
+    const bool all = std::ranges::all_of(sensors_, [&](const Channel* sensor) {
+      const double start = coolest_at_start(*sensor);
+      return std::abs(start - first) < 1.8 * kAlike_K && start - room_C > kApart_K &&
+             std::abs(from_fahrenheit_C(start) - room_C) < kAlike_K && never_falls(*sensor, 1.8);
+    });
+    if (all) {
+      found_.push_back(fmt::format(
+          "{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
+          sensors_.front()->quantity.key, significant(first, 3), significant(room_C, 3), significant(from_fahrenheit_C(first), 3)));
+    }
+  }
+
+  const Channel* ambient_;
+  std::vector<const Channel*> sensors_;   ///< of the motor
+  std::vector<const Channel*> channels_;  ///< these and the surroundings'
+  std::vector<std::string> found_;
+};
+
+}  // namespace
+
+std::vector<std::string> suspicious_scales(const Recording& recording) { return Scales(recording).run(); }
+
+}  // namespace heatsoak
