@@ -176,16 +176,15 @@ SineAndPhase sine_and_phase(const RobustFit& fit, Eigen::Index sine, Eigen::Inde
   const Eigen::Vector2d both_V(fit.coefficients(sine), fit.coefficients(cosine));
   Eigen::Matrix2d covariance;
   covariance << fit.covariance(sine, sine), fit.covariance(sine, cosine), fit.covariance(cosine, sine), fit.covariance(cosine, cosine);
-  const double t = fit.quantile_factor();
   double offset_rad = std::atan2(both_V.y(), both_V.x());
   if (std::abs(offset_rad) > kPi / 2.0) {
     offset_rad -= std::copysign(kPi, offset_rad);  // a < 0
   }
   const double value_rad = std::clamp(offset_rad, bounds_rad.first, bounds_rad.second);
   const Eigen::Vector2d along(std::cos(value_rad), std::sin(value_rad));
-  const double half_V = t * std::sqrt(along.dot(covariance * along));
+  const double half_V = fit.quantile_factor(sine) * std::sqrt(along.dot(covariance * along));
   const double sine_V = along.dot(both_V);
-  const auto interval_rad = fieller_rad(both_V.x(), both_V.y(), covariance, t).value_or(bounds_rad);
+  const auto interval_rad = fieller_rad(both_V.x(), both_V.y(), covariance, fit.quantile_factor(cosine)).value_or(bounds_rad);
   // Past a bound the interval goes along, so that it does not shrink to nothing there.
   const double past_rad = value_rad - offset_rad;
   const double low_rad = std::min(interval_rad.first, interval_rad.first + past_rad);
@@ -371,7 +370,7 @@ std::vector<HeadingLine> lines_of(const std::vector<Point>& points, const Eigen:
     const bool has_slope = line.fit.coefficients.size() == 2;
     if (freedom_count > 0.0) {
       line.fit.covariance = line.inverse * error_V2 / freedom_count;
-      line.fit.freedom_count = freedom_count;
+      line.fit.freedom_counts = Eigen::VectorXd::Constant(line.fit.coefficients.size(), freedom_count);
       made.offset_V = line.fit.estimate(0);
       made.damping_V_s_per_rad = has_slope ? line.fit.estimate(1) : Estimate{};
     } else {

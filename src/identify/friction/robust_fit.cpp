@@ -5,7 +5,6 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
-#include <set>
 
 namespace heatsoak {
 namespace {
@@ -13,6 +12,7 @@ namespace {
 constexpr double kBisquare = 4.685;  // 95 % efficient where errors are normal
 constexpr double kNormal = 1.4826;   // standard deviation per median absolute deviation
 constexpr int kMostRounds = 60;
+constexpr double kLeastLeft_share = 0.05;  ///< of an error, in its residual
 
 double bisquare_weight(double u) {
   const double share = u / kBisquare;
@@ -52,30 +52,61 @@ Eigen::VectorXd least_deviations(const Eigen::MatrixXd& X, const Eigen::VectorXd
   return solution;
 }
 
-Eigen::MatrixXd sandwich(const Eigen::MatrixXd& X, const Eigen::VectorXd& residuals, const RobustFit& fit, double deviation,
-                         std::span<const int> cluster) {
+/// (I − U·Uᵀ)^−½·values: residuals of a cluster are smaller than its errors by what the fit followed them.
+Eigen::MatrixXd without_leverage(const Eigen::MatrixXd& U, const Eigen::MatrixXd& values) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(U.transpose() * U);
+  const Eigen::VectorXd factors = of.eigenvalues().unaryExpr([](double leverage) {
+    const double left = std::max(kLeastLeft_share, 1.0 - leverage);
+    return leverage < 1e-12 ? 0.0 : (1.0 / std::sqrt(left) - 1.0) / leverage;
+  });
+  return values + U * of.eigenvectors() * factors.asDiagonal() * of.eigenvectors().transpose() * U.transpose() * values;
+}
+
+/// Sets covariance and freedom_counts.
+void add_sandwich(const Eigen::MatrixXd& X, const Eigen::VectorXd& residuals, double deviation, std::span<const int> cluster,
+                  RobustFit& fit) {
   const Eigen::Index size = X.cols();
-  Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(size, size);
-  Eigen::MatrixXd weighted = Eigen::MatrixXd::Zero(size, size);
+  const Eigen::VectorXd root = fit.weights.cwiseSqrt();
+  const Eigen::MatrixXd weighted = root.asDiagonal() * X;
+  const Eigen::VectorXd scaled_residuals = root.cwiseProduct(residuals);
+  const Eigen::VectorXd slopes = (residuals / deviation).unaryExpr(&bisquare_slope);
+  const Eigen::MatrixXd bread = (X.transpose() * slopes.asDiagonal() * X).completeOrthogonalDecomposition().pseudoInverse();
+  // weighted = U·…, of which U·Uᵀ is the hat matrix
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squares(weighted.transpose() * weighted);
+  const double least = 1e-12 * squares.eigenvalues().maxCoeff();
+  const Eigen::VectorXd inverse_roots =
+      squares.eigenvalues().unaryExpr([least](double square) { return square > least ? 1.0 / std::sqrt(square) : 0.0; });
+  const Eigen::MatrixXd U = weighted * squares.eigenvectors() * inverse_roots.asDiagonal();
+
+  std::map<int, std::vector<Eigen::Index>> rows;
   for (Eigen::Index i = 0; i < X.rows(); ++i) {
-    const Eigen::MatrixXd outer = X.row(i).transpose() * X.row(i);
-    bread += bisquare_slope(residuals(i) / deviation) * outer;
-    weighted += fit.weights(i) * outer;
+    rows[cluster[static_cast<std::size_t>(i)]].push_back(i);
   }
-  const Eigen::MatrixXd spread = weighted.completeOrthogonalDecomposition().pseudoInverse();
-  std::map<int, Eigen::VectorXd> scores;
-  for (Eigen::Index i = 0; i < X.rows(); ++i) {
-    const double leverage = fit.weights(i) * (X.row(i) * spread * X.row(i).transpose()).value();
-    const double residual = residuals(i) / std::max(0.05, 1.0 - leverage);
-    const auto [place, is_new] = scores.try_emplace(cluster[static_cast<std::size_t>(i)], Eigen::VectorXd::Zero(size));
-    place->second += fit.weights(i) * residual * X.row(i).transpose();
-  }
+  // An estimated variance is eᵀ·Q·e; of errors e of equal size its mean goes with tr Q and its own variance with tr Q².
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(size, size);
-  for (const auto& [key, score] : scores) {
+  Eigen::VectorXd trace = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd trace_of_square = Eigen::VectorXd::Zero(size);
+  std::vector<Eigen::MatrixXd> followed(static_cast<std::size_t>(size), Eigen::MatrixXd::Zero(size, size));
+  for (const auto& [key, members] : rows) {
+    const Eigen::MatrixXd U_here = U(members, Eigen::all);
+    const Eigen::MatrixXd shares = without_leverage(U_here, weighted(members, Eigen::all));
+    const Eigen::VectorXd score = shares.transpose() * scaled_residuals(members);
     meat += score * score.transpose();
+    const Eigen::MatrixXd pulls = shares * bread;
+    const Eigen::MatrixXd along = U_here.transpose() * pulls;
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const double all = pulls.col(k).squaredNorm();
+      const double lost = along.col(k).squaredNorm();
+      trace(k) += all - lost;
+      trace_of_square(k) += all * all - 2.0 * all * lost;
+      followed[static_cast<std::size_t>(k)] += along.col(k) * along.col(k).transpose();
+    }
   }
-  const Eigen::MatrixXd inverse = bread.completeOrthogonalDecomposition().pseudoInverse();
-  return inverse * meat * inverse.transpose();
+  for (Eigen::Index k = 0; k < size; ++k) {
+    trace_of_square(k) += followed[static_cast<std::size_t>(k)].squaredNorm();
+  }
+  fit.covariance = bread * meat * bread.transpose();
+  fit.freedom_counts = trace.cwiseAbs2().cwiseQuotient(trace_of_square);
 }
 
 }  // namespace
@@ -125,10 +156,12 @@ RobustLocation robust_location(std::span<const double> values, double step) {
   return found;
 }
 
-double RobustFit::quantile_factor() const { return boost::math::quantile(boost::math::students_t(std::max(1.0, freedom_count)), 0.975); }
+double RobustFit::quantile_factor(Eigen::Index coefficient) const {
+  return boost::math::quantile(boost::math::students_t(std::max(1.0, freedom_counts(coefficient))), 0.975);
+}
 
 Estimate RobustFit::estimate(Eigen::Index coefficient) const {
-  const double half = quantile_factor() * std::sqrt(std::max(0.0, covariance(coefficient, coefficient)));
+  const double half = quantile_factor(coefficient) * std::sqrt(std::max(0.0, covariance(coefficient, coefficient)));
   return {coefficients(coefficient), coefficients(coefficient) - half, coefficients(coefficient) + half};
 }
 
@@ -150,9 +183,7 @@ RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::sp
   }
   const Eigen::VectorXd residuals = y - scaled * fit.coefficients;
   fit.weights = (residuals / deviation).unaryExpr(&bisquare_weight);
-  const auto clusters = static_cast<double>(std::set<int>(cluster.begin(), cluster.end()).size());
-  fit.freedom_count = std::min(fit.weights.sum(), clusters) - static_cast<double>(X.cols());
-  fit.covariance = sandwich(scaled, residuals, fit, deviation, cluster);
+  add_sandwich(scaled, residuals, deviation, cluster, fit);
   fit.coefficients = fit.coefficients.cwiseQuotient(size);
   fit.covariance = size.cwiseInverse().asDiagonal() * fit.covariance * size.cwiseInverse().asDiagonal();
   return fit;

@@ -28,16 +28,17 @@ struct RobustLocation {
 RobustLocation robust_location(std::span<const double> values, double step);
 
 /// y = X·β with errors of which a fifth may be gross: least absolute deviations, then Tukey's bisquare. The covariance
-/// is the sandwich whose scores are summed over clusters (rows that share an error) with residuals scaled by leverage
-/// (HC3; Croux, Dhaene, Hoorelbeke 2004), so that unequal scatter does no harm.
+/// is the sandwich whose scores are summed over clusters (rows that share an error), so that unequal scatter does no harm
+/// (Croux, Dhaene, Hoorelbeke 2004), with residuals free of their leverage. A coefficient that few clusters decide has a
+/// variance that is hardly known: its degrees of freedom are Satterthwaite's (Bell, McCaffrey 2002; Pustejovsky, Tipton 2018).
 struct RobustFit {
   Eigen::VectorXd coefficients;
   Eigen::MatrixXd covariance;
-  Eigen::VectorXd weights;  ///< per row, 0 … 1; 0 is an outlier
-  double freedom_count = 0.0;
+  Eigen::VectorXd weights;         ///< per row, 0 … 1; 0 is an outlier
+  Eigen::VectorXd freedom_counts;  ///< per coefficient
 
-  /// Student's quantile of 97.5 % at the fit's degrees of freedom.
-  [[nodiscard]] double quantile_factor() const;
+  /// Student's quantile of 97.5 % at the coefficient's degrees of freedom.
+  [[nodiscard]] double quantile_factor(Eigen::Index coefficient) const;
   [[nodiscard]] Estimate estimate(Eigen::Index coefficient) const;
 };
 RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::span<const int> cluster);
