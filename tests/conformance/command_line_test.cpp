@@ -1,4 +1,5 @@
 // What every verb keeps to (interfaces.md), found through the program's own help.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -413,7 +414,7 @@ TEST(ExitCode, of_friction_says_what_a_log_cannot_tell) {
     text += std::string(",wheel_speed_rad_per_s_") + wheel + ",wheel_pwm_ratio_" + wheel;
   }
   for (int row = 0; row < 500; ++row) {
-    text += "\n" + std::to_string(0.01 * row) + ",24,0,0,0,0,0,0,0,0";
+    text += fmt::format("\n{:.2f},24,0,0,0,0,0,0,0,0", 0.01 * row);
   }
   write(standing, text + "\n");
   const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", standing});

@@ -190,7 +190,7 @@ inline std::string csv_of(const std::vector<DriveRow>& rows, int wheel_count) {
   for (const DriveRow& row : rows) {
     text += fmt::format("\n{:.2f},{:.2f},{:.5f},{:.5f}", row.time_s, row.battery_V, row.command_heading_rad, row.yaw_rad);
     for (int i = 0; i < wheel_count; ++i) {
-      text += "," + cell(row.wheel_speed_rad_per_s[i]) + "," + cell(row.pwm_ratio[i]);
+      text += fmt::format(",{},{}", cell(row.wheel_speed_rad_per_s[i]), cell(row.pwm_ratio[i]));
     }
   }
   return text + "\n";
