@@ -195,6 +195,9 @@ struct NumberTable::State {
       if (!next_content(line)) {
         throw bad_input({lines.path()}, "", row == 1 ? "is empty; expected a table with a header" : "ends inside its header");
       }
+      if (line.find('\r') != std::string_view::npos && line.find('"') == std::string_view::npos) {
+        throw bad_input({lines.path(), lines.line(), 1}, "", "its lines end with a carriage return alone; expected a line feed, or both");
+      }
       std::vector<std::string> cells = cells_of(line);
       if (row == format.names_row) {
         header_line = lines.line();
@@ -206,12 +209,6 @@ struct NumberTable::State {
     }
     for (std::string& name : header) {
       name = trimmed(name);
-    }
-    for (const std::string& name : header) {
-      const std::size_t end = name.find('\r');
-      if (end != std::string::npos && end + 1 < name.size() && name[end + 1] != '\n') {
-        throw bad_input({lines.path(), header_line, 1}, "", "its lines end with a carriage return alone; expected a line feed, or both");
-      }
     }
     if (header.size() > kMostColumns) {
       throw bad_input({lines.path(), header_line, 1}, "", fmt::format("has more than {} columns, which no log has", kMostColumns));

@@ -114,11 +114,10 @@ INSTANTIATE_TEST_SUITE_P(
                              }
                            },
                            3, "holds a number"},
-                    BadLog{"BlankHeatInputs",
+                    BadLog{"BlankCurrent",
                            [](std::vector<CsvCells>& rows) {
                              for (CsvCells& cells : rows) {
                                cells[4] = "nan";
-                               cells[5] = "";
                              }
                            },
                            2, "is no column of this log, or one without a number"},

@@ -139,6 +139,7 @@ TEST(ReadRecording, FilesThatAreNoLogs) {
   EXPECT_THAT(failure_of(std::string("time_s,winding_C\n0,\0\n", 21)), HasSubstr("binary file"));
   EXPECT_THAT(failure_of("time_s,winding_C\n0,20,1\n1,20,1\n"), HasSubstr("none of its 2 rows can be used; another number of cells"));
   EXPECT_THAT(failure_of("time_s,winding_C\n0,\"20\n1,21\n"), HasSubstr(":2:1: error: a quote in this row is not closed"));
+  EXPECT_THAT(failure_of("time_s,winding_C\r0,20\r1,21\r"), HasSubstr(":1:1: error: its lines end with a carriage return alone"));
   EXPECT_THAT(failure_of("time_s,winding_C\n0," + std::string(3 << 20, '1') + "\n"), HasSubstr("a line of more than 1 MB"));
   EXPECT_THAT(failure_of("time_s,winding_C,winding_C\n0,20,20\n"), HasSubstr("'winding_C' stands twice in the header"));
   EXPECT_THAT(failure_of("time_s,winding_C\n5,20\n4,20\n3,20\n2,20\n"), HasSubstr(":3:1: error: time_s: time does not increase"));

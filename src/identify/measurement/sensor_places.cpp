@@ -205,10 +205,11 @@ class Places {
     }
   }
 
-  /// A temperature's rate against the heat at one and the same speed: what iron and bearings heat goes to the stator first.
+  /// A temperature's rate against the heat. What turns with the heat heats the iron too, and by that the stator first: then
+  /// at one and the same speed.
   [[nodiscard]] Regression answer_of(const Channel& channel, std::span<const double> heat) const {
     Blocks blocks = blocks_of(channel, heat);
-    if (speed_ != nullptr && !blocks.heat.empty()) {
+    if (speed_ != nullptr && regress(blocks.speed_rad_per_s, blocks.heat).correlation_ratio > 0.0) {
       constexpr double kLeastOwn_share = 0.05;
       const double all = variance(blocks.heat);
       subtract_line(blocks.speed_rad_per_s, blocks.heat);
