@@ -68,47 +68,51 @@ TEST_P(BadDrives, are_told) {
 
 INSTANTIATE_TEST_SUITE_P(
     One, BadDrives,
-    testing::Values(BadDrive{"percent",
-                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 2,
-                             "wheel_pwm_ratio_1 reaches", 0, "is it in percent"},
-                    BadDrive{"millivolts", of_each([](DriveRow& row) { row.battery_V *= 1000.0; }), 2, "is it in millivolts?", 0,
-                             "is it in millivolts?"},
-                    BadDrive{"degrees", of_each([](DriveRow& row) {
-                               row.command_heading_rad *= 180.0 / std::numbers::pi;
-                               row.yaw_rad *= 180.0 / std::numbers::pi;
-                             }),
-                             2, "off what the wheels' speeds amount to", 0, "heading_field_rad spans"},
-                    BadDrive{"revolutions_per_minute", of_each([](DriveRow& row) {
-                               std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
-                             }),
-                             2, "times the motor's back-EMF"},
-                    BadDrive{"other_sign",
-                             of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 2,
-                             "have the wrong sign?"},
-                    BadDrive{"other_order", of_each([](DriveRow& row) {
-                               std::swap(row.wheel_speed_rad_per_s[0], row.wheel_speed_rad_per_s[1]);
-                               std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);
-                             }),
-                             2, "are they in another order"},
-                    BadDrive{"milliseconds", of_each([](DriveRow& row) { row.time_s *= 1e3; }), 2, "is the time in milliseconds?", 0,
-                             "is the time in milliseconds?"},
-                    BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
-                             "time does not increase"},
-                    BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3,
-                             "in no stretch do the wheels turn steadily", 3, "it has 8 rows; at least 20 are needed"},
-                    BadDrive{"no_number", of_each([](DriveRow& row) {
-                               row.battery_V = row.command_heading_rad = row.yaw_rad = std::nan("");
-                               row.wheel_speed_rad_per_s.fill(std::nan(""));
-                               row.pwm_ratio.fill(std::nan(""));
-                             }),
-                             3, "no quantity beside the time holds a number", 3, "no quantity beside the time holds a number"},
-                    BadDrive{"standing", of_each([](DriveRow& row) {
-                               row.wheel_speed_rad_per_s.fill(0.0);
-                               row.pwm_ratio.fill(0.0);
-                             }),
-                             3, "in no stretch do the wheels turn steadily", 3, "no wheel changes its speed beyond the noise"},
-                    BadDrive{"one_heading", [](std::vector<DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing can be learned",
-                             0, "can tell about wheels: yes"}),
+    testing::Values(
+        BadDrive{"percent", of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 2,
+                 "wheel_pwm_ratio_1 reaches", 0, "is it in percent"},
+        BadDrive{"millivolts", of_each([](DriveRow& row) { row.battery_V *= 1000.0; }), 2, "is it in millivolts?", 0,
+                 "is it in millivolts?"},
+        BadDrive{"degrees", of_each([](DriveRow& row) {
+                   row.command_heading_rad *= 180.0 / std::numbers::pi;
+                   row.yaw_rad *= 180.0 / std::numbers::pi;
+                 }),
+                 2, "off what the wheels' speeds amount to", 0, "heading_field_rad spans"},
+        BadDrive{"revolutions_per_minute", of_each([](DriveRow& row) {
+                   std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
+                 }),
+                 2, "times the motor's back-EMF"},
+        BadDrive{"other_sign", of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 2,
+                 "have the wrong sign?"},
+        BadDrive{"other_sign_of_one_wheel", of_each([](DriveRow& row) { row.pwm_ratio[1] = -row.pwm_ratio[1]; }), 2,
+                 "voltage of wheel 2 falls as it turns faster"},
+        BadDrive{"dead_modulation", of_each([](DriveRow& row) { row.pwm_ratio[0] = 0.0; }), 2, "wheel 1 turns with hardly any voltage"},
+        BadDrive{"modulations_swapped", of_each([](DriveRow& row) { std::swap(row.pwm_ratio[0], row.pwm_ratio[1]); }), 2, "of wheel 1"},
+        BadDrive{"battery_doubled", of_each([](DriveRow& row) { row.battery_V *= 2.0; }), 2, "times the motor's back-EMF"},
+        BadDrive{"other_order", of_each([](DriveRow& row) {
+                   std::swap(row.wheel_speed_rad_per_s[0], row.wheel_speed_rad_per_s[1]);
+                   std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);
+                 }),
+                 2, "are they in another order"},
+        BadDrive{"milliseconds", of_each([](DriveRow& row) { row.time_s *= 1e3; }), 2, "is the time in milliseconds?", 0,
+                 "is the time in milliseconds?"},
+        BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
+                 "time does not increase"},
+        BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3, "in no stretch do the wheels turn steadily", 3,
+                 "it has 8 rows; at least 20 are needed"},
+        BadDrive{"no_number", of_each([](DriveRow& row) {
+                   row.battery_V = row.command_heading_rad = row.yaw_rad = std::nan("");
+                   row.wheel_speed_rad_per_s.fill(std::nan(""));
+                   row.pwm_ratio.fill(std::nan(""));
+                 }),
+                 3, "no quantity beside the time holds a number", 3, "no quantity beside the time holds a number"},
+        BadDrive{"standing", of_each([](DriveRow& row) {
+                   row.wheel_speed_rad_per_s.fill(0.0);
+                   row.pwm_ratio.fill(0.0);
+                 }),
+                 3, "in no stretch do the wheels turn steadily", 3, "no wheel changes its speed beyond the noise"},
+        BadDrive{"one_heading", [](std::vector<DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing can be learned", 0,
+                 "can tell about wheels: yes"}),
     [](const auto& each) { return each.param.name; });
 
 /// A run of a motor, cell by cell: time, winding, stator, ambient, current.

@@ -69,6 +69,30 @@ TEST(RobustFit, intervals_of_unequal_scatter) {
   EXPECT_LE(inside, 0.98 * kSamples);
 }
 
+/// Twelve clusters of three rows of which three alone tell the second coefficient: 95 % must not need more clusters.
+TEST(RobustFit, intervals_of_what_few_clusters_tell) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> normal;
+  int inside = 0;
+  constexpr int kSamples = 1000;
+  for (int sample = 0; sample < kSamples; ++sample) {
+    Eigen::MatrixXd X(36, 2);
+    Eigen::VectorXd y(36);
+    std::vector<int> cluster(36);
+    for (int i = 0; i < 36; ++i) {
+      cluster[static_cast<std::size_t>(i)] = i / 3;
+      X.row(i) << 1.0, i < 9 ? 1.0 : 0.0;
+      y(i) = 0.5 + 2.0 * X(i, 1) + 0.1 * normal(engine);
+    }
+    const RobustFit fit = robust_fit(X, y, cluster);
+    EXPECT_LT(fit.freedom_counts(1), 5.0);
+    const Estimate step = fit.estimate(1);
+    inside += step.low <= 2.0 && 2.0 <= step.high ? 1 : 0;
+  }
+  EXPECT_GE(inside, 0.93 * kSamples);
+  EXPECT_LE(inside, 0.98 * kSamples);
+}
+
 TEST(RobustFit, says_which_columns_cannot_be_told_apart) {
   Eigen::MatrixXd X(10, 3);
   for (int i = 0; i < 10; ++i) {

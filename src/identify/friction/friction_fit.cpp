@@ -227,7 +227,7 @@ void judge(const std::vector<Point>& points, const Eigen::VectorXd& weights, int
     found.rows_used += outlies ? 0U : static_cast<std::size_t>(part.rows_kept[wheel]);
   }
   found.rmse_V = std::sqrt(error_V2 / weights.sum());
-  found.r2_ratio = 1.0 - error_V2 / variance_V2;
+  found.r2_ratio = variance_V2 > 0.0 ? 1.0 - error_V2 / variance_V2 : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// What a wheel's points ask of its terms; `given_V_s_per_rad` is the damping that is taken as known.
@@ -258,6 +258,11 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinem
   found.parts_standing = wheel_points.standing;
   if (points.size() < 4) {
     found.problem = "it hardly turns in any steady leg";
+    return found;
+  }
+  if (std::ranges::all_of(points,
+                          [&](const Point& each) { return each.part->voltage_V[wheel] == points.front().part->voltage_V[wheel]; })) {
+    found.problem = "its voltage is the same in all legs";
     return found;
   }
   const Chosen chosen = chosen_terms(points, wheel, settings);

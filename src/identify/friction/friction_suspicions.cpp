@@ -14,7 +14,9 @@ namespace {
 constexpr double kFarOff_deg = 20.0;
 constexpr double kContradicting_share = 0.15;
 constexpr double kLeastOfBackEmf_ratio = 0.6;
-constexpr double kMostOfBackEmf_ratio = 3.0;
+constexpr double kMostOfBackEmf_ratio = 2.3;
+constexpr double kLeastExplained_ratio = 0.7;
+constexpr double kDead_share = 0.05;
 
 /// The log's direction of travel against what the wheels amount to, in the median; 0 without legs.
 double direction_off_deg(const SteadyParts& steady, const Kinematics& kinematics) {
@@ -46,6 +48,55 @@ double contradiction_share(const SteadyParts& steady, const Kinematics& kinemati
   return shares.empty() ? 0.0 : median(shares);
 }
 
+/// The largest of a wheel's voltages, as a share of the median of the other wheels'.
+double voltage_share(const SteadyParts& steady, int wheel, int wheel_count) {
+  std::vector<double> tops_V;
+  double own_V = 0.0;
+  for (int i = 0; i < wheel_count; ++i) {
+    double top_V = 0.0;
+    for (const SteadyPart& part : steady.parts) {
+      top_V = std::max(top_V, std::isfinite(part.voltage_V[i]) ? std::abs(part.voltage_V[i]) : 0.0);
+    }
+    if (i == wheel) {
+      own_V = top_V;
+    } else {
+      tops_V.push_back(top_V);
+    }
+  }
+  const double others_V = median(tops_V);
+  return others_V > 0.0 ? own_V / others_V : 1.0;
+}
+
+/// What one wheel alone shows; empty where nothing.
+std::string suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& wheel, int number, int wheel_count,
+                               double back_emf_V_s_per_rad) {
+  if (voltage_share(steady, number - 1, wheel_count) < kDead_share) {
+    return fmt::format("wheel {} turns with hardly any voltage: is its modulation missing from the log?", number);
+  }
+  if (!wheel.is_learned()) {
+    return {};
+  }
+  const double damping = wheel.damping_is_given ? back_emf_V_s_per_rad : wheel.damping_V_s_per_rad.value;
+  if (damping < 0.0) {
+    return fmt::format("voltage of wheel {} falls as it turns faster: does its speed or its modulation have the wrong sign?", number);
+  }
+  if (wheel.constant_V.high < 0.0 || wheel.sine_V.high + wheel.constant_V.high < 0.0) {
+    return fmt::format(
+        "friction of wheel {} would drive it (a = {} V, b = {} V): is its modulation that of another wheel, or of the wrong sign?", number,
+        significant(wheel.sine_V.value, 2), significant(wheel.constant_V.value, 2));
+  }
+  if (wheel.r2_ratio < kLeastExplained_ratio) {
+    return fmt::format("voltage of wheel {} hardly follows its speed and direction (R² {:.2f}): is its modulation that of another wheel?",
+                       number, wheel.r2_ratio);
+  }
+  const double ratio = damping / back_emf_V_s_per_rad;
+  if (!wheel.damping_is_given && (ratio < kLeastOfBackEmf_ratio || ratio > kMostOfBackEmf_ratio)) {
+    return fmt::format("d of wheel {} is {} times the motor's back-EMF, where 1 to 2 is usual: is its speed or modulation in another unit?",
+                       number, significant(ratio, 2));
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics,
@@ -70,15 +121,30 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
     }
   }
   const double damping = dampings.empty() ? std::numeric_limits<double>::quiet_NaN() : median(dampings);
-  if (damping < 0.0) {
+  // One that not all wheels show is told of each wheel.
+  const auto all = [&dampings](auto is_wrong) { return std::ranges::all_of(dampings, is_wrong); };
+  if (damping < 0.0 && all([](double each) { return each < 0.0; })) {
     found.emplace_back("voltage falls as the wheels turn faster: does one of them have the wrong sign?");
   } else if (drive) {
-    const double ratio = damping / (drive->torque_constant_Nm_per_A * drive->gear_ratio);
-    if (ratio < kLeastOfBackEmf_ratio || ratio > kMostOfBackEmf_ratio) {
+    const double back_emf_V_s_per_rad = drive->torque_constant_Nm_per_A * drive->gear_ratio;
+    const double ratio = damping / back_emf_V_s_per_rad;
+    if (std::isfinite(ratio) && (all([&](double each) { return each < kLeastOfBackEmf_ratio * back_emf_V_s_per_rad; }) ||
+                                 all([&](double each) { return each > kMostOfBackEmf_ratio * back_emf_V_s_per_rad; }))) {
       found.push_back(
           fmt::format("d is {} times the motor's back-EMF, where 1 to 2 is usual: is a speed in rpm or that of the wheel in place of its "
-                      "motor, a modulation in percent, a voltage in millivolts, or the motor another one?",
+                      "motor, a modulation in percent, a voltage in millivolts or too high, or the motor another one?",
                       significant(ratio, 2)));
+    }
+  }
+  // What all wheels have in common is said once.
+  const bool is_of_single_wheels = found.empty();
+  const double back_emf_V_s_per_rad =
+      drive ? drive->torque_constant_Nm_per_A * drive->gear_ratio : std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; is_of_single_wheels && i < fit.wheels.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    if (std::string of_wheel = suspicion_of_wheel(steady, fit.wheels[i], number, kinematics.wheel_count, back_emf_V_s_per_rad);
+        !of_wheel.empty()) {
+      found.push_back(std::move(of_wheel));
     }
   }
   return found;

@@ -40,7 +40,10 @@ std::string figure(const Estimate& estimate, double scale, const std::string& un
   const double width = estimate.is_known() ? kept(estimate.high) - kept(estimate.low) : 0.0;
   const double smallest = width > 0.0 ? width : std::max(std::abs(kept(estimate.value)), 1e-3) * 0.01;
   const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(smallest))), 0, 9);
-  const auto text = [&](double value) { return fmt::format("\"{:.{}f} {}\"", value, decimals, unit); };
+  const auto text = [&](double value) {
+    const double rounding = 0.5 * std::pow(10.0, -decimals);
+    return fmt::format("\"{:.{}f} {}\"", std::abs(value) < rounding ? 0.0 : value, decimals, unit);  // no −0
+  };
   std::string range;
   if (width > 0.0) {
     range = fmt::format(", range = [{}, {}]", text(kept(estimate.low)), text(kept(estimate.high)));

@@ -180,9 +180,10 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
       lines += fmt::format("{:>5}  not learned: {}\n", i + 1, wheel.problem);
       continue;
     }
-    lines += fmt::format("{:>5}  {:30} {:24} {:24} {:24} {:6.3f} {:9} {:9}\n", i + 1, text(wheel.damping_V_s_per_rad, 4),
-                         text(wheel.sine_V, 3), text(wheel.constant_V, 3), text(wheel.phase_rad, 1, 180.0 / std::numbers::pi),
-                         wheel.r2_ratio, wheel.rows_used, rows - wheel.rows_used);
+    lines +=
+        fmt::format("{:>5}  {:30} {:24} {:24} {:24} {:>6} {:9} {:9}\n", i + 1, text(wheel.damping_V_s_per_rad, 4), text(wheel.sine_V, 3),
+                    text(wheel.constant_V, 3), text(wheel.phase_rad, 1, 180.0 / std::numbers::pi),
+                    std::isfinite(wheel.r2_ratio) ? fmt::format("{:.3f}", wheel.r2_ratio) : "–", wheel.rows_used, rows - wheel.rows_used);
   }
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (std::isfinite(fit.wheels[i].rotation_V.value)) {
