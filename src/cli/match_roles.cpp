@@ -34,10 +34,10 @@ double most_effort_Nm2_s(const RoleLoads& roles) {
   return most_Nm2_s;
 }
 
-/// A row of shares of each role's own heat.
+/// A row of shares of each role's own torque squared.
 template <class Part>
 std::string share_row(const RoleLoads& roles, std::string_view name, double time_s, const Part& part_Nm2_s) {
-  std::string text = fmt::format("{:22} {:8.0f}", name, time_s);
+  std::string text = fmt::format("{:23} {:7.0f}", name, time_s);
   for (const MatchLoad& load : roles) {
     text += fmt::format(" {:10.1f} %", 100.0 * part_Nm2_s(load) / effort_Nm2_s(load));
   }
@@ -72,7 +72,7 @@ RoleLoads play_roles(const MatchInputs& inputs, const Robot& robot, std::uint64_
 
 std::string role_table(const RoleLoads& roles) {
   std::string text =
-      fmt::format("{:22} {:>8} {:>12} {:>12} {:>12}\n", "share of copper heat", "time / s", kRoleNames[0], kRoleNames[1], kRoleNames[2]);
+      fmt::format("{:23} {:>7} {:>12} {:>12} {:>12}\n", "share of torque squared", "time / s", kRoleNames[0], kRoleNames[1], kRoleNames[2]);
   for (std::size_t i = 0; i < kPhaseNames.size(); ++i) {
     const double time_s = roles.back().phases[i].time_s;
     if (time_s > 0.0) {
@@ -93,7 +93,7 @@ std::string role_table(const RoleLoads& roles) {
   text += total_row(roles, "driven / m", [](const MatchLoad& load) { return fmt::format("{:.0f}", load.distance_m); });
   text += total_row(roles, "torque of a mean wheel / mN m rms",
                     [](const MatchLoad& load) { return fmt::format("{:.1f}", 1e3 * torque_rms_Nm(load)); });
-  text += total_row(roles, "heat, part of the busiest role's",
+  text += total_row(roles, "torque squared / busiest role's",
                     [&](const MatchLoad& load) { return fmt::format("{:.0f} %", 100.0 * effort_Nm2_s(load) / most_Nm2_s); });
   return text;
 }

@@ -13,7 +13,7 @@ namespace heatsoak {
 using RoleLoads = std::array<MatchLoad, kRoleNames.size()>;
 RoleLoads play_roles(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed, Planner planner);
 
-/// Copper heat of a motor follows ∫M²dt of its wheel, so these shares hold for every motor but for its own drag.
+/// Shares of ∫M²dt of the wheels, whatever motor turns them; copper heat adds what the motor's own drag asks while it turns.
 std::string role_table(const RoleLoads& roles);
 nlohmann::ordered_json role_json(const RoleLoads& roles);
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "base/quantity.h"
 
@@ -42,6 +43,10 @@ CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& me
 
 CLI::Option* add_table(CLI::App& app, std::string& file, const std::string& meaning) {
   return app.add_option("--out", file, meaning)->check(ends_in(".csv", "tables are written as CSV"))->type_name("FILE.csv");
+}
+
+CLI::Option* add_seed(CLI::App& app, std::uint64_t& seed, const std::string& meaning) {
+  return app.add_option("--seed", seed, meaning)->check(whole_number(std::numeric_limits<std::uint64_t>::max()))->capture_default_str();
 }
 
 std::function<std::string(const std::string&)> whole_number(std::uint64_t most) {

@@ -17,6 +17,9 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value,
 /// one, and 010 for 8.
 std::function<std::string(const std::string&)> whole_number(std::uint64_t most);
 
+/// --seed, a whole number; `seed` holds the default.
+CLI::Option* add_seed(CLI::App& app, std::uint64_t& seed, const std::string& meaning);
+
 /// --plot FILE.svg; another ending is a usage error, because nothing else is drawn.
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning);
 

@@ -16,6 +16,20 @@ constexpr double kRate_Hz = 1000.0;
 /// No break of a game is as long: the clock of the recording jumped.
 constexpr double kLongestAbsence_s = 3600.0;
 
+/// Fewer sights a second do not show how a robot of this league accelerates.
+constexpr double kFewestSights_Hz = 10.0;
+
+/// What to say of a robot that is seen too seldom; nothing of the others.
+std::string sparse(const ImportReport& report, const RobotName& name) {
+  const auto robot = std::ranges::find(report.robots, name, &RobotSummary::robot);
+  if (robot == report.robots.end() || !(static_cast<double>(robot->points) < kFewestSights_Hz * robot->seen_s)) {
+    return "";
+  }
+  return fmt::format(
+      "{}: seen {:.1f} times a second only, so that accelerations are not followed and torques are uncertain; expected {:.0f} or more",
+      to_string(name), static_cast<double>(robot->points) / robot->seen_s, kFewestSights_Hz);
+}
+
 /// The robot that was asked for, or the one that worked most; nothing where the log has none at all.
 std::optional<RobotName> choose(const ImportReport& survey, const std::string& player, const std::filesystem::path& log) {
   std::vector<std::string> known;
@@ -104,6 +118,9 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   }
   const MotionTrack motion = smooth(game.tracks.front());
   result.sentences.push_back(fmt::format("{}: {}", result.player, to_string(motion.report())));
+  if (const std::string warning = sparse(game.report, *name); !warning.empty()) {
+    result.sentences.push_back(warning);
+  }
   WheelLoads loads = loads_of(motion, robot, bin_s, observer);
   result.wheels = std::move(loads.wheels);
   if (loads.jumps > 0) {

@@ -34,8 +34,9 @@ std::string_view first_line(std::string_view cell) { return cell.substr(0, std::
 
 class Table {
  public:
-  Table(std::string file, const ChooseCsvColumns& choose, std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row)
-      : file_(std::move(file)), choose_(choose), words_(words), row_(row) {}
+  Table(std::string file, const ChooseCsvColumns& choose, std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row,
+        const std::function<void(int line)>& cut_off)
+      : file_(std::move(file)), choose_(choose), words_(words), row_(row), cut_off_(cut_off) {}
 
   void cell(std::string_view text) {
     line_breaks_in_row_ += static_cast<int>(std::ranges::count(text, '\n'));
@@ -47,8 +48,10 @@ class Table {
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0 && words_of_[column_] != nullptr) {
       word(text, words_of_[column_]->words);
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0) {
-      const std::optional<double> value = parse_number(text);
-      if (!value || !std::isfinite(*value)) {
+      const std::optional<double> value = text.empty() ? kNothing : parse_number(text);
+      if (may_be_blank_[column_] && value && std::isnan(*value)) {
+        values_[static_cast<std::size_t>(place_of_[column_])] = kNothing;
+      } else if (!value || !std::isfinite(*value)) {
         problem(static_cast<int>(column_) + 1, header_[column_],
                 fmt::format("\"{}\" is not a finite number; expected one such as 0.25 or -3e-4", first_line(text)));
       } else {
@@ -58,10 +61,14 @@ class Table {
     ++column_;
   }
 
-  /// `terminator` is the byte that ended the row; CR LF ends it once.
+  /// `terminator` is the byte that ended the row, or -1 for the end of the file; CR LF ends it once.
   void end_of_row(int terminator) {
     if (column_ > 0) {
-      if (!has_header_) {
+      if (cut_off_ && has_header_ && terminator < 0) {
+        problems_.resize(problems_before_row_);
+        left_out_ = left_out_before_row_;
+        cut_off_(line_);
+      } else if (!has_header_) {
         read_header();
         is_header_sound_ = problems_.empty();
       } else if (column_ != header_.size()) {
@@ -77,6 +84,8 @@ class Table {
     is_bad_row_ = false;
     line_ += line_breaks_in_row_ + (terminator == '\n' ? 1 : 0);
     line_breaks_in_row_ = 0;
+    problems_before_row_ = problems_.size();
+    left_out_before_row_ = left_out_;
   }
 
   /// What the rest of the file holds no longer matters.
@@ -148,10 +157,12 @@ class Table {
     values_.assign(wanted.required.size() + wanted.optional.size(), kNothing);
     place_of_.assign(header_.size(), -1);
     words_of_.assign(header_.size(), nullptr);
+    may_be_blank_.assign(header_.size(), false);
     cells_.assign(values_.size(), 0);
     for (std::size_t i = 0; i < header_.size(); ++i) {
       const auto found = std::ranges::find(words_, header_[i], &CsvWords::column);
       words_of_[i] = found != words_.end() ? &*found : nullptr;
+      may_be_blank_[i] = std::ranges::find(wanted.blank, header_[i]) != wanted.blank.end();
     }
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const bool is_required = i < wanted.required.size();
@@ -175,13 +186,17 @@ class Table {
   const ChooseCsvColumns& choose_;
   std::span<const CsvWords> words_;
   const std::function<void(const CsvRow&)>& row_;
+  const std::function<void(int line)>& cut_off_;
   std::vector<std::string> header_;
   std::vector<int> place_of_;
   std::vector<const CsvWords*> words_of_;
+  std::vector<bool> may_be_blank_;
   std::vector<int> cells_;
   std::vector<double> values_;
   std::vector<Diagnostic> problems_;
   std::size_t left_out_ = 0;
+  std::size_t problems_before_row_ = 0;
+  std::size_t left_out_before_row_ = 0;
   std::size_t column_ = 0;
   std::size_t rows_ = 0;
   int line_ = 1;
@@ -240,9 +255,9 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
 }
 
 void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose, std::span<const CsvWords> words,
-              const std::function<void(const CsvRow&)>& row) {
+              const std::function<void(const CsvRow&)>& row, const std::function<void(int line)>& cut_off) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file = opened(path);
-  Table table(path.string(), choose, words, row);
+  Table table(path.string(), choose, words, row, cut_off);
   csv_parser parser{};
   csv_init(&parser, CSV_APPEND_NULL | CSV_REPALL_NL | CSV_STRICT | CSV_STRICT_FINI);
   const std::unique_ptr<csv_parser, void (*)(csv_parser*)> freed(&parser, &csv_free);

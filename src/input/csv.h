@@ -34,6 +34,7 @@ struct CsvWords {
 struct CsvColumns {
   std::vector<std::string> required;  ///< must be in the header
   std::vector<std::string> optional;  ///< give NaN where the header has none
+  std::vector<std::string> blank{};   ///< of these a cell that is empty or "nan" gives NaN and is no problem
 };
 /// Called once, with the header as it stands in the file.
 using ChooseCsvColumns = std::function<CsvColumns(std::span<const std::string> header)>;
@@ -47,9 +48,10 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
               const std::function<void(const CsvRow&)>& row);
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row);
-/// The same for files that come in several forms.
+/// The same for files that come in several forms. With `cut_off` a last row that no line break ends is left out, because its
+/// last number may be cut inside, and `cut_off` hears its line; without it such a row is one like any other.
 void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose, std::span<const CsvWords> words,
-              const std::function<void(const CsvRow&)>& row);
+              const std::function<void(const CsvRow&)>& row, const std::function<void(int line)>& cut_off = {});
 
 /// Problems of one file whose columns count cells, with the character (from 1) at which each cell begins in their place, as
 /// an editor counts. Reads the file once more.

@@ -16,8 +16,11 @@
 namespace heatsoak {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
+using testing::Each;
 using testing::HasSubstr;
+using testing::Not;
 using testing_logs::TemporaryFile;
 
 constexpr const char* kHeader = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
@@ -66,6 +69,49 @@ TEST(ImportCsv, NamesThePlaceOfWhatIsWrong) {
   EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,0,0\n"), HasSubstr("game.csv:5:1: error: has 5 cells where the header has 6"));
   EXPECT_THAT(failure_of_table("t_s,team,robot,x_m,y_m,yaw_rad\n0,blue,1,0,0,0\n"), HasSubstr("robot_id: there is no such column"));
   EXPECT_THAT(failure_of_table(kHeader), HasSubstr("holds no row"));
+}
+
+// A recorder that dies leaves a last row that is cut somewhere, perhaps inside its last number.
+TEST(ImportCsv, LeavesOutALastRowThatMayBeCut) {
+  const std::string last = "103,blue,7,3.00,1.5,0.125\n";
+  for (std::size_t kept = 1; kept < last.size(); ++kept) {
+    const TemporaryFile file("game.csv", table(300) + last.substr(0, kept));
+    const RecordedGame game = import_game(file.path());
+    EXPECT_EQ(game.tracks.at(0).segments.at(0).size(), 300U) << kept;
+    EXPECT_THAT(sentences(game.report), Contains(HasSubstr("line 302, the last, has no line break at its end and may be cut: left out")));
+  }
+  for (const std::string& whole : {last, last.substr(0, last.size() - 1) + "\r\n"}) {
+    const TemporaryFile file("game.csv", table(300) + whole);
+    const RecordedGame game = import_game(file.path());
+    EXPECT_EQ(game.tracks.at(0).segments.at(0).size(), 301U);
+    EXPECT_THAT(sentences(game.report), Each(Not(HasSubstr("line break"))));
+  }
+  // What is wrong before stays wrong, and a header alone is no game.
+  EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,zero,0,0\n101,bl"), HasSubstr("game.csv:5:12: error: x_m"));
+  EXPECT_THAT(failure_of_table(std::string(kHeader) + "101,bl"), HasSubstr("holds no row"));
+}
+
+TEST(ImportCsv, ARowWithoutAPositionIsALostRobot) {
+  std::string text = table(300);
+  const char* const blanks[] = {",,", "nan,NaN,nan", "1.0,,0", "1.0,1.5, ", "NAN,1.5,0"};
+  for (int i = 0; i < 100; ++i) {
+    text += fmt::format("{:.2f},blue,7,{}\n", 103.0 + i * 0.01, blanks[i % 5]);
+  }
+  for (int i = 0; i < 300; ++i) {
+    text += fmt::format("{:.2f},blue,7,3,1.5,0\n", 104.0 + i * 0.01);
+  }
+  const TemporaryFile file("game.csv", text);
+  const RecordedGame game = import_game(file.path());
+  ASSERT_EQ(game.tracks.at(0).segments.size(), 2U);
+  EXPECT_EQ(game.tracks[0].segments[0].size(), 300U);
+  EXPECT_EQ(game.tracks[0].segments[1].size(), 300U);
+  EXPECT_THAT(sentences(game.report), Contains("100 rows without a position left out: the robot was lost"));
+  EXPECT_THAT(failure_of_table(table(3) + "nan,blue,7,0,0,0\n"), HasSubstr("game.csv:5:1: error: t_s: \"nan\" is not a finite number"));
+  EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,inf,0,0\n"), HasSubstr("game.csv:5:12: error: x_m: \"inf\""));
+}
+
+TEST(ImportCsv, APackedTableIsToBeUnpacked) {
+  EXPECT_THAT(failure_of(testing_logs::gzip(table(300)), "game.csv.gz"), HasSubstr("is packed by gzip; unpack it first"));
 }
 
 TEST(ImportCsv, LeavesOutRowsThatGoBackInTimeAndSaysWhichOnes) {
@@ -172,6 +218,25 @@ TEST(ImportCsv, SaysWhyNobodyCanBeFollowed) {
   EXPECT_THAT(said_of(milliseconds), Contains(HasSubstr("t_s advances by 16.7 s from row to row of a robot")));
   EXPECT_THAT(said_of(milliseconds), Contains(HasSubstr("is it in milliseconds")));
   EXPECT_THAT(said_of(shuffled), Contains(HasSubstr("sorted by t_s")));
+  std::string rounded = kHeader;
+  for (int i = 0; i < 600; ++i) {
+    rounded += fmt::format("{:.1f},blue,7,1,1,0\n", i / 60.0);
+  }
+  EXPECT_THAT(said_of(rounded), AllOf(Contains(HasSubstr("most times repeat")), Each(Not(HasSubstr("back in time")))));
+}
+
+TEST(ImportCsv, SaysThatARobotIsSeenTooSeldom) {
+  const auto said_at = [](double rate_Hz) {
+    std::string text = kHeader;
+    for (int i = 0; i < 400; ++i) {
+      text += fmt::format("{:.4f},blue,7,{:.4f},1.5,0\n", i / rate_Hz, std::sin(i / rate_Hz));
+    }
+    const TemporaryFile file("game.csv", text);
+    return demand_of_game(file.path(), "blue 7", read_robot(kSource / "robot_core/robots/tigers_v2020.toml"), 0.01).sentences;
+  };
+  EXPECT_THAT(said_at(3.0), Contains(HasSubstr("blue 7: seen 3.0 times a second only")));
+  EXPECT_THAT(said_at(9.0), Contains(HasSubstr("times a second only")));
+  EXPECT_THAT(said_at(10.0), Each(Not(HasSubstr("times a second only"))));
 }
 
 TEST(ImportCsv, PlacesBeyondAllMeasureAreSaidShortly) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -57,20 +58,146 @@ TEST(Game, a_division_b_free_kick_may_wait_ten_seconds_and_a_division_a_one_five
   }
 }
 
-// Over many games an exponential stretch of play has the mean that the input names; the half's end cuts some.
-TEST(Game, stretches_of_play_have_the_mean_of_the_input) {
-  double sum_s = 0.0;
-  int count = 0;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+/// What a game is made of, over many of them.
+struct Counted {
+  std::array<double, kPhaseNames.size()> time_s{};
+  std::array<int, kPhaseNames.size()> spans{};
+  double mean_s(Phase phase) const { return time_s[static_cast<std::size_t>(phase)] / count(phase); }
+  double count(Phase phase) const { return spans[static_cast<std::size_t>(phase)]; }
+};
+
+constexpr int kGames = 4000;
+
+Counted many_games(Division division, const MatchValues& values, bool overtime = false) {
+  Counted counted;
+  for (std::uint64_t seed = 0; seed < kGames; ++seed) {
     Random random(seed, 0);
-    for (const MatchPhase& span : generate_game(Division::a, false, division_a().nominal(), random)) {
-      if (span.phase == Phase::running) {
-        sum_s += span.duration_s;
-        ++count;
+    for (const MatchPhase& span : generate_game(division, overtime, values, random)) {
+      counted.time_s[static_cast<std::size_t>(span.phase)] += span.duration_s;
+      ++counted.spans[static_cast<std::size_t>(span.phase)];
+    }
+  }
+  return counted;
+}
+
+// An input means what it says: over many games the mean that comes about is the one that went in.
+TEST(Game, lengths_and_numbers_have_the_means_of_their_inputs) {
+  constexpr double kClose = 0.02;
+  const auto expect = [](double seen, double wanted, const char* what) { EXPECT_NEAR(seen, wanted, kClose * wanted) << what; };
+  for (const Division division : {Division::a, Division::b}) {
+    for (const double running_mean_s : {8.0, 15.0, 30.0}) {
+      MatchValues values = division_a().nominal();
+      values.running_mean_s = running_mean_s;
+      const Counted seen = many_games(division, values);
+      // The end of a half cuts a stretch, which does not change how many interruptions there are to the time of play.
+      expect(seen.time_s[static_cast<std::size_t>(Phase::running)] / seen.count(Phase::free_kick), values.running_mean_s, "running_mean");
+      expect(seen.mean_s(Phase::stop), values.stop_mean_s, "stop_mean");
+      expect(seen.count(Phase::ball_placement) / seen.count(Phase::free_kick), values.placement_share, "placement_share");
+      expect(seen.mean_s(Phase::ball_placement), values.placement_mean_s, "placement_mean");
+      expect(seen.count(Phase::halt) / kGames / 2.0, values.halt_count, "halt_count");
+      expect(seen.mean_s(Phase::halt), values.halt_mean_s, "halt_mean");
+      expect(seen.count(Phase::timeout) / kGames, values.timeout_count, "timeout_count");
+    }
+  }
+}
+
+TEST(Game, means_hold_at_the_ends_of_their_ranges) {
+  MatchValues values = division_a().nominal();
+  values.running_mean_s = 300.0;  // many a half has no interruption
+  values.stop_mean_s = 1.5;       // below the shortest
+  values.placement_mean_s = 20.0;
+  values.halt_count = 5.0;
+  values.timeout_count = 6.0;
+  const Counted seen = many_games(Division::a, values, true);
+  EXPECT_NEAR(seen.mean_s(Phase::stop), 1.5, 1e-9);
+  EXPECT_NEAR(seen.mean_s(Phase::ball_placement), 20.0, 0.4);
+  EXPECT_NEAR(seen.count(Phase::halt) / kGames, 3.0 * 5.0, 0.3);  // overtime is half as long as the two halves
+  EXPECT_NEAR(seen.count(Phase::timeout) / kGames, 1.5 * 6.0, 0.2);
+}
+
+struct Told {
+  Phase phase = Phase::halt;
+  FieldPose from;
+  MotionCommand command;
+};
+
+/// What one game tells a robot that goes at 1.2 m/s.
+std::vector<Told> commands(const MatchInputs& inputs, const MatchValues& values, std::uint64_t seed) {
+  constexpr double kSpeed_m_per_s = 1.2;
+  Random random(seed, 0);
+  const std::vector<MatchPhase> game = generate_game(inputs.division, inputs.overtime, values, random);
+  Behaviour behaviour(inputs, values, random);
+  std::vector<Told> all;
+  FieldPose at;
+  for (const MatchPhase& span : game) {
+    for (double into_s = 0.0; span.duration_s - into_s > 5e-4; into_s += std::max(1e-3, all.back().command.duration_s)) {
+      const MotionCommand command = behaviour.next(span.phase, into_s, span.duration_s - into_s, at);
+      all.push_back({span.phase, at, command});
+      if (!command.stand) {
+        const double way_m = std::hypot(command.x_m - at.x_m, command.y_m - at.y_m);
+        const double done = std::min(1.0, command.duration_s * kSpeed_m_per_s / std::max(way_m, 1e-6));
+        at = {std::lerp(at.x_m, command.x_m, done), std::lerp(at.y_m, command.y_m, done), command.yaw_rad};
       }
     }
   }
-  EXPECT_NEAR(sum_s / count, division_a().nominal().running_mean_s, 0.08 * division_a().nominal().running_mean_s);
+  return all;
+}
+
+TEST(Behaviour, distances_and_duels_are_those_of_the_inputs) {
+  const MatchValues values = division_a().nominal();
+  struct Asked {
+    Role role;
+    double distance_m;
+    double duels_per_min;
+  };
+  for (const auto& [role, distance_m, duels_per_min] :
+       {Asked{Role::attacker, values.distance_median_m, values.duels_per_min},
+        Asked{Role::defender, values.distance_median_m * values.role_distance, values.duels_per_min * values.role_duels}}) {
+    MatchInputs inputs = division_a();
+    inputs.role = role;
+    std::vector<double> ways_m;
+    double play_s = 0.0;
+    int duels = 0;
+    for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+      for (const auto& [phase, from, command] : commands(inputs, values, seed)) {
+        if (phase != Phase::running) {
+          continue;
+        }
+        play_s += command.duration_s;
+        duels += command.duel ? 1 : 0;
+        if (!command.duel) {
+          ways_m.push_back(std::hypot(command.x_m - from.x_m, command.y_m - from.y_m));
+        }
+      }
+    }
+    EXPECT_NEAR(60.0 * duels / play_s, duels_per_min, 0.02 * duels_per_min);
+    std::ranges::nth_element(ways_m, ways_m.begin() + static_cast<std::ptrdiff_t>(ways_m.size() / 2));
+    EXPECT_NEAR(ways_m[ways_m.size() / 2], distance_m, 0.02 * distance_m);
+  }
+}
+
+// No input is there for show: each moves what a robot is told.
+TEST(Behaviour, every_input_matters) {
+  MatchInputs inputs = division_a();
+  inputs.role = Role::defender;
+  const auto sum = [&](const MatchInputs& of) {
+    double total = 0.0;
+    for (const auto& [phase, from, command] : commands(of, of.nominal(), 1)) {
+      const double speed_m_per_s = std::isfinite(command.speed_limit_m_per_s) ? command.speed_limit_m_per_s : 0.0;
+      total += command.duration_s + command.x_m + command.y_m + command.yaw_rad + command.push_direction_rad + command.push_share +
+               speed_m_per_s;
+    }
+    return total;
+  };
+  for (std::size_t i = 0; i < inputs.figures.size(); ++i) {
+    const std::string_view key = match_input_specs()[i].spec.key;
+    ASSERT_TRUE(inputs.figures[i].spread) << key << " has no range";
+    MatchInputs other = inputs;
+    other.figures[i].value = inputs.figures[i].spread->low;
+    if (key != "aggressiveness") {  // which is the planner's
+      EXPECT_NE(sum(other), sum(inputs)) << key;
+    }
+  }
 }
 
 struct Seen {

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/file_kind.h"
 #include "duty/duty.h"
+#include "duty/match/match_duty.h"
 #include "motor/datasheet_network.h"
 #include "robot/robot.h"
 
@@ -142,18 +143,6 @@ Description describe_robot(const Robot& robot) {
   return result;
 }
 
-Description describe_duty(const Duty& duty) {
-  return {fmt::format("{}: {}\n  shape {}, ambient {:.0f} °C\n  load: {}\n  {}\n", duty.id, duty.summary, duty.shape, duty.ambient_C.value,
-                      duty.origin, fmt::join(duty.notes, "\n  ")),
-          {{"kind", "duty"},
-           {"id", duty.id},
-           {"summary", duty.summary},
-           {"origin", duty.origin},
-           {"shape", duty.shape},
-           {"ambient_C", duty.ambient_C.value},
-           {"notes", duty.notes}}};
-}
-
 /// Breaks at blanks; lines after the first are indented.
 std::string wrapped(std::string_view text, std::size_t indent) {
   constexpr std::size_t kWidth = 120;
@@ -173,6 +162,30 @@ std::string wrapped(std::string_view text, std::size_t indent) {
     result += text.substr(at, end - at);
     column += width;
     at = end + 1;
+  }
+  return result;
+}
+
+Description describe_duty(const Duty& duty) {
+  Description result{fmt::format("{}: {}\n  shape {}, ambient {:.0f} °C\n  load: {}\n  {}\n", duty.id, duty.summary, duty.shape,
+                                 duty.ambient_C.value, duty.origin, fmt::join(duty.notes, "\n  ")),
+                     {{"kind", "duty"},
+                      {"id", duty.id},
+                      {"summary", duty.summary},
+                      {"origin", duty.origin},
+                      {"shape", duty.shape},
+                      {"ambient_C", duty.ambient_C.value},
+                      {"notes", duty.notes}}};
+  if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)) {
+    result.text += "\ninputs (value, origin, range, meaning)\n";
+    for (std::size_t i = 0; i < match->inputs().figures.size(); ++i) {
+      const ParameterSpec& spec = match_input_specs()[i].spec;
+      const Figure& figure = match->inputs().figures[i];
+      result.text += figure_text(spec.key, spec.unit, figure) + fmt::format("      {}\n", wrapped(spec.meaning, 6));
+      Json json = figure_json(spec.key, spec.unit, figure);
+      json["meaning"] = spec.meaning;
+      result.json["figures"].push_back(json);
+    }
   }
   return result;
 }

@@ -2,10 +2,13 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <initializer_list>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/files.h"
 #include "cli/command.h"
@@ -30,7 +33,17 @@ struct Options {
   double every_s = 0.01;
   std::uint64_t seed = 1;
   std::string planner = "jerk_limited";
+  std::vector<std::string> given;  ///< the options of the command line
 };
+
+/// An option that would change nothing is a misunderstanding.
+void refuse(const Options& options, std::initializer_list<std::string_view> unused, const std::string& why) {
+  for (const std::string_view option : unused) {
+    if (std::ranges::find(options.given, option) != options.given.end()) {
+      throw Failure(ExitCode::bad_input, fmt::format("{} {}", option, why));
+    }
+  }
+}
 
 /// The duty file beside the CSV, so that the next command is `evaluate --duty FILE.toml`.
 std::string duty_file(const std::filesystem::path& csv, DutyKind kind, const std::string& summary, const std::string& origin) {
@@ -150,6 +163,14 @@ ExitCode run(const Options& options, Session& session) {
   if (options.duty.empty() == options.log.empty()) {
     throw Failure(ExitCode::bad_input, "expected one of --duty and --import (`heatsoak duty --help` shows examples)");
   }
+  if (options.duty.empty()) {
+    refuse(options, {"--seed", "--planner"}, "is for matches; --import reads a recorded game");
+  } else {
+    refuse(options, {"--player"}, "is for a recorded game (--import)");
+  }
+  if (options.out.empty()) {
+    refuse(options, {"--every"}, "is for the rows of a table; expected --out FILE.csv with it");
+  }
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
   const std::optional<Duty> duty = options.log.empty() ? named.duty(options.duty) : std::nullopt;
@@ -158,7 +179,11 @@ ExitCode run(const Options& options, Session& session) {
     return import(options, *robot, session);
   }
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty->shape_data);
-  return match ? generate(options, *robot, *duty, match->inputs(), session) : put_out(options, *robot, *duty, session);
+  if (match) {
+    return generate(options, *robot, *duty, match->inputs(), session);
+  }
+  refuse(options, {"--seed", "--planner"}, fmt::format("is for matches; {} is {}", duty->id, duty->shape));
+  return put_out(options, *robot, *duty, session);
 }
 
 }  // namespace
@@ -178,14 +203,19 @@ Command duty_command() {
             add_table(app, options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate");
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
-            app.add_option("--seed", options->seed, "same seed, same game")->capture_default_str();
+            add_seed(app, options->seed, "of a match; same seed, same game");
             app.add_option("--planner", options->planner, "of a match")
                 ->check(CLI::IsMember({"jerk_limited", "bang_bang"}))
                 ->type_name("P")
                 ->capture_default_str();
             session.add_data_option(app);
             session.add_json_option(app);
-            return [options, &session] { return run(*options, session); };
+            return [options, &app, &session] {
+              for (const CLI::Option* each : app.get_options([](const CLI::Option* option) { return option->count() > 0; })) {
+                options->given.push_back(each->get_name());
+              }
+              return run(*options, session);
+            };
           }};
 }
 

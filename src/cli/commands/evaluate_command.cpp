@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -290,9 +289,7 @@ Command evaluate_command() {
         app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
             ->check(whole_number(1'000'000))
             ->capture_default_str();
-        app.add_option("--seed", options->evaluate.seed, "of the draws; same seed, same bytes")
-            ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
-            ->capture_default_str();
+        add_seed(app, options->evaluate.seed, "of the draws; same seed, same bytes");
         app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")
             ->check(whole_number(1024))
             ->capture_default_str();

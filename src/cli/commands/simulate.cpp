@@ -173,7 +173,7 @@ Command simulate() {
             app.add_flag("--jerk-sweep", options->jerk_sweep,
                          "in place of a duty: short drives over the limit of the jerk against bang-bang; slip, time, precision, heat");
             add_picture(app, options->plot, "picture of temperatures and what makes them");
-            app.add_option("--seed", options->seed, "of a generated match; same seed, same bytes")->capture_default_str();
+            add_seed(app, options->seed, "of a generated match; same seed, same bytes");
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
             session.add_data_option(app);

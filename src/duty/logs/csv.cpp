@@ -15,6 +15,7 @@
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "duty/capture_clock.h"
+#include "duty/log_bytes.h"
 #include "duty/log_type.h"
 
 namespace heatsoak::logs {
@@ -58,7 +59,7 @@ class Units {
     before.sight = sight;
   }
 
-  void say(const std::filesystem::path& file, ImportReport& report) const {
+  void say(const std::filesystem::path& file) const {
     Diagnostics problems;
     if (2 * outside_ > sights_) {
       const std::string far = farthest_m_ < 1e6 ? significant(farthest_m_, 3) : fmt::format("{:.3g}", farthest_m_);
@@ -70,7 +71,16 @@ class Units {
       say_degrees(file, problems);
     }
     problems.throw_if_any();
-    say_times(report);
+  }
+
+  void say_steps(ImportReport& report) const {
+    const double step_s = steps_ > 0 ? std::exp(log_steps_ / static_cast<double>(steps_)) : 0.0;
+    if (step_s > kLongestBridge_s) {
+      const char* unit = step_s < 1e3 ? "milliseconds" : step_s < 1e6 ? "microseconds" : "nanoseconds";
+      report.notes.push_back(fmt::format(
+          "t_s advances by {:.3g} s from row to row of a robot, which is followed over at most {} s: is it in {}, or are rows missing?",
+          step_s, kLongestBridge_s, unit));
+    }
   }
 
  private:
@@ -108,19 +118,6 @@ class Units {
                    fmt::format("turns at {:.3g} rad/s on average and lies between {:.4g} and {:.4g}: is it in degrees? Radians of a robot "
                                "that does turn so much are expected between -pi and pi",
                                mean_rad_per_s, lowest_yaw_, highest_yaw_));
-    }
-  }
-
-  /// Robots that cannot be followed are said elsewhere; this is why.
-  void say_times(ImportReport& report) const {
-    const double step_s = steps_ > 0 ? std::exp(log_steps_ / static_cast<double>(steps_)) : 0.0;
-    if (2 * report.out_of_order > report.messages) {
-      report.notes.emplace_back("most rows go back in time: expected the rows of each robot sorted by t_s");
-    } else if (step_s > kLongestBridge_s) {
-      const char* unit = step_s < 1e3 ? "milliseconds" : step_s < 1e6 ? "microseconds" : "nanoseconds";
-      report.notes.push_back(fmt::format(
-          "t_s advances by {:.3g} s from row to row of a robot, which is followed over at most {} s: is it in {}, or are rows missing?",
-          step_s, kLongestBridge_s, unit));
     }
   }
 
@@ -217,8 +214,13 @@ class Rows {
   void take(const CsvRow& row) {
     ++events_.report().messages;
     ++events_.report().frames;
+    const RobotName name = robot_of(file_, row);
+    if (std::isnan(row.values[x]) || std::isnan(row.values[y]) || std::isnan(row.values[yaw])) {
+      ++blank_;
+      return;
+    }
     const Detection sight{
-        .robot = robot_of(file_, row), .time_s = row.values[time], .x_m = row.values[x], .y_m = row.values[y], .yaw_rad = row.values[yaw]};
+        .robot = name, .time_s = row.values[time], .x_m = row.values[x], .y_m = row.values[y], .yaw_rad = row.values[yaw]};
     row_ = &row;
     robot_ = &robots_.try_emplace(sight.robot, Robot{{sight, sight}, {}}).first->second;
     robot_->clock.take({sight, row.line, sight.time_s}, listener_);
@@ -228,7 +230,11 @@ class Rows {
     for (auto& [name, robot] : robots_) {
       robot.clock.leave_out(listener_);
     }
-    units_.say(file_, events_.report());
+    if (blank_ > 0) {
+      events_.report().notes.push_back(fmt::format("{} rows without a position left out: the robot was lost", blank_));
+    }
+    units_.say(file_);
+    say_times();
   }
 
  private:
@@ -242,8 +248,23 @@ class Rows {
                     fmt::format("{} at {} s, after {} s{}", to_string(row.sight.robot), row.written_s, after_s, what));
   }
 
+  /// Robots that cannot be followed are said elsewhere; this is why.
+  void say_times() const {
+    ImportReport& report = events_.report();
+    if (2 * report.out_of_order <= report.messages) {
+      units_.say_steps(report);
+    } else if (2 * repeated_ > report.out_of_order) {
+      report.notes.emplace_back(
+          "most times repeat, as if t_s was rounded: expected a time of its own for each row of a robot; write t_s to the millisecond");
+    } else {
+      report.notes.emplace_back("most rows go back in time: expected the rows of each robot sorted by t_s");
+    }
+  }
+
   const std::filesystem::path& file_;
   LogEvents& events_;
+  std::uint64_t blank_ = 0;
+  std::uint64_t repeated_ = 0;  ///< of the rows that are left out, those with the time of the one before
   std::map<RobotName, Robot> robots_;
   Units units_;
   const CsvRow* row_ = nullptr;
@@ -257,6 +278,7 @@ class Rows {
       .left_out =
           [this](const RobotClock::Row& row, double after_s) {
             ++events_.report().out_of_order;
+            repeated_ += row.written_s == after_s ? 1 : 0;
             problem(row, after_s, "; time must increase for each robot; left out");
           },
       .restarted =
@@ -266,11 +288,19 @@ class Rows {
 };
 
 void read(const std::filesystem::path& file, const ImportOptions& /*options*/, LogEvents& events) {
+  if (LogBytes(file).is_packed()) {
+    throw bad_input({file.string()}, "", "is packed by gzip; unpack it first");
+  }
   const std::array<CsvWords, 1> words{CsvWords{"team", {"yellow", "blue"}}};
+  const CsvColumns columns{{kColumns.begin(), kColumns.end()}, {}, {kColumns[x], kColumns[y], kColumns[yaw]}};
   ImportReport& report = events.report();
   report.source = "positions in a table";
   Rows rows(file, events);
-  read_csv(file, kColumns, {}, words, [&rows](const CsvRow& row) { rows.take(row); });
+  read_csv(
+      file, [&columns](std::span<const std::string> /*header*/) { return columns; }, words, [&rows](const CsvRow& row) { rows.take(row); },
+      [&report](int line) {
+        report.notes.push_back(fmt::format("line {}, the last, has no line break at its end and may be cut: left out", line));
+      });
   rows.finish();
   std::error_code error;
   report.bytes = std::filesystem::file_size(file, error);

@@ -32,15 +32,19 @@ class Behaviour {
   MotionCommand next(Phase phase, double into_phase_s, double left_s, const FieldPose& now);
 
  private:
-  MotionCommand play(double left_s, const FieldPose& now);
+  MotionCommand play(double into_phase_s, double left_s, const FieldPose& now);
   MotionCommand walk(double left_s, const FieldPose& now, double distance_m, double speed_limit_m_per_s);
   FieldPose near(const FieldPose& now, double distance_m);
   double exponential(double value);
+  double either_way(double most);
+  double until_next_duel_s();
 
   Role role_;
   MatchValues values_;
   FieldSize field_;
   Random& random_;
+  double play_end_s_ = 0.0;  ///< of the stretch that runs, counted in time of play
+  double next_duel_s_;       ///< counted likewise: duels come by the minute of play, whatever time they take of it
 };
 
 }  // namespace heatsoak

@@ -12,56 +12,129 @@ constexpr double kOvertimeHalf_s = 150.0;
 constexpr double kBeforeOvertime_s = 300.0;
 constexpr double kOvertimeBreak_s = 120.0;
 constexpr double kTimeoutBudget_s = 300.0;
+constexpr int kTimeouts = 8;  // of both teams, in two halves
 constexpr double kLongestPlacement_s = 30.0;
-constexpr double kShortestStop_s = 2.0;
 
 double exponential(double mean, Random& random) { return -mean * std::log(random.uniform()); }
+
+/// Times of a Poisson process with `mean` of them on average.
+int poisson(double mean, Random& random) {
+  int count = 0;
+  for (double left = mean + std::log(random.uniform()); left > 0.0; left += std::log(random.uniform())) {
+    ++count;
+  }
+  return count;
+}
+
+/// Of an exponential distribution that has the mean `mean_s` once it is cut at `longest_s`.
+double mean_before_the_cut(double mean_s, double longest_s) {
+  const auto when_cut_s = [longest_s](double uncut_s) { return -uncut_s * std::expm1(-longest_s / uncut_s); };
+  double low_s = mean_s;
+  double high_s = 2.0 * mean_s;
+  while (when_cut_s(high_s) < mean_s) {
+    high_s *= 2.0;
+  }
+  for (int i = 0; i < 50; ++i) {
+    const double middle_s = 0.5 * (low_s + high_s);
+    (when_cut_s(middle_s) < mean_s ? low_s : high_s) = middle_s;
+  }
+  return high_s;
+}
 
 class Game {
  public:
   Game(Division division, const MatchValues& values, Random& random)
-      : free_kick_s_(division == Division::a ? 5.0 : 10.0), values_(values), random_(random) {}
+      : free_kick_s_(division == Division::a ? 5.0 : 10.0),
+        placement_mean_s_(mean_before_the_cut(values.placement_mean_s, kLongestPlacement_s)),
+        values_(values),
+        random_(random) {}
 
   void half(double length_s) {
-    double left_s = length_s;
+    std::vector<Interruption> half = stretches(length_s);
+    hand_out(half, length_s / kHalf_s);
     // The rules give ten seconds for a kick-off once it is called.
     add(Phase::kick_off_preparation, 5.0 + 5.0 * random_.uniform());
-    while (left_s > 0.0) {
-      const double play_s = std::min(left_s, exponential(values_.running_mean_s, random_));
-      add(Phase::running, play_s);
-      left_s -= play_s;
-      if (left_s > 0.0) {
-        interruption(length_s, left_s);
+    for (const Interruption& each : half) {
+      add(Phase::running, each.play_before_s);
+      for (int i = 0; i < each.halts; ++i) {
+        add(Phase::halt, exponential(values_.halt_mean_s, random_));
       }
+      if (!each.ends_the_half) {
+        stop();
+      }
+      for (int i = 0; i < each.timeouts; ++i) {
+        timeout();
+      }
+      if (each.ends_the_half) {
+        return;
+      }
+      if (random_.uniform() < values_.placement_share) {
+        add(Phase::ball_placement, std::min(kLongestPlacement_s, exponential(placement_mean_s_, random_)));
+      }
+      add(Phase::free_kick, each.free_kick_after_s);
     }
   }
   void rest(double length_s) { add(Phase::half_time, length_s); }
+  /// Has timeouts of its own, half as many and as long.
+  void begin_overtime() { timeout_left_s_ = kTimeoutBudget_s; }
   std::vector<MatchPhase> spans() { return std::move(spans_); }
 
  private:
+  struct Interruption {
+    double play_before_s = 0.0;
+    double free_kick_after_s = 0.0;
+    bool ends_the_half = false;
+    int halts = 0;
+    int timeouts = 0;
+  };
+
   void add(Phase phase, double duration_s) { spans_.push_back({phase, duration_s}); }
 
-  void interruption(double half_s, double& left_s) {
-    const double interruptions_per_half = half_s / values_.running_mean_s;
-    if (random_.uniform() < values_.halt_count / interruptions_per_half) {
-      add(Phase::halt, exponential(values_.halt_mean_s, random_));
+  /// What the clock of a half counts. The last stretch of play has no interruption behind it, unless a free kick is the last.
+  std::vector<Interruption> stretches(double left_s) {
+    std::vector<Interruption> half;
+    while (left_s > 0.0) {
+      Interruption& each = half.emplace_back();
+      each.play_before_s = std::min(left_s, exponential(values_.running_mean_s, random_));
+      left_s -= each.play_before_s;
+      each.ends_the_half = !(left_s > 0.0);
+      each.free_kick_after_s = std::min(left_s, free_kick_s_ * random_.uniform());
+      left_s -= each.free_kick_after_s;
     }
-    add(Phase::stop, kShortestStop_s + exponential(values_.stop_mean_s, random_));
-    if (random_.uniform() < values_.timeout_count / (2.0 * interruptions_per_half) && timeout_left_s_ > 0.0) {
-      const double length_s = std::min(timeout_left_s_, kTimeoutBudget_s / 4.0 * (0.5 + random_.uniform()));
+    return half;
+  }
+
+  /// Halts and timeouts have their number first and their places then: however many interruptions a half has, the mean holds.
+  void hand_out(std::vector<Interruption>& half, double halves) {
+    const std::size_t places = half.size() - (half.back().ends_the_half && half.size() > 1 ? 1 : 0);
+    const auto anywhere = [&]() -> Interruption& {
+      return half[static_cast<std::size_t>(static_cast<double>(places) * random_.uniform())];
+    };
+    for (int left = poisson(values_.halt_count * halves, random_); left > 0; --left) {
+      ++anywhere().halts;
+    }
+    const int most = static_cast<int>(std::lround(0.5 * kTimeouts * halves));
+    for (int i = 0; i < most; ++i) {
+      anywhere().timeouts += random_.uniform() < values_.timeout_count / kTimeouts ? 1 : 0;
+    }
+  }
+
+  void stop() {
+    const double shortest_s = std::min(values_.stop_shortest_s, values_.stop_mean_s);
+    add(Phase::stop, shortest_s + exponential(values_.stop_mean_s - shortest_s, random_));
+  }
+
+  void timeout() {
+    const double length_s = std::min(timeout_left_s_, kTimeoutBudget_s / 4.0 * (0.5 + random_.uniform()));
+    if (length_s > 0.0) {
       timeout_left_s_ -= length_s;
       add(Phase::timeout, length_s);
-      add(Phase::stop, kShortestStop_s + exponential(values_.stop_mean_s, random_));
+      stop();
     }
-    if (random_.uniform() < values_.placement_share) {
-      add(Phase::ball_placement, std::min(kLongestPlacement_s, exponential(values_.placement_mean_s, random_)));
-    }
-    const double wait_s = std::min(left_s, free_kick_s_ * random_.uniform());
-    add(Phase::free_kick, wait_s);
-    left_s -= wait_s;
   }
 
   double free_kick_s_;
+  double placement_mean_s_;
   const MatchValues& values_;
   Random& random_;
   double timeout_left_s_ = 2.0 * kTimeoutBudget_s;
@@ -97,6 +170,7 @@ std::vector<MatchPhase> generate_game(Division division, bool overtime, const Ma
   game.half(kHalf_s);
   if (overtime) {
     game.rest(kBeforeOvertime_s);
+    game.begin_overtime();
     game.half(kOvertimeHalf_s);
     game.rest(kOvertimeBreak_s);
     game.half(kOvertimeHalf_s);

@@ -1,30 +1,44 @@
 #include "duty/match/match_inputs.h"
 
 #include <algorithm>
+#include <numbers>
+#include <tuple>
 
 namespace heatsoak {
 namespace {
 
 constexpr Range kSeconds = Range::between(0.1, 600.0);
 constexpr Range kShare = Range::between(0.0, 1.0);
+constexpr Range kFactor = Range::between(0.1, 4.0);
+constexpr Range kAngle = Range::between(0.0, std::numbers::pi);
 
 // clang-format off
 constexpr std::array kSpecs = {
-    MatchInputSpec{{"running_mean", "s", kSeconds, "mean stretch of play between interruptions"}, &MatchValues::running_mean_s},
+    MatchInputSpec{{"running_mean", "s", kSeconds, "mean stretch of play between interruptions, unless the half ends first"}, &MatchValues::running_mean_s},
     MatchInputSpec{{"stop_mean", "s", kSeconds, "mean length of a stop"}, &MatchValues::stop_mean_s},
+    MatchInputSpec{{"stop_shortest", "s", Range::between(0.0, 600.0), "length of the shortest stop, part of the mean"}, &MatchValues::stop_shortest_s},
     MatchInputSpec{{"placement_share", "", kShare, "part of interruptions with ball placement"}, &MatchValues::placement_share},
-    MatchInputSpec{{"placement_mean", "s", kSeconds, "mean length of a ball placement, at most 30 s"}, &MatchValues::placement_mean_s},
-    MatchInputSpec{{"halt_count", "", Range::between(0.0, 20.0), "mean number of halts in a half"}, &MatchValues::halt_count},
+    MatchInputSpec{{"placement_mean", "s", Range::between(0.1, 29.0), "mean length of a ball placement, each at most 30 s"}, &MatchValues::placement_mean_s},
+    MatchInputSpec{{"halt_count", "", Range::between(0.0, 20.0), "mean number of halts in a half of 300 s"}, &MatchValues::halt_count},
     MatchInputSpec{{"halt_mean", "s", kSeconds, "mean length of a halt"}, &MatchValues::halt_mean_s},
-    MatchInputSpec{{"timeout_count", "", Range::between(0.0, 8.0), "mean number of timeouts, both teams"}, &MatchValues::timeout_count},
-    MatchInputSpec{{"retarget_mean", "s", Range::between(0.05, 60.0), "mean time between two new targets in play"}, &MatchValues::retarget_mean_s},
-    MatchInputSpec{{"distance_median", "m", Range::between(0.01, 12.0), "median distance to a new target, attacker"}, &MatchValues::distance_median_m},
+    MatchInputSpec{{"timeout_count", "", Range::between(0.0, 8.0), "mean number of timeouts in two halves of 300 s, both teams"}, &MatchValues::timeout_count},
+    MatchInputSpec{{"retarget_mean", "s", Range::between(0.05, 60.0), "mean time between two new targets, unless play ends first"}, &MatchValues::retarget_mean_s},
+    MatchInputSpec{{"distance_median", "m", Range::between(0.01, 12.0), "median distance to a new target in play, attacker"}, &MatchValues::distance_median_m},
+    MatchInputSpec{{"distance_spread", "", Range::between(0.0, 3.0), "spread of these distances: standard deviation of their natural logarithm"}, &MatchValues::distance_spread},
+    MatchInputSpec{{"turn", "rad", kAngle, "largest turn from one target to the next, either way"}, &MatchValues::turn_rad},
     MatchInputSpec{{"aggressiveness", "", Range::between(0.1, 1.0), "part of the robot's limits that is used"}, &MatchValues::aggressiveness},
     MatchInputSpec{{"duels_per_min", "1/min", Range::between(0.0, 30.0), "pushing duels per minute of play, attacker"}, &MatchValues::duels_per_min},
-    MatchInputSpec{{"duel_mean", "s", kSeconds, "mean length of a duel"}, &MatchValues::duel_mean_s},
+    MatchInputSpec{{"duel_mean", "s", kSeconds, "mean length of a duel, unless play ends first"}, &MatchValues::duel_mean_s},
     MatchInputSpec{{"duel_push_share", "", kShare, "force of a duel, part of the largest that the robot can hold in its direction before a wheel slides"}, &MatchValues::duel_push_share},
+    MatchInputSpec{{"duel_angle", "rad", kAngle, "largest angle between a push and the robot's front, either way"}, &MatchValues::duel_angle_rad},
+    MatchInputSpec{{"role_distance", "", kFactor, "a defender's distances in play, part of an attacker's; a keeper's are half of a defender's"}, &MatchValues::role_distance},
+    MatchInputSpec{{"role_duels", "", Range::between(0.0, 4.0), "a defender's duels, part of an attacker's; a keeper has a fifth of a defender's"}, &MatchValues::role_duels},
+    MatchInputSpec{{"role_zone", "", Range::between(0.1, 1.6), "size of a role's zone: times 6 % of the field's length and 25 % of its width for a keeper, 32 % and 60 % for a defender"}, &MatchValues::role_zone},
+    MatchInputSpec{{"outside_distance", "", kFactor, "ways outside play: times 0.3 m at a free kick, 0.5 m out of the way of ball placement, 0.7 m in a stop, 1 m to a kick-off, 2 m with the ball in its placement, half the field at half-time"}, &MatchValues::outside_distance},
+    MatchInputSpec{{"outside_speed", "", kFactor, "speed outside play: times 1.5 m/s, but 1 m/s with the ball in its placement and at half-time; never above the rules' limit, and at a free kick as fast as the robot can"}, &MatchValues::outside_speed},
 };
 // clang-format on
+static_assert(kSpecs.size() == std::tuple_size_v<decltype(MatchInputs::figures)>);
 
 }  // namespace
 

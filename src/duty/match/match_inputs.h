@@ -18,19 +18,28 @@ inline constexpr std::array<std::string_view, 3> kRoleNames{"keeper", "defender"
 
 /// One draw of every input; means are of exponential distributions unless said otherwise.
 struct MatchValues {
-  double running_mean_s = 0.0;    ///< of an uninterrupted stretch of play
-  double stop_mean_s = 0.0;       ///< of a stop, beyond the 2 s in which robots slow down
-  double placement_share = 0.0;   ///< part of the interruptions that end with ball placement
-  double placement_mean_s = 0.0;  ///< cut at the rules' 30 s
-  double halt_count = 0.0;        ///< mean number
+  double running_mean_s = 0.0;   ///< of a stretch of play, unless the half ends first
+  double stop_mean_s = 0.0;      ///< of a stop, whose part beyond the shortest is exponential
+  double stop_shortest_s = 0.0;  ///< robots slow down, the ball is looked for
+  double placement_share = 0.0;  ///< part of the interruptions that end with ball placement
+  double placement_mean_s = 0.0;
+  double halt_count = 0.0;  ///< mean number
   double halt_mean_s = 0.0;
   double timeout_count = 0.0;      ///< mean number, of both teams
-  double retarget_mean_s = 0.0;    ///< between two new targets while play runs
-  double distance_median_m = 0.0;  ///< to a new target of an attacker; a defender's is half, a keeper's a quarter
+  double retarget_mean_s = 0.0;    ///< until the next target, unless play ends first
+  double distance_median_m = 0.0;  ///< to a new target of an attacker
+  double distance_spread = 0.0;    ///< standard deviation of the distances' logarithm
+  double turn_rad = 0.0;           ///< largest turn from target to target, either way
   double aggressiveness = 0.0;     ///< part of the robot's limits of speed and acceleration that is used
-  double duels_per_min = 0.0;      ///< of play, of an attacker; a defender has half, a keeper a tenth
-  double duel_mean_s = 0.0;        ///< pushing against a robot at standstill
+  double duels_per_min = 0.0;      ///< of play, of an attacker
+  double duel_mean_s = 0.0;        ///< pushing against a robot at standstill, unless play ends first
   double duel_push_share = 0.0;    ///< of the largest force that the robot can hold without sliding or turning
+  double duel_angle_rad = 0.0;     ///< largest angle between push and front, either way
+  double role_distance = 0.0;      ///< a defender's part of an attacker's
+  double role_duels = 0.0;         ///< a defender's part of an attacker's
+  double role_zone = 0.0;          ///< factor on length and width of the zones of keeper and defender
+  double outside_distance = 0.0;   ///< factor on the ways outside play
+  double outside_speed = 0.0;      ///< factor on the speeds there
 };
 
 struct MatchInputSpec {
@@ -43,7 +52,7 @@ struct MatchInputs {
   Division division = Division::a;
   Role role = Role::attacker;
   bool overtime = false;
-  std::array<Figure, 13> figures;  ///< in the order of match_input_specs()
+  std::array<Figure, 22> figures;  ///< in the order of match_input_specs()
 
   [[nodiscard]] MatchValues nominal() const;
   [[nodiscard]] MatchValues draw(Random& random) const;

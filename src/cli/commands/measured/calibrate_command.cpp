@@ -3,7 +3,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -183,9 +182,7 @@ Command calibrate_command() {
         app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
         add_picture(app, options->plot, "picture of measured and fitted temperatures");
         add_log_options(app, options->how);
-        app.add_option("--seed", options->fit.seed, "of the starting points; same seed, same bytes")
-            ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
-            ->capture_default_str();
+        add_seed(app, options->fit.seed, "of the starting points; same seed, same bytes");
         app.add_option("--threads", options->fit.threads, "0: all cores; the result does not depend on it")
             ->check(whole_number(1024))
             ->capture_default_str();
