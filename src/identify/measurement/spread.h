@@ -19,6 +19,7 @@ double at_start(const Channel& channel);
 /// Before the first heat warms it.
 double coolest_at_start(const Channel& channel);
 
+/// y = slope · x + intercept, in the units of what is given.
 struct Regression {
   double slope = 0.0;
   double intercept = 0.0;
