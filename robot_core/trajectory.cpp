@@ -17,6 +17,7 @@ PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& ta
   arrive_first(axis, arrival);
   Way<Real> way;
   append_arrival(axis, arrival, way);
+  begin_at(start, trajectory);
   return finish(starts_inside(axis), false, way, start, target, limits, how, trajectory);
 }
 

@@ -46,6 +46,8 @@ enum class PlanResult : unsigned char {
   target_without_approach = 5,
   /// The numbers are so far apart that Real cannot hold the durations or distances: the last segment would miss the target.
   out_of_range = 6,
+  /// No axis, or more than kMostAxes.
+  not_that_many_axes = 7,
 };
 
 /// A stretch of constant jerk, with the state at its start.

@@ -15,6 +15,10 @@ Real length(Real x, Real y) {
 template <typename Real>
 inline constexpr Real kCircleTolerance = Real(5e-4);
 
+/// How far a plan from inside may lead out, all in all.
+template <typename Real>
+inline constexpr Real kPromised = Real(1) + Real(2e-3);
+
 /// The limits of a plane, with the tolerance.
 template <typename Real>
 struct Circle {

@@ -100,6 +100,19 @@ void lead_to(Real speed, const AxisState<Real>* start, const Calming<Real>& calm
   }
 }
 
+/// The lead as the first segments. Its end is exact: its rounding errors may be large beside a small share of the circle, and would add up
+/// over a long way.
+template <typename Real>
+void lay_out_lead(const Lead<Real>& lead, Trajectory<Real>& trajectory) {
+  for (int i = 0; i < lead.path.count; ++i) {
+    trajectory.segments[i] = {trajectory.duration_s, lead.path.duration_s[i], lead.path.jerk[i], trajectory.target};
+    trajectory.target = Trajectory<Real>::advanced(trajectory.target, lead.path.jerk[i], lead.path.duration_s[i]);
+    trajectory.duration_s += lead.path.duration_s[i];
+  }
+  trajectory.segment_count = lead.path.count;
+  trajectory.target = lead.end;
+}
+
 /// plan_synchronised, behind the leads of the first `lead_count` axes.
 template <typename Real>
 PlanResult plan_together(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,

@@ -19,6 +19,9 @@ inline constexpr Real kArrival = std::numeric_limits<Real>::digits > 32 ? Real(1
 
 template <typename Real>
 inline constexpr Real kLimitTolerance = Real(4096) * std::numeric_limits<Real>::epsilon();
+
+constexpr bool is_axis_count(int axis_count) { return axis_count > 0 && axis_count <= kMostAxes; }
+
 template <typename Real>
 bool is_whole(const AxisState<Real>& state) {
   return is_finite(state.position) && is_finite(state.velocity) && is_finite(state.acceleration);

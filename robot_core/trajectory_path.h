@@ -102,19 +102,21 @@ void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_sh
   }
 }
 
-/// `value`, or the nearest of `low`, 0 and `high` that it differs from by a rounding error of `scale`.
+/// `value`, or the nearest of `low`, 0 and `high` that it differs from by a rounding error of `scale`. Narrower at `low` and `high`: what a
+/// blend has by nature may be as close to them, and whoever has been moved there has to find back to 0.
 template <typename Real>
 Real snapped(Real value, Real low, Real high, Real scale) {
   const Real limit = value < Real(0) ? low : high;
   const Real nearest = absolute(value - limit) < absolute(value) ? limit : Real(0);
-  return absolute(value - nearest) <= kTouch<Real> * scale ? nearest : value;
+  const Real touch = nearest == Real(0) ? kTouch<Real> : kTouch<Real> / Real(4);
+  return absolute(value - nearest) <= touch * scale ? nearest : value;
 }
 
-/// The way as segments of the axis. False if the numbers do not hold.
+/// The way as further segments of the axis, behind those it has. False if the numbers do not hold.
 template <typename Real>
-bool lay_out(const Way<Real>& way, const AxisState<Real>& start, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
-  AxisState<Real> state = start;
-  Real time_s = 0;
+bool lay_out_behind(const Way<Real>& way, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
+  AxisState<Real> state = trajectory.target;
+  Real time_s = trajectory.duration_s;
   Real most_acceleration = 0;
   Real most_velocity = 0;
   for (int i = 0; i < way.count; ++i) {
@@ -128,14 +130,22 @@ bool lay_out(const Way<Real>& way, const AxisState<Real>& start, const AxisLimit
         state.velocity = snapped(state.velocity, limits.velocity_min, limits.velocity_max, most_velocity);
       }
     }
-    trajectory.segments[i] = {time_s, way.duration_s[i], jerk, state};
+    trajectory.segments[trajectory.segment_count + i] = {time_s, way.duration_s[i], jerk, state};
     state = Trajectory<Real>::advanced(state, jerk, way.duration_s[i]);
     time_s += way.duration_s[i];
   }
-  trajectory.segment_count = way.count;
+  trajectory.segment_count += way.count;
   trajectory.duration_s = time_s;
   trajectory.target = state;
   return is_finite(state.position) && is_finite(state.velocity) && is_finite(time_s);
+}
+
+/// No segment yet.
+template <typename Real>
+void begin_at(const AxisState<Real>& start, Trajectory<Real>& trajectory) {
+  trajectory.segment_count = 0;
+  trajectory.duration_s = 0;
+  trajectory.target = start;
 }
 
 /// Whether velocity and acceleration stay within the limits, but for rounding errors of the larger ones.
@@ -195,10 +205,13 @@ bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const
   const Real acceleration = larger(limits.acceleration_max, -limits.acceleration_min);
   const Real missed = target.position - end.position;
   Real farthest = asked;
+  // Where the scales themselves overflow, nothing is too far off.
+  bool is_there = is_finite(missed);
   if (absolute(missed) > kTouch<Real> * asked) {
     const int from = farthest_change(trajectory, farthest);
     for (int i = from; i < trajectory.segment_count; ++i) {
       trajectory.segments[i].start.position += missed;
+      is_there = is_there && is_finite(trajectory.segments[i].start.position);
     }
     if (from < trajectory.segment_count) {
       const TrajectorySegment<Real>& last = trajectory.segments[trajectory.segment_count - 1];
@@ -207,10 +220,10 @@ bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const
   }
   const Real reach = velocity * velocity / acceleration;
   const Real blended = waits ? velocity * trajectory.duration_s : Real(0);
-  const bool is_there = absolute(target.position - end.position) <= kArrival<Real> * (asked + reach) &&
-                        absolute(missed) <= kArrival<Real> * (farthest + reach + blended) &&
-                        absolute(target.velocity - end.velocity) <= kArrival<Real> * velocity &&
-                        absolute(target.acceleration - end.acceleration) <= kArrival<Real> * acceleration;
+  is_there = is_there && absolute(target.position - end.position) <= kArrival<Real> * (asked + reach) &&
+             absolute(missed) <= kArrival<Real> * (farthest + reach + blended) &&
+             absolute(target.velocity - end.velocity) <= kArrival<Real> * velocity &&
+             absolute(target.acceleration - end.acceleration) <= kArrival<Real> * acceleration;
   trajectory.segment_count = is_there ? trajectory.segment_count : 0;
   return is_there;
 }

@@ -19,9 +19,12 @@ class Split {
 
   /// x and y are parts of their limits. False if no split is left.
   bool leave_room(Real x, Real y) {
-    // Half of the angle whose cosine is x, and whose sine is y.
-    high_ = smaller(high_, square_root((Real(1) - absolute(x)) / (Real(1) + absolute(x))));
-    low_ = larger(low_, absolute(y) / (Real(1) + square_root(Real(1) - y * y)));
+    // Half of the angle whose cosine is x, and whose sine is y. Rounding must not make a share as small as what it has to hold.
+    constexpr Real kRoom = Real(4) * std::numeric_limits<Real>::epsilon();
+    const Real cosine = smaller(absolute(x) + kRoom, Real(1));
+    const Real sine = smaller(absolute(y) + kRoom, Real(1));
+    high_ = smaller(high_, square_root((Real(1) - cosine) / (Real(1) + cosine)));
+    low_ = larger(low_, sine / (Real(1) + square_root((Real(1) - sine) * (Real(1) + sine))));
     return low_ <= high_;
   }
 
@@ -113,21 +116,28 @@ class Inside {
       calm_ = calming(start_, plane.jerk_max, share_x_ / shares, share_y_ / shares);
     }
     can_stay_ = calm_.speed <= circle_.speed;
+    const Real most_speed = kPromised<Real> * larger(plane.speed_max, calm_.speed);
     // Who is outside of the circle has to go no further out.
     circle_.speed = larger(circle_.speed, length(start[0].velocity, start[1].velocity));
     circle_.acceleration = larger(circle_.acceleration, length(start[0].acceleration, start[1].acceleration));
+    const Real most = larger(most_speed / circle_.speed, Real(1));
+    most_square_ = smaller(most * most, std::numeric_limits<Real>::max() / Real(2));
   }
 
   PlanResult search(Real fastest) {
-    if (const PlanResult result = plan(fastest, kNoLead); result != PlanResult::ok) {
+    const PlanResult result = plan(fastest, kNoLead);
+    const bool holds = result == PlanResult::ok;
+    // What is led back slowly from far outside of its share may be too far apart; the other ways are not.
+    if (!holds && result != PlanResult::out_of_range) {
       return result;
     }
-    if (keeps_shares(fastest)) {
+    if (holds && keeps_shares(fastest) && rounds_little()) {
       return PlanResult::ok;
     }
-    fastest_s_ = trajectories_[0].duration_s;
-    best_ = {fastest, kNoLead, std::numeric_limits<Real>::max(), fastest_s_};
-    if (consider_planned(fastest, kNoLead)) {
+    constexpr Real kMost = std::numeric_limits<Real>::max();
+    fastest_s_ = holds ? trajectories_[0].duration_s : kMost / Real(16);
+    best_ = {fastest, kNoLead, kMost, fastest_s_};
+    if (holds && consider_planned(fastest, kNoLead)) {
       return PlanResult::ok;
     }
     turn_from(fastest);
@@ -137,6 +147,12 @@ class Inside {
       for (int level = 0; level < kLevels; ++level) {
         consider_lead(level);
       }
+    }
+    if (best_.square > most_square_) {
+      for (Trajectory<Real>& trajectory : trajectories_) {
+        trajectory.segment_count = 0;
+      }
+      return PlanResult::out_of_range;
     }
     return best_.split == planned_split_ && best_.level == planned_level_ ? PlanResult::ok : plan(best_.split, best_.level);
   }
@@ -149,6 +165,11 @@ class Inside {
   [[nodiscard]] Real speed_of(int level) const {
     const Real part = Real(kLevels - 1 - level) / Real(kLevels - 1) * Real(3) / Real(4);
     return level == 0 ? calm_.speed : part * plane_.speed_max;
+  }
+
+  /// A plan of axes that keep their shares stays inside but for rounding, which is worth a look in single precision only.
+  [[nodiscard]] bool rounds_little() const {
+    return std::numeric_limits<Real>::digits > 32 || speed_square(trajectories_, circle_) <= most_square_;
   }
 
   [[nodiscard]] bool keeps_shares(Real t) const { return share_x_ <= Split<Real>::share(t, 0) && share_y_ <= Split<Real>::share(t, 1); }
@@ -198,6 +219,9 @@ class Inside {
     const AxisState<Real>& y = start_[1];
     Real far = fits ? fitting.near(fastest) : room_.along(x.velocity, y.velocity);
     if (!consider(far, kNoLead) && !fits) {
+      if (x.acceleration == Real(0) && y.acceleration == Real(0)) {
+        return;
+      }
       far = room_.along(x.acceleration, y.acceleration);
       consider(far, kNoLead);
     }
@@ -247,6 +271,7 @@ class Inside {
   Calming<Real> calm_;
   bool is_in_a_box_;
   bool can_stay_;
+  Real most_square_;  ///< of the speed that may be promised, over the circle's
   Lead<Real> leads_[2];
   Candidate<Real> best_{};
   Real fastest_s_ = 0;

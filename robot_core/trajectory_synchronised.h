@@ -26,11 +26,11 @@ bool starts_inside(const Axis<Real>& axis) {
   return !axis.may_be_early && p.brake.count == 0 && p.v0 <= p.velocity_max && -p.v0 <= p.velocity_min;
 }
 
-/// `way` as a trajectory that ends at the target and, if it starts inside of the limits, keeps them.
+/// `way` behind what the trajectory has so far: it ends at the target and, if it starts inside of the limits, keeps them.
 template <typename Real>
 PlanResult finish(bool is_inside, bool waits, const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target,
                   const AxisLimits<Real>& limits, Target how, Trajectory<Real>& trajectory) {
-  if (!lay_out(way, start, limits, trajectory)) {
+  if (!lay_out_behind(way, limits, trajectory)) {
     trajectory.segment_count = 0;
     return PlanResult::out_of_range;
   }
@@ -78,10 +78,11 @@ class Together {
   PlanResult lay_out(const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,
                      Trajectory<Real>* trajectories, int& failed_axis) {
     for (int i = 0; i < axis_count_; ++i) {
-      Way<Real> way;
-      for (int k = 0; i < lead_count_ && k < leads_[i].path.count; ++k) {
-        way.add(leads_[i].path.duration_s[k], leads_[i].path.jerk[k] / limits[i].jerk_max);
+      begin_at(start[i], trajectories[i]);
+      if (i < lead_count_) {
+        lay_out_lead(leads_[i], trajectories[i]);
       }
+      Way<Real> way;
       append_arrival(axes_[i], arrivals_[i], way);
       failed_axis = i;
       if (const PlanResult result =
@@ -135,7 +136,10 @@ class Together {
 template <typename Real>
 PlanResult plan_together(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,
                          const Lead<Real>* leads, int lead_count, Trajectory<Real>* trajectories, Target how, int* failed_axis) {
-  Together<Real> together(clamped(axis_count, 0, kMostAxes), how, leads, lead_count);
+  if (!is_axis_count(axis_count)) {
+    return PlanResult::not_that_many_axes;
+  }
+  Together<Real> together(axis_count, how, leads, lead_count);
   int axis = 0;
   PlanResult result = together.agree(start, target, limits, axis);
   if (result == PlanResult::ok) {

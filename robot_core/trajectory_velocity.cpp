@@ -156,7 +156,8 @@ bool lay_out_change(const VelocityChange<Real>& c, const TimedChange<Real>& time
   } else {
     append_blend(path_of(c, timed.up, Real(1)), path_of(c, timed.down, Real(-1)), timed.up_share, timed.duration_s - c.brake_s, way);
   }
-  if (!lay_out(way, start, limits, trajectory)) {
+  begin_at(start, trajectory);
+  if (!lay_out_behind(way, limits, trajectory)) {
     trajectory.segment_count = 0;
     return false;
   }
@@ -197,7 +198,9 @@ PlanResult plan_velocity_synchronised(int axis_count, const AxisState<Real>* sta
                                       const AxisLimits<Real>* limits, Trajectory<Real>* trajectories, int* failed_axis) {
   VelocityChange<Real> changes[kMostAxes];
   TimedChange<Real> timed[kMostAxes];
-  axis_count = clamped(axis_count, 0, kMostAxes);
+  if (!is_axis_count(axis_count)) {
+    return PlanResult::not_that_many_axes;
+  }
   const auto failed = [failed_axis](int axis, PlanResult result) {
     if (failed_axis != nullptr) {
       *failed_axis = axis;

@@ -38,6 +38,8 @@ std::string_view in_words(PlanResult result) {
       return "the target cannot be approached within the limits";
     case PlanResult::out_of_range:
       return "limits and distances are too many orders of magnitude apart";
+    case PlanResult::not_that_many_axes:
+      return "no axis, or more than the planner takes";
   }
   return "the planner says no more";
 }
