@@ -152,7 +152,7 @@ TEST(Behaviour, distances_and_duels_are_those_of_the_inputs) {
   };
   for (const auto& [role, distance_m, duels_per_min] :
        {Asked{Role::attacker, values.distance_median_m, values.duels_per_min},
-        Asked{Role::defender, values.distance_median_m * values.role_distance, values.duels_per_min * values.role_duels}}) {
+        Asked{Role::defender, values.distance_median_m * values.role_distance_share, values.duels_per_min * values.role_duels_share}}) {
     MatchInputs inputs = division_a();
     inputs.role = role;
     std::vector<double> ways_m;

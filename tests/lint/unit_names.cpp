@@ -59,7 +59,7 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      // of a power: its exponent takes the unit away
                                                      "base", "b", "e",
                                                      // of a function for any argument: in the argument's unit
-                                                     "width", "each", "parameter",
+                                                     "width", "each", "parameter", "most",
                                                      // of a fitted figure or a candidate: its declaration has the unit
                                                      "before", "prior_sd", "spread", "spread_sd", "off_value", "scale", "size",
                                                      "typical_size",

@@ -20,10 +20,11 @@ struct RoleShape {
 RoleShape shape_of(Role role, const MatchValues& values) {
   switch (role) {
     case Role::keeper:
-      return {0.5 * values.role_distance, 0.2 * values.role_duels, -0.5, -0.5 + 0.06 * values.role_zone,
-              std::min(1.0, 0.25 * values.role_zone)};
+      return {0.5 * values.role_distance_share, 0.2 * values.role_duels_share, -0.5, -0.5 + 0.06 * values.role_zone_factor,
+              std::min(1.0, 0.25 * values.role_zone_factor)};
     case Role::defender:
-      return {values.role_distance, values.role_duels, -0.42, -0.42 + 0.32 * values.role_zone, std::min(1.0, 0.6 * values.role_zone)};
+      return {values.role_distance_share, values.role_duels_share, -0.42, -0.42 + 0.32 * values.role_zone_factor,
+              std::min(1.0, 0.6 * values.role_zone_factor)};
     case Role::attacker:
       return {};
   }
@@ -73,9 +74,9 @@ FieldPose Behaviour::near(const FieldPose& now, double distance_m) {
 
 MotionCommand Behaviour::walk(double left_s, const FieldPose& now, double distance_m, double speed_limit_m_per_s) {
   constexpr double kPace_m_per_s = 1.0;
-  const double way_m = values_.outside_distance * distance_m;
+  const double way_m = values_.outside_distance_factor * distance_m;
   const FieldPose target = near(now, way_m);
-  return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s) + way_m / (values_.outside_speed * kPace_m_per_s)),
+  return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s) + way_m / (values_.outside_speed_factor * kPace_m_per_s)),
           .stand = false,
           .x_m = target.x_m,
           .y_m = target.y_m,
@@ -99,7 +100,7 @@ MotionCommand Behaviour::play(double into_phase_s, double left_s, const FieldPos
     normal += random_.uniform();
   }
   const double median_m = values_.distance_median_m * shape_of(role_, values_).distance_factor;
-  const FieldPose target = near(now, median_m * std::exp(values_.distance_spread * normal));
+  const FieldPose target = near(now, median_m * std::exp(values_.distance_spread_ratio * normal));
   return {.duration_s = std::min(left_s, exponential(values_.retarget_mean_s)),
           .stand = false,
           .x_m = target.x_m,
@@ -109,8 +110,8 @@ MotionCommand Behaviour::play(double into_phase_s, double left_s, const FieldPos
 
 MotionCommand Behaviour::next(Phase phase, double into_phase_s, double left_s, const FieldPose& now) {
   const PhaseRule rule = rule_of(phase);
-  const double brisk_m_per_s = 1.5 * values_.outside_speed;
-  const double calm_m_per_s = 1.0 * values_.outside_speed;
+  const double brisk_m_per_s = 1.5 * values_.outside_speed_factor;
+  const double calm_m_per_s = 1.0 * values_.outside_speed_factor;
   switch (phase) {
     case Phase::running:
       return play(into_phase_s, left_s, now);

@@ -25,21 +25,21 @@ struct MatchValues {
   double placement_mean_s = 0.0;
   double halt_count = 0.0;  ///< mean number
   double halt_mean_s = 0.0;
-  double timeout_count = 0.0;      ///< mean number, of both teams
-  double retarget_mean_s = 0.0;    ///< until the next target, unless play ends first
-  double distance_median_m = 0.0;  ///< to a new target of an attacker
-  double distance_spread = 0.0;    ///< standard deviation of the distances' logarithm
-  double turn_rad = 0.0;           ///< largest turn from target to target, either way
-  double aggressiveness = 0.0;     ///< part of the robot's limits of speed and acceleration that is used
-  double duels_per_min = 0.0;      ///< of play, of an attacker
-  double duel_mean_s = 0.0;        ///< pushing against a robot at standstill, unless play ends first
-  double duel_push_share = 0.0;    ///< of the largest force that the robot can hold without sliding or turning
-  double duel_angle_rad = 0.0;     ///< largest angle between push and front, either way
-  double role_distance = 0.0;      ///< a defender's part of an attacker's
-  double role_duels = 0.0;         ///< a defender's part of an attacker's
-  double role_zone = 0.0;          ///< factor on length and width of the zones of keeper and defender
-  double outside_distance = 0.0;   ///< factor on the ways outside play
-  double outside_speed = 0.0;      ///< factor on the speeds there
+  double timeout_count = 0.0;            ///< mean number, of both teams
+  double retarget_mean_s = 0.0;          ///< until the next target, unless play ends first
+  double distance_median_m = 0.0;        ///< to a new target of an attacker
+  double distance_spread_ratio = 0.0;    ///< standard deviation of the distances' logarithm
+  double turn_rad = 0.0;                 ///< largest turn from target to target, either way
+  double aggressiveness = 0.0;           ///< part of the robot's limits of speed and acceleration that is used
+  double duels_per_min = 0.0;            ///< of play, of an attacker
+  double duel_mean_s = 0.0;              ///< pushing against a robot at standstill, unless play ends first
+  double duel_push_share = 0.0;          ///< of the largest force that the robot can hold without sliding or turning
+  double duel_angle_rad = 0.0;           ///< largest angle between push and front, either way
+  double role_distance_share = 0.0;      ///< a defender's part of an attacker's
+  double role_duels_share = 0.0;         ///< a defender's part of an attacker's
+  double role_zone_factor = 0.0;         ///< factor on length and width of the zones of keeper and defender
+  double outside_distance_factor = 0.0;  ///< factor on the ways outside play
+  double outside_speed_factor = 0.0;     ///< factor on the speeds there
 };
 
 struct MatchInputSpec {
