@@ -52,12 +52,12 @@ Eigen::VectorXd least_deviations(const Eigen::MatrixXd& X, const Eigen::VectorXd
   return solution;
 }
 
-/// (I − U·Uᵀ)^−½·values: residuals of a cluster are smaller than its errors by what the fit followed them.
+/// (I − U·Uᵀ)⁻¹·values, as if the cluster were left out of the fit (CR3): unequal scatter then hides in no cluster that decides.
 Eigen::MatrixXd without_leverage(const Eigen::MatrixXd& U, const Eigen::MatrixXd& values) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(U.transpose() * U);
   const Eigen::VectorXd factors = of.eigenvalues().unaryExpr([](double leverage) {
     const double left = std::max(kLeastLeft_share, 1.0 - leverage);
-    return leverage < 1e-12 ? 0.0 : (1.0 / std::sqrt(left) - 1.0) / leverage;
+    return leverage < 1e-12 ? 0.0 : (1.0 / left - 1.0) / leverage;
   });
   return values + U * of.eigenvectors() * factors.asDiagonal() * of.eigenvectors().transpose() * U.transpose() * values;
 }
