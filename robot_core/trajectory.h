@@ -44,7 +44,8 @@ enum class PlanResult : unsigned char {
   target_acceleration_beyond_limit = 4,
   /// Whoever has the target's velocity and acceleration has broken a velocity limit before.
   target_without_approach = 5,
-  /// The numbers are so far apart that Real cannot hold the durations or distances: the last segment would miss the target.
+  /// The numbers are so far apart that Real cannot hold the durations or distances: the last segment would miss the target, or a plan in
+  /// the plane would leave the circle.
   out_of_range = 6,
   /// No axis, or more than kMostAxes.
   not_that_many_axes = 7,
@@ -137,7 +138,7 @@ PlanResult plan_bang_bang(const AxisState<Real>& start, const AxisState<Real>& t
 /// and at rest at both ends keeps the shape of its fastest motion. At most kMostAxes axes.
 /// Where the target has a velocity at a fixed place, follow a plan to its end: one of a later tick may find that rounding has made the
 /// arrival impossible, and come back for it. Targets at rest and Target::moving_on can be planned anew at every tick.
-/// `failed_axis`, if given, is set to the axis that a result other than ok is about.
+/// `failed_axis`, if given, is set to the axis that a result other than ok is about (not_that_many_axes is about none).
 inline constexpr int kMostAxes = 6;
 template <typename Real>
 PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,
@@ -160,15 +161,15 @@ struct PlaneLimits {
 
 /// x, y and yaw of a robot, arriving together. A circle bounds speed, acceleration and jerk in the plane: x gets the
 /// share cos(split) of each, y the share sin(split), and the split is chosen so that both are equally slow, within what
-/// the target needs. A target may have all but 1e-6 of a limit; if no split leaves room for its velocity (or, with that,
-/// its acceleration), the result says so. Where the start does not fit that split (a turn at full speed), the split turns; where none fits
-/// or that takes long, x and y first bring the acceleration to zero along its own direction, then perhaps brake along the velocity's own,
-/// and then share the circle. The shortest of these plans that stays inside of the circle to 0.2 % is taken. There is one from every start
-/// with |v| <= speed_max, |a| <= acceleration_max and |v + a |a|/(2 jerk_max)| <= speed_max (its acceleration braked along its own
-/// direction), from every start whose axes keep the shares of one split, and from every state of such a plan: whoever plans anew in every
-/// tick stays inside. Other starts may leave the circle of speed, but no further than the largest of |v| and |v + a |a|/(2 jerk_max)|, and
-/// never that of acceleration beyond their own. A target whose own acceleration leads out of the circle is followed out of it. axes: 0 x, 1
-/// y, 2 yaw.
+/// the target needs. A target may have all but 1e-6 (float: 1e-4, in chases of up to two minutes) of a limit; if no split leaves room for
+/// its velocity (or, with that, its acceleration), the result says so. Where the start does not fit that split (a turn at full speed), the
+/// split turns; where none fits or that takes long, x and y first bring the acceleration to zero along its own direction, then perhaps
+/// brake along the velocity's own, and then share the circle. The shortest of these plans that stays inside of the circle to 0.2 % is
+/// taken. There is one from every start with |v| <= speed_max, |a| <= acceleration_max and |v + a |a|/(2 jerk_max)| <= speed_max (its
+/// acceleration braked along its own direction), from every start whose axes keep the shares of one split, and from every state of such a
+/// plan: whoever plans anew in every tick stays inside. Other starts may leave the circle of speed, but no further than the largest of |v|
+/// and |v + a |a|/(2 jerk_max)|, and never that of acceleration beyond their own. A target whose own acceleration leads out of the circle
+/// is followed out of it. A plan that leads further out than that is none: the result is out_of_range. axes: 0 x, 1 y, 2 yaw.
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);

@@ -102,13 +102,13 @@ void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_sh
   }
 }
 
-/// `value`, or the nearest of `low`, 0 and `high` that it differs from by a rounding error of `scale`. Narrower at `low` and `high`: what a
-/// blend has by nature may be as close to them, and whoever has been moved there has to find back to 0.
+/// `value`, or the nearest of `low`, 0 and `high` that it differs from by a rounding error of `scale`: by `at_limit` of it at `low` and
+/// `high`.
 template <typename Real>
-Real snapped(Real value, Real low, Real high, Real scale) {
+Real snapped(Real value, Real low, Real high, Real scale, Real at_limit) {
   const Real limit = value < Real(0) ? low : high;
   const Real nearest = absolute(value - limit) < absolute(value) ? limit : Real(0);
-  const Real touch = nearest == Real(0) ? kTouch<Real> : kTouch<Real> / Real(4);
+  const Real touch = nearest == Real(0) ? kTouch<Real> : at_limit;
   return absolute(value - nearest) <= touch * scale ? nearest : value;
 }
 
@@ -124,10 +124,12 @@ bool lay_out_behind(const Way<Real>& way, const AxisLimits<Real>& limits, Trajec
     most_acceleration = larger(most_acceleration, absolute(state.acceleration));
     most_velocity = larger(most_velocity, absolute(state.velocity));
     if (jerk == Real(0)) {
-      // Rounding errors would add up over a long hold or cruise.
-      state.acceleration = snapped(state.acceleration, limits.acceleration_min, limits.acceleration_max, most_acceleration);
+      // Rounding errors would add up over a long hold or cruise. A blend may by nature hold an acceleration close to the limit, and moved
+      // there it would not find back to 0.
+      constexpr Real kHeld = kTouch<Real> / Real(4);
+      state.acceleration = snapped(state.acceleration, limits.acceleration_min, limits.acceleration_max, most_acceleration, kHeld);
       if (state.acceleration == Real(0)) {
-        state.velocity = snapped(state.velocity, limits.velocity_min, limits.velocity_max, most_velocity);
+        state.velocity = snapped(state.velocity, limits.velocity_min, limits.velocity_max, most_velocity, kTouch<Real>);
       }
     }
     trajectory.segments[trajectory.segment_count + i] = {time_s, way.duration_s[i], jerk, state};

@@ -116,9 +116,10 @@ class Inside {
       calm_ = calming(start_, plane.jerk_max, share_x_ / shares, share_y_ / shares);
     }
     can_stay_ = calm_.speed <= circle_.speed;
-    const Real most_speed = kPromised<Real> * larger(plane.speed_max, calm_.speed);
+    const Real speed = length(start[0].velocity, start[1].velocity);
+    const Real most_speed = kPromised<Real> * larger(larger(plane.speed_max, calm_.speed), speed);
     // Who is outside of the circle has to go no further out.
-    circle_.speed = larger(circle_.speed, length(start[0].velocity, start[1].velocity));
+    circle_.speed = larger(circle_.speed, speed);
     circle_.acceleration = larger(circle_.acceleration, length(start[0].acceleration, start[1].acceleration));
     const Real most = larger(most_speed / circle_.speed, Real(1));
     most_square_ = smaller(most * most, std::numeric_limits<Real>::max() / Real(2));

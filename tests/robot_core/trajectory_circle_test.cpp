@@ -43,16 +43,26 @@ struct Longest {
   double jerk = 0.0;
 };
 
-Longest longest(const Motion (&motions)[3]) {
+template <typename Real>
+Longest longest(const Trajectory<Real> (&motions)[3]) {
   constexpr int kSamples = 400;
   Longest most;
-  for (int i = 0; i <= kSamples; ++i) {
-    const double time_s = motions[0].duration_s * i / kSamples;
-    const State x = motions[0].at(time_s);
-    const State y = motions[1].at(time_s);
+  const auto look = [&](Real time_s) {
+    const AxisState<Real> x = motions[0].at(time_s);
+    const AxisState<Real> y = motions[1].at(time_s);
     most.speed = std::max(most.speed, speed(x, y));
     most.acceleration = std::max(most.acceleration, acceleration(x, y));
-    most.jerk = std::max(most.jerk, std::hypot(motions[0].jerk_at(time_s), motions[1].jerk_at(time_s)));
+    most.jerk =
+        std::max(most.jerk, std::hypot(static_cast<double>(motions[0].jerk_at(time_s)), static_cast<double>(motions[1].jerk_at(time_s))));
+  };
+  for (int i = 0; i <= kSamples; ++i) {
+    look(motions[0].duration_s * static_cast<Real>(i) / static_cast<Real>(kSamples));
+  }
+  // Beside a target that is hardly slower than the limit, all turns are short.
+  for (int axis = 0; axis < 2; ++axis) {
+    for (int i = 0; i < motions[axis].segment_count; ++i) {
+      look(motions[axis].segments[i].start_s);
+    }
   }
   return most;
 }
@@ -100,6 +110,112 @@ TEST(TrajectoryCircle, AnyStartThatCanStayInsideDoes) {
     ASSERT_FALSE(HasFailure()) << i;
   }
   EXPECT_GT(can_stay, problem_count() / 2);
+}
+
+/// Robots on their way when the referee halves their speed limit; how many of them then have a plan.
+template <typename Real>
+int planned_under_half_the_limit(int count) {
+  std::mt19937_64 random(35);
+  const auto real = [](double value) { return static_cast<Real>(value); };
+  const AxisLimits<Real> yaw = AxisLimits<Real>::symmetric(20, 50, 500);
+  int planned = 0;
+  for (int i = 0; i < count; ++i) {
+    PlaneLimits<Real> plane{3, 4, 25};
+    AxisState<Real> state[3] = {};
+    const AxisState<Real> target[3] = {{real(uniform(random, -6, 6)), 0, 0}, {real(uniform(random, -4, 4)), 0, 0}, {}};
+    Trajectory<Real> motions[3];
+    EXPECT_EQ(plan_plane(state, target, plane, yaw, motions), PlanResult::ok);
+    const Real time_s = motions[0].duration_s * real(uniform(random, 0, 1));
+    for (int axis = 0; axis < 3; ++axis) {
+      state[axis] = motions[axis].at(time_s);
+    }
+    plane.speed_max /= 2;
+    planned += plan_plane(state, target, plane, yaw, motions) == PlanResult::ok ? 1 : 0;
+  }
+  return planned;
+}
+
+TEST(TrajectoryCircle, ALimitThatFallsOnTheWayLeavesAPlan) {
+  EXPECT_EQ(planned_under_half_the_limit<double>(problem_count()), problem_count());
+  EXPECT_EQ(planned_under_half_the_limit<float>(problem_count()), problem_count());
+}
+
+/// How long it takes to meet a target that moves on, planned in double precision.
+template <typename Real>
+double chase_s(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane) {
+  const State from[3] = {widened(start[0]), widened(start[1]), widened(start[2])};
+  const State to[3] = {widened(target[0]), widened(target[1]), widened(target[2])};
+  Motion motions[3];
+  EXPECT_EQ(plan_plane(from, to, {plane.speed_max, plane.acceleration_max, plane.jerk_max}, kYaw, motions, Target::moving_on),
+            PlanResult::ok);
+  return motions[0].duration_s;
+}
+
+/// Targets that move on with `part` of the speed limit; how many are met or beyond the numbers, and none of them outside of the circle.
+template <typename Real>
+int met_inside(double part, int count, bool any_limits) {
+  std::mt19937_64 random(34);
+  const auto real = [](double value) { return static_cast<Real>(value); };
+  const AxisLimits<Real> yaw = AxisLimits<Real>::symmetric(20, 50, 500);
+  int met = 0;
+  for (int i = 0; i < count; ++i) {
+    const PlaneLimits<double> like = any_limits ? any_plane(random) : PlaneLimits<double>{2.5, 3, 12};
+    const PlaneLimits<Real> plane{real(like.speed_max), real(like.acceleration_max), real(like.jerk_max)};
+    const double v = 0.68 * like.speed_max;
+    AxisState<Real> start[3];
+    AxisState<Real> target[3];
+    for (int axis = 0; axis < 2; ++axis) {
+      start[axis] = {real(uniform(random, -2, 2)), real(uniform(random, -v, v)), 0};
+      target[axis].position = real(uniform(random, -2, 2));
+    }
+    // Every fourth along an axis or between two: there the room is least.
+    const double angle = i % 4 == 0 ? std::round(uniform(random, 0, 8)) * M_PI / 4 : uniform(random, 0, 2 * M_PI);
+    target[0].velocity = real(part * like.speed_max * std::cos(angle));
+    target[1].velocity = real(part * like.speed_max * std::sin(angle));
+    Trajectory<Real> motions[3];
+    if (const PlanResult result = plan_plane(start, target, plane, yaw, motions, Target::moving_on); result != PlanResult::ok) {
+      // A chase of minutes on what the target leaves of the limits is more than float can hold.
+      met += any_limits && result == PlanResult::out_of_range && chase_s(start, target, plane) > 120 ? 1 : 0;
+      continue;
+    }
+    ++met;
+    const Longest most = longest(motions);
+    EXPECT_LE(most.speed, kMost * like.speed_max) << i;
+    EXPECT_LE(most.acceleration, kMost * like.acceleration_max) << i;
+  }
+  return met;
+}
+
+TEST(TrajectoryCircle, ATargetMayBeNearlyAsFastAsTheLimit) {
+  const int count = problem_count() / 5;
+  for (const double part : {0.5, 0.9, 0.97, 0.99, 0.999, 0.9999}) {
+    EXPECT_EQ(met_inside<float>(part, count, false), count) << part;
+    EXPECT_EQ(met_inside<double>(part, count, false), count) << part;
+  }
+  EXPECT_EQ(met_inside<double>(1 - 1e-6, count, false), count);
+  EXPECT_EQ(met_inside<float>(0.99, count, true), count);
+  // Closer than float can tell it may find none, but none outside either.
+  for (const double part : {0.99999, 0.999999}) {
+    EXPECT_GE(met_inside<float>(part, count, false), count * 9 / 10) << part;
+  }
+}
+
+TEST(TrajectoryCircle, ALongWayBehindALeadInSinglePrecision) {
+  const AxisState<float> start[3] = {{}, {0, -1.666F, 0}, {}};
+  const AxisState<float> target[3] = {{1, 2.475F, 0}, {0.5F, 0, 0}, {}};
+  Trajectory<float> motions[3];
+  ASSERT_EQ(plan_plane(start, target, {2.5F, 3, 12}, AxisLimits<float>::symmetric(10, 30, 200), motions, Target::moving_on),
+            PlanResult::ok);
+  const Longest most = longest(motions);
+  EXPECT_LE(most.speed, kMost * 2.5);
+  EXPECT_LE(most.acceleration, kMost * 3);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Trajectory<float>& motion = motions[axis];
+    const TrajectorySegment<float>& last = motion.segments[motion.segment_count - 1];
+    const AxisState<float> end = Trajectory<float>::advanced(last.start, last.jerk, last.duration_s);
+    EXPECT_NEAR(end.position, target[axis].position + target[axis].velocity * motion.duration_s, 2e-2F);
+    EXPECT_NEAR(end.velocity, target[axis].velocity, 1e-4F);
+  }
 }
 
 /// A robot that plans anew in every tick, or at every jump of its target only.

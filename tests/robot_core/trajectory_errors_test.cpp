@@ -74,6 +74,34 @@ TEST(TrajectoryErrors, AreCodes) {
   EXPECT_NE(result(task), PlanResult::ok);
 }
 
+TEST(TrajectoryErrors, ANumberOfAxesThatThePlannerDoesNotTake) {
+  constexpr int kMany = kMostAxes + 2;
+  State start[kMany];
+  State target[kMany];
+  Limits limits[kMany];
+  Motion motions[kMany];
+  for (int axis = 0; axis < kMany; ++axis) {
+    target[axis] = {1, 0, 0};
+    limits[axis] = Limits::symmetric(1, 1, 1);
+  }
+  for (const int count : {-1, 0, kMostAxes + 1, kMany}) {
+    EXPECT_EQ(plan_synchronised(count, start, target, limits, motions), PlanResult::not_that_many_axes) << count;
+    EXPECT_EQ(plan_velocity_synchronised(count, start, target, limits, motions), PlanResult::not_that_many_axes) << count;
+  }
+  EXPECT_EQ(plan_synchronised(kMostAxes, start, target, limits, motions), PlanResult::ok);
+  EXPECT_EQ(plan_velocity_synchronised(kMostAxes, start, target, limits, motions), PlanResult::ok);
+}
+
+TEST(TrajectoryErrors, DistancesThatOverflow) {
+  Motion motion;
+  const Limits wide{1.7e308, -7.8, 8.3, -6.3, 29.9};
+  EXPECT_EQ(plan_position({1.7e308, 0.97, 2.2e-308}, {-1.7e308, -3.6, -1.07}, wide, motion), PlanResult::out_of_range);
+  EXPECT_EQ(motion.segment_count, 0);
+  EXPECT_EQ(plan_bang_bang({1.7e308, 1, 0}, {-1.7e308, -1.8, 0}, {2.2e-308, -1.7e308, 1e-310, -5.8, 11}, motion), PlanResult::out_of_range);
+  // Limits that are none do not make a short way one of those.
+  EXPECT_EQ(plan_position({0, 1, 0}, {1, 0, 0}, Limits::symmetric(1e200, 1e3, 1e4), motion), PlanResult::ok);
+}
+
 TEST(TrajectoryErrors, OfThePlaneAreCodes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const State still[3] = {};

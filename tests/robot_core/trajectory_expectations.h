@@ -11,6 +11,17 @@ namespace robot_core::reference {
 /// Of a test on random problems; HEATSOAK_TRAJECTORY_PROBLEMS=1000000 is the long run.
 int problem_count();
 
+template <typename Real>
+State widened(const AxisState<Real>& s) {
+  return {static_cast<double>(s.position), static_cast<double>(s.velocity), static_cast<double>(s.acceleration)};
+}
+
+template <typename Real>
+Limits widened(const AxisLimits<Real>& l) {
+  return {static_cast<double>(l.velocity_max), static_cast<double>(l.velocity_min), static_cast<double>(l.acceleration_max),
+          static_cast<double>(l.acceleration_min), static_cast<double>(l.jerk_max)};
+}
+
 /// A task as it is written in a test.
 std::string text(const Task& task);
 

@@ -23,15 +23,6 @@ AxisLimits<float> narrowed(const Limits& l) {
           static_cast<float>(l.acceleration_min), static_cast<float>(l.jerk_max)};
 }
 
-State widened(const AxisState<float>& s) {
-  return {static_cast<double>(s.position), static_cast<double>(s.velocity), static_cast<double>(s.acceleration)};
-}
-
-Limits widened(const AxisLimits<float>& l) {
-  return {static_cast<double>(l.velocity_max), static_cast<double>(l.velocity_min), static_cast<double>(l.acceleration_max),
-          static_cast<double>(l.acceleration_min), static_cast<double>(l.jerk_max)};
-}
-
 TEST(TrajectoryFloat, KeepsSixDigits) {
   std::mt19937_64 random(17);
   double worst_end = 0.0;
