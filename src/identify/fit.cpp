@@ -122,7 +122,10 @@ class Fitting {
     }
     range_.fluxes = model.flux_nodes.size();
     range_.wander_unit_K = travel_K(fit_.sensor_nodes, runs);
-    range_.shortest_s = std::max(20.0, 4.0 * usual_step_s);
+    range_.least_W = model.least_flux_W;
+    // What is known to come and go does so over minutes: short heat would average out.
+    constexpr double kComesAndGoes_s = 160.0;
+    range_.shortest_s = std::max(range_.least_W.empty() ? 20.0 : kComesAndGoes_s, 4.0 * usual_step_s);
     range_.longest_s = std::max(4.0 * range_.shortest_s, longest_s);
     range_.wander_shortest_s = 4.0 * usual_step_s;
     range_.wander_longest_s = std::max(4.0 * range_.wander_shortest_s, 100.0);
@@ -138,6 +141,9 @@ class Fitting {
     constexpr int kMostRounds = 10;
     // The level of the noise first, under a flux that is not absurd: what is taken for flux hangs on it.
     best_.flux = {std::vector<double>(range_.fluxes, options_.with_flux ? 0.02 * range_.unit_W : 0.0), std::max(range_.shortest_s, 160.0)};
+    for (std::size_t i = 0; options_.with_flux && i < range_.least_W.size(); ++i) {
+      best_.flux.rms_W[i] = std::max(best_.flux.rms_W[i], range_.least_W[i]);
+    }
     look_at_innovations();
     look_at_innovations();
     best_ = {};
@@ -264,7 +270,11 @@ class Fitting {
     const Evidence evidence = [&](const auto& suppositions) { return evidences(suppositions); };
     best_ = most_probable(evidence, range_, best_);
     constexpr double kMuch_share = 0.05;
-    const bool is_much = *std::ranges::max_element(best_.flux.rms_W) > kMuch_share * range_.unit_W;
+    bool is_much = false;
+    for (std::size_t i = 0; i < range_.fluxes; ++i) {
+      const bool is_certain = !range_.least_W.empty() && range_.least_W[i] > 0.0;
+      is_much = is_much || (!is_certain && best_.flux.rms_W[i] > kMuch_share * range_.unit_W);
+    }
     if (best_.wander_K.empty() && is_much && options_.with_wander) {
       const Supposition wandering = most_probable(evidence, range_, with_wander(range_, best_));
       const std::vector<double> values = evidences({best_, wandering});

@@ -30,6 +30,13 @@ class Space {
   [[nodiscard]] Eigen::Index size() const { return fluxes_ + 1 + (kinds_ > 0 ? kinds_ + 1 : 0); }
   [[nodiscard]] Eigen::VectorXd inside(Eigen::VectorXd x) const {
     clamp(x.head(fluxes_ + 1), {kLeastShare, kMostShare}, {range_.shortest_s, range_.longest_s}, kReference_s);
+    const double half = shift(x[fluxes_], kReference_s);
+    for (std::size_t i = 0; i < range_.least_W.size(); ++i) {
+      if (const double least = std::log(range_.least_W[i] / range_.unit_W); std::isfinite(least)) {
+        // As a whole it can be more than what is granted to the unknown elsewhere.
+        x[static_cast<Eigen::Index>(i)] = std::max(x[static_cast<Eigen::Index>(i)], least - half);
+      }
+    }
     if (kinds_ > 0) {
       clamp(x.tail(kinds_ + 1), {kLeastWander_share, kMostWander_share}, {range_.wander_shortest_s, range_.wander_longest_s},
             kWanderReference_s);

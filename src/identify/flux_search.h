@@ -23,6 +23,7 @@ struct SuppositionRange {
   double shortest_s = 10.0;  ///< of the flux's time scale
   double longest_s = 3000.0;
   std::size_t fluxes = 2;
+  std::vector<double> least_W;        ///< per flux: rms that there is for certain; empty: none
   std::vector<double> wander_unit_K;  ///< per kind of sensor: how far temperatures move; sizes are sought from 1/10000 of it to 1/5
   double wander_shortest_s = 4.0;
   double wander_longest_s = 100.0;

@@ -29,7 +29,8 @@ struct Model {
   std::vector<double> values;  ///< of all parameters of the network
   std::vector<FreeParameter> free;
   Prior prior;
-  std::vector<int> flux_nodes;  ///< that unknown heat may reach
+  std::vector<int> flux_nodes;            ///< that unknown heat may reach
+  std::vector<double> least_flux_W = {};  ///< of it, rms: known to be there, though not when; empty: none
 
   [[nodiscard]] Eigen::Index free_count() const { return static_cast<Eigen::Index>(free.size()); }
   [[nodiscard]] const std::string& name(Eigen::Index parameter) const;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 
 #include "base/diagnostic.h"
 #include "identify/calibration/profile.h"
@@ -13,10 +14,12 @@
 namespace heatsoak::study {
 namespace {
 
+using testing::AnyOf;
 using testing::Contains;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 const CalibratedFigure& figure(const Calibration& calibration, std::string_view name) {
   return *std::ranges::find(calibration.figures, name, &CalibratedFigure::name);
@@ -80,22 +83,17 @@ TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
   }
 }
 
-/// A log without heat in which the motor cools down.
-Recording cool_down(const TwoNodeTruth& truth) {
+/// A log of its own: the motor turns whenever current flows, which heats its stator by `drag_W`.
+Recording log_of(const TwoNodeTruth& truth, double hot_C, double duration_s, double drag_W,
+                 const std::function<double(double time_s)>& current_A) {
   LogMaking making;
-  making.duration_s = 1500.0;
-  making.largest_current_A = 14.0;
+  making.duration_s = duration_s;
   Recording log = generated_log(truth, making, 7, 0);
-  // The second half of the log made anew from where the first ends: currents of 0 leave the equations of the truth as they are.
-  double winding_C = 90.0;
-  double stator_C = 75.0;
+  double winding_C = 25.0 + hot_C;
+  double stator_C = 25.0 + 0.8 * hot_C;
   Random random(7, 9);
-  for (Channel& channel : log.channels) {
-    if (channel.quantity.key == "current_A") {
-      std::ranges::fill(channel.values, 0.0);
-    }
-  }
   for (std::size_t row = 0; row < log.rows(); ++row) {
+    const double flows_A = current_A(log.time_s[row]);
     for (Channel& channel : log.channels) {
       if (channel.quantity.key == "winding_C") {
         channel.values[row] = winding_C + 0.1 * standard_normal(random);
@@ -103,15 +101,28 @@ Recording cool_down(const TwoNodeTruth& truth) {
         channel.values[row] = stator_C + 0.1 * standard_normal(random);
       } else if (channel.quantity.key == "ambient_C") {
         channel.values[row] = 25.0;
+      } else if (channel.quantity.key == "current_A") {
+        channel.values[row] = flows_A;
       }
     }
     for (int part = 0; part < 100; ++part) {
       const double across_W = (winding_C - stator_C) / truth.winding_stator_K_per_W;
-      winding_C -= 0.01 * across_W / truth.winding_J_per_K;
-      stator_C += 0.01 * (across_W - (stator_C - 25.0) / truth.stator_ambient_K_per_W) / truth.stator_J_per_K;
+      const double copper_W =
+          flows_A * flows_A * truth.resistance_25C_ohm * (1.0 + truth.temperature_coefficient_per_K * (winding_C - 25.0));
+      winding_C += 0.01 * (copper_W - across_W) / truth.winding_J_per_K;
+      const double away_W = (stator_C - 25.0) / truth.stator_ambient_K_per_W;
+      stator_C += 0.01 * (across_W - away_W + (flows_A > 0.0 ? drag_W : 0.0)) / truth.stator_J_per_K;
     }
   }
   return log;
+}
+
+Recording cool_down(const TwoNodeTruth& truth, double hot_C = 65.0, double duration_s = 1500.0) {
+  return log_of(truth, hot_C, duration_s, 0.0, [](double) { return 0.0; });
+}
+
+void add_speed(Recording& log, double speed_rad_per_s) {
+  log.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), speed_rad_per_s)});
 }
 
 TEST(OpenDirections, CoolingTellsTimeConstantsAndNeverWatts) {
@@ -122,9 +133,89 @@ TEST(OpenDirections, CoolingTellsTimeConstantsAndNeverWatts) {
   const Calibration result = calibrate(Sheet{}.motor(folder), logs, {}, {});
   EXPECT_THAT(result.open, Contains(Field(&OpenDirection::why, HasSubstr("cooling tells time constants, never watts"))));
   EXPECT_FALSE(figure(result, "thermal_resistance_stator_ambient").is_identifiable);
+  EXPECT_THAT(result.next_experiment, HasSubstr("constant current at standstill"));
   const CalibratedFigure& stator = figure(result, "thermal_time_constant_stator");
   EXPECT_TRUE(stator.is_identifiable);
   EXPECT_NEAR(stator.value, truth.stator_J_per_K * truth.stator_ambient_K_per_W, 0.03 * stator.value);
+}
+
+TEST(OpenDirections, NoFigureInWattsComesFromCoolingHoweverWellTheTimeConstantsAreTold) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\"", .no_load_current_A = 0.2};
+  Recording log = cool_down({}, 40.0, 900.0);
+  add_speed(log, 0.0);
+  const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "cooling.csv"))};
+  const Calibration result = calibrate(sheet.motor(folder), logs, {}, {});
+  EXPECT_TRUE(figure(result, "thermal_time_constant_winding").is_identifiable);
+  for (const char* const in_watts : {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_heat_capacity",
+                                     "stator_heat_capacity", "terminal_resistance", "no_load_current"}) {
+    EXPECT_FALSE(figure(result, in_watts).is_identifiable) << in_watts;
+  }
+  EXPECT_THAT(result.next_experiment, HasSubstr("constant current at standstill"));
+  EXPECT_THAT(result.open, Contains(Field(&OpenDirection::what, HasSubstr("no_load_current"))));
+}
+
+TEST(OpenDirections, FigureThatIsNotToldHasAReasonAndAnExperiment) {
+  // One minute of warming up.
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = {}, .thermal_spread = ", tolerance = \"60 %\"", .no_load_current_A = 0.2};
+  Recording log = log_of({}, 0.0, 60.0, 0.0, [](double) { return 4.0; });
+  add_speed(log, 0.0);
+  const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "short.csv"))};
+  const Calibration result = calibrate(sheet.motor(folder), logs, {}, {});
+  ASSERT_FALSE(figure(result, "thermal_resistance_stator_ambient").is_identifiable);
+  EXPECT_THAT(result.open, Contains(Field(&OpenDirection::what, AnyOf(HasSubstr("thermal_resistance_stator_ambient"),
+                                                                      HasSubstr("stator_ambient.thermal_resistance")))));
+  EXPECT_THAT(result.open, Contains(Field(&OpenDirection::what, HasSubstr("no_load_current"))));
+  EXPECT_THAT(result.next_experiment, Not(IsEmpty()));
+}
+
+/// Half an hour of two currents with rests, in which the motor turns at three quarters of its no-load speed or stands still.
+class UnloggedSpeed : public testing::TestWithParam<double> {};
+
+TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
+  const double most_W = sheet.no_load_current_A * 24.0;
+  const TwoNodeTruth truth;
+  const Recording silent = log_of(truth, 0.0, 2400.0, GetParam() * most_W, [](double time_s) {
+    const double within_s = std::fmod(time_s, 1200.0);
+    return within_s < 300.0 ? 4.0 : within_s < 700.0 ? 2.5 : 0.0;
+  });
+  Recording still = silent;
+  add_speed(still, 0.0);
+  const auto calibrated = [&](const Recording& log) {
+    const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
+    return calibrate(sheet.motor(folder), logs, {}, {});
+  };
+  const Calibration unlogged = calibrated(silent);
+  const auto holds = [](const CalibratedFigure& each, double value) { return each.low < value && value < each.high; };
+  EXPECT_TRUE(holds(figure(unlogged, "thermal_resistance_stator_ambient"), truth.stator_ambient_K_per_W));
+  EXPECT_TRUE(holds(figure(unlogged, "stator_heat_capacity"), truth.stator_J_per_K));
+  EXPECT_TRUE(holds(figure(unlogged, "thermal_time_constant_stator"), truth.stator_J_per_K * truth.stator_ambient_K_per_W));
+  EXPECT_TRUE(figure(unlogged, "thermal_time_constant_winding").is_identifiable);
+  EXPECT_THAT(unlogged.next_experiment, HasSubstr("speed logged"));
+  if (GetParam() == 0.0) {
+    const Calibration stood_still = calibrated(still);
+    EXPECT_THAT(stood_still.next_experiment, Not(HasSubstr("speed logged")));
+    const CalibratedFigure& told = figure(stood_still, "thermal_resistance_stator_ambient");
+    const CalibratedFigure& open = figure(unlogged, "thermal_resistance_stator_ambient");
+    EXPECT_LT(told.high / told.low, open.high / open.low);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(StillAndTurning, UnloggedSpeed, testing::Values(0.0, 0.75));
+
+TEST(GuessedResistance, IsNoScaleToRelyOn) {
+  for (const char* const origin : {"datasheet", "estimated"}) {
+    const CaseResult result = calibrate_case({.truth = {}, .resistance_spread = {}, .resistance_origin = origin}, short_case());
+    const bool is_relied_on = std::string_view(origin) == "datasheet";
+    EXPECT_EQ(
+        std::ranges::find(result.calibration.figures, "terminal_resistance", &CalibratedFigure::name) == result.calibration.figures.end(),
+        is_relied_on);
+    const CalibratedFigure& out = figure(result.calibration, "thermal_resistance_stator_ambient");
+    EXPECT_EQ(out.high / out.low < 1.1, is_relied_on);
+  }
 }
 
 TEST(OpenDirections, WhereNothingIsLearnedTheAnswerIsThatAndTheExperiment) {

@@ -50,16 +50,17 @@ Folder::~Folder() {
 Motor Sheet::motor(const Folder& folder) const {
   const auto file = folder.path() / "made_up.toml";
   std::ofstream out(file);
-  const auto figure = [&](const char* key, double value, const char* unit, const std::string& spread) {
-    out << fmt::format("{} = {{ value = \"{:.6g}{}{}\", origin = \"datasheet\", source = \"s\"{} }}\n", key, value, *unit ? " " : "", unit,
-                       spread);
+  const auto figure = [&](const char* key, double value, const char* unit, const std::string& spread,
+                          const std::string& origin = "datasheet") {
+    out << fmt::format("{} = {{ value = \"{:.6g}{}{}\", origin = \"{}\", source = \"s\", derivation = \"made up\"{} }}\n", key, value,
+                       *unit ? " " : "", unit, origin, spread);
   };
   out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
          "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
   figure("nominal_voltage", 24.0, "V", "");
-  figure("terminal_resistance", truth.resistance_25C_ohm, "ohm", resistance_spread);
+  figure("terminal_resistance", truth.resistance_25C_ohm, "ohm", resistance_spread, resistance_origin);
   figure("torque_constant", 0.034, "N m/A", "");
-  figure("no_load_current", 0.2, "A", "");
+  figure("no_load_current", no_load_current_A, "A", "");
   figure("temperature_coefficient", truth.temperature_coefficient_per_K, "1/K", "");
   figure("winding_limit", 155.0, "degC", "");
   figure("thermal_resistance_winding_stator", truth.winding_stator_K_per_W, "K/W", thermal_spread);

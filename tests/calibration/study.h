@@ -28,7 +28,9 @@ class Folder {
 struct Sheet {
   TwoNodeTruth truth;
   std::string resistance_spread;  ///< ", tolerance = \"5 %\"": then the resistance is fitted too
+  std::string resistance_origin = "datasheet";
   std::string thermal_spread = ", tolerance = \"25 %\"";
+  double no_load_current_A = 0.0;  ///< the truth has no loss at speed, and most logs have no speed
   [[nodiscard]] Motor motor(const Folder& folder) const;
 };
 

@@ -12,6 +12,7 @@
 #include "base/quantity.h"
 #include "identify/calibration/identifiability.h"
 #include "identify/calibration/profile.h"
+#include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
 #include "thermal/copper.h"
 
@@ -59,6 +60,7 @@ class Calibrating {
 
   Calibration run(const Motor& motor) {
     all_.motor_model = motor_model(motor, heat_input_for(recordings_), all_have_speed(recordings_));
+    const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     MeasuredRunOptions how;
     // A fifth of the winding's time constant, however short the sheet says it is.
@@ -69,15 +71,23 @@ class Calibrating {
     how.ambient_C = options_.ambient_C;
     all_.runs = runs_of(recordings_, how, all_.notes);
     all_.holdout = runs_of(holdout_, how, all_.notes);
+    if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
+      open_loss_at_speed(all_.motor_model, most_loss_W);
+      fill_loss_at_speed(all_.runs, motor);
+      fill_loss_at_speed(all_.holdout, motor);
+      all_.notes.push_back(
+          fmt::format("where a log has a current but no speed, the loss at speed is taken as unknown, from none to the {} W at no-load "
+                      "speed; a motor that "
+                      "stood still is told by speed_rad_per_s = 0",
+                      significant(most_loss_W, 2)));
+    }
     all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
     warn();
-    all_.open = open_directions(all_.motor_model, all_.fit, all_.runs);
     figures();
+    all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.figures);
     all_.fit_error = errors(all_.motor_model, all_.fit, all_.runs);
     all_.holdout_error = errors(all_.motor_model, all_.fit, all_.holdout);
-    if (!all_.open.empty()) {
-      all_.next_experiment = std::ranges::min_element(all_.open, {}, &OpenDirection::experiment_min)->experiment;
-    }
+    all_.next_experiment = next_experiment(all_.open);
     tell_common_factor();
     tell_terminal_resistance(motor);
     tell_what_got_worse("the runs that were fitted", all_.fit_error);
@@ -91,7 +101,12 @@ class Calibrating {
   /// What the fit says about itself.
   void warn() {
     const Fit& fit = all_.fit;
-    const double most_W = *std::ranges::max_element(fit.flux.rms_W);
+    // What is known to be there is said elsewhere.
+    double most_W = 0.0;
+    const std::vector<double>& certain_W = all_.motor_model.model.least_flux_W;
+    for (std::size_t i = 0; i < fit.flux.rms_W.size(); ++i) {
+      most_W = certain_W.empty() || certain_W[i] == 0.0 ? std::max(most_W, fit.flux.rms_W[i]) : most_W;
+    }
     constexpr double kAlmost = 0.95;
     constexpr double kMuch_share = 0.1;
     if (most_W > kAlmost * kMostFlux_share * fit.usual_heat_W) {
@@ -234,7 +249,9 @@ class Calibrating {
       }
       figure.low = figure.value * std::exp(-below);
       figure.high = figure.value * std::exp(above);
-      figure.is_identifiable = is_told(sd, each);
+      // Without heat the watts are those of the file, however well the time constants are told.
+      const bool has_watts = each.origin == Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
+      figure.is_identifiable = has_watts && is_told(sd, each);
       all_.figures.push_back(std::move(figure));
     }
     Eigen::MatrixXd exponents(of_file, model.free_count());
@@ -270,9 +287,12 @@ class Calibrating {
     if (!why.empty()) {
       throw Failure(
           ExitCode::cannot_answer,
-          fmt::format("no figures of this motor make the model follow these logs{}\n  is it another motor, a wrong unit, a sensor "
+          fmt::format("no figures of this motor make the model follow these logs{}{}\n  is it another motor, a wrong unit, a sensor "
                       "elsewhere, or heat that no column tells of? `heatsoak log inspect` shows each channel",
-                      why));
+                      why,
+                      all_.motor_model.nuisances.empty()
+                          ? ""
+                          : "\n  no log has the speed (speed_rad_per_s), so that the loss at speed is not known"));
     }
   }
 

@@ -37,6 +37,7 @@ struct OpenDirection {
   std::string why;              ///< in words
   std::string experiment;       ///< the cheapest that would settle it
   double experiment_min = 0.0;  ///< rough time of work that it takes, minutes
+  double left_sd = 0.0;         ///< how open: of the logarithms together
 };
 
 struct ErrorBeforeAfter {
@@ -60,8 +61,8 @@ struct Calibration {
   std::vector<std::string> notes;  ///< what was taken for granted or left out, in sentences
 };
 
-/// Of logs that admit() (identify/admission.h) let pass. Throws Failure: bad_input where the logs lack what is needed, cannot_answer where nothing can be learned from them (with the
-/// reason), numerics_failed where no fit succeeds.
+/// Of logs that admit() (identify/admission.h) let pass. Throws Failure: bad_input where the logs lack what is needed, cannot_answer where
+/// nothing can be learned from them (with the reason), numerics_failed where no fit succeeds.
 Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
                       const CalibrationOptions& options);
 

@@ -6,6 +6,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "base/quantity.h"
 
 namespace heatsoak {
 namespace {
@@ -18,15 +21,17 @@ struct Look {
   bool stator_is_sensed = false;
   bool has_heat = false;
   bool is_ever_at_speed = false;
+  double longest_s = 0.0;
 };
 
 Look look(const MotorModel& motor, std::span<const MeasuredRun> runs) {
   Look seen;
+  seen.has_heat = is_heated(motor, runs);
   for (const MeasuredRun& run : runs) {
+    seen.longest_s = std::max(seen.longest_s, run.time_s.back() - run.time_s.front());
     seen.winding_is_sensed = seen.winding_is_sensed || run.sensor_at("winding") >= 0;
     seen.stator_is_sensed = seen.stator_is_sensed || run.sensor_at("stator") >= 0;
     for (const OperatingPoint<double>& at : run.at) {
-      seen.has_heat = seen.has_heat || (motor.heat == HeatInput::current ? at.current_rms_A : at.input_power_W) > 0.0;
       seen.is_ever_at_speed = seen.is_ever_at_speed || at.speed_mean_rad_per_s > 1.0;
     }
   }
@@ -60,6 +65,55 @@ Roles roles_of(const Model& model) {
           find("no_load_loss.drag_torque")};
 }
 
+/// Why something is open, and the cheapest experiment that would settle it.
+struct Answer {
+  std::string why;
+  std::string experiment;
+  double experiment_min = 0.0;
+};
+
+Answer no_heat() {
+  return {"no heat goes in during these runs: cooling tells time constants, never watts",
+          "one run with a constant current at standstill, 10 minutes, current and terminal voltage measured", 20.0};
+}
+Answer scale_open() {
+  return {
+      "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale rests on the stated "
+      "terminal resistance",
+      "measure the terminal resistance at a known temperature with four wires (minutes, no run needed)", 5.0};
+}
+Answer winding_unseen() {
+  return {
+      "only the stator is sensed: a larger winding behind a smaller resistance to the stator looks the same from there",
+      "a thermocouple at the winding, or the winding's resistance from voltage and current right after switching off, during one warm-up",
+      45.0};
+}
+Answer stator_unseen() {
+  return {"only the winding is sensed and the runs are short against the stator's time constant, or never cool down",
+          "a thermocouple on the housing, or one long warm-up with its cool-down to ambient", 60.0};
+}
+Answer loss_hidden(const Look& seen) {
+  return {seen.is_ever_at_speed ? "the loss at speed hardly shows beside the copper loss" : "the motor hardly turns in these runs",
+          "10 minutes at no load and full speed", 15.0};
+}
+Answer not_excited() {
+  return {"the runs do not excite it: what they measure hardly changes when these parameters move together",
+          "one run from cold with a constant current until the temperatures level out, then the cool-down", 90.0};
+}
+Answer speed_unlogged() {
+  return {
+      "the runs do not say whether the motor turned: the loss at speed may be none or that at no-load speed, and the stator's figures go "
+      "with it",
+      "the same runs with the speed logged (speed_rad_per_s; 0 throughout where the motor stood still)", 0.0};
+}
+
+OpenDirection open_direction(std::string what, Answer answer) {
+  return {.what = std::move(what),
+          .why = std::move(answer.why),
+          .experiment = std::move(answer.experiment),
+          .experiment_min = answer.experiment_min};
+}
+
 double component(const Eigen::VectorXd& direction, int place) { return place >= 0 ? direction[place] : 0.0; }
 
 /// All heat capacities up, all thermal resistances down, all heat up by one factor: no temperature changes.
@@ -89,74 +143,172 @@ std::string movement(const Model& model, const Eigen::VectorXd& direction) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-OpenDirection in_words(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
+Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
   const Roles roles = roles_of(motor.model);
-  OpenDirection open{.what = movement(motor.model, direction), .why = {}, .experiment = {}, .experiment_min = 0.0};
   constexpr double kAlike = 0.9;
-  if (likeness_to_scale(direction, roles) > kAlike) {
-    if (!seen.has_heat) {
-      open.why = "no heat goes in during these runs: cooling tells time constants, never watts";
-      open.experiment = "one run with a constant current at standstill, 10 minutes, current and terminal voltage measured";
-      open.experiment_min = 20.0;
-    } else {
-      open.why =
-          "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale rests on the stated "
-          "terminal resistance";
-      open.experiment = "measure the terminal resistance at a known temperature with four wires (minutes, no run needed)";
-      open.experiment_min = 5.0;
-    }
-    return open;
+  if (seen.has_heat && likeness_to_scale(direction, roles) > kAlike) {
+    return scale_open();
   }
   const double in_winding = std::hypot(component(direction, roles.winding_capacity), component(direction, roles.winding_stator));
-  if (!seen.winding_is_sensed && in_winding > 0.7) {
-    open.why = "only the stator is sensed: a larger winding behind a smaller resistance to the stator looks the same from there";
-    open.experiment =
-        "a thermocouple at the winding, or the winding's resistance from voltage and current right after switching off, during one warm-up";
-    open.experiment_min = 45.0;
-    return open;
+  const double in_stator = std::hypot(component(direction, roles.stator_capacity), component(direction, roles.stator_ambient));
+  constexpr double kMostly = 0.7;
+  // Capacities and resistances against each other at the same time constants: what is missing is heat.
+  constexpr double kSame = 0.3;
+  const double winding_moves = component(direction, roles.winding_capacity) + component(direction, roles.winding_stator);
+  const double stator_moves = component(direction, roles.stator_capacity) + component(direction, roles.stator_ambient);
+  if (!seen.has_heat && std::hypot(winding_moves, stator_moves) < kSame) {
+    return no_heat();
   }
-  if (!seen.stator_is_sensed && std::hypot(component(direction, roles.stator_capacity), component(direction, roles.stator_ambient)) > 0.7) {
-    open.why = "only the winding is sensed and the runs are short against the stator's time constant, or never cool down";
-    open.experiment = "a thermocouple on the housing, or one long warm-up with its cool-down to ambient";
-    open.experiment_min = 60.0;
-    return open;
+  if (!seen.winding_is_sensed && in_winding > kMostly) {
+    return winding_unseen();
   }
-  if (std::abs(component(direction, roles.drag)) > 0.7) {
-    open.why = seen.is_ever_at_speed ? "the loss at speed hardly shows beside the copper loss" : "the motor hardly turns in these runs";
-    open.experiment = "10 minutes at no load and full speed";
-    open.experiment_min = 15.0;
-    return open;
+  if (!seen.stator_is_sensed && in_stator > kMostly) {
+    return stator_unseen();
   }
-  open.why = "the runs do not excite it: what they measure hardly changes when these parameters move together";
-  open.experiment = "one run from cold with a constant current until the temperatures level out, then the cool-down";
-  open.experiment_min = 90.0;
-  return open;
+  return std::abs(component(direction, roles.drag)) > kMostly ? loss_hidden(seen) : not_excited();
+}
+
+bool is_of_stator(const MotorModel& motor, const FittedFigure& figure) {
+  const Roles roles = roles_of(motor.model);
+  return component(figure.exponents, roles.stator_capacity) != 0.0 || component(figure.exponents, roles.stator_ambient) != 0.0;
+}
+
+/// Why a single figure is not told where no direction as a whole is open.
+Answer answer_to(const MotorModel& motor, const FittedFigure& figure, const Fit& fit, const Look& seen) {
+  const Roles roles = roles_of(motor.model);
+  const auto holds = [&](int place) { return component(figure.exponents, place) != 0.0; };
+  if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, figure))) {
+    return no_heat();
+  }
+  if (holds(roles.resistance)) {
+    return scale_open();
+  }
+  if (holds(roles.drag)) {
+    return loss_hidden(seen);
+  }
+  if (is_of_stator(motor, figure) && !seen.stator_is_sensed) {
+    return stator_unseen();
+  }
+  if (is_of_stator(motor, figure)) {
+    const double stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
+    return {fmt::format("the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time "
+                        "constant is some {} min",
+                        significant(seen.longest_s / 60.0, 2), significant(stator_s / 60.0, 1)),
+            "one run from cold with a constant current until the temperatures level out, then the cool-down", 90.0};
+  }
+  if ((holds(roles.winding_capacity) || holds(roles.winding_stator)) && !seen.winding_is_sensed) {
+    return winding_unseen();
+  }
+  if (holds(roles.winding_capacity) || holds(roles.winding_stator)) {
+    return {"the winding's temperature hardly leaves the stator's in these runs, or never in steps",
+            "some steps of current at standstill, on and off for two of the winding's time constants each", 20.0};
+  }
+  return not_excited();
+}
+
+/// Every figure that is flagged gets its reason, also where the directions that are open leave it alone.
+void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedFigure> figures,
+                   const Eigen::MatrixXd& told, std::vector<OpenDirection>& open) {
+  const bool has_unlogged_speed = !motor.nuisances.empty();
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const FittedFigure& figure = motor.figures[i];
+    const double variance = figure.exponents.dot(fit.covariance * figure.exponents);
+    constexpr double kMostly = 0.5;
+    if (figures[i].is_identifiable || (told.transpose() * figure.exponents).squaredNorm() > kMostly * variance) {
+      continue;
+    }
+    const Answer answer = has_unlogged_speed && is_of_stator(motor, figure) ? speed_unlogged() : answer_to(motor, figure, fit, seen);
+    const auto same = std::ranges::find_if(
+        open, [&](const OpenDirection& each) { return each.why == answer.why && each.experiment == answer.experiment; });
+    if (same != open.end()) {
+      same->what += fmt::format(", {}", figure.name);
+      same->left_sd = std::max(same->left_sd, std::sqrt(variance));
+    } else {
+      open.push_back(open_direction(figure.name, answer));
+      open.back().left_sd = std::sqrt(variance);
+    }
+  }
 }
 
 }  // namespace
 
-std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs) {
+bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
+  return std::ranges::any_of(runs, [&](const MeasuredRun& run) {
+    return std::ranges::any_of(run.at, [&](const OperatingPoint<double>& at) {
+      return (motor.heat == HeatInput::current ? at.current_rms_A : at.input_power_W) > 0.0;
+    });
+  });
+}
+
+bool rests_on_watts(const MotorModel& motor, const FittedFigure& figure) {
+  const Roles roles = roles_of(motor.model);
+  const double by_scale = component(figure.exponents, roles.winding_capacity) - component(figure.exponents, roles.winding_stator) +
+                          component(figure.exponents, roles.stator_capacity) - component(figure.exponents, roles.stator_ambient);
+  return std::abs(by_scale) > 0.5;
+}
+
+std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
+                                           std::span<const CalibratedFigure> figures) {
   const Eigen::Index count = motor.model.free_count();
-  const Eigen::MatrixXd data = fit.data_triangle.topLeftCorner(count, count);
-  // In units of what was known before, each direction's information adds to 1.
-  const Eigen::LLT<Eigen::MatrixXd> prior(motor.model.prior.precision);
-  const Eigen::MatrixXd inverse_root = prior.matrixU().solve(Eigen::MatrixXd::Identity(count, count));
-  const Eigen::MatrixXd relative = data * inverse_root;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(relative.transpose() * relative);
+  const Eigen::MatrixXd triangle = fit.data_triangle.topLeftCorner(count, count);
+  Eigen::MatrixXd data = triangle.transpose() * triangle;
+  const Eigen::MatrixXd known = motor.model.prior.precision.inverse();
+  std::vector<Eigen::Index> asked;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    // What no run moves at all would mix at will with every other direction that is not told.
+    constexpr double kNothing = 1e-9;
+    const bool is_nuisance = std::ranges::find(motor.nuisances, static_cast<int>(i)) != motor.nuisances.end();
+    if (is_nuisance) {
+      data(i, i) += motor.model.prior.precision(i, i);
+      data -= data.col(i).eval() * data.row(i).eval() / data(i, i);
+    } else if (data(i, i) * known(i, i) > kNothing) {
+      asked.push_back(i);
+    }
+  }
+  const Eigen::MatrixXd prior_covariance = known(asked, asked);
+  const Eigen::MatrixXd root = prior_covariance.llt().matrixL();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(root.transpose() * data(asked, asked) * root);
   const Look seen = look(motor, runs);
   const bool was_fitted = std::ranges::find(motor.figures, Origin::measured, &FittedFigure::origin) != motor.figures.end();
   std::vector<OpenDirection> open;
-  for (Eigen::Index i = 0; i < count; ++i) {
+  if (!motor.nuisances.empty()) {
+    open.push_back(open_direction(std::string(kLossAtUnloggedSpeed), speed_unlogged()));
+    // Before anything else: what the other runs would tell hangs on it too.
+    open.back().left_sd = std::numeric_limits<double>::infinity();
+  }
+  Eigen::MatrixXd told(count, 0);
+  for (Eigen::Index i = 0; i < solver.eigenvalues().size(); ++i) {
     const double information = std::max(0.0, solver.eigenvalues()[i]);
     // By how much parameters may still move together: a fit before this one can have told what these runs do not.
-    const Eigen::VectorXd left = inverse_root * solver.eigenvectors().col(i) / std::sqrt(1.0 + information);
+    Eigen::VectorXd left = Eigen::VectorXd::Zero(count);
+    left(asked) = root * solver.eigenvectors().col(i) / std::sqrt(1.0 + information);
     constexpr double kWellKnown = 0.03;
     const bool is_known = was_fitted && left.cwiseAbs().maxCoeff() < kWellKnown;
     if (1.0 / (1.0 + information) > kToldShare && !is_known) {
-      open.push_back(in_words(motor, left.normalized(), seen));
+      open.push_back(open_direction(movement(motor.model, left.normalized()), answer_to(motor, left.normalized(), seen)));
+      open.back().left_sd = left.norm();
+      told.conservativeResize(Eigen::NoChange, told.cols() + 1);
+      told.rightCols(1) = left;
     }
   }
+  name_the_rest(motor, fit, seen, figures, told, open);
   return open;
+}
+
+std::string next_experiment(std::span<const OpenDirection> open) {
+  // The cheapest that answers what weighs, not what is open by a little.
+  constexpr double kWeighs_share = 0.5;
+  double most_sd = 0.0;
+  for (const OpenDirection& each : open) {
+    most_sd = std::max(most_sd, each.left_sd);
+  }
+  const OpenDirection* best = nullptr;
+  for (const OpenDirection& each : open) {
+    if (each.left_sd >= kWeighs_share * most_sd && (!best || each.experiment_min < best->experiment_min)) {
+      best = &each;
+    }
+  }
+  return best ? best->experiment : "";
 }
 
 }  // namespace heatsoak

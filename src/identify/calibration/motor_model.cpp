@@ -105,15 +105,18 @@ class ModelBuilder {
 
   void heat_of_current() {
     const Figure& resistance = motor_.figures.find("terminal_resistance")->second;
-    if (resistance.spread) {
+    // Published or measured, a bare figure is as good as the scale gets; a guess is not.
+    if (resistance.spread || resistance.origin == Origin::estimated) {
       figure("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
       // A stated resistance does not depend on the mounting: its own spread is all that there is.
-      all_.figures.back().prior_sd = std::min(all_.figures.back().prior_sd, prior_sd_of_spread(resistance));
+      if (resistance.spread) {
+        all_.figures.back().prior_sd = std::min(all_.figures.back().prior_sd, prior_sd_of_spread(resistance));
+      }
     } else {
       all_.held.emplace_back("terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
     }
     if (!with_speed_) {
-      all_.held.emplace_back("no_load_current is held: the logs have no speed, so that the loss it stands for is not computed");
+      all_.held.emplace_back("no_load_current is held: not every log has the speed that the loss it stands for goes with");
     } else if (motor_.nominal.no_load_current_A > 0.0) {
       all_.needed.push_back(Signal::speed);
       figure("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});

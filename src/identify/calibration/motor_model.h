@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "identify/measurement/recording.h"
@@ -11,6 +12,9 @@
 #include "motor/motor.h"
 
 namespace heatsoak {
+
+/// Effect with the loss at a speed that no log tells, where it is open.
+inline constexpr std::string_view kLossAtUnloggedSpeed = "loss_at_unlogged_speed";
 
 /// What the heat of a model is computed from.
 enum class HeatInput { current, input_power };
@@ -34,6 +38,7 @@ struct MotorModel {
   HeatInput heat = HeatInput::current;
   std::vector<Signal> needed;
   std::vector<FittedFigure> figures;
+  std::vector<int> nuisances;     ///< free parameters that are no figure of the motor
   std::vector<std::string> held;  ///< what was not fitted and why, in sentences
 };
 
