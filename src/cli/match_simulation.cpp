@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/verdict_words.h"
 #include "report/chart.h"
 #include "simulate/match_trace.h"
 
@@ -283,10 +284,10 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
   }
   const DriveScore& first = all.front().run.score;
   session.say(fmt::format(
-      "{} on {}, {} as {}, seed {}: closed loop of {:.0f} min at 1 kHz, firmware at {:.0f} Hz, {} thermal data\nload: {}\n\n{}\n{}"
+      "{} on {}, {} as {}, seed {}: closed loop of {} at 1 kHz, firmware at {:.0f} Hz, {} thermal data\nload: {}\n\n{}\n{}"
       "hottest: wheel {} at {:.1f} °C (limit {:.0f} °C): {}\n",
       wanted.motor.id, wanted.robot.id, wanted.duty.id, kRoleNames.at(static_cast<std::size_t>(wanted.inputs.role)), wanted.seed,
-      first.time_s / 60.0, 1.0 / control_period_s(wanted.robot), data_quality(wanted.motor), wanted.duty.origin, table(all),
+      duration_text(first.time_s), 1.0 / control_period_s(wanted.robot), data_quality(wanted.motor), wanted.duty.origin, table(all),
       energy_text(all), first.hottest_wheel + 1, first.winding_peak_C, wanted.motor.nominal.winding_limit_C, verdict(wanted, all)));
   for (const Played& each : all) {
     if (const std::string why = not_driven(each.run.score); !why.empty()) {

@@ -15,7 +15,7 @@ namespace lint_checks {
 void Findings::add(LintFinding::Level level, std::string_view key, std::string message) {
   const auto figure = motor_.figures.find(key);
   Location at = figure != motor_.figures.end() ? figure->second.at : Location{motor_.file.string(), 0, 0};
-  list_.push_back({level, std::string(check_), std::move(message), std::move(at)});
+  add_at(level, std::move(at), std::move(message));
 }
 
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys) {
@@ -76,6 +76,7 @@ constexpr std::array kChecks = {
     NamedCheck{"confirmations", lint_checks::confirmations, false},
     NamedCheck{"estimates", lint_checks::estimates, false},
     NamedCheck{"spreads", lint_checks::spreads, false},
+    NamedCheck{"heat_counted_twice", lint_checks::heat_counted_twice, false},
 };
 
 }  // namespace

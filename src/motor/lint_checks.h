@@ -20,13 +20,16 @@ class Findings {
   void error(std::string_view key, std::string message) { add(LintFinding::Level::error, key, std::move(message)); }
   void warning(std::string_view key, std::string message) { add(LintFinding::Level::warning, key, std::move(message)); }
   void note(std::string_view key, std::string message) { add(LintFinding::Level::note, key, std::move(message)); }
-  void error_at(Location at, std::string message) {
-    list_.push_back({LintFinding::Level::error, std::string(check_), std::move(message), std::move(at)});
-  }
+  void error_at(Location at, std::string message) { add_at(LintFinding::Level::error, std::move(at), std::move(message)); }
+  void warning_at(Location at, std::string message) { add_at(LintFinding::Level::warning, std::move(at), std::move(message)); }
   /// `key` is the figure that the finding is about; its place in the file is reported.
   void add(LintFinding::Level level, std::string_view key, std::string message);
 
  private:
+  void add_at(LintFinding::Level level, Location at, std::string message) {
+    list_.push_back({level, std::string(check_), std::move(message), std::move(at)});
+  }
+
   const Motor& motor_;
   std::string_view check_;
   std::vector<LintFinding>& list_;
@@ -86,5 +89,6 @@ void sources(const Motor& motor, Findings& findings);
 void confirmations(const Motor& motor, Findings& findings);
 void estimates(const Motor& motor, Findings& findings);
 void spreads(const Motor& motor, Findings& findings);
+void heat_counted_twice(const Motor& motor, Findings& findings);
 
 }  // namespace heatsoak::lint_checks

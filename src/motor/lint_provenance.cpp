@@ -1,9 +1,10 @@
-// What a motor's figures rest on: who says so, who confirms it, how far it may be wrong.
+// What a motor's figures rest on: who says so, who confirms it, how far it may be wrong, and what counts them twice.
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "base/quantity.h"
+#include "motor/datasheet_network.h"
 #include "motor/lint_checks.h"
 
 namespace heatsoak::lint_checks {
@@ -79,6 +80,17 @@ void spreads(const Motor& motor, Findings& findings) {
     if (!is_agreed(key) && !figure.spread) {
       findings.error(
           key, fmt::format("{} of {} has neither tolerance nor range; expected one of both (see motor_db/README.md)", key, figure.printed));
+    }
+  }
+}
+
+void heat_counted_twice(const Motor& motor, Findings& findings) {
+  for (const MotorEffect& effect : motor.effects) {
+    if (is_loss_of_every_motor(*effect.type)) {
+      findings.warning_at(effect.parameters.front().at,
+                          fmt::format("effects.{} is a {}, but the file's own figures already make one, and both are added; expected "
+                                      "none, or effects that the network does not have",
+                                      effect.name, effect.type->name));
     }
   }
 }

@@ -269,7 +269,9 @@ Description describe_effect(const EffectType& effect) {
     result.json["experiment"] = effect.candidacy.experiment;
   }
   say("reference", effect.reference);
-  result.text += fmt::format("\nat the end of a motor file:\n{}", motor_file_lines(effect));
+  result.text += fmt::format("\nat the end of a motor file{}:\n{}",
+                             is_loss_of_every_motor(effect) ? ", where it is added to the one that the file's figures already make" : "",
+                             motor_file_lines(effect));
   return result;
 }
 

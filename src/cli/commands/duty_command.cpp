@@ -15,6 +15,7 @@
 #include "cli/match_roles.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "cli/verdict_words.h"
 #include "duty/duty.h"
 #include "duty/duty_rows.h"
 #include "duty/game_to_demand.h"
@@ -113,8 +114,8 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
   }
   const MatchLoad load = play_match(inputs, inputs.nominal(), robot, options.seed, planner, kBin_s, observer);
   const RoleLoads roles = play_roles(inputs, robot, options.seed, planner);
-  session.say(fmt::format("{} of {} as {}, seed {}: {:.0f} min, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
-                          kRoleNames[static_cast<std::size_t>(inputs.role)], options.seed, load.duration_s / 60.0, load.play_s,
+  session.say(fmt::format("{} of {} as {}, seed {}: {}, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
+                          kRoleNames[static_cast<std::size_t>(inputs.role)], options.seed, duration_text(load.duration_s), load.play_s,
                           load.distance_m / 1e3, duty.origin, role_table(roles)));
   finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);
   session.answer({{"schema", "heatsoak.duty/1"},

@@ -15,6 +15,7 @@
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
+#include "cli/verdict_words.h"
 #include "duty/duty.h"
 #include "motor/conditions.h"
 #include "motor/motor.h"
@@ -44,7 +45,9 @@ std::vector<std::string> listed_motors(const Options& options) {
   if (options.motors->find(',') == std::string::npos || std::filesystem::exists(*options.motors, unreadable)) {
     return {*options.motors};
   }
-  return CLI::detail::split(*options.motors, ',');
+  std::vector<std::string> names = CLI::detail::split(*options.motors, ',');
+  std::ranges::for_each(names, [](std::string& name) { CLI::detail::trim(name); });
+  return names;
 }
 
 /// A model takes the place of the motor that its fit began with, or stands alone where no motors are named.
@@ -84,23 +87,17 @@ std::string peak_text(const Spread95& peak) {
                                  : fmt::format("{:4.0f}", peak.nominal);
 }
 
-std::string time_text(const std::optional<double>& time_s) {
-  if (!time_s) {
-    return "–";
-  }
-  return *time_s < 120.0 ? fmt::format("{:.0f} s", *time_s) : fmt::format("{:.0f} min", *time_s / 60.0);
-}
-
 std::string row(std::size_t rank, const MotorEvaluation& each) {
   const std::string probability =
       std::isfinite(each.probability_over_limit) ? fmt::format("{:.0f} %", 100.0 * each.probability_over_limit) : "–";
-  return fmt::format(
-      "{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:6.0f} {:>5}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank, each.motor_id,
-      to_string(each.verdict), each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor),
-      peak_text(each.winding_peak_C), each.winding_limit_C, each.stator_peak_C.nominal,
-      each.stator_limit_C ? fmt::format("{:.0f}", *each.stator_limit_C) : "–", probability, time_text(each.time_to_limit_s),
-      nearest_margin_K(each), each.margin_A && each.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *each.margin_A) : "–",
-      each.current_rms_A, each.data_quality);
+  return fmt::format("{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:6.0f} {:>5}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank,
+                     each.motor_id, to_string(each.verdict),
+                     each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor), peak_text(each.winding_peak_C),
+                     each.winding_limit_C, each.stator_peak_C.nominal,
+                     each.stator_limit_C ? fmt::format("{:.0f}", *each.stator_limit_C) : "–", probability,
+                     each.time_to_limit_s ? duration_text(*each.time_to_limit_s) : "–", nearest_margin_K(each),
+                     each.margin_A && each.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *each.margin_A) : "–",
+                     each.current_rms_A, each.data_quality);
 }
 
 /// How far the number of samples alone can be trusted.
@@ -121,16 +118,8 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
   bool estimated = false;
   for (const MotorEvaluation& each : results) {
     estimated = estimated || each.data_quality == "estimated";
-    if (each.verdict == Verdict::infeasible && each.limiting_factor == LimitingFactor::voltage) {
-      text += fmt::format(
-          "{}: needs up to {:.1f} V when hot, {:.1f} V are available: {:.0f} % of the demanded current at the worst moment, too little for "
-          "{:.0f} % of the time\n",
-          each.motor_id, each.highest_voltage_V, robot.available_V(), 100.0 * each.least_torque_share, 100.0 * each.short_time_share);
-    } else if (each.verdict == Verdict::infeasible) {
-      text += fmt::format(
-          "{}: the driver's {:.1f} A are {:.0f} % of the demanded current at the worst moment, too little for {:.0f} % of the time\n",
-          each.motor_id, robot.current_limit_A, 100.0 * each.least_torque_share, 100.0 * each.short_time_share);
-    } else if (each.short_probability > kMarginalProbability) {
+    text += why_infeasible(each, robot);
+    if (each.verdict != Verdict::infeasible && each.short_probability > kMarginalProbability) {
       text += fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})\n", each.motor_id,
                           100.0 * each.short_probability, to_string(each.short_limit));
     }
@@ -171,7 +160,7 @@ std::string silent_effects(const std::vector<Motor>& motors) {
 std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, double duration_s,
                    const Options& options) {
   std::string text =
-      fmt::format("{} on {}: {:.0f} min, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duration_s / 60.0, duty.ambient_C.value,
+      fmt::format("{} on {}: {}, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duration_text(duration_s), duty.ambient_C.value,
                   options.evaluate.samples > 0 ? fmt::format("{} sample{} of all declared tolerances, seed {}", options.evaluate.samples,
                                                              options.evaluate.samples == 1 ? "" : "s", options.evaluate.seed)
                                                : "nominal figures only",

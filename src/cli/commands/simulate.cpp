@@ -15,6 +15,7 @@
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
+#include "cli/verdict_words.h"
 #include "motor/conditions.h"
 #include "report/chart.h"
 #include "select/trace.h"
@@ -78,11 +79,12 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
-  session.say(fmt::format(
-      "{} on {}, {} ({:.0f} min, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms "
-      "current {:.2f} A: {}\n{}",
-      motor.id, robot.id, duty.id, duration_s / 60.0, result.wheel, result.data_quality, duty.origin, result.winding_peak_C.nominal,
-      result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A, to_string(result.verdict), balance_text(trace)));
+  session.say(
+      fmt::format("{} on {}, {} ({}, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms "
+                  "current {:.2f} A: {}\n{}{}",
+                  motor.id, robot.id, duty.id, duration_text(duration_s), result.wheel, result.data_quality, duty.origin,
+                  result.winding_peak_C.nominal, result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A,
+                  to_string(result.verdict), why_infeasible(result, robot), balance_text(trace)));
   for (const std::string& file : {options.out, options.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }
