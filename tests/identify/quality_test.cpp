@@ -177,6 +177,22 @@ TEST(ClockOffsets, DelayOfTheTemperaturesIsFound) {
   }
 }
 
+/// Loggers that were started by hand one after the other. What repeats itself soon would look alike at several delays.
+TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
+  for (const double delay_s : {-60.0, 25.0, 60.0}) {
+    SyntheticLog log;
+    log.delay_s = delay_s;
+    log.current_A = [](double t) {
+      Random random(static_cast<std::uint64_t>(t / 20.0), 5);
+      return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
+    };
+    const ClockOffset offset = read(log.csv()).quality.clock_offsets[0];
+    ASSERT_TRUE(offset.delay_s) << offset.why_not;
+    EXPECT_NEAR(*offset.delay_s, delay_s, 3.0 * offset.delay_uncertainty_s);
+    EXPECT_LT(offset.delay_uncertainty_s, 2.0);
+  }
+}
+
 TEST(ClockOffsets, SteadyHeatTellsNothing) {
   SyntheticLog log;
   log.current_A = [](double t) { return 5.0 + 1e-3 * std::sin(t / 400.0); };

@@ -49,12 +49,12 @@ OnPaper on_paper(const TwoNode& motor, const std::vector<Interval>& cycle) {
           0.5L * (a + d) + std::sqrt(0.25L * (a - d) * (a - d) + b * c)};
 }
 
-constexpr TwoNode kMotor{.resistance_25C_ohm = 0.608,
-                         .temperature_coefficient_per_K = 0.0039,
-                         .winding_stator_K_per_W = 4.1,
-                         .stator_ambient_K_per_W = 3.56,
-                         .winding_J_per_K = 7.2,
-                         .stator_J_per_K = 50.0};
+constexpr TwoNode kFlatMotor{.resistance_25C_ohm = 0.608,
+                             .temperature_coefficient_per_K = 0.0039,
+                             .winding_stator_K_per_W = 4.1,
+                             .stator_ambient_K_per_W = 3.56,
+                             .winding_J_per_K = 7.2,
+                             .stator_J_per_K = 50.0};
 
 std::vector<Interval> cycle_of(double current_A, double on_s, double off_s) { return on_off(current_A, on_s, off_s, 1); }
 
@@ -98,22 +98,22 @@ TEST(PeriodicState, is_the_cycle_on_paper_for_random_motors_and_cycles) {
 }
 
 TEST(PeriodicState, of_any_length_is_between_a_held_current_and_its_steady_parts) {
-  const double held_C = static_cast<double>(kMotor.rest_C(current_point(6.0 * std::sqrt(0.4)))[winding]);
+  const double held_C = static_cast<double>(kFlatMotor.rest_C(current_point(6.0 * std::sqrt(0.4)))[winding]);
   double before_C = held_C - 1e-3;
   for (const double cycle_s : {2e-9, 1e-6, 1e-3, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e6, 2e9}) {
-    const PeriodicState result = periodic_state(kMotor.network(), cycle_of(6.0, 0.4 * cycle_s, 0.6 * cycle_s));
+    const PeriodicState result = periodic_state(kFlatMotor.network(), cycle_of(6.0, 0.4 * cycle_s, 0.6 * cycle_s));
     ASSERT_FALSE(result.runaway) << cycle_s;
     EXPECT_GE(result.mean_C[winding], before_C) << cycle_s;
     EXPECT_GE(result.peak_C[winding], result.mean_C[winding]) << cycle_s;
     before_C = result.mean_C[winding] - 1e-4;
   }
-  const double apart_C = 0.4 * static_cast<double>(kMotor.rest_C(current_point(6.0))[winding]) + 0.6 * 25.0;
+  const double apart_C = 0.4 * static_cast<double>(kFlatMotor.rest_C(current_point(6.0))[winding]) + 0.6 * 25.0;
   EXPECT_NEAR(before_C, apart_C, 1e-2);
 }
 
 TEST(PeriodicState, held_current_is_the_rest) {
-  const PeriodicState result = periodic_state(kMotor.network(), cycle_of(4.0, 10.0, 0.0));
-  const TwoNode::Pair rest_C = kMotor.rest_C(current_point(4.0));
+  const PeriodicState result = periodic_state(kFlatMotor.network(), cycle_of(4.0, 10.0, 0.0));
+  const TwoNode::Pair rest_C = kFlatMotor.rest_C(current_point(4.0));
   for (const std::size_t node : {0U, 1U}) {
     EXPECT_NEAR(result.mean_C[node], static_cast<double>(rest_C[node]), 1e-5);
     EXPECT_NEAR(result.peak_C[node], static_cast<double>(rest_C[node]), 1e-5);
@@ -122,7 +122,7 @@ TEST(PeriodicState, held_current_is_the_rest) {
 
 // A body that takes hours to warm: waiting until one cycle is much like the next stops long before.
 TEST(PeriodicState, a_slow_body_is_warm_however_short_the_cycle) {
-  Network network = kMotor.network();
+  Network network = kFlatMotor.network();
   add_body(network, {0.15, 0.2, 3000.0});
   double shorter_C = 0.0;
   for (const double cycle_s : {0.1, 1.0, 10.0, 100.0}) {
@@ -145,10 +145,10 @@ TEST(PeriodicState, a_slow_body_is_warm_however_short_the_cycle) {
 }
 
 TEST(PeriodicState, a_body_that_nothing_touches_stays_at_ambient) {
-  Network network = kMotor.network();
+  Network network = kFlatMotor.network();
   add_body(network, {0.0, 0.0, 100.0});
   const PeriodicState result = periodic_state(network, cycle_of(4.0, 4.0, 6.0));
-  const PeriodicState without = periodic_state(kMotor.network(), cycle_of(4.0, 4.0, 6.0));
+  const PeriodicState without = periodic_state(kFlatMotor.network(), cycle_of(4.0, 4.0, 6.0));
   ASSERT_FALSE(result.runaway);
   EXPECT_NEAR(result.mean_C[2], 25.0, 1e-9);
   EXPECT_NEAR(result.mean_C[winding], without.mean_C[winding], 1e-4);
@@ -157,7 +157,7 @@ TEST(PeriodicState, a_body_that_nothing_touches_stays_at_ambient) {
 
 // Above the critical current of the cold motor; the fourth power of the temperature catches it, hot.
 TEST(PeriodicState, radiation_may_stop_what_grows_at_first) {
-  TwoNode motor = kMotor;
+  TwoNode motor = kFlatMotor;
   motor.stator_ambient_K_per_W = 20.0;
   Network network = motor.network();
   const double rms_A = 1.05 * motor.critical_current_A();
@@ -181,18 +181,18 @@ TEST(PeriodicState, radiation_may_stop_what_grows_at_first) {
 
 TEST(PeriodicState, destroyed_in_the_first_cycle_says_when) {
   const std::vector<Interval> cycle = cycle_of(20.0, 100.0, 1e5);
-  const PeriodicState result = periodic_state(kMotor.network(), cycle);
+  const PeriodicState result = periodic_state(kFlatMotor.network(), cycle);
   EXPECT_TRUE(result.runaway);
   EXPECT_TRUE(result.mean_C.empty());
   ASSERT_TRUE(result.destroyed_s.has_value());
-  const auto above = [&](long double time_s) { return kMotor.after(time_s, {25.0L, 25.0L}, cycle[0].at)[winding] - kDestroyed_C; };
+  const auto above = [&](long double time_s) { return kFlatMotor.after(time_s, {25.0L, 25.0L}, cycle[0].at)[winding] - kDestroyed_C; };
   EXPECT_NEAR(*result.destroyed_s, static_cast<double>(bisected(0.0L, 100.0L, above)), 3.0);
 }
 
 TEST(PeriodicState, destroyed_over_many_cycles_is_a_runaway_too) {
   // At 0.99 it would settle at 2200 °C.
   for (const double share : {0.99, 1.05}) {
-    const PeriodicState result = periodic_state(kMotor.network(), cycle_of(share * kMotor.critical_current_A(), 10.0, 0.0));
+    const PeriodicState result = periodic_state(kFlatMotor.network(), cycle_of(share * kFlatMotor.critical_current_A(), 10.0, 0.0));
     EXPECT_TRUE(result.runaway) << share;
     EXPECT_FALSE(result.destroyed_s.has_value()) << share;
   }

@@ -226,22 +226,16 @@ std::optional<double> bottom_of(std::span<const double> delays_s, const std::vec
   return delays_s[best] + (curvature > 0.0 ? 0.5 * (delays_s[1] - delays_s[0]) * (left - right) / curvature : 0.0);
 }
 
-}  // namespace
-
-ClockOffset clock_offset(const Recording& recording, const Channel& temperature, const Channel& heat_input, double noise_K) {
+/// Sought as far as reach_s to either side of around_s.
+ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, double noise_K, double period_s) {
   ClockOffset offset;
-  offset.temperature = temperature.quantity.key;
-  offset.heat_input = heat_input.quantity.key;
-  const double duration_s = recording.time_s.back() - recording.time_s.front();
-  const double reach_s = std::min(0.1 * duration_s, std::max(10.0, 10.0 * usual_period_s(recording.time_s)));
-  DelayScan scan(recording, temperature, heat_input);
-  if (scan.place_windows(noise_K, reach_s) < kFewestWindows) {
+  if (scan.place_windows(noise_K, std::abs(around_s) + reach_s) < kFewestWindows) {
     offset.why_not = "the stretches without a gap are too short";
     return offset;
   }
   std::vector<double> delays_s;
   for (int k = 0; k < kDelays; ++k) {
-    delays_s.push_back(reach_s * (2.0 * k / (kDelays - 1) - 1.0));
+    delays_s.push_back(around_s + reach_s * (2.0 * k / (kDelays - 1) - 1.0));
   }
   const auto errors = scan.errors(delays_s);
   const std::optional<double> delay_s = bottom_of(delays_s, errors, kParts);
@@ -263,13 +257,34 @@ ClockOffset clock_offset(const Recording& recording, const Channel& temperature,
   const double mean_s = sum_s / kParts;
   // Jackknife; a step of the heat happens somewhere between two rows.
   const double by_parts_s = std::sqrt(std::max(0.0, (kParts - 1.0) * (sum_s2 / kParts - mean_s * mean_s)));
-  const double standard_error_s = std::hypot(by_parts_s, usual_period_s(recording.time_s) / std::sqrt(12.0));
+  const double standard_error_s = std::hypot(by_parts_s, period_s / std::sqrt(12.0));
   if (standard_error_s > kTooWide_share * reach_s) {
     offset.why_not = fmt::format("parts of the log disagree by {} s", significant(standard_error_s, 2));
     return offset;
   }
   offset.delay_s = *delay_s;
   offset.delay_uncertainty_s = standard_error_s;
+  return offset;
+}
+
+}  // namespace
+
+ClockOffset clock_offset(const Recording& recording, const Channel& temperature, const Channel& heat_input, double noise_K) {
+  const double period_s = usual_period_s(recording.time_s);
+  const double farthest_s = 0.1 * (recording.time_s.back() - recording.time_s.front());
+  const double near_s = std::min(farthest_s, std::max(10.0, 10.0 * period_s));
+  DelayScan scan(recording, temperature, heat_input);
+  ClockOffset offset = offset_within(0.0, near_s, scan, noise_K, period_s);
+  // Two loggers started by hand are off by more.
+  constexpr double kByHand = 10.0;
+  if (!offset.delay_s && farthest_s > near_s) {
+    const ClockOffset wide = offset_within(0.0, std::min(farthest_s, kByHand * near_s), scan, noise_K, period_s);
+    if (wide.delay_s && std::abs(*wide.delay_s) > near_s) {
+      offset = offset_within(*wide.delay_s, near_s, scan, noise_K, period_s);
+    }
+  }
+  offset.temperature = temperature.quantity.key;
+  offset.heat_input = heat_input.quantity.key;
   return offset;
 }
 
