@@ -35,6 +35,8 @@ target_compile_options(heatsoak_settings INTERFACE
 if(HEATSOAK_SANITIZE)
   target_compile_options(heatsoak_settings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(heatsoak_settings INTERFACE -fsanitize=address,undefined)
+  # Ceres is compiled without them, and shares templates of Eigen with this: both have to allocate alike.
+  target_compile_definitions(heatsoak_settings INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 if(HEATSOAK_COVERAGE)
   target_compile_options(heatsoak_settings INTERFACE --coverage -fprofile-update=atomic)

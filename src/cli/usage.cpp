@@ -33,7 +33,7 @@ std::vector<Group> groups_of(std::span<const char* const> words) {
 std::string complaint(const Command& command, Group group) {
   Session nobody;
   CLI::App app;
-  static_cast<void>(command.declare(app, nobody));
+  const auto run = command.declare(app, nobody);  // holds what the options write to
   std::ranges::reverse(group);  // as CLI11 wants them
   try {
     app.parse(std::move(group));

@@ -71,7 +71,9 @@ ProgramRun run(const std::vector<std::string>& arguments, const RunOptions& opti
   }
   ProgramRun result;
   result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+#ifndef __SANITIZE_ADDRESS__
   result.memory_MB = static_cast<double>(used.ru_maxrss) / 1024.0;
+#endif
   result.out = options.stdout_file.empty() ? content_of(out) : "";
   result.err = options.stderr_file.empty() ? content_of(err) : "";
   return result;

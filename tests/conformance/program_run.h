@@ -29,7 +29,7 @@ struct ProgramRun {
   int exit_code = -1;  ///< 128 + signal where a signal ended it
   std::string out;
   std::string err;
-  double memory_MB = 0.0;  ///< largest resident set
+  double memory_MB = 0.0;  ///< largest resident set; 0 where a sanitizer keeps what is freed
 
   /// The JSON on stdout, and nothing but JSON.
   [[nodiscard]] nlohmann::json json() const;
