@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
@@ -32,11 +33,14 @@ constexpr std::string_view kFooter =
 constexpr std::string_view kWithoutMeasured =
     "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
 
+/// An option that stands where a file should is none.
+bool is_output(std::string_view word) { return word == "-" || !word.starts_with('-'); }
+
 /// CLI11 throws on bad usage before any option is stored, so the target of a JSON error is looked up by hand.
 std::string json_target(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
-    if (word == "--json" && i + 1 < argc) {
+    if (word == "--json" && i + 1 < argc && is_output(argv[i + 1])) {
       return argv[i + 1];
     }
     if (word.starts_with("--json=")) {
@@ -44,6 +48,17 @@ std::string json_target(int argc, const char* const* argv) {
     }
   }
   return {};
+}
+
+/// Whether an answer may replace what is there: whoever takes --json for a switch names a file of his own behind it.
+bool may_take_json(const std::filesystem::path& path) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(path, unreadable)) {
+    return true;
+  }
+  std::ifstream file(path);
+  const auto first = (file >> std::ws).peek();
+  return first == '{' || first == std::ifstream::traits_type::eof();
 }
 
 /// "heatsoak evaluate", as far as the line names a verb.
@@ -116,7 +131,12 @@ void Session::add_data_option(CLI::App& app) {
 }
 
 void Session::add_json_option(CLI::App& app) {
-  app.add_option("--json", json_target_, "write the answer as JSON; - is stdout, the text then goes to stderr")->type_name("FILE");
+  const auto names_a_file = [](const std::string& word) {
+    return is_output(word) ? "" : fmt::format("{} is no name of a file; expected one, or - for stdout", word);
+  };
+  app.add_option("--json", json_target_, "write the answer as JSON; - is stdout, the text then goes to stderr")
+      ->type_name("FILE")
+      ->check(names_a_file);
 }
 
 DataFolders Session::folders() const { return DataFolders::find(database_); }
@@ -145,6 +165,10 @@ void Session::finish() {
   }
   for (const OutputFile& each : files_) {
     check(each.path);
+  }
+  if (read.empty() && !json_target_.empty() && !may_take_json(json_target_)) {
+    read.push_back(
+        {{json_target_}, {}, "holds something else than an answer, which --json would write over; give the answer another name"});
   }
   if (!read.empty()) {
     throw Failure(ExitCode::bad_input, "", std::move(read));

@@ -22,14 +22,16 @@ Lanes worst_excess_K(const std::vector<Lanes>& peak_C, std::span<const NodeLimit
 std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals,
                                               std::span<const NodeLimit> limits) {
   constexpr int kRounds = 4;
+  constexpr double kWider = 16.0;
+  constexpr double kFarthest = 1e6;
   double low = 0.0;
-  double high = 16.0;
+  double high = kWider;
   double share = 0.5;
   std::vector<Lanes> parameters;
   for (const double value : network.values()) {
     parameters.emplace_back(Lanes::Constant(value));
   }
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRounds;) {
     const Lanes factor = Lanes::LinSpaced(low, high);
     const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(intervals.front().at.ambient_C));
     EnsembleRun run(network, parameters, start_C);
@@ -51,11 +53,17 @@ std::optional<double> bearable_current_factor(const Network& network, std::span<
       return std::nullopt;
     }
     if (within + 1 == kLanes) {
-      return high;
+      if (high >= kFarthest) {
+        return std::nullopt;
+      }
+      low = high;
+      high *= kWider;
+      continue;
     }
     low = factor[within];
     high = factor[within + 1];
     share = -excess_K[within] / (excess_K[within + 1] - excess_K[within]);
+    ++round;
   }
   return std::lerp(low, high, share);
 }

@@ -9,8 +9,8 @@
 
 namespace heatsoak {
 
-/// The factor on all currents, at the same speeds, with which the first node just reaches its limit, 0 … 16: eight factors at a time, each
-/// round between the two that enclose it, at last by their temperatures. Nothing where even no current is too much.
+/// The factor on all currents, at the same speeds, with which the first node just reaches its limit: eight factors at a time, each
+/// round between the two that enclose it, at last by their temperatures. Nothing where even no current is too much, or no current heats.
 std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals,
                                               std::span<const NodeLimit> limits);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -202,6 +203,21 @@ NominalRun run_nominal(const Network& network, const MotorSample& sample, const 
   return run;
 }
 
+/// As much of `most` times the load as voltage and driver let through while the winding is as hot as it may be.
+double deliverable_factor(const MotorValues& values, const Robot& robot, const Duty& duty, const WheelDemand& wheel, double most) {
+  const auto is_delivered = [&](double factor) {
+    DutySample sample = nominal_sample(duty);
+    sample.load *= factor;
+    return feasibility(values, robot, duty.kind, wheel, sample, values.winding_limit_C).short_time_share <= kTolerableShortTime;
+  };
+  if (most <= 1.0 || is_delivered(most) || !is_delivered(1.0)) {
+    return most;
+  }
+  constexpr int kBits = 10;
+  const auto is_short = [&](double factor) { return is_delivered(factor) ? -1.0 : 1.0; };
+  return boost::math::tools::bisect(is_short, 1.0, most, boost::math::tools::eps_tolerance<double>(kBits)).first;
+}
+
 void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                       const EvaluateOptions& options) {
   const Motor& motor = *work.motor;
@@ -244,7 +260,8 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
     result.stator_margin_K = *result.stator_limit_C - transient.peak_C[stator];
   }
   if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, limits)) {
-    result.margin_A = *factor * current_rms_A(run.intervals) - result.current_rms_A;
+    const double driven = deliverable_factor(sample.values, robot, duty, *work.wheel, *factor);
+    result.margin_A = driven * current_rms_A(run.intervals) - result.current_rms_A;
   }
   std::size_t first_limit = 0;
   for (std::size_t i = 0; i < limits.size(); ++i) {

@@ -77,13 +77,13 @@ struct MotorEvaluation {
   /// without samples.
   std::optional<Interval95> winding_p95_interval_C;
   std::optional<Interval95> probability_interval;
-  std::optional<double> time_to_limit_s;                 ///< nominal, first of the limits
-  double current_rms_A = 0.0;                            ///< heating current over the whole duty
-  double margin_K = 0.0;                                 ///< winding limit minus nominal peak
-  std::optional<double> stator_margin_K;                 ///< the same of the stator, where it has a limit
-  std::optional<double> margin_A;                        ///< how much more rms current both bear at the same speeds
-  double least_torque_share = 1.0;                       ///< delivered over demanded, worst moment
-  double short_time_share = 0.0;                         ///< part of the time in which the demand is not met, hot but within the limit
+  std::optional<double> time_to_limit_s;  ///< nominal, first of the limits
+  double current_rms_A = 0.0;             ///< heating current over the whole duty
+  double margin_K = 0.0;                  ///< winding limit minus nominal peak
+  std::optional<double> stator_margin_K;  ///< the same of the stator, where it has a limit
+  std::optional<double> margin_A;   ///< how much more rms current both bear at the same speeds, as far as voltage and driver let it through
+  double least_torque_share = 1.0;  ///< delivered over demanded, worst moment
+  double short_time_share = 0.0;    ///< part of the time in which the demand is not met, hot but within the limit
   LimitingFactor short_limit = LimitingFactor::voltage;  ///< what cuts the current first, if anything does
   double short_probability = 0.0;  ///< samples that miss the demand for more than kTolerableShortTime; NaN without samples
   double highest_voltage_V = 0.0;  ///< needed at the terminals, hot

@@ -10,6 +10,12 @@
 
 namespace heatsoak {
 
+namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
 double quantile(std::span<const double> sorted_C, double share) {
   const double place = share * static_cast<double>(sorted_C.size() - 1);
   const auto below = static_cast<std::size_t>(place);
@@ -36,7 +42,7 @@ DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<cons
   std::vector<double> sorted_C(samples_C.begin(), samples_C.end());
   std::ranges::sort(sorted_C);
   const boost::math::binomial_distribution<> below(count, 0.95);
-  const auto at = [&](double place) { return sorted_C[static_cast<std::size_t>(std::clamp(place, 0.0, count - 1.0))]; };
+  const auto at = [&](double place) { return place > count - 1.0 ? kNotKnown : sorted_C[static_cast<std::size_t>(std::max(0.0, place))]; };
   return {{at(boost::math::quantile(below, kTail) - 1.0), at(boost::math::quantile(boost::math::complement(below, kTail)))},
           {std::max(0.0, middle - half), std::min(1.0, middle + half)}};
 }
@@ -68,7 +74,12 @@ DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const 
   }
   std::ranges::sort(p95_C);
   std::ranges::sort(probability);
-  return {{quantile(p95_C, 0.025), quantile(p95_C, 0.975)}, {quantile(probability, 0.025), quantile(probability, 0.975)}};
+  // What no draw has shown may still be: without a hit in n draws up to 3/n of them (Hanley and Lippman-Hand 1983).
+  constexpr double kUnseen = 0.05;
+  constexpr std::size_t kFewestDraws = 20;
+  const double unseen_share = 1.0 - std::pow(kUnseen, 1.0 / static_cast<double>(shared.draw_count));
+  return {{quantile(p95_C, 0.025), shared.draw_count < kFewestDraws ? kNotKnown : quantile(p95_C, 0.975)},
+          {std::min(quantile(probability, 0.025), 1.0 - unseen_share), std::max(quantile(probability, 0.975), unseen_share)}};
 }
 
 }  // namespace heatsoak

@@ -21,7 +21,8 @@ struct SharedDraws {
   std::size_t block_size = 1;
   std::uint64_t seed = 1;
 };
-/// 95 % confidence intervals, as far as the number of draws or samples goes.
+/// 95 % confidence intervals, as far as the number of draws or samples goes. The percentile's high end is infinite where they are too few
+/// to tell: fewer than 72 samples that share nothing, or than 20 draws.
 struct DrawIntervals {
   Interval95 p95;
   Interval95 probability;

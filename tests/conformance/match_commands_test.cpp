@@ -161,6 +161,28 @@ TEST(Describe, a_duty_shape_is_a_file_to_start_from) {
   }
 }
 
+/// Whoever takes --json for a switch names a file of his own behind it.
+TEST(Outputs, an_answer_replaces_answers_only) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  write(folder.path() / "mine.toml", robot);
+  for (const Words& line : {Words{"lint", "--json", "mine.toml"}, Words{"steady", "--json=mine.toml"},
+                            Words{"evaluate", "--sampels", "0", "--json", "mine.toml"}, Words{"list", "motors", "--json", "mine.toml"}}) {
+    const ProgramRun result = run(line, options);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("which --json would write over")) << result.err;
+    EXPECT_EQ(content_of(folder.path() / "mine.toml"), robot);
+  }
+  EXPECT_EQ(run({"lint", "--json", "--db", "."}, options).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "--db"));
+  write(folder.path() / "empty.json", "");
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(run({"list", "motors", "--json", "empty.json"}, options).exit_code, 0) << "an answer replaces one before";
+  }
+}
+
 TEST(Outputs, never_replace_what_the_command_reads) {
   const TemporaryFolder folder;
   RunOptions options;
@@ -172,7 +194,7 @@ TEST(Outputs, never_replace_what_the_command_reads) {
   for (const Words& line : {Words{"duty", "--out", "mine.csv"} + duty, Words{"evaluate"} + duty + evaluate}) {
     const ProgramRun result = run(line, options);
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("would write over it"));
+    EXPECT_THAT(result.err, HasSubstr("would write over"));
     EXPECT_EQ(content_of(folder.path() / "mine.toml"), robot);
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "mine.csv"));
   }

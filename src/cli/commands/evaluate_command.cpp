@@ -109,8 +109,9 @@ std::string sampling_error(const std::vector<MotorEvaluation>& results) {
     p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
   }
   return fmt::format(
-      "other samples would give P over within ±{:.0f} points and the upper end of the peak within ±{:.0f} K at most (95 %)\n",
-      std::ceil(100.0 * probability_ratio), std::ceil(p95_K));
+      "other samples would give P over within ±{:.0f} points and the upper end of the peak {} (95 %)\n",
+      std::ceil(100.0 * probability_ratio),
+      std::isfinite(p95_K) ? fmt::format("within ±{:.0f} K at most", std::ceil(p95_K)) : "anywhere above: take more samples");
 }
 
 std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& robot, const EvaluateOptions& options) {
@@ -123,11 +124,11 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
       text += fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})\n", each.motor_id,
                           100.0 * each.short_probability, to_string(each.short_limit));
     }
-    if (!options.draws.empty() && each.probability_interval->high > 0.0 && each.verdict != Verdict::infeasible) {
-      text += fmt::format(
-          "{}: other draws of the duty would give P over {:.0f} to {:.0f} % and a 95th percentile of {:.0f} to {:.0f} °C (95 %)\n",
-          each.motor_id, 100.0 * each.probability_interval->low, 100.0 * each.probability_interval->high, each.winding_p95_interval_C->low,
-          each.winding_p95_interval_C->high);
+    if (!options.draws.empty() && each.verdict != Verdict::infeasible) {
+      const Interval95& p95_C = *each.winding_p95_interval_C;
+      text += fmt::format("{}: other draws of the duty would give P over {:.0f} to {:.0f} % and a 95th percentile of {:.0f} {} (95 %)\n",
+                          each.motor_id, 100.0 * each.probability_interval->low, 100.0 * each.probability_interval->high, p95_C.low,
+                          std::isfinite(p95_C.high) ? fmt::format("to {:.0f} °C", p95_C.high) : "°C or more: take more samples");
     }
     if (each.destroyed) {
       text += fmt::format("{}: thermal runaway, the calculation ended at 1000 °C\n", each.motor_id);
