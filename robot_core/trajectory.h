@@ -115,8 +115,8 @@ enum class Target : unsigned char {
 /// Where the way leads far beyond those positions, its rounding errors are put where it is farthest: there, segments follow each other
 /// to that part of the farthest position plus velocity^2/acceleration. Limits that the start keeps are kept to 1e-10 (float: 4e-3) of the
 /// larger one of both directions. Whatever cannot be had so is out_of_range: none of 10^6 problems whose scales are within four decades of
-/// each other, in any units; at most 5 of 10^5 where velocity, acceleration and jerk are apart by up to twelve
-/// (8 of 10^4 with many states at a limit). A target that is missed by a
+/// each other, in any units; where velocity, acceleration and jerk are apart by up to twelve, 5 of 10^5 to 74 of
+/// 10^4 as states and ways are drawn. A target that is missed by a
 /// rounding error (1e-11, float 1e-5) of the velocities counts as met.
 template <typename Real>
 PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,

@@ -34,7 +34,7 @@ std::string complaint(const Command& command, Group group) {
   Session nobody;
   CLI::App app;
   const auto run = command.declare(app, nobody);  // holds what the options write to
-  std::ranges::reverse(group);  // as CLI11 wants them
+  std::ranges::reverse(group);                    // as CLI11 wants them
   try {
     app.parse(std::move(group));
   } catch (const CLI::ValidationError& error) {

@@ -8,6 +8,16 @@ std::string duration_text(double duration_s) {
   return duration_s < 120.0 ? fmt::format("{:.0f} s", duration_s) : fmt::format("{:.0f} min", duration_s / 60.0);
 }
 
+std::string slip_text(const WheelDemand& wheel) {
+  constexpr double kWorthAWord_share = 0.01;
+  return wheel.slip_share < kWorthAWord_share
+             ? ""
+             : fmt::format(
+                   "the ground cannot pass on the motion in {:.0f} % of the time: a wheel slides there, and may heat its motor more "
+                   "than is shown (`heatsoak simulate` drives it)\n",
+                   100.0 * wheel.slip_share);
+}
+
 std::string why_infeasible(const MotorEvaluation& motor, const Robot& robot) {
   if (motor.verdict != Verdict::infeasible) {
     return "";

@@ -23,8 +23,8 @@ struct LoadBin {
   double velocity_mean_rad_per_s = 0.0;  ///< signed mean of ω
   // Only of duties that are given as current:
   double current_rms_A = 0.0;
-  double current_along_motion_A = 0.0;  ///< mean of I·sign ω: positive drives, negative brakes
-  double current_mean_A = 0.0;          ///< signed
+  double current_along_motion_A = 0.0;   ///< mean of I·sign ω: positive drives, negative brakes
+  double current_mean_A = 0.0;           ///< signed
   double power_mean_W = 0.0;             ///< mean of M·ω
   double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between stretches of constant speed are not in it
 };
@@ -49,6 +49,7 @@ struct WheelDemand {
   std::string wheel;  ///< "wheel 1 (front right)"
   std::vector<LoadBin> bins;
   std::vector<LoadPoint> points;
+  double slip_share = 0.0;  ///< of the time: the ground cannot pass on what the robot's motion takes, and wheels would slide
 
   [[nodiscard]] double duration_s() const;
 };

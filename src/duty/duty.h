@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/figure.h"
@@ -41,6 +42,8 @@ struct Duty {
   DutyKind kind = DutyKind::torque;
   Figure ambient_C;
   Figure load;  ///< factor on torque or current, 1 with the spread that the file declares
+  /// What the shape's table gives, for `describe`; a bare quantity has no `printed`.
+  std::vector<std::pair<ParameterSpec, Figure>> figures;
   std::shared_ptr<const DutyShape> shape_data;
 
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const { return shape_data->demand(robot, seed); }

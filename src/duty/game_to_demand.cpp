@@ -92,6 +92,7 @@ WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s,
   });
   for (DemandGatherer& each : gatherers) {
     loads.wheels.push_back(each.finish());
+    loads.wheels.back().slip_share = loads.slip_s / loads.wheels.back().duration_s();
   }
   return loads;
 }
@@ -116,6 +117,10 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   if (game.tracks.empty() || game.tracks.front().segments.empty()) {
     return result;
   }
+  // What was kept of the robot is known only now.
+  ImportReport report = first.report;
+  report.full_at_s = game.report.full_at_s;
+  result.sentences = sentences(report);
   const MotionTrack motion = smooth(game.tracks.front());
   result.sentences.push_back(fmt::format("{}: {}", result.player, to_string(motion.report())));
   if (const std::string warning = sparse(game.report, *name); !warning.empty()) {
@@ -130,7 +135,7 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   const double all_s = result.wheels.front().duration_s();
   result.sentences.push_back(fmt::format(
       "{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the ground could not pass on the motion in {:.1f} % of the time",
-      result.player, all_s, loads.unseen_s, 100.0 * loads.slip_s / all_s));
+      result.player, all_s, loads.unseen_s, 100.0 * result.wheels.front().slip_share));
   return result;
 }
 

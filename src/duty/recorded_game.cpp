@@ -139,7 +139,7 @@ std::vector<std::string> sentences(const ImportReport& r) {
   add(counted(r.clock_jumps, "jumps of the clock: all tracks cut there"));
   add(counted(r.frames_out_of_time, "frames left out: time of capture that no other frame confirms"));
   if (r.full_at_s) {
-    add(fmt::format("points from {:.1f} s on are not kept (memory); choose one robot or a span of time", *r.full_at_s));
+    add(fmt::format("points from {:.0f} s on are not used: they are more than fit into memory; split the log", *r.full_at_s));
   }
   if (r.truncated_at) {
     add(fmt::format("the log ends inside a message that begins at byte {}; what came before is used", *r.truncated_at));

@@ -38,6 +38,9 @@ void DriveScorer::take(const LoopMoment& moment) {
   score_.short_s += out.limited || out.undervoltage ? kStep_s : 0.0;
   score_.lifted_s += out.lifted ? kStep_s : 0.0;
   score_.battery_empty_s += state.battery_charge_A_s <= 0.0 ? kStep_s : 0.0;
+  if (state.battery_charge_A_s <= 0.0) {
+    return;  // nothing drives any more: where it stands says nothing of planner or motor
+  }
   score_.distance_m += std::hypot(state.velocity.x_m_per_s, state.velocity.y_m_per_s) * kStep_s;
   const Pose planned = moment.plan->pose();
   const double error_m = std::hypot(planned.x_m - state.pose.x_m, planned.y_m - state.pose.y_m);

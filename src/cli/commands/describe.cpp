@@ -176,6 +176,14 @@ Description describe_duty(const Duty& duty) {
                       {"shape", duty.shape},
                       {"ambient_C", duty.ambient_C.value},
                       {"notes", duty.notes}}};
+  result.text += duty.figures.empty() ? "" : "\nload\n";
+  for (const auto& [spec, figure] : duty.figures) {
+    const bool is_bare = figure.printed.empty();
+    result.text +=
+        is_bare ? fmt::format("  {:36} {:>22}\n", spec.key, with_unit(figure.value, spec.unit)) : figure_text(spec.key, spec.unit, figure);
+    result.json["figures"].push_back(is_bare ? Json{{"key", spec.key}, {"value", figure.value}, {"unit", spec.unit}}
+                                             : figure_json(spec.key, spec.unit, figure));
+  }
   if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)) {
     result.text += "\ninputs (value, origin, range, meaning)\n";
     for (std::size_t i = 0; i < match->inputs().figures.size(); ++i) {

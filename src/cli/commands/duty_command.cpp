@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/files.h"
+#include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/match_roles.h"
 #include "cli/named_files.h"
@@ -117,6 +118,11 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
   session.say(fmt::format("{} of {} as {}, seed {}: {}, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
                           kRoleNames[static_cast<std::size_t>(inputs.role)], options.seed, duration_text(load.duration_s), load.play_s,
                           load.distance_m / 1e3, duty.origin, role_table(roles)));
+  session.say(slip_text(load.wheels.front()));
+  if (robot.braking_limit_m_per_s2 > robot.acceleration_limit_m_per_s2) {
+    session.say(fmt::format("a match brakes as it accelerates, with {} m/s²: the robot's {} m/s² of braking are not used\n",
+                            significant(robot.acceleration_limit_m_per_s2, 3), significant(robot.braking_limit_m_per_s2, 3)));
+  }
   finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);
   session.answer({{"schema", "heatsoak.duty/1"},
                   {"duty", duty.id},

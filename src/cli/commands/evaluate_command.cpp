@@ -237,7 +237,7 @@ ExitCode run(Options& options, Session& session) {
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
-  session.say(report(results, robot, duty, wheels.front().duration_s(), options) + silent_effects(motors));
+  session.say(report(results, robot, duty, wheels.front().duration_s(), options) + slip_text(wheels.front()) + silent_effects(motors));
   if (!options.plot.empty()) {
     session.say(fmt::format("picture: {}\n", options.plot));
   }

@@ -130,8 +130,13 @@ class Match {
         into_s += follow(span.phase, command, span.duration_s - into_s);
       }
     }
+    double slip_s = 0.0;
+    for (const PhaseLoad& phase : load_.phases) {
+      slip_s += phase.slip_s;
+    }
     for (DemandGatherer& each : gatherers_) {
       load_.wheels.push_back(each.finish());
+      load_.wheels.back().slip_share = slip_s / load_.duration_s;
     }
     return std::move(load_);
   }

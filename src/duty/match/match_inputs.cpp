@@ -1,5 +1,7 @@
 #include "duty/match/match_inputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 #include <tuple>
@@ -70,6 +72,11 @@ MatchInputs read_match_inputs(Reader& table) {
   inputs.overtime = table.flag("overtime", Need::optional).value_or(false);
   for (std::size_t i = 0; i < kSpecs.size(); ++i) {
     inputs.figures[i] = table.figure(kSpecs[i].spec, Need::required).value_or(Figure{});
+  }
+  const MatchValues values = inputs.nominal();
+  if (values.stop_shortest_s > values.stop_mean_s) {
+    table.problem("stop_shortest", fmt::format("{} s is longer than stop_mean, {} s, which it is part of; expected at most that",
+                                               values.stop_shortest_s, values.stop_mean_s));
   }
   return inputs;
 }

@@ -47,11 +47,14 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   const ParameterSpec current{"current_on", "A", Range::positive(), "through the motor, while it is on"};
   const std::optional<Figure> torque_on = table.figure(torque, Need::optional);
   const std::optional<Figure> current_on = table.figure(current, Need::optional);
-  const std::optional<double> speed_on =
-      table.quantity({"speed_on", "rad/s", Range::non_negative(), "of the wheel, while it is on"}, Need::required);
-  const std::optional<double> on_s = table.quantity({"time_on", "s", Range::positive(), "of one cycle"}, Need::required);
-  const std::optional<double> off_s = table.quantity({"time_off", "s", Range::non_negative(), "of one cycle"}, Need::required);
-  const std::optional<double> repeats = table.quantity({"repeats", "", Range::between(1.0, 1e6), "how many cycles"}, Need::required);
+  const ParameterSpec speed{"speed_on", "rad/s", Range::non_negative(), "of the wheel, while it is on"};
+  const ParameterSpec time_on{"time_on", "s", Range::positive(), "of one cycle"};
+  const ParameterSpec time_off{"time_off", "s", Range::non_negative(), "of one cycle"};
+  const ParameterSpec cycles{"repeats", "", Range::between(1.0, 1e6), "how many cycles"};
+  const std::optional<double> speed_on = table.quantity(speed, Need::required);
+  const std::optional<double> on_s = table.quantity(time_on, Need::required);
+  const std::optional<double> off_s = table.quantity(time_off, Need::required);
+  const std::optional<double> repeats = table.quantity(cycles, Need::required);
   const std::vector<std::string> keys = table.keys();
   const auto gives = [&](std::string_view key) { return std::ranges::find(keys, key) != keys.end(); };
   if (gives("torque_on") == gives("current_on")) {
@@ -71,6 +74,10 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   }
   duty.kind = torque_on ? DutyKind::torque : DutyKind::current;
   duty.load = as_factor(torque_on ? *torque_on : *current_on);
+  duty.figures.emplace_back(torque_on ? torque : current, torque_on ? *torque_on : *current_on);
+  for (const auto& [spec, value] : {std::pair(speed, *speed_on), {time_on, *on_s}, {time_off, *off_s}, {cycles, *repeats}}) {
+    duty.figures.emplace_back(spec, Figure{.value = value});
+  }
   const double torque_Nm = torque_on ? torque_on->value : 0.0;
   const double current_A = current_on ? current_on->value : 0.0;
   duty.shape_data = std::make_shared<Intermittent>(constant_bin(*on_s, torque_Nm, *speed_on, current_A), *off_s, static_cast<int>(*repeats),

@@ -44,6 +44,7 @@ class Recording {
           file_,
           [this](std::span<const std::string> header) {
             names_ = columns(header).required;
+            refuse_both_kinds(header);
             return columns(header);
           },
           {}, [this](const CsvRow& row) { take(row); });
@@ -83,6 +84,16 @@ class Recording {
       wanted.required.push_back(column(kind_, wheel, false));
     }
     return wanted;
+  }
+
+  /// Whose load it is that would be passed over, the header does not say.
+  void refuse_both_kinds(std::span<const std::string> header) const {
+    const auto has = [&](int wheel) { return std::ranges::find(header, column(kind_, wheel, true)) != header.end(); };
+    if (names_.size() > 1 && names_[1] != column(kind_, 0, true) && has(0)) {
+      throw bad_input({file_.string(), 1, 1}, "",
+                      fmt::format("has {} and {}; expected the columns of one wheel without a number, or of several with numbers",
+                                  column(kind_, 0, true), names_[1]));
+    }
   }
 
   void take(const CsvRow& row) {
@@ -207,6 +218,7 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
     table.problem("repeats", fmt::format("makes more than {:.0f} rows; expected something like a match", kMostPieces));
     return;
   }
+  duty.notes.push_back(fmt::format("{} of {}, run {} time{}", *quantity, (folder / *file).string(), repeats, repeats == 1.0 ? "" : "s"));
   duty.shape_data = std::make_shared<Recorded>(std::move(wheels), static_cast<int>(repeats));
 }
 
