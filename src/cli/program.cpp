@@ -53,7 +53,7 @@ std::string json_target(int argc, const char* const* argv) {
 /// Whether an answer may replace what is there: whoever takes --json for a switch names a file of his own behind it.
 bool may_take_json(const std::filesystem::path& path) {
   std::error_code unreadable;
-  if (!std::filesystem::is_regular_file(path, unreadable)) {
+  if (path.extension() == ".json" || !std::filesystem::is_regular_file(path, unreadable)) {
     return true;
   }
   std::ifstream file(path);

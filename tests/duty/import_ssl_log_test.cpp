@@ -129,7 +129,7 @@ TEST(ImportSslLog, KeepsOneRobotOrASpanOfTimeOnDemandButSummarisesAll) {
   const RecordedGame full = import_game(file.path(), {.most_points = 400});
   ASSERT_TRUE(full.report.full_at_s);
   EXPECT_NEAR(*full.report.full_at_s, 200 * kFrame_s, 0.1);
-  EXPECT_THAT(sentences(full.report), Contains(HasSubstr("choose one robot")));
+  EXPECT_THAT(sentences(full.report), Contains(HasSubstr("split the log")));
 }
 
 TEST(ImportSslLog, FollowsThePhasesOfTheReferee) {
