@@ -389,6 +389,18 @@ TEST(Lint, heat_of_estimates_is_only_a_warning) {
   EXPECT_THAT(checks_with(LintFinding::Level::warning, estimated), Contains("nominal_point_heat"));
 }
 
+// Figures that are too good: every verdict would be optimistic.
+TEST(Lint, warns_of_thermal_figures_that_no_known_sheet_has) {
+  for (const auto& [figure, factor] : {std::pair(&MotorValues::thermal_resistance_winding_stator_K_per_W, 0.5),
+                                       {&MotorValues::thermal_resistance_stator_ambient_K_per_W, 0.5},
+                                       {&MotorValues::winding_limit_C, 155.0 / 125.0}}) {
+    Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
+    motor.nominal.*figure *= factor;
+    EXPECT_THAT(checks_with(LintFinding::Level::warning, motor), ElementsAre("nominal_point_heat"));
+    EXPECT_THAT(said_by("nominal_point_heat", motor), HasSubstr("as on known sheets"));
+  }
+}
+
 // The sheet's nominal point is of the sheet's network: what the file adds to it is no contradiction.
 TEST(Lint, judges_the_nominal_point_without_the_effects_of_the_file) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");

@@ -250,6 +250,25 @@ TEST(Margin, scaling_the_current_by_it_lands_on_the_limit) {
   }
 }
 
+TEST(Margin, of_a_small_current_reaches_as_far_as_that_of_a_large_one) {
+  const double bearable_A = std::sqrt(130.0 / (1.0 + 0.0039 * 130.0) / 3.0);
+  for (const double current_A : {0.01, 0.1, 1.0}) {
+    const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(current_A));
+    ASSERT_TRUE(result.margin_A.has_value());
+    EXPECT_NEAR(*result.margin_A, bearable_A - current_A, 0.01) << current_A;
+  }
+}
+
+TEST(Margin, ends_where_the_driver_does) {
+  Robot robot = simple_robot();
+  robot.current_limit_A = 4.0;
+  EXPECT_NEAR(*evaluate_one(simple_motor(), robot, constant_current(3.0)).margin_A, 1.0, 0.03);
+  robot.current_limit_A = 400.0;
+  // What 4 A take at 0.5 Ω, as hot as the winding may be.
+  robot.voltage_limit_V = 0.5 * 4.0 * (1.0 + 0.0039 * 130.0);
+  EXPECT_NEAR(*evaluate_one(simple_motor(), robot, constant_current(3.0)).margin_A, 1.0, 0.03);
+}
+
 TEST(Margin, there_is_none_where_drag_alone_is_too_much) {
   Motor motor = simple_motor();
   motor.nominal.no_load_current_A = 10.0;
