@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <tuple>
 
@@ -68,7 +69,9 @@ void Diagnostics::throw_if_any() const {
   throw Failure(ExitCode::bad_input, "", std::move(sorted));
 }
 
-std::string did_you_mean(std::string_view given, std::span<const std::string> candidates) {
+std::string did_you_mean(std::string_view written, std::span<const std::string> candidates) {
+  std::string given(written);
+  std::ranges::transform(given, given.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   // Two letters of a short word are most of it.
   std::size_t best_distance = std::max<std::size_t>(given.size() < 4 ? 1 : 2, given.size() / 3) + 1;
   const std::string* best = nullptr;
@@ -83,6 +86,14 @@ std::string did_you_mean(std::string_view given, std::span<const std::string> ca
   for (std::size_t i = 0; !best && given.size() >= 3 && i < candidates.size(); ++i) {
     // What somebody leaves out: "tigers" for "tigers_v2020".
     best = candidates[i].find(given) != std::string::npos ? &candidates[i] : nullptr;
+  }
+  for (std::size_t i = 0; !best && given.size() >= 6 && i < candidates.size(); ++i) {
+    // "roboteam_v2024" for "roboteam_twente_v2024".
+    auto left = given.begin();
+    for (const char c : candidates[i]) {
+      left += left != given.end() && *left == c ? 1 : 0;
+    }
+    best = left == given.end() ? &candidates[i] : nullptr;
   }
   // What begins alike: "iron_lossX" for "iron_loss_eddy".
   std::size_t longest_match = std::max<std::size_t>(3, (2 * given.size() + 2) / 3) - 1;

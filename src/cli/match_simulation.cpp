@@ -255,7 +255,8 @@ std::vector<ChartPanel> comparison(const MatchSimulation& wanted, const std::vec
 
 Chart picture(const MatchSimulation& wanted, const std::vector<Played>& all) {
   return {.title = fmt::format("{} with {} on {}", wanted.robot.name, wanted.motor.id, wanted.duty.id),
-          .subtitle = fmt::format("closed loop, synthetic match, seed {}", wanted.seed),
+          .subtitle = fmt::format("closed loop, synthetic match, seed {}{}", wanted.seed,
+                                  data_quality(wanted.motor) == "estimated" ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
           .panels = all.size() == 1 ? detail(wanted, all.front()) : comparison(wanted, all),
           .panel_height_px = 260};

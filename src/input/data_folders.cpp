@@ -77,10 +77,15 @@ std::vector<std::string> ids_in(const fs::path& folder) {
 }
 
 fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view name) {
+  const std::vector<std::string> ids = ids_in(folder);
   if (name.find('/') != std::string_view::npos || name.ends_with(".toml")) {
+    const std::string stem = fs::path(name).stem().string();
+    std::error_code error;
+    if (!fs::exists(name, error) && fs::path(name).filename() == name && std::ranges::find(ids, stem) != ids.end()) {
+      throw Failure(ExitCode::bad_input, fmt::format("there is no file {} in this folder; did you mean the {} '{}'?", name, kind, stem));
+    }
     return name;
   }
-  const std::vector<std::string> ids = ids_in(folder);
   if (std::ranges::find(ids, name) == ids.end()) {
     throw Failure(ExitCode::bad_input, fmt::format("there is no {} '{}' in {}{} (`heatsoak list {}s` shows them)", kind, name,
                                                    folder.string(), did_you_mean(name, ids), kind == "duty" ? "dutie" : kind));

@@ -16,6 +16,12 @@ TEST(DidYouMean, names_the_nearest) {
   EXPECT_EQ(did_you_mean("lenght", kKeys), "; did you mean 'length'?");
 }
 
+TEST(DidYouMean, looks_past_capitals_and_what_was_left_out) {
+  EXPECT_EQ(did_you_mean("TORQUE_CONSTANT", kKeys), "; did you mean 'torque_constant'?");
+  const std::vector<std::string> ids{"roboteam_twente_v2022", "roboteam_twente_v2024", "tigers_v2020"};
+  EXPECT_EQ(did_you_mean("roboteam_v2024", ids), "; did you mean 'roboteam_twente_v2024'?");
+}
+
 TEST(DidYouMean, is_silent_where_nothing_is_near) {
   EXPECT_EQ(did_you_mean("colour", kKeys), "");
   EXPECT_EQ(did_you_mean("winding_limit_of_the_neighbour", kKeys), "");

@@ -311,6 +311,9 @@ Description describe(const std::string& name, const DataFolders& folders) {
     }
   }
   std::vector<std::string> known;
+  for (const ShapeType& shape : all_shapes()) {
+    known.emplace_back(shape.name);
+  }
   const auto has = [&](const std::filesystem::path& folder) {
     const std::vector<std::string> ids = ids_in(folder);
     known.insert(known.end(), ids.begin(), ids.end());
