@@ -32,7 +32,9 @@ struct SmoothingOptions {
 };
 /// How the place or the turn of a track was smoothed. Its unit is m, or rad.
 struct ChannelReport {
-  double bandwidth_Hz = 0.0;        ///< as used: never more than a sixth of the frame rate
+  /// As used: never more than a sixth of the frame rate. Of motion beyond some 10 m/s² points are doubted that the smoother cannot follow:
+  /// with 13 m/s² at single frequencies the -3 dB of 8 Hz lie at 7.4 Hz.
+  double bandwidth_Hz = 0.0;
   double quiet_bandwidth_Hz = 0.0;  ///< used while nothing but noise is seen: standing, or running steadily
   double quiet_share = 0.0;         ///< of the time
   double noise_m_or_rad = 0.0;      ///< rms of one coordinate around the smooth track
