@@ -190,7 +190,7 @@ void Session::answer_failure(const Failure& failure) {
   }
   if (diagnostics.empty()) {
     std::istringstream lines(failure.message());
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string line; std::getline(lines, line) && !line.starts_with('`');) {
       diagnostics.push_back({{"file", ""}, {"line", 0}, {"column", 0}, {"key", ""}, {"message", line}});
     }
   }

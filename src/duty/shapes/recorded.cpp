@@ -209,7 +209,7 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
       if (each.at.line > 0) {
         table.add(each);
       } else {
-        table.problem("file", to_string(each));
+        table.problem("file", fmt::format("{} {}", each.at.file, each.message));
       }
     }
     return;
