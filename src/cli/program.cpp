@@ -220,14 +220,20 @@ Progress progress_bar(std::string what) {
     return {};
   }
   using Clock = std::chrono::steady_clock;
-  return [what = std::move(what), start = Clock::now(), shown = Clock::now()](std::size_t done, std::size_t total) mutable {
+  // The clock starts with the first unit of work that is done: what came before is of another kind.
+  return [what = std::move(what), start = Clock::time_point(), before = std::size_t{0}, shown = Clock::now()](std::size_t done,
+                                                                                                              std::size_t total) mutable {
     const Clock::time_point now = Clock::now();
+    if (start == Clock::time_point()) {
+      start = now;
+      before = done;
+    }
     if (done == total) {
       fmt::print(stderr, "\r{:60}\r", "");
-    } else if (now - shown > std::chrono::milliseconds(200)) {
+    } else if (done > before && now - shown > std::chrono::milliseconds(200)) {
       shown = now;
       const double elapsed_s = std::chrono::duration<double>(now - start).count();
-      const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done);
+      const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done - before);
       fmt::print(stderr, "\r{}: {:3.0f} %, {:.0f} s left  ", what, 100.0 * static_cast<double>(done) / static_cast<double>(total),
                  std::ceil(left_s));
     }

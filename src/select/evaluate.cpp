@@ -444,11 +444,12 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
   }
-  const std::size_t jobs = motors.size() * (blocks + 1);
-  // The samples need to know the hottest wheel, so every motor's nominal run comes first.
-  in_parallel(motors.size(), options.threads, 0, jobs, progress,
+  // The samples need to know the hottest wheel, so every motor's nominal run comes first. It takes another time than a block of samples,
+  // so where there are any, they alone are the progress.
+  in_parallel(motors.size(), options.threads, 0, motors.size(), blocks > 0 ? Progress() : progress,
               [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
-  in_parallel(motors.size() * blocks, options.threads, motors.size(), jobs, progress, [&](std::size_t job) {
+  const std::size_t jobs = motors.size() * blocks;
+  in_parallel(jobs, options.threads, 0, jobs, progress, [&](std::size_t job) {
     evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * kLanes);
   });
   std::vector<MotorEvaluation> results;
