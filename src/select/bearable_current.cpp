@@ -20,12 +20,12 @@ Lanes worst_excess_K(const std::vector<Lanes>& peak_C, std::span<const NodeLimit
 }  // namespace
 
 std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals,
-                                              std::span<const NodeLimit> limits) {
+                                              std::span<const NodeLimit> limits, bool is_too_much) {
   constexpr int kRounds = 4;
   constexpr double kWider = 16.0;
   constexpr double kFarthest = 1e6;
   double low = 0.0;
-  double high = kWider;
+  double high = is_too_much ? 1.0 : kWider;
   double share = 0.5;
   std::vector<Lanes> parameters;
   for (const double value : network.values()) {
