@@ -96,6 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
                  2, "are they in another order"},
         BadDrive{"milliseconds", of_each([](DriveRow& row) { row.time_s *= 1e3; }), 2, "is the time in milliseconds?", 0,
                  "is the time in milliseconds?"},
+        BadDrive{"microseconds", of_each([](DriveRow& row) { row.time_s *= 1e6; }), 2, "days at 10000 s per row", 0,
+                 "days at 10000 s per row"},
         BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
                  "time does not increase"},
         BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3, "in no stretch do the wheels turn steadily", 3,

@@ -68,7 +68,7 @@ struct DataQuality {
   std::vector<ClockOffset> clock_offsets;
   std::vector<std::string> suspicions;       ///< said, not acted on
   std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
-  std::vector<std::string> spoiling_wheels;  ///< the same of a robot's wheels and angles
+  std::vector<std::string> spoiling_wheels;  ///< the same of a robot's wheels and angles, and of the clock
   Fitness thermal;                           ///< to fit a thermal network
   Fitness drive;                             ///< to fit friction of wheels
 };

@@ -25,11 +25,12 @@ class Suspector {
     std::ranges::move(suspicious_places(recording_, channels_), std::back_inserter(found_));
     currents();
     speeds();
+    const std::size_t of_motors = found_.size();
     clock();
     std::vector<std::string> spoiling = found_;
     angles();
     wheels();
-    std::vector<std::string> spoiling_wheels(found_.begin() + static_cast<std::ptrdiff_t>(spoiling.size()), found_.end());
+    std::vector<std::string> spoiling_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
     constants();
     limits();
     return {std::move(found_), std::move(spoiling), std::move(spoiling_wheels)};

@@ -13,7 +13,7 @@ namespace heatsoak {
 struct Suspicions {
   std::vector<std::string> all;
   std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
-  std::vector<std::string> spoiling_wheels;  ///< of them: the same of a robot's wheels and angles
+  std::vector<std::string> spoiling_wheels;  ///< of them: the same of a robot's wheels and angles, and of the clock
 };
 Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels);
 
