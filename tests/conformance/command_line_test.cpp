@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <regex>
 #include <sstream>
 
 #include "motor/motor.h"
 #include "program_run.h"
+#include "robot/robot.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {
@@ -396,6 +398,38 @@ TEST(Json, of_friction_keeps_the_contract) {
   EXPECT_NE(
       run({"evaluate", "--robot", out, "--duty", "paper_intermittent", "--motors", "maxon_ec45_flat_70w_24v", "--samples", "3"}).exit_code,
       2);
+}
+
+/// One roll-out has no scatter: what is fitted to it has no interval, but was not given by any file either.
+TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
+  constexpr double kHeading_rad = 0.1;
+  constexpr double kDrag_m_per_s2 = 0.8;
+  constexpr double kRate_per_s = 0.5;
+  const TemporaryFolder folder;
+  const std::string log = (folder.path() / "roll_out.csv").string();
+  std::string text = "time_s,battery_V,heading_rad";
+  for (int wheel = 1; wheel <= 4; ++wheel) {
+    text += fmt::format(",wheel_speed_rad_per_s_{0},wheel_pwm_ratio_{0}", wheel);
+  }
+  const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  for (int row = 0; row < 300; ++row) {
+    const double free_m_per_s = (1.8 + kDrag_m_per_s2 / kRate_per_s) * std::exp(-kRate_per_s * 0.01 * row) - kDrag_m_per_s2 / kRate_per_s;
+    text += fmt::format("\n{:.2f},24,{}", 0.01 * row, kHeading_rad);
+    for (const double axis_rad : robot.wheel_axis_rad) {
+      const double noise_rad_per_s = 0.05 * std::sin(12.9 * row + 78.2 * axis_rad);
+      text += fmt::format(",{:.4f},0",
+                          std::max(0.0, free_m_per_s) / robot.wheel_radius_m * std::sin(kHeading_rad - axis_rad) + noise_rad_per_s);
+    }
+  }
+  write(log, text + "\n");
+  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", "--method", "roll_out", log, "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("(no interval) V s/rad with it"));
+  EXPECT_THAT(result.err, Not(HasSubstr("(given)")));
+  for (const json& wheel : result.json().at("wheels")) {
+    EXPECT_GT(wheel.at("damping_V_s_per_rad").at("value"), 0.0);
+    EXPECT_TRUE(wheel.at("damping_V_s_per_rad").at("ci95").at(0).is_null());
+  }
 }
 
 TEST(ExitCode, of_friction_refuses_a_log_that_is_given_twice) {

@@ -133,13 +133,13 @@ Input read_input(const Options& options, const Session& session) {
 /// null where unknown.
 Json json(const Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
 
-std::string text(const Estimate& estimate, int decimals, double scale = 1.0) {
+std::string text(const Estimate& estimate, int decimals, double scale = 1.0, const std::string& without_interval = "given") {
   if (!std::isfinite(estimate.value)) {
     return "–";
   }
   return estimate.is_known() ? fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * estimate.value, decimals, scale * estimate.low, decimals,
                                            scale * estimate.high, decimals)
-                             : fmt::format("{:.{}f} (given)", scale * estimate.value, decimals);
+                             : fmt::format("{:.{}f} ({})", scale * estimate.value, decimals, without_interval);
 }
 
 std::string findings_text(const Findings& findings) {
@@ -374,8 +374,9 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
     for (const RollOutRun& run : result.runs) {
       used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
     }
+    const auto fitted = [](const Estimate& estimate, int decimals, double scale) { return text(estimate, decimals, scale, "no interval"); };
     session.say(fmt::format("wheel {}: {} mN m and {} mN m s/rad without the motor's back-EMF, d = {} V s/rad with it\n", i + 1,
-                            text(result.wheel_torque_Nm[i], 2, 1e3), text(mechanical, 4, 1e3), text(damping, 4)));
+                            fitted(result.wheel_torque_Nm[i], 2, 1e3), fitted(mechanical, 4, 1e3), fitted(damping, 4, 1.0)));
     wheels.push_back({{"index", i + 1},
                       {"damping_V_s_per_rad", json(damping)},
                       {"a_V", json(Estimate{})},
