@@ -246,6 +246,36 @@ TEST(FrictionFit, says_what_a_drive_cannot_tell) {
   }
 }
 
+/// Two directions and their opposites are two equations for a, b and φ. Diagonally a front wheel turns once fully and once
+/// slowly, so that some doubt in φ leaves a and b in wide intervals; 7° off straight ahead the speeds of three wheels are
+/// so alike on both that it leaves nothing.
+TEST(FrictionFit, few_headings_leave_wide_intervals_or_nothing) {
+  Coverage sine, constant, damping;
+  for (int seed = 1; seed <= 6; ++seed) {
+    const Case known = any_case(static_cast<std::uint64_t>(seed));
+    const auto fitted = [&](double first_deg) {
+      const std::vector<double> headings_deg = {first_deg, first_deg + 90.0, first_deg + 180.0, first_deg + 270.0};
+      const SteadyParts steady = parts_of(known, short_drive(headings_deg, {0.4, 0.8, 1.2}), static_cast<std::uint64_t>(seed));
+      return fit_friction(steady.parts, known.plant.body.kinematics, {});
+    };
+    const FrictionFit diagonal = fitted(45.0);
+    for (std::size_t i = 0; i < 2; ++i) {
+      ASSERT_TRUE(diagonal.wheels[i].is_learned()) << diagonal.wheels[i].problem;
+      EXPECT_TRUE(diagonal.wheels[i].phase_is_given);
+      sine.add(known.truth.sine_V[i], diagonal.wheels[i].sine_V);
+      constant.add(known.truth.constant_V[i], diagonal.wheels[i].constant_V);
+      damping.add(known.truth.damping_V_s_per_rad, diagonal.wheels[i].damping_V_s_per_rad);
+    }
+    const FrictionFit nearly_alike = fitted(7.0);
+    for (const std::size_t i : {0U, 2U, 3U}) {
+      EXPECT_THAT(nearly_alike.wheels[i].problem, testing::HasSubstr("headings are too few"));
+    }
+  }
+  for (const auto& [name, coverage] : {std::pair("a", sine), {"b", constant}, {"damping", damping}}) {
+    EXPECT_GE(coverage.inside, 0.9 * coverage.all) << name << ": " << coverage.inside << " of " << coverage.all;
+  }
+}
+
 TEST(FrictionFit, a_robot_that_stands_or_swings_has_no_steady_parts) {
   const Case known = any_case(7);
   FrictionLog log;

@@ -6,143 +6,26 @@
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <set>
 
+#include "identify/friction/wheel_terms.h"
 #include "robot/friction.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr double kIndependent_share = 0.05;
 constexpr double kSameHeading_rad = 2.5 * std::numbers::pi / 180.0;
 constexpr double kSpeedLevels_share = 0.15;
-constexpr std::size_t kLegsPerTerm = 3;
 constexpr double kPi = std::numbers::pi;
 
-/// One steady part seen by one wheel.
-struct Point {
-  const SteadyPart* part = nullptr;
-  double sine = 0.0;    ///< of θ + φ_0; 0 in rotation
-  double cosine = 0.0;  ///< likewise
-  double side = 0.0;    ///< of the wheel's speed
-};
-
-struct WheelPoints {
-  std::vector<Point> points;
-  int standing = 0;
-};
-
-bool is_used(const SteadyPart& part, const FitSettings& settings) { return settings.use_return_legs || !part.is_return; }
-
-WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, int wheel, const FitSettings& settings) {
-  WheelPoints found;
-  const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
-  for (const SteadyPart& part : parts) {
-    if (!is_used(part, settings)) {
-      continue;
-    }
-    const double speed_rad_per_s = part.wheel_speed_rad_per_s[wheel];
-    Point point{&part, 0.0, 0.0, speed_rad_per_s > 0.0 ? 1.0 : -1.0};
-    double expected = part.yaw_rad_per_s;
-    if (!part.is_rotation) {
-      point.sine = std::sin(part.heading_rad + phase_rad);
-      point.cosine = std::cos(part.heading_rad + phase_rad);
-      expected = should_stand(kinematics.wheels[wheel], part.heading_rad) ? 0.0 : point.sine;
-    }
-    // A mean that its own noise could have turned round says nothing about the side either.
-    const double doubt_rad_per_s = 3.0 * part.speed_noise_rad_per_s[wheel] / std::sqrt(std::max(1, part.rows_kept[wheel]));
-    if (expected * speed_rad_per_s <= 0.0 || std::abs(speed_rad_per_s) <= doubt_rad_per_s || !std::isfinite(part.voltage_V[wheel])) {
-      ++found.standing;
-    } else {
-      found.points.push_back(point);
-    }
-  }
-  return found;
-}
-
-enum class Term { damping, sine, cosine, constant, rotation };
-
-double regressor(const Point& point, int wheel, Term term) {
-  switch (term) {
-    case Term::damping:
-      return point.part->wheel_speed_rad_per_s[wheel];
-    case Term::sine:
-      return point.sine;
-    case Term::cosine:
-      return point.cosine;
-    case Term::constant:
-      return point.part->is_rotation ? 0.0 : point.side;
-    case Term::rotation:
-      return point.part->is_rotation ? point.side : 0.0;
-  }
-  return 0.0;
-}
-
-Eigen::MatrixXd design(const std::vector<Point>& points, int wheel, const std::vector<Term>& terms) {
-  Eigen::MatrixXd X(points.size(), terms.size());
-  for (std::size_t row = 0; row < points.size(); ++row) {
-    for (std::size_t column = 0; column < terms.size(); ++column) {
-      X(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) = regressor(points[row], wheel, terms[column]);
-    }
-  }
-  return X;
-}
-
-bool is_told(const Eigen::MatrixXd& X, const std::vector<Term>& terms, Term term) {
-  const auto place = std::ranges::find(terms, term);
-  return place != terms.end() && independent_share(X, place - terms.begin()) >= kIndependent_share;
-}
-
-/// Terms that these points can tell apart, or why not.
-struct Chosen {
-  std::vector<Term> terms;
-  bool damping_is_given = false;
-  bool phase_is_given = false;
-  std::string problem;
-};
-
-Chosen chosen_terms(const std::vector<Point>& points, int wheel, const FitSettings& settings) {
-  Chosen chosen;
-  const auto turns = std::ranges::count_if(points, [](const Point& point) { return point.part->is_rotation; });
-  const bool travels = turns < std::ssize(points);
-  std::vector<Term>& terms = chosen.terms;
-  terms = {Term::damping};
-  if (travels) {
-    terms.insert(terms.end(), {Term::sine, Term::constant, Term::cosine});
-  }
-  if (turns > 0) {
-    terms.push_back(Term::rotation);
-  }
-  if (travels && !is_told(design(points, wheel, terms), terms, Term::cosine)) {
-    std::erase(terms, Term::cosine);
-    chosen.phase_is_given = true;
-  }
-  if (!is_told(design(points, wheel, terms), terms, Term::damping)) {
-    if (!travels || std::isnan(settings.known_damping_V_s_per_rad)) {
-      chosen.problem = "all its legs have one speed, so that damping and friction cannot be told apart; drive at two speeds or more";
-      return chosen;
-    }
-    std::erase(terms, Term::damping);
-    chosen.damping_is_given = true;
-  }
-  const Eigen::MatrixXd X = design(points, wheel, terms);
-  if (travels && !(is_told(X, terms, Term::sine) && is_told(X, terms, Term::constant))) {
-    chosen.problem = "its headings are too few to tell how friction depends on the direction; drive at least six directions all around";
-  } else if (points.size() < terms.size() + 3) {
-    chosen.problem = "it has too few steady legs";
-  }
-  return chosen;
-}
-
 /// How far φ may lie below and above φ_0 before a wheel seen turning one way would have to turn the other.
-std::pair<double, double> phase_bounds_rad(const std::vector<Point>& points, const Eigen::VectorXd& weights) {
+std::pair<double, double> phase_bounds_rad(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights) {
   double below_rad = kPi / 2.0;
   double above_rad = kPi / 2.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].part->is_rotation || weights(static_cast<Eigen::Index>(i)) <= 0.0) {
       continue;
     }
-    const double past_rad = std::atan2(points[i].sine * points[i].side, points[i].cosine * points[i].side);  // 0 … π
+    const double past_rad = std::atan2(points[i].sine_ratio * points[i].side, points[i].cosine_ratio * points[i].side);  // 0 … π
     below_rad = std::min(below_rad, past_rad);
     above_rad = std::min(above_rad, kPi - past_rad);
   }
@@ -204,9 +87,35 @@ Eigen::Vector2d sine_and_constant_at(const Eigen::MatrixXd& X, const Eigen::Vect
   return robust_fit(both, voltage_V - X * others, legs).coefficients;
 }
 
+/// All terms at φ_0, their intervals widened by how far each moves while φ goes through its doubt.
+std::vector<Estimate> estimates_in_doubt(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
+                                         double given_V_s_per_rad, const RobustFit& fit, double phase_doubt_rad) {
+  std::vector<Estimate> estimates;
+  for (Eigen::Index term = 0; term < std::ssize(terms); ++term) {
+    estimates.push_back(fit.estimate(term));
+  }
+  if (phase_doubt_rad == 0.0) {
+    return estimates;
+  }
+  const std::pair<double, double> bounds_rad = phase_bounds_rad(points, fit.weights);
+  for (const double end_rad : {std::max(-phase_doubt_rad, bounds_rad.first), std::min(phase_doubt_rad, bounds_rad.second)}) {
+    const auto [X, voltage_V, legs] = regression_of(turned(points, end_rad), wheel, terms, given_V_s_per_rad);
+    const RobustFit there = robust_fit(X, voltage_V, legs);
+    for (Eigen::Index term = 0; term < std::ssize(terms); ++term) {
+      Estimate& estimate = estimates[static_cast<std::size_t>(term)];
+      const Estimate end = there.estimate(term);
+      const double half = end.high - end.value;
+      const double by = end.value - estimate.value;
+      estimate.low = std::min(estimate.low, estimate.value - std::hypot(std::min(0.0, by), half));
+      estimate.high = std::max(estimate.high, estimate.value + std::hypot(std::max(0.0, by), half));
+    }
+  }
+  return estimates;
+}
+
 double wrapped_rad(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
 
-void judge(const std::vector<Point>& points, const Eigen::VectorXd& weights, int wheel, WheelFriction& found) {
+void judge(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights, int wheel, WheelFriction& found) {
   double mean_V = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     mean_V += weights(static_cast<Eigen::Index>(i)) * points[i].part->voltage_V[wheel] / weights.sum();
@@ -230,30 +139,9 @@ void judge(const std::vector<Point>& points, const Eigen::VectorXd& weights, int
   found.r2_ratio = variance_V2 > 0.0 ? 1.0 - error_V2 / variance_V2 : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// What a wheel's points ask of its terms; `given_V_s_per_rad` is the damping that is taken as known.
-struct Regression {
-  Eigen::MatrixXd X;
-  Eigen::VectorXd voltage_V;
-  std::vector<int> legs;
-};
-
-Regression regression_of(const std::vector<Point>& points, int wheel, const std::vector<Term>& terms, double given_V_s_per_rad) {
-  Regression asked{design(points, wheel, terms), Eigen::VectorXd(points.size()), {}};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const SteadyPart& part = *points[i].part;
-    asked.voltage_V(static_cast<Eigen::Index>(i)) = part.voltage_V[wheel] - given_V_s_per_rad * part.wheel_speed_rad_per_s[wheel];
-    asked.legs.push_back(part.leg);
-  }
-  // Of a few long legs the scatter from leg to leg is not known; then stretches stand for themselves.
-  if (std::set<int>(asked.legs.begin(), asked.legs.end()).size() < kLegsPerTerm * terms.size()) {
-    std::iota(asked.legs.begin(), asked.legs.end(), 0);
-  }
-  return asked;
-}
-
 WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinematics, int wheel, const FitSettings& settings,
                         Eigen::VectorXd& weights) {
-  const std::vector<Point>& points = wheel_points.points;
+  const std::vector<WheelPoint>& points = wheel_points.points;
   WheelFriction found;
   found.parts_standing = wheel_points.standing;
   if (points.size() < 4) {
@@ -261,11 +149,11 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinem
     return found;
   }
   if (std::ranges::all_of(points,
-                          [&](const Point& each) { return each.part->voltage_V[wheel] == points.front().part->voltage_V[wheel]; })) {
+                          [&](const WheelPoint& each) { return each.part->voltage_V[wheel] == points.front().part->voltage_V[wheel]; })) {
     found.problem = "its voltage is the same in all legs";
     return found;
   }
-  const Chosen chosen = chosen_terms(points, wheel, settings);
+  const ChosenTerms chosen = chosen_terms(points, wheel, settings);
   found.problem = chosen.problem;
   if (!found.is_learned()) {
     return found;
@@ -276,38 +164,41 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinem
   const auto [X, voltage_V, legs] = regression_of(points, wheel, chosen.terms, given);
   const RobustFit fit = robust_fit(X, voltage_V, legs);
   weights = fit.weights;
-  const auto place = [&](Term term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
-  const auto has = [&](Term term) { return place(term) < std::ssize(chosen.terms); };
-  found.damping_V_s_per_rad = has(Term::damping) ? fit.estimate(place(Term::damping)) : Estimate{.value = given};
-  found.rotation_V = has(Term::rotation) ? fit.estimate(place(Term::rotation)) : Estimate{};
-  found.constant_V = has(Term::constant) ? fit.estimate(place(Term::constant)) : Estimate{};
+  const auto place = [&](WheelTerm term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
+  const auto has = [&](WheelTerm term) { return place(term) < std::ssize(chosen.terms); };
+  const std::vector<Estimate> estimates =
+      estimates_in_doubt(points, wheel, chosen.terms, given, fit, chosen.phase_is_given ? settings.phase_doubt_rad : 0.0);
+  const auto estimate = [&](WheelTerm term) { return has(term) ? estimates[static_cast<std::size_t>(place(term))] : Estimate{}; };
+  found.damping_V_s_per_rad = has(WheelTerm::damping) ? estimate(WheelTerm::damping) : Estimate{.value = given};
+  found.rotation_V = estimate(WheelTerm::rotation);
+  found.constant_V = estimate(WheelTerm::constant);
   const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
-  if (has(Term::cosine)) {
-    const Eigen::Index sine = place(Term::sine);
-    const Eigen::Index cosine = place(Term::cosine);
+  if (has(WheelTerm::cosine)) {
+    const Eigen::Index sine = place(WheelTerm::sine);
+    const Eigen::Index cosine = place(WheelTerm::cosine);
     const std::pair<double, double> bounds_rad = phase_bounds_rad(points, fit.weights);
     SineAndPhase both = sine_and_phase(fit, sine, cosine, bounds_rad);
     const double offset_rad = both.offset_rad.value;
     found.phase_is_bounded = offset_rad <= bounds_rad.first || offset_rad >= bounds_rad.second;
     if (found.phase_is_bounded) {
       // The intervals stay those that do not know of the bound.
-      const Eigen::Vector2d held_V = sine_and_constant_at(X, voltage_V, legs, fit, {sine, cosine, place(Term::constant)}, offset_rad);
+      const Eigen::Vector2d held_V = sine_and_constant_at(X, voltage_V, legs, fit, {sine, cosine, place(WheelTerm::constant)}, offset_rad);
       both.sine_V = moved(both.sine_V, held_V.x());
       found.constant_V = moved(found.constant_V, held_V.y());
     }
     found.sine_V = both.sine_V;
     found.phase_rad = moved(both.offset_rad, wrapped_rad(phase_rad + offset_rad));
-  } else if (has(Term::sine)) {
-    found.sine_V = fit.estimate(place(Term::sine));
+  } else if (has(WheelTerm::sine)) {
+    found.sine_V = estimate(WheelTerm::sine);
     found.phase_rad.value = wrapped_rad(phase_rad);
   }
-  if (chosen.damping_is_given && has(Term::sine)) {
+  if (chosen.damping_is_given && has(WheelTerm::sine)) {
     Eigen::VectorXd driven_V(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       driven_V(static_cast<Eigen::Index>(i)) = given * points[i].part->wheel_speed_rad_per_s[wheel];
     }
     const Eigen::MatrixXd weighted = fit.weights.asDiagonal() * X;
-    found.sine_per_damping_V = (X.transpose() * weighted).ldlt().solve(weighted.transpose() * driven_V)[place(Term::sine)];
+    found.sine_per_damping_V = (X.transpose() * weighted).ldlt().solve(weighted.transpose() * driven_V)[place(WheelTerm::sine)];
   }
   judge(points, fit.weights, wheel, found);
   return found;
@@ -352,8 +243,9 @@ StraightLine straight_line(const std::vector<const SteadyPart*>& parts, int whee
 }
 
 /// A heading has too few legs to tell their scatter; it is that of all headings of the wheel.
-std::vector<HeadingLine> lines_of(const std::vector<Point>& points, const Eigen::VectorXd& weights, const std::vector<SteadyPart>& parts,
-                                  const std::vector<int>& numbers, int wheel, const WheelFriction& found) {
+std::vector<HeadingLine> lines_of(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights,
+                                  const std::vector<SteadyPart>& parts, const std::vector<int>& numbers, int wheel,
+                                  const WheelFriction& found) {
   std::map<int, std::vector<const SteadyPart*>> by_heading;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const int number = numbers[static_cast<std::size_t>(points[i].part - parts.data())];
@@ -446,7 +338,9 @@ HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, co
     error.all_headings = std::max(error.all_headings, numbers[i] + 1);
   }
   error.headings = error.all_headings / 3;
-  const FrictionFit fit = fit_friction(taught, kinematics, settings);
+  FitSettings values_only = settings;
+  values_only.phase_doubt_rad = 0.0;  // it is of intervals, and a and b that cannot be told apart foretell as well
+  const FrictionFit fit = fit_friction(taught, kinematics, values_only);
   double before_V2 = 0.0;
   double after_V2 = 0.0;
   double all = 0.0;
@@ -455,7 +349,7 @@ HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, co
     double before_of_wheel_V2 = 0.0;
     double after_of_wheel_V2 = 0.0;
     double count = 0.0;
-    for (const Point& point : points_of(held_out, kinematics, wheel, settings).points) {
+    for (const WheelPoint& point : points_of(held_out, kinematics, wheel, settings).points) {
       const SteadyPart& part = *point.part;
       const double measured_V = part.voltage_V[wheel];
       const double after_V = measured_V - learned.voltage_V(part.heading_rad, part.wheel_speed_rad_per_s[wheel]);

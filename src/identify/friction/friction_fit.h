@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ namespace heatsoak {
 // φ_0 that of the rolling direction, the law is linear:  V = d·ω + A·S + B·C + b·sign S  (+ c·sign ω in rotation),
 // a = ±√(A² + B²) and φ = φ_0 + atan(B/A). Fitted robustly over all parts of a wheel (robust_fit.h), legs as clusters
 // where there are three per term. The interval of φ is Fieller's, cut off where a wheel that was seen turning one way would
-// have to turn the other; there a and b are the best at that φ.
+// have to turn the other; there a and b are the best at that φ. Headings of two directions and their opposites do not
+// tell φ: it is taken as φ_0, and the intervals cover what a and b are while φ lies within its doubt.
 
 struct WheelFriction {
   Estimate damping_V_s_per_rad;                                ///< d
@@ -63,6 +65,9 @@ struct FitSettings {
   bool use_return_legs = false;
   /// What damping is taken to be where all legs have one speed and it cannot be told from a; NaN: unknown.
   double known_damping_V_s_per_rad = std::numeric_limits<double>::quiet_NaN();
+  /// How far φ, where it cannot be told, may lie off the rolling direction in 95 % of wheels: the nine fits of
+  /// reports/friction lie 4.6° rms off it, times Student's quantile of nine.
+  double phase_doubt_rad = 10.0 * std::numbers::pi / 180.0;
 };
 
 /// Headings within 2.5° of each other are one; which of them each part has, −1 for rotation and for legs that are not used.

@@ -203,6 +203,12 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
         "from a; legs at a second speed on the same headings tell both\n",
         fmt::join(moves, ", "));
   }
+  if (std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_given)) {
+    lines += fmt::format(
+        "phase (given) is a wheel's rolling direction, as its headings are too few to tell; the intervals allow for {:.0f}° to either "
+        "side; six directions or more all around tell it\n",
+        FitSettings{}.phase_doubt_rad * 180.0 / std::numbers::pi);
+  }
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (fit.wheels[i].phase_is_bounded) {
       lines += fmt::format(
