@@ -68,6 +68,6 @@ class Diagnostics {
 };
 
 /// `; did you mean 'x'?` for the nearest of the candidates, or nothing where none is near.
-std::string did_you_mean(std::string_view given, std::span<const std::string> candidates);
+std::string did_you_mean(std::string_view written, std::span<const std::string> candidates);
 
 }  // namespace heatsoak
