@@ -8,6 +8,7 @@
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "identify/measurement/quality.h"
+#include "identify/measurement/fingerprint.h"
 
 namespace heatsoak {
 namespace {
@@ -15,30 +16,18 @@ namespace {
 /// Beyond this multiple of what the nominal voltage can do a figure has another unit.
 constexpr double kMost_ratio = 3.0;
 
-bool holds_the_same_rows(const Recording& one, const Recording& other) {
-  return one.time_s == other.time_s && std::ranges::equal(one.channels, other.channels, [](const Channel& a, const Channel& b) {
-           return a.quantity.key == b.quantity.key &&
-                  std::ranges::equal(a.values, b.values, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
-         });
-}
-
-bool share_rows_of_a_file(const Recording& one, const Recording& other) {
-  return one.file == other.file && one.rows() > 1 && other.rows() > 1 && one.time_s.front() < other.time_s.back() &&
-         other.time_s.front() < one.time_s.back();
-}
-
 /// A run that counts twice makes intervals narrower than they are; one held out that was fitted tests nothing.
 void refuse_repeated(std::span<const Recording> fitted, std::span<const Recording> held_out) {
-  std::vector<const Recording*> seen;
+  std::vector<std::pair<std::string, const Recording*>> seen;
   std::vector<Diagnostic> repeated;
   for (const auto& recordings : {fitted, held_out}) {
     for (const Recording& recording : recordings) {
-      const auto found = std::ranges::find_if(
-          seen, [&](const Recording* other) { return holds_the_same_rows(*other, recording) || share_rows_of_a_file(*other, recording); });
+      std::string fingerprint = fingerprint_of(recording);
+      const auto found = std::ranges::find_if(seen, [&](const auto& other) { return share_rows(other.first, fingerprint); });
       if (found != seen.end()) {
-        repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", (*found)->file.string())});
+        repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->second->file.string())});
       }
-      seen.push_back(&recording);
+      seen.emplace_back(std::move(fingerprint), &recording);
     }
   }
   if (!repeated.empty()) {
@@ -112,8 +101,8 @@ void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitt
   std::vector<Diagnostic> known;
   for (const auto& recordings : {fitted, held_out}) {
     for (const Recording& recording : recordings) {
-      if (motor.fit && std::ranges::find(motor.fit->runs, recording.name) != motor.fit->runs.end()) {
-        known.push_back({{recording.file.string()}, {}, fmt::format("{} was fitted to a run of this name (fit.runs)", motor.id)});
+      if (motor.fit && was_fitted_to(*motor.fit, recording)) {
+        known.push_back({{recording.file.string()}, {}, fmt::format("{} was fitted to these rows (fit.runs)", motor.id)});
       }
     }
   }
@@ -125,3 +114,7 @@ void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitt
 }
 
 }  // namespace heatsoak
+bool was_fitted_to(const MotorFit& fit, const Recording& recording) {
+  return std::ranges::any_of(fit.runs, [&recording](const std::string& run) { return is_of_run(recording, run); });
+}
+

@@ -17,7 +17,10 @@ namespace heatsoak {
 std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out,
                                bool takes_logs_as_they_are);
 
-/// Throws Failure (bad_input) where the file was fitted to a run of a log's name: its figures know already what the run tells.
+/// Whether rows of the recording were fitted: by their content, in files of fits that kept only names by the name.
+bool was_fitted_to(const MotorFit& fit, const Recording& recording);
+
+/// Throws Failure (bad_input) where the file was fitted to rows of a log: its figures know already what they tell.
 void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out);
 
 }  // namespace heatsoak

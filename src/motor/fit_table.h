@@ -13,8 +13,8 @@ namespace heatsoak {
 
 /// The [fit] table of a motor file that a calibration wrote.
 struct MotorFit {
-  std::string motor;  ///< id of the motor file that the fit began with
-  std::vector<std::string> runs;
+  std::string motor;                                    ///< id of the motor file that the fit began with
+  std::vector<std::string> runs;                        ///< names, with what of them: "match_1 (5f0c31d2a7e94b68 0-1800 s)"
   std::vector<std::string> figures;                     ///< keys: "thermal_resistance_winding_stator", "effects.fan.conductance"
   Eigen::MatrixXd correlation;                          ///< of their logarithms, in that order
   std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of one sample

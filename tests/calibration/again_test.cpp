@@ -63,16 +63,42 @@ TEST_F(Again, CommonScaleIsNotLearnedByRepetition) {
   }
 }
 
+/// By what they hold: a name may be another run's, and a run may have another name or clock.
 TEST_F(Again, RunsThatTheFileKnowsAreRefused) {
-  const Calibration first = calibrate(motor_, logs(0), {}, {});
-  const Motor motor = rewritten(motor_, first);
-  try {
-    refuse_runs_of_the_file(motor, logs(0), {});
-    FAIL() << "was let pass";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
-    EXPECT_THAT(failure.what(), testing::HasSubstr("would count twice"));
-  }
+  const std::vector<Recording> known = logs(0);
+  Motor motor = rewritten(motor_, calibrate(motor_, known, {}, {}));
+  const auto is_refused = [&motor](const Recording& recording) {
+    try {
+      refuse_runs_of_the_file(motor, {&recording, 1}, {});
+      return false;
+    } catch (const Failure& failure) {
+      EXPECT_EQ(failure.code(), ExitCode::bad_input);
+      EXPECT_THAT(failure.what(), testing::HasSubstr("would count twice"));
+      return true;
+    }
+  };
+  const auto file = [this](const char* name) { return folder_.path() / name; };
+  EXPECT_TRUE(is_refused(known[0]));
+  EXPECT_TRUE(is_refused(part_of(known[0], 0.4, 0.6)));
+  EXPECT_TRUE(is_refused(read_log(write_log(known[0], file("copy.csv")))));
+  Recording later = known[0];
+  std::ranges::for_each(later.time_s, [](double& time_s) { time_s += 3600.0; });
+  EXPECT_TRUE(is_refused(read_log(write_log(later, file("later.csv")))));
+  const std::vector<Recording> others = logs(2);
+  EXPECT_FALSE(is_refused(read_log(write_log(others[0], file("run_0.csv")))));
+  // What it knew before it was fitted once more, it still knows; of files that kept names alone the names count.
+  motor = rewritten(motor, calibrate(motor, others, {}, {}));
+  EXPECT_TRUE(is_refused(known[1]));
+  motor.fit->runs = {"run_1"};
+  EXPECT_TRUE(is_refused(known[1]));
+  EXPECT_FALSE(is_refused(known[0]));
+}
+
+TEST_F(Again, PartsOfALogThatDoNotOverlapAreTwoRuns) {
+  const Recording log = logs(0).front();
+  const Motor motor = rewritten(motor_, calibrate(motor_, std::vector{part_of(log, 0.0, 0.5)}, {}, {}));
+  EXPECT_TRUE(was_fitted_to(*motor.fit, part_of(log, 0.4, 0.6)));
+  EXPECT_FALSE(was_fitted_to(*motor.fit, part_of(log, 0.5, 1.0)));
 }
 
 }  // namespace

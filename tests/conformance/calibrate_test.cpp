@@ -1,7 +1,9 @@
 // `heatsoak calibrate` as a user meets it: shipped logs, spoilt logs, and the file it writes in every other verb.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <sstream>
 
@@ -17,8 +19,8 @@ using testing::HasSubstr;
 using CsvCells = std::vector<std::string>;
 
 /// A shipped log with its rows changed: time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s.
-std::string spoilt(const std::function<void(std::vector<CsvCells>&)>& change) {
-  std::istringstream lines(content_of(kSoak / "match_1.csv"));
+std::string spoilt(const std::function<void(std::vector<CsvCells>&)>& change, const char* log = "match_1.csv") {
+  std::istringstream lines(content_of(kSoak / log));
   std::string line;
   std::getline(lines, line);
   std::string text = line + '\n';
@@ -47,6 +49,10 @@ std::function<void(std::vector<CsvCells>&)> each_cell(std::size_t column, const 
       cells[column] = cells[column].empty() ? "" : change(std::stod(cells[column]));
     }
   };
+}
+
+std::function<void(std::vector<CsvCells>&)> time_in(double unit_s) {
+  return each_cell(0, [unit_s](double time_s) { return fmt::format("{:.9g}", time_s / unit_s); });
 }
 
 struct BadLog {
@@ -143,7 +149,7 @@ TEST(Calibrate, LogsThatLookWrongAreTakenAsTheyAreWhereAsked) {
 TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
   const TemporaryFolder folder;
   const std::string log = (kSoak / "match_1.csv").string();
-  write(folder.path() / "copy.csv", content_of(log));
+  write(folder.path() / "copy.csv", spoilt(each_cell(0, [](double time_s) { return std::to_string(time_s + 86400.0); })));
   for (const std::vector<std::string>& logs :
        {std::vector<std::string>{log, "copy.csv"}, std::vector<std::string>{log, "--holdout", "copy.csv"}}) {
     std::vector<std::string> arguments{"calibrate", "--motor", kMotor, "--out", "model.toml"};

@@ -8,7 +8,9 @@
 #include <set>
 
 #include "base/diagnostic.h"
+#include "identify/admission.h"
 #include "identify/interval.h"
+#include "identify/measurement/fingerprint.h"
 
 namespace heatsoak {
 namespace {
@@ -98,6 +100,7 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   Eigen::MatrixXd exponents(static_cast<Eigen::Index>(of_file.size()), free);
   MotorFit together;
   together.motor = motor.fit ? motor.fit->motor : motor.id;
+  together.runs = model.fitted;
   for (std::size_t i = 0; i < of_file.size(); ++i) {
     const FittedFigure& each = *of_file[i];
     exponents.row(static_cast<Eigen::Index>(i)) = each.exponents.transpose();
@@ -128,9 +131,6 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
     for (const Sensor& sensor : run.sensors) {
       noise_K[sensor.node] = std::max(noise_K[sensor.node], sensor.noise_K);
     }
-    if (std::ranges::find(together.runs, run.name) == together.runs.end()) {
-      together.runs.push_back(run.name);
-    }
   }
   together.noise_K.assign(noise_K.begin(), noise_K.end());
   motor.fit = std::move(together);
@@ -139,9 +139,7 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
 /// Figures that were fitted to some of these very runs are known no better than from a data sheet: the runs would count twice, and the
 /// intervals held for a model that perhaps lacked something.
 void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vector<std::string>& notes) {
-  const auto is_fitted = [&](const Recording& each) {
-    return std::ranges::any_of(motor.fit->runs, [&](const std::string& run) { return run.substr(0, run.find('#')) == each.name; });
-  };
+  const auto is_fitted = [&](const Recording& each) { return was_fitted_to(*motor.fit, each); };
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
     return;
   }
@@ -170,6 +168,10 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
     effect.condition.clear();
   }
   forget_fit(everywhere, recordings, out.notes);
+  if (everywhere.fit) {
+    out.fitted = everywhere.fit->runs;
+  }
+  std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
   MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
   out.model.model = std::move(built.model);
   out.figures = std::move(built.figures);
@@ -188,7 +190,13 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
   Motor result = motor;
   set_figures(result, model, diagnosis);
-  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(result.fit->runs, ", "));
+  std::vector<std::string> names;
+  for (const MeasuredRun& run : diagnosis.runs) {
+    if (std::ranges::find(names, run.name) == names.end()) {
+      names.push_back(run.name);
+    }
+  }
+  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names, ", "));
   for (const FoundEffect& effect : diagnosis.effects) {
     if (!effect.name.empty()) {
       result.effects.push_back(motor_effect(effect, diagnosis.selection.after));

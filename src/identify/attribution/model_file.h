@@ -14,6 +14,7 @@ struct ModelOfLogs {
   ExtendedModel model;
   std::vector<FittedFigure> figures;  ///< of the motor's file, as the model's parameters make them
   std::vector<Signal> needed;         ///< heat inputs that runs must have for it
+  std::vector<std::string> fitted;    ///< rows that the figures know, as name_and_fingerprint()
   std::vector<std::string> notes;     ///< what is taken for granted because no log has it
 };
 

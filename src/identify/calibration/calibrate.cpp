@@ -14,6 +14,7 @@
 #include "identify/calibration/profile.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
+#include "identify/measurement/fingerprint.h"
 #include "thermal/copper.h"
 
 namespace heatsoak {
@@ -71,6 +72,7 @@ class Calibrating {
     how.ambient_C = options_.ambient_C;
     all_.runs = runs_of(recordings_, how, all_.notes);
     all_.holdout = runs_of(holdout_, how, all_.notes);
+    std::ranges::transform(recordings_, std::back_inserter(all_.fitted), name_and_fingerprint);
     if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
       open_loss_at_speed(all_.motor_model, most_loss_W);
       fill_loss_at_speed(all_.runs, motor);
@@ -345,8 +347,10 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   Motor result = motor;
   MotorFit& fit = result.fit.emplace();
   fit.motor = motor.id;
-  fit.runs = names_of(calibration.runs);
-  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(fit.runs, ", "));
+  // What the file knew before, this one knows too.
+  fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
+  std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
+  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names_of(calibration.runs), ", "));
   for (const CalibratedFigure& each : calibration.figures) {
     if (!each.is_of_file) {
       continue;

@@ -51,6 +51,7 @@ struct Calibration {
   MotorModel motor_model;
   std::vector<MeasuredRun> runs;
   std::vector<MeasuredRun> holdout;
+  std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
   std::vector<CalibratedFigure> figures;
   Eigen::MatrixXd correlation;  ///< of the logarithms of the figures of the file, in their order
   std::vector<OpenDirection> open;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "identify/measurement/fingerprint.h"
 #include "identify/measurement/recording_stream.h"
 
 namespace heatsoak {
@@ -54,6 +55,10 @@ Recording read_recording(const std::filesystem::path& log, const Mapping& mappin
     }
   }
   recording.channels = std::move(channels);
+  if (recording.rows() > 0) {
+    recording.content = content_hash(recording);
+    recording.content_begin_s = recording.time_s.front();
+  }
   return recording;
 }
 

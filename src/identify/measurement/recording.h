@@ -30,6 +30,9 @@ struct Recording {
   std::vector<int> line;                          ///< of each row in the file, from 1 as an editor counts
   std::vector<Channel> channels;
   std::vector<std::size_t> run_begins;  ///< rows before which what happened is unknown; the first one is 0
+  /// Of all that was read, of which this may be a part: content_hash() and the time of its first row.
+  std::string content = {};
+  double content_begin_s = 0.0;
 
   [[nodiscard]] const Channel* find(std::string_view key) const;
   [[nodiscard]] std::size_t rows() const { return time_s.size(); }

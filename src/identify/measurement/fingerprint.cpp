@@ -1,0 +1,104 @@
+#include "identify/measurement/fingerprint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace heatsoak {
+namespace {
+
+/// FNV-1a, the same on every machine.
+class Hash {
+ public:
+  void add(std::uint64_t bits) {
+    for (int byte = 0; byte < 8; ++byte) {
+      add_byte(static_cast<unsigned char>(bits >> (8 * byte)));
+    }
+  }
+  void add(std::string_view text) {
+    std::ranges::for_each(text, [this](char each) { add_byte(static_cast<unsigned char>(each)); });
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  void add_byte(unsigned char byte) { value_ = (value_ ^ byte) * 1'099'511'628'211ULL; }
+  std::uint64_t value_ = 14'695'981'039'346'656'037ULL;
+};
+
+/// In single precision: another order of arithmetic in a mapping changes the last digits of a double.
+std::uint64_t bits_of(double value) {
+  constexpr std::uint64_t kUnknown = ~0ULL;
+  return std::isnan(value) ? kUnknown : std::bit_cast<std::uint32_t>(static_cast<float>(value) + 0.0F);
+}
+
+struct Rows {
+  std::string_view content;
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
+std::optional<Rows> parsed(std::string_view text) {
+  const std::size_t blank = text.find(' ');
+  const std::size_t dash = text.find('-', blank == std::string_view::npos ? blank : blank + 1);
+  if (dash == std::string_view::npos || !text.ends_with(" s")) {
+    return std::nullopt;
+  }
+  Rows rows{text.substr(0, blank)};
+  const auto number = [&](std::size_t begin, std::size_t end, double& value_s) {
+    const auto result = std::from_chars(text.data() + begin, text.data() + end, value_s);
+    return result.ec == std::errc() && result.ptr == text.data() + end;
+  };
+  return number(blank + 1, dash, rows.from_s) && number(dash + 1, text.size() - 2, rows.to_s) ? std::optional(rows) : std::nullopt;
+}
+
+}  // namespace
+
+std::string content_hash(const Recording& recording) {
+  constexpr double kTick_s = 1e-6;
+  Hash hash;
+  for (const double time_s : recording.time_s) {
+    hash.add(static_cast<std::uint64_t>(std::llround((time_s - recording.time_s.front()) / kTick_s)));
+  }
+  std::vector<const Channel*> channels;
+  for (const Channel& channel : recording.channels) {
+    channels.push_back(&channel);
+  }
+  std::ranges::sort(channels, {}, [](const Channel* channel) { return channel->quantity.key; });
+  for (const Channel* channel : channels) {
+    hash.add(channel->quantity.key);
+    std::ranges::for_each(channel->values, [&hash](double each) { hash.add(bits_of(each)); });
+  }
+  return fmt::format("{:016x}", hash.value());
+}
+
+std::string fingerprint_of(const Recording& recording) {
+  const bool is_read = !recording.content.empty();
+  const double begin_s = is_read ? recording.content_begin_s : recording.time_s.front();
+  const auto rounded_s = [begin_s](double time_s) { return std::round(1e3 * (time_s - begin_s)) / 1e3; };
+  return fmt::format("{} {}-{} s", is_read ? recording.content : content_hash(recording), rounded_s(recording.time_s.front()),
+                     rounded_s(recording.time_s.back()));
+}
+
+std::string name_and_fingerprint(const Recording& recording) { return fmt::format("{} ({})", recording.name, fingerprint_of(recording)); }
+
+bool share_rows(std::string_view fingerprint, std::string_view other) {
+  const std::optional<Rows> one = parsed(fingerprint);
+  const std::optional<Rows> two = parsed(other);
+  return one && two && one->content == two->content && one->from_s < two->to_s && two->from_s < one->to_s;
+}
+
+bool is_of_run(const Recording& recording, std::string_view run) {
+  const std::size_t open = run.rfind(" (");
+  if (open != std::string_view::npos && run.ends_with(" s)")) {
+    return share_rows(run.substr(open + 2, run.size() - open - 3), fingerprint_of(recording));
+  }
+  return run.substr(0, run.find('#')) == recording.name;
+}
+
+}  // namespace heatsoak
