@@ -160,6 +160,26 @@ TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
   }
 }
 
+TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", spoilt([](std::vector<CsvCells>& rows) {
+          rows.insert(rows.begin() + 10, rows[9]);
+          rows[500][1] = "nonsense";
+        }));
+  const std::string rows = "log: left out: 1 row: time repeated or running backwards; line 12";
+  const std::string cells = "log: left out: 1 sample of winding_C: not a number; line 502 (\"nonsense\")";
+  for (const Words& words :
+       {Words{"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml", "--json", "-"},
+        Words{"diagnose", "--model", kMotor, "--train", "log.csv@0-60%", "--holdout", "log.csv@60-100%", "--json", "-"}}) {
+    const ProgramRun found = run(words, in(folder.path()));
+    ASSERT_EQ(found.exit_code, 0) << found.err;
+    EXPECT_THAT(found.err, testing::AllOf(HasSubstr("note: " + rows), HasSubstr("note: " + cells)));
+    const auto notes = found.json()["notes"].get<std::vector<std::string>>();
+    EXPECT_EQ(std::ranges::count(notes, rows), 1);
+    EXPECT_EQ(std::ranges::count(notes, cells), 1);
+  }
+}
+
 TEST(Calibrate, HeldOutLogsAreLookedAtToo) {
   const TemporaryFolder folder;
   write(folder.path() / "log.csv", spoilt(each_cell(4, [](double current_A) { return std::to_string(1e3 * current_A); })));

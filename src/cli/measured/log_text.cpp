@@ -78,17 +78,6 @@ std::string channel_table(const DataQuality& quality) {
   return text;
 }
 
-std::string left_out_text(const RecordingReport& report) {
-  std::string text;
-  for (const auto& [what, entry] : report.left_out) {
-    text += fmt::format("left out: {}: {}; line {}{}\n",
-                        what.first.empty() ? plural(entry.count, "row") : plural(entry.count, "sample") + " of " + what.first,
-                        to_string(what.second), list_of(entry.lines, kShownRanges),
-                        entry.example.empty() ? "" : fmt::format(" (\"{}\")", entry.example));
-  }
-  return text;
-}
-
 std::string clock_text(const ClockOffset& offset) {
   if (!offset.delay_s) {
     return fmt::format("clock: {} against {}: not determinable, {}\n", offset.temperature, offset.heat_input, offset.why_not);
@@ -147,8 +136,21 @@ Json clocks_json(const DataQuality& quality) {
 
 }  // namespace
 
+std::vector<std::string> left_out_sentences(const RecordingReport& report) {
+  std::vector<std::string> sentences;
+  for (const auto& [what, entry] : report.left_out) {
+    sentences.push_back(fmt::format(
+        "{}: {}; line {}{}", what.first.empty() ? plural(entry.count, "row") : plural(entry.count, "sample") + " of " + what.first,
+        to_string(what.second), list_of(entry.lines, kShownRanges), entry.example.empty() ? "" : fmt::format(" (\"{}\")", entry.example)));
+  }
+  return sentences;
+}
+
 std::string log_text(const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
-  std::string text = head(recording, report) + sampling_text(quality) + channel_table(quality) + left_out_text(report);
+  std::string text = head(recording, report) + sampling_text(quality) + channel_table(quality);
+  for (const std::string& sentence : left_out_sentences(report)) {
+    text += fmt::format("left out: {}\n", sentence);
+  }
   for (const ClockOffset& offset : quality.clock_offsets) {
     text += clock_text(offset);
   }

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "identify/measurement/quality.h"
 #include "identify/measurement/recording.h"
@@ -13,5 +14,8 @@ namespace heatsoak {
 /// `recording`: as much of it as the assessment keeps.
 std::string log_text(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
 nlohmann::ordered_json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
+
+/// What was left out, one sentence per channel and reason: "798 samples of winding_C: saturated; line 12-14, 20".
+std::vector<std::string> left_out_sentences(const RecordingReport& report);
 
 }  // namespace heatsoak

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/diagnostic.h"
+#include "cli/measured/log_text.h"
 #include "cli/quantity_option.h"
 #include "identify/measurement/mapping.h"
 #include "identify/measurement/read_recording.h"
@@ -61,8 +62,17 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
     RecordingReport report;
     const std::filesystem::path file = log_named(folders, part.file);
     Recording recording = read_recording(file, mapping_for(file, options.map), report);
+    const auto tell = [&](std::string note) {
+      // Of several parts of one log it is said once.
+      if (std::ranges::find(notes, note) == notes.end()) {
+        notes.push_back(std::move(note));
+      }
+    };
     for (const std::string& note : report.notes) {
-      notes.push_back(fmt::format("{}: {}", recording.name, note));
+      tell(fmt::format("{}: {}", recording.name, note));
+    }
+    for (const std::string& sentence : left_out_sentences(report)) {
+      tell(fmt::format("{}: left out: {}", recording.name, sentence));
     }
     const bool is_whole = part.from_share == 0.0 && part.to_share == 1.0;
     all.push_back(is_whole ? std::move(recording) : part_of(recording, part.from_share, part.to_share));

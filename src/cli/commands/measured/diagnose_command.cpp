@@ -78,6 +78,9 @@ ExitCode run(const Options& options, Session& session) {
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   diagnosis.notes = notes;
   session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), fmt::join(diagnosis.words, "\n")));
+  for (const std::string& note : notes) {
+    session.say(fmt::format("note: {}\n", note));
+  }
   if (!options.out.empty()) {
     hand_out(options, extended_motor(motor, model, diagnosis), diagnosis, input, session);
     session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
