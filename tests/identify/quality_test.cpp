@@ -420,5 +420,30 @@ TEST(Fitness, LogsThatTellNothingAboutHeat) {
   EXPECT_THAT(lacks_of("time_s,ambient_C,bus_V\n0,20,24\n1,20,24.1\n"), testing::Contains(HasSubstr("no temperature of the motor")));
 }
 
+/// A motor that stands under one current from cold, with the speed logged.
+std::string standing_run(double current_A, bool is_swapped, double speed_rad_per_s, double winding_offset_K) {
+  SyntheticLog log;
+  log.current_A = [=](double) { return current_A; };
+  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s\n";
+  double time_s = 0.0;
+  for (const auto& [winding_C, stator_C] : log.temperatures_C()) {
+    const double shown_C = winding_C + winding_offset_K;
+    text += fmt::format("{},{:.3f},{:.3f},22,{},{}\n", time_s, is_swapped ? stator_C : shown_C, is_swapped ? shown_C : stator_C, current_A,
+                        speed_rad_per_s);
+    time_s += log.period_s;
+  }
+  return text;
+}
+
+TEST(Suspicion, SwappedAtStandstillUnderOneCurrent) {
+  for (const double current_A : {4.0, 5.0, 6.0}) {
+    EXPECT_THAT(read(standing_run(current_A, true, 0.0, 0.0)).quality.spoiling, ElementsAre(HasSubstr("are the two swapped")));
+    EXPECT_THAT(read(standing_run(current_A, false, 0.0, 0.0)).quality.suspicions, IsEmpty());
+    // Its offset was there from the start; what turns may heat the stator.
+    EXPECT_THAT(read(standing_run(current_A, false, 0.0, -9.0)).quality.suspicions, IsEmpty());
+    EXPECT_THAT(read(standing_run(current_A, true, 200.0, 0.0)).quality.suspicions, IsEmpty());
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak

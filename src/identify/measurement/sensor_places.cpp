@@ -71,6 +71,7 @@ class Places {
     if (moves(winding_) && moves(stator_)) {
       swapped_by_heat();
       swapped_by_cooling();
+      swapped_at_standstill();
     }
     return std::move(found_);
   }
@@ -263,6 +264,69 @@ class Places {
           fmt::format("while nothing heats, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
                       significant(apart_K, 2)));
     }
+  }
+
+  /// While the motor stands there is only copper loss, and from one temperature the winding goes ahead of the stator.
+  void swapped_at_standstill() {
+    const Channel* const input = first_of(recording_, kWindingHeats);
+    if (speed_ == nullptr || input == nullptr || !found_.empty()) {
+      return;
+    }
+    const std::vector<double> heat = relative_heat(*input);
+    for (const auto& [begin, end] : recording_.runs()) {
+      const StandstillWarmUp warm_up = standstill_warm_up(begin, end, heat);
+      if (warm_up.stator_ahead_K > 0.0) {
+        found_.push_back(fmt::format(
+            "at standstill {} heats stator_C by {} K while winding_C is {} K cooler: are the two swapped, or is a sensor elsewhere?",
+            input->quantity.key, significant(warm_up.stator_rise_K, 2), significant(warm_up.stator_ahead_K, 2)));
+        return;
+      }
+    }
+  }
+
+  struct StandstillWarmUp {
+    double stator_rise_K = 0.0;
+    double stator_ahead_K = 0.0;  ///< of the winding, by the middle of the samples; 0 where it is not plainly so
+  };
+  /// From a run's first row to where it turns.
+  [[nodiscard]] StandstillWarmUp standstill_warm_up(std::size_t begin, std::size_t end, std::span<const double> heat) const {
+    constexpr double kStands_rad_per_s = 1.0;
+    constexpr double kAlikeAtStart_K = 10.0;
+    constexpr double kRises_K = 8.0;
+    constexpr double kAhead_K = 4.0;
+    constexpr double kAhead_share = 0.25;  // more than the gain of a sensor
+    constexpr double kAlways_share = 0.9;
+    constexpr std::size_t kFewestSamples = 15;
+    std::vector<double> winding_C;
+    std::vector<double> stator_C;
+    double heat_sum = 0.0;
+    for (std::size_t row = begin; row < end && std::abs(speed_->values[row]) < kStands_rad_per_s; ++row) {
+      if (std::isfinite(winding_->values[row]) && std::isfinite(stator_->values[row])) {
+        winding_C.push_back(winding_->values[row]);
+        stator_C.push_back(stator_->values[row]);
+      }
+      heat_sum += std::isfinite(heat[row]) ? heat[row] : 0.0;
+    }
+    if (winding_C.size() < kFewestSamples || heat_sum <= 0.0) {
+      return {};
+    }
+    const double winding_start_C = middle_of(std::span(winding_C).first(3));
+    const double stator_start_C = middle_of(std::span(stator_C).first(3));
+    const double at_start_K = stator_start_C - winding_start_C;
+    std::vector<double> rises_K;
+    std::vector<double> ahead_K;
+    for (std::size_t i = 0; i < winding_C.size(); ++i) {
+      if (stator_C[i] - stator_start_C > kRises_K) {
+        rises_K.push_back(stator_C[i] - stator_start_C);
+        // What is apart from the start may be a sensor's offset.
+        ahead_K.push_back(stator_C[i] - winding_C[i] - std::max(0.0, at_start_K));
+      }
+    }
+    if (std::abs(at_start_K) > kAlikeAtStart_K || ahead_K.size() < kFewestSamples || percentile(ahead_K, 1.0 - kAlways_share) < 0.0 ||
+        middle_of(ahead_K) < std::max(kAhead_K, kAhead_share * middle_of(rises_K))) {
+      return {};
+    }
+    return {middle_of(rises_K), middle_of(ahead_K) + std::max(0.0, at_start_K)};
   }
 
   struct Cooling {
