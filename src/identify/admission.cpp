@@ -62,7 +62,7 @@ void beyond_the_motor(const Motor& motor, const DataQuality& quality, std::vecto
 }  // namespace
 
 std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out,
-                               bool takes_logs_as_they_are) {
+                               bool takes_logs_as_they_are, double ambient_C) {
   refuse_repeated(fitted, held_out);
   std::vector<std::string> notes;
   std::vector<Diagnostic> wrong;
@@ -82,12 +82,12 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
     }
   };
   for (const Recording& recording : fitted) {
-    const DataQuality quality = assess(recording, {});
+    const DataQuality quality = assess(recording, {}, ambient_C);
     require_thermal(recording, quality);
     look(recording, quality);
   }
   for (const Recording& recording : held_out) {
-    look(recording, assess(recording, {}));
+    look(recording, assess(recording, {}, ambient_C));
   }
   if (!wrong.empty() && !takes_logs_as_they_are) {
     throw Failure(ExitCode::bad_input,

@@ -160,6 +160,25 @@ TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
   }
 }
 
+/// A motor that starts warm gives degrees Fahrenheit away by nothing but what no model of it follows.
+TEST(Calibrate, ModelThatIsTensOfKelvinOffIsRefused) {
+  for (const auto& [scale_ratio, exit_code] : {std::pair(1.0, 0), std::pair(2.2, 3)}) {
+    const TemporaryFolder folder;
+    write(folder.path() / "log.csv", spoilt(
+                                         [scale_ratio = scale_ratio](std::vector<CsvCells>& rows) {
+                                           rows.erase(rows.begin(), rows.begin() + 20);
+                                           each_cell(1, [=](double winding_C) {
+                                             return std::to_string(scale_ratio > 1.0 ? scale_ratio * winding_C + 32.0 : winding_C);
+                                           })(rows);
+                                           each_cell(2, [](double) { return ""; })(rows);
+                                         },
+                                         "bench.csv"));
+    const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path()));
+    EXPECT_EQ(found.exit_code, exit_code) << found.err;
+    EXPECT_EQ((found.out + found.err).find("degrees Fahrenheit") != std::string::npos, exit_code != 0);
+  }
+}
+
 TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {
   const TemporaryFolder folder;
   write(folder.path() / "log.csv", spoilt([](std::vector<CsvCells>& rows) {

@@ -445,5 +445,23 @@ TEST(Suspicion, SwappedAtStandstillUnderOneCurrent) {
   }
 }
 
+/// A warm-up of the winding alone, in degrees Fahrenheit or not, beside a room that the user states.
+TEST(Suspicion, FahrenheitBesideAStatedRoom) {
+  for (const auto& [is_fahrenheit, room_C] :
+       {std::pair(true, 22.0), std::pair(true, 18.5), std::pair(false, 22.0), std::pair(false, 40.0)}) {
+    std::string text = "time_s,winding_C,current_A\n";
+    const SyntheticLog log;
+    double time_s = 0.0;
+    for (const auto& [winding_C, stator_C] : log.temperatures_C()) {
+      text += fmt::format("{},{:.3f},{}\n", time_s, is_fahrenheit ? 1.8 * winding_C + 32.0 : winding_C, log.current_A(time_s));
+      time_s += log.period_s;
+    }
+    const Read result = read(text);
+    EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "without the room it may be a warm motor";
+    const DataQuality beside_room = assess(result.recording, result.report, room_C);
+    EXPECT_EQ(beside_room.spoiling.size(), is_fahrenheit ? 1U : 0U) << room_C;
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak

@@ -96,6 +96,7 @@ class Calibrating {
     tell_what_got_worse("the runs held out", all_.holdout_error);
     refuse_where_nothing_was_learned();
     refuse_where_nothing_is_explained();
+    tell_what_is_far_off();
     return std::move(all_);
   }
 
@@ -278,23 +279,39 @@ class Calibrating {
 
   /// Figures of a model that does not follow the runs mean nothing, however narrow their intervals.
   void refuse_where_nothing_is_explained() const {
+    constexpr double kFar_K = 20.0;
+    constexpr double kFar_share = 0.4;
     std::string why;
     for (const ErrorBeforeAfter& each : all_.fit_error) {
       const double moves_K = standard_deviation_K(each.signal);
-      if (each.after.rmse_K > moves_K) {
-        why += fmt::format("\n  {} is {} K rms off, more than it moves (standard deviation {} K)", each.signal,
-                           significant(each.after.rmse_K, 2), significant(moves_K, 2));
+      if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
+        why += fmt::format("\n  {} is {} K rms off, {} it moves (standard deviation {} K)", each.signal, significant(each.after.rmse_K, 2),
+                           each.after.rmse_K > moves_K ? "more than" : "much of what", significant(moves_K, 2));
       }
     }
     if (!why.empty()) {
       throw Failure(
           ExitCode::cannot_answer,
-          fmt::format("no figures of this motor make the model follow these logs{}{}\n  is it another motor, a wrong unit, a sensor "
-                      "elsewhere, or heat that no column tells of? `heatsoak log inspect` shows each channel",
-                      why,
-                      all_.motor_model.nuisances.empty()
-                          ? ""
-                          : "\n  no log has the speed (speed_rad_per_s), so that the loss at speed is not known"));
+          fmt::format(
+              "no figures of this motor make the model follow these logs{}{}\n  is it another motor, a wrong unit (degrees Fahrenheit, "
+              "minutes, milliamperes), a sensor elsewhere, or heat that no column tells of? `heatsoak log inspect` shows each channel",
+              why,
+              all_.motor_model.nuisances.empty() ? ""
+                                                 : "\n  no log has the speed (speed_rad_per_s), so that the loss at speed is not known"));
+    }
+  }
+
+  void tell_what_is_far_off() {
+    constexpr double kFar_K = 15.0;
+    constexpr double kFar_share = 0.2;
+    for (const ErrorBeforeAfter& each : all_.fit_error) {
+      const double moves_K = standard_deviation_K(each.signal);
+      if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
+        all_.notes.push_back(fmt::format(
+            "the fitted model is {} K rms off {}, which moves by {} K (standard deviation): do not rely on its figures; is it another "
+            "motor, or a unit wrong (degrees Fahrenheit, minutes, milliamperes)?",
+            significant(each.after.rmse_K, 2), each.signal, significant(moves_K, 2)));
+      }
     }
   }
 

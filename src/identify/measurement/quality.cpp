@@ -221,7 +221,7 @@ void Assessment::tell_channels(const RecordingReport& report) {
   }
 }
 
-DataQuality Assessment::conclude(const RecordingReport& report) {
+DataQuality Assessment::conclude(const RecordingReport& report, double ambient_C) {
   const Recording& rows = condensed_.rows();
   Sampling& sampling = quality_.sampling;
   sampling.duration_s = last_s_ - first_s_;
@@ -239,7 +239,7 @@ DataQuality Assessment::conclude(const RecordingReport& report) {
       }
     }
   }
-  Suspicions suspected = suspicions(rows, quality_.channels);
+  Suspicions suspected = suspicions(rows, quality_.channels, ambient_C);
   quality_.suspicions = std::move(suspected.all);
   quality_.spoiling = std::move(suspected.spoiling);
   quality_.spoiling_wheels = std::move(suspected.spoiling_wheels);
@@ -248,12 +248,12 @@ DataQuality Assessment::conclude(const RecordingReport& report) {
   return std::move(quality_);
 }
 
-DataQuality assess(const Recording& recording, const RecordingReport& report) {
+DataQuality assess(const Recording& recording, const RecordingReport& report, double ambient_C) {
   Assessment assessment;
   for (std::size_t begin = 0; begin < recording.rows(); begin += CondensedRecording::kMostRows) {
     assessment.add(recording.slice(begin, std::min(begin + CondensedRecording::kMostRows, recording.rows())));
   }
-  return assessment.conclude(report);
+  return assessment.conclude(report, ambient_C);
 }
 
 void require_thermal(const Recording& recording, const DataQuality& quality) {

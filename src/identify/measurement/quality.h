@@ -76,10 +76,12 @@ struct DataQuality {
 /// Takes a log part by part; what it keeps does not grow with the log.
 class Assessment {
  public:
+  static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
+
   /// As RecordingStream gives them.
   void add(const Recording& part);
-  /// After the last part. Channels without one sample are not told of.
-  DataQuality conclude(const RecordingReport& report);
+  /// After the last part. Channels without one sample are not told of. `ambient_C`: of the air as the user states it, NaN where not.
+  DataQuality conclude(const RecordingReport& report, double ambient_C = kNotStated_C);
   [[nodiscard]] const CondensedRecording& condensed() const { return condensed_; }
 
  private:
@@ -104,7 +106,7 @@ class Assessment {
   DataQuality quality_;
 };
 
-DataQuality assess(const Recording& recording, const RecordingReport& report);
+DataQuality assess(const Recording& recording, const RecordingReport& report, double ambient_C = Assessment::kNotStated_C);
 
 /// Throws Failure (cannot_answer) where the recording cannot tell anything about a thermal network: too short, nothing
 /// changes, no temperature or no heat input.

@@ -18,10 +18,11 @@ namespace {
 
 class Suspector {
  public:
-  Suspector(const Recording& recording, std::span<const ChannelQuality> channels) : recording_(recording), channels_(channels) {}
+  Suspector(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C)
+      : recording_(recording), channels_(channels), ambient_C_(ambient_C) {}
 
   Suspicions run() {
-    found_ = suspicious_scales(recording_);
+    found_ = suspicious_scales(recording_, ambient_C_);
     std::ranges::move(suspicious_places(recording_, channels_), std::back_inserter(found_));
     currents();
     speeds();
@@ -220,6 +221,9 @@ class Suspector {
 
 }  // namespace
 
-Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels) { return Suspector(recording, channels).run(); }
+Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C) {
+  return Suspector(recording, channels, ambient_C).run();
+}
 
 }  // namespace heatsoak
+  double ambient_C_;

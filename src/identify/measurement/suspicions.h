@@ -15,6 +15,7 @@ struct Suspicions {
   std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
   std::vector<std::string> spoiling_wheels;  ///< of them: the same of a robot's wheels and angles, and of the clock
 };
-Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels);
+/// `ambient_C`: of the air as the user states it, NaN where not.
+Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C);
 
 }  // namespace heatsoak

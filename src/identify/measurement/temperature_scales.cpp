@@ -29,7 +29,7 @@ bool never_falls(const Channel& channel, double degree) {
 
 class Scales {
  public:
-  explicit Scales(const Recording& recording) : ambient_(recording.find("ambient_C")) {
+  Scales(const Recording& recording, double ambient_C) : ambient_(recording.find("ambient_C")), stated_C_(ambient_C) {
     for (const Channel& channel : recording.channels) {
       if (channel.quantity.kind == QuantityKind::temperature) {
         sensors_.push_back(&channel);
@@ -54,11 +54,14 @@ class Scales {
         found_.push_back(
             fmt::format("{} starts at {} °C: is it in kelvin ({} °C)?", key, significant(start, 4), significant(from_kelvin_C(start), 3)));
       } else if (is_in_fahrenheit(*each)) {
+        is_told_ = is_told_ || each->quantity.kind == QuantityKind::temperature;
         found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", key, significant(start, 3),
                                      significant(from_fahrenheit_C(start), 3)));
       }
     }
-    motor_in_fahrenheit();
+    if (!is_told_) {
+      motor_in_fahrenheit();
+    }
     return std::move(found_);
   }
 
@@ -87,32 +90,39 @@ class Scales {
   [[nodiscard]] bool is_in_fahrenheit(const Channel& channel) const {
     const double start = at_start(channel);
     const double coolest_C = from_fahrenheit_C(coolest_at_start(channel));
-    const std::vector<double> others_C = other_starts_C(channel);
+    std::vector<double> others_C = other_starts_C(channel);
     const auto all_within = [&others_C](double value_C, double within_K) {
       return std::ranges::all_of(others_C, [=](double other_C) { return std::abs(other_C - value_C) < within_K; });
     };
+    constexpr double kAllAlike_K = 10.0;
+    const bool room_is_as_hot = ambient_ == nullptr && std::abs(stated_C_ - start) < kApart_K;
+    const bool all_are_alike = !others_C.empty() && all_within(start, kAllAlike_K) && !room_is_as_hot;
+    if (ambient_ == nullptr && !std::isnan(stated_C_)) {
+      others_C.push_back(stated_C_);
+    }
     const bool stands_apart = std::ranges::none_of(others_C, [start](double other_C) { return std::abs(other_C - start) < kApart_K; });
     // Where the others start warm too, this one may as well.
     const bool others_are_alike = std::ranges::all_of(others_C, [&](double one_C) { return all_within(one_C, kApart_K); });
-    // One other alone may by chance be where a warm motor's Fahrenheit is.
-    const double alike_K = others_C.size() > 1 ? kAlike_K : 0.5 * kAlike_K;
-    const bool one_agrees = std::ranges::any_of(others_C, [=](double other_C) { return std::abs(other_C - coolest_C) < alike_K; });
+    // One other alone may by chance be where a warm motor's Fahrenheit is. Beside the room a motor may be a little warm.
+    const double below_K = others_C.size() > 1 ? kAlike_K : 0.5 * kAlike_K;
+    const bool is_beside_room = sensors_.size() == 1 && sensors_.front() == &channel;
+    const double above_K = is_beside_room ? 1.2 * kAlike_K : below_K;
+    const bool one_agrees =
+        std::ranges::any_of(others_C, [=](double other_C) { return coolest_C > other_C - below_K && coolest_C < other_C + above_K; });
     if (stands_apart && others_are_alike && one_agrees && never_falls(channel, 1.8)) {
       return true;
     }
-    constexpr double kAllAlike_K = 10.0;
     const bool is_room = &channel == ambient_;
-    const bool all_are_alike = !others_C.empty() && all_within(start, kAllAlike_K);
     return (is_room || (all_are_alike && never_falls(channel, 1.8))) && start > 55.0 && start < 105.0 &&
            is_of_a_room(from_fahrenheit_C(start));
   }
 
   /// All of the motor's sensors start alike and far above the room, and in Fahrenheit at the room's temperature.
   void motor_in_fahrenheit() {
-    if (ambient_ == nullptr || sensors_.size() < 2) {
+    const double room_C = ambient_ != nullptr ? at_start(*ambient_) : stated_C_;
+    if (std::isnan(room_C) || sensors_.size() < 2) {
       return;
     }
-    const double room_C = at_start(*ambient_);
     const double first = coolest_at_start(*sensors_.front());
     const bool all = std::ranges::all_of(sensors_, [&](const Channel* sensor) {
       const double start = coolest_at_start(*sensor);
@@ -127,6 +137,8 @@ class Scales {
   }
 
   const Channel* ambient_;
+  double stated_C_;
+  bool is_told_ = false;                  ///< that a sensor of the motor looks like degrees Fahrenheit
   std::vector<const Channel*> sensors_;   ///< of the motor
   std::vector<const Channel*> channels_;  ///< these and the surroundings'
   std::vector<std::string> found_;
@@ -134,6 +146,6 @@ class Scales {
 
 }  // namespace
 
-std::vector<std::string> suspicious_scales(const Recording& recording) { return Scales(recording).run(); }
+std::vector<std::string> suspicious_scales(const Recording& recording, double ambient_C) { return Scales(recording, ambient_C).run(); }
 
 }  // namespace heatsoak

@@ -8,6 +8,7 @@
 
 namespace heatsoak {
 
-std::vector<std::string> suspicious_scales(const Recording& recording);
+/// `ambient_C`: of the air as the user states it, NaN where not; a recording's own goes before it.
+std::vector<std::string> suspicious_scales(const Recording& recording, double ambient_C);
 
 }  // namespace heatsoak

@@ -148,7 +148,7 @@ ExitCode run(const Options& options, Session& session) {
   if (!options.how.takes_logs_as_they_are) {
     refuse_runs_of_the_file(motor, logs, holdout);
   }
-  std::ranges::move(admit(motor, logs, holdout, options.how.takes_logs_as_they_are), std::back_inserter(notes));
+  std::ranges::move(admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C), std::back_inserter(notes));
   Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C});
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
