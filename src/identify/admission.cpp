@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
-#include "identify/measurement/quality.h"
 #include "identify/measurement/fingerprint.h"
+#include "identify/measurement/quality.h"
+#include "identify/measurement/spread.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -59,6 +62,90 @@ void beyond_the_motor(const Motor& motor, const DataQuality& quality, std::vecto
   }
 }
 
+/// Copper loss and the loss at speed of a row's interval, and more of the latter than the sheet says.
+double generous_heat_W(const MotorValues& nominal, const Recording& recording, std::size_t row) {
+  constexpr double kSpeedLoss_ratio = 2.0;
+  const auto value = [&](std::string_view key) {
+    const Channel* const channel = recording.find(key);
+    return channel != nullptr ? channel->values[row] : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto known_or = [](double known, double otherwise) { return std::isnan(known) ? otherwise : known; };
+  const double power_W = std::abs(value("power_in_W"));
+  const double hot_ratio = resistance_ratio(nominal.temperature_coefficient_per_K, known_or(value("winding_C"), kSheetTemperature_C));
+  const double speed_rad_per_s = known_or(std::abs(value("speed_rad_per_s")), nominal.no_load_speed_rad_per_s);
+  const double copper_W = std::pow(value("current_A"), 2) * nominal.terminal_resistance_ohm * std::max(1.0, hot_ratio);
+  const double turning_W = nominal.torque_constant_Nm_per_A * nominal.no_load_current_A * speed_rad_per_s;
+  const double of_current_W = copper_W + kSpeedLoss_ratio * known_or(turning_W, 0.0);
+  return std::isnan(of_current_W) ? power_W : std::max(of_current_W, known_or(power_W, 0.0));
+}
+
+/// How many times the heat that goes in it takes for a temperature to rise as it does, where most heat goes in; 0 where nothing tells.
+double heat_ratio_of_rises(const Recording& recording, const Channel& channel, double capacity_J_per_K, std::span<const double> heat_W) {
+  constexpr double kRise_K = 10.0;
+  constexpr double kMuchHeat_share = 0.25;
+  struct Rise {
+    double heat_ratio = 0.0;
+    double mean_W = 0.0;
+  };
+  std::vector<Rise> rises;
+  for (const auto& [begin, end] : recording.runs()) {
+    double from_C = std::numeric_limits<double>::infinity();
+    double from_s = 0.0;
+    double heat_J = 0.0;
+    for (std::size_t row = begin; row < end; ++row) {
+      const double now_C = channel.values[row];
+      if (row > begin) {
+        heat_J += heat_W[row - 1] * (recording.time_s[row] - recording.time_s[row - 1]);
+      }
+      const bool is_risen = now_C - from_C >= kRise_K;
+      if (is_risen && heat_J > 0.0) {
+        rises.push_back({(now_C - from_C) * capacity_J_per_K / heat_J, heat_J / (recording.time_s[row] - from_s)});
+      }
+      if (is_risen || now_C < from_C || (std::isnan(heat_J) && !std::isnan(now_C))) {
+        from_C = now_C;
+        from_s = recording.time_s[row];
+        heat_J = 0.0;
+      }
+    }
+  }
+  double most_W = 0.0;
+  std::ranges::for_each(rises, [&most_W](const Rise& each) { most_W = std::max(most_W, each.mean_W); });
+  std::vector<double> ratios;
+  for (const Rise& each : rises) {
+    if (each.mean_W >= kMuchHeat_share * most_W) {
+      ratios.push_back(each.heat_ratio);
+    }
+  }
+  return ratios.empty() ? 0.0 : middle_of(ratios);
+}
+
+/// Temperatures that rise faster than the motor's losses can heat them, though all of these went there and nothing were lost.
+void faster_than_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
+  constexpr double kTooFast_ratio = 8.0;  // beyond a sheet's error of its heat capacities and another convention for the current
+  constexpr double kHours_ratio = 300.0;
+  const MotorValues& nominal = motor.nominal;
+  std::vector<double> heat_W;
+  for (const auto& [key, capacity_J_per_K] :
+       {std::pair("winding_C", nominal.thermal_time_constant_winding_s / nominal.thermal_resistance_winding_stator_K_per_W),
+        std::pair("stator_C", nominal.thermal_time_constant_stator_s / nominal.thermal_resistance_stator_ambient_K_per_W)}) {
+    const Channel* const channel = recording.find(key);
+    if (channel == nullptr || !(capacity_J_per_K > 0.0)) {
+      continue;
+    }
+    for (std::size_t row = heat_W.size(); row < recording.rows(); ++row) {
+      heat_W.push_back(generous_heat_W(nominal, recording, row));
+    }
+    const double ratio = heat_ratio_of_rises(recording, *channel, capacity_J_per_K, heat_W);
+    if (ratio > kTooFast_ratio) {
+      wrong.push_back(fmt::format(
+          "{} rises some {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another "
+          "unit, or is it another motor?",
+          key, significant(ratio, 1), ratio > kHours_ratio ? "hours" : "minutes"));
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out,
@@ -76,6 +163,7 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
     std::vector<std::string> spoiling = quality.spoiling;
     if (spoiling.empty()) {
       beyond_the_motor(motor, quality, spoiling);
+      faster_than_the_motor(motor, recording, spoiling);
     }
     for (const std::string& each : spoiling) {
       wrong.push_back({{recording.file.string()}, {}, each});
@@ -97,6 +185,10 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
   return notes;
 }
 
+bool was_fitted_to(const MotorFit& fit, const Recording& recording) {
+  return std::ranges::any_of(fit.runs, [&recording](const std::string& run) { return is_of_run(recording, run); });
+}
+
 void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out) {
   std::vector<Diagnostic> known;
   for (const auto& recordings : {fitted, held_out}) {
@@ -114,7 +206,3 @@ void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitt
 }
 
 }  // namespace heatsoak
-bool was_fitted_to(const MotorFit& fit, const Recording& recording) {
-  return std::ranges::any_of(fit.runs, [&recording](const std::string& run) { return is_of_run(recording, run); });
-}
-

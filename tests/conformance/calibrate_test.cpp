@@ -89,6 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
                            "in milliamperes"},
                     BadLog{"SmallMilliamps", each_cell(4, [](double current_A) { return std::to_string(30.0 * current_A); }), 2,
                            "is it in milliamperes"},
+                    BadLog{"Minutes", time_in(60.0), 2, "is the time in minutes"},
+                    BadLog{"Hours", time_in(3600.0), 2, "is the time in hours"},
                     BadLog{"SwappedSensors",
                            [](std::vector<CsvCells>& rows) {
                              for (CsvCells& cells : rows) {

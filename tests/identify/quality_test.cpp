@@ -463,5 +463,18 @@ TEST(Suspicion, FahrenheitBesideAStatedRoom) {
   }
 }
 
+/// A logger of 60 Hz is none that writes minutes.
+TEST(Suspicion, MinutesByRowsThatNoMotorFollows) {
+  SyntheticLog fast;
+  fast.period_s = 1.0 / 60.0;
+  fast.rows = 6000;
+  EXPECT_THAT(read(changed(fast, [&](int row, std::vector<double>& cells) { cells[time] = row / 60.0; })).quality.suspicions, IsEmpty());
+  for (const auto& [unit, in_s] : {std::pair("minutes", 60.0), std::pair("hours", 3600.0)}) {
+    const Read result = read(changed({}, [in_s = in_s](int row, std::vector<double>& cells) { cells[time] = row / in_s; }));
+    EXPECT_THAT(result.quality.suspicions, ElementsAre(HasSubstr(fmt::format("is the time in {}?", unit))));
+    EXPECT_THAT(result.quality.spoiling, IsEmpty());
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 
 #include "base/quantity.h"
@@ -32,6 +33,7 @@ class Suspector {
     angles();
     wheels();
     std::vector<std::string> spoiling_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
+    short_clock();
     constants();
     limits();
     return {std::move(found_), std::move(spoiling), std::move(spoiling_wheels)};
@@ -173,6 +175,53 @@ class Suspector {
     }
   }
 
+  /// Whole seconds as minutes or hours, and no motor as fast as that. Loggers of 60 Hz there are: without a motor it is only said.
+  void short_clock() {
+    const double period_s = usual_period_s(recording_.time_s);
+    constexpr double kMost_s = 60.0;
+    constexpr double kOff_ratio = 5e-3;
+    const auto is_whole = [](double value, double off) { return std::abs(value - std::round(value)) < off; };
+    for (const auto& [unit, in_s] : {std::pair("minutes", 60.0), std::pair("hours", 3600.0)}) {
+      const double true_s = in_s * period_s;
+      if (true_s > kMost_s || std::round(true_s) < 1.0 || !is_whole(true_s, kOff_ratio * true_s) || is_whole(1e3 * period_s, 0.01)) {
+        continue;
+      }
+      for (const Channel& channel : recording_.channels) {
+        if (channel.quantity.kind != QuantityKind::temperature) {
+          continue;
+        }
+        // How fast it rises is for the current to say, but nothing but the motor itself cools it.
+        const double fast_s = channel.quantity.key.find("winding") != std::string::npos ? 0.5 : 5.0;
+        if (const double fall_s = usual_fall_s(channel); fall_s < fast_s) {
+          found_.push_back(fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?", significant(period_s, 3),
+                                       channel.quantity.key, significant(kFall_K, 2), significant(fall_s, 2), unit));
+          return;
+        }
+      }
+    }
+  }
+  static constexpr double kFall_K = 10.0;
+  /// The usual time that it takes to fall by kFall_K without a rise; infinite with less than two of these.
+  [[nodiscard]] double usual_fall_s(const Channel& channel) const {
+    std::vector<double> falls_s;
+    for (const auto& [begin, end] : recording_.runs()) {
+      double from_C = -std::numeric_limits<double>::infinity();
+      double from_s = 0.0;
+      for (std::size_t row = begin; row < end; ++row) {
+        const double now_C = channel.values[row];
+        const bool is_fallen = from_C - now_C >= kFall_K;
+        if (is_fallen) {
+          falls_s.push_back(recording_.time_s[row] - from_s);
+        }
+        if (is_fallen || now_C > from_C) {
+          from_C = now_C;
+          from_s = recording_.time_s[row];
+        }
+      }
+    }
+    return falls_s.size() < 2 ? std::numeric_limits<double>::infinity() : middle_of(falls_s);
+  }
+
   /// The fit takes such a sensor as none: it is only said.
   void constants() {
     constexpr double kMoves_K = 10.0;
@@ -216,6 +265,7 @@ class Suspector {
 
   const Recording& recording_;
   std::span<const ChannelQuality> channels_;
+  double ambient_C_;
   std::vector<std::string> found_;
 };
 
@@ -226,4 +276,3 @@ Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality
 }
 
 }  // namespace heatsoak
-  double ambient_C_;
