@@ -202,6 +202,10 @@ std::string significant(double value, int digits) {
     return fmt::format("{}", value);
   }
   const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value))));
+  constexpr int kMostZeros = 15;
+  if (std::abs(magnitude) > kMostZeros) {
+    return fmt::format("{:.{}g}", value, digits);
+  }
   const int decimals = std::max(0, digits - 1 - magnitude);
   const double step = std::pow(10.0, magnitude - digits + 1);
   const double rounded = decimals > 0 ? value : std::round(value / step) * step;

@@ -191,7 +191,7 @@ class Fitting {
       candidates.resize(std::min<std::size_t>(candidates.size(), static_cast<std::size_t>(kept)));
     }
     if (!std::isfinite(candidates.front().cost)) {
-      throw Failure(ExitCode::numerics_failed,
+      throw Failure(ExitCode::cannot_answer,
                     "no start of the fit leads to a model whose temperatures stay within reason; are the units of the heat inputs right?");
     }
     theta_ = candidates.front().theta;

@@ -53,7 +53,7 @@ struct Fit {
   Eigen::MatrixXd data_triangle;
 };
 
-/// Maximum of the posterior in θ for the most probable flux and noise. Throws Failure (numerics_failed) where no start leads to a
+/// Maximum of the posterior in θ for the most probable flux and noise. Throws Failure (cannot_answer) where no start leads to a
 /// model that can be run.
 Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options);
 

@@ -173,7 +173,8 @@ INSTANTIATE_TEST_SUITE_P(Numbers, Significant,
                                          Rounded{0.0, 3, "0"}, Rounded{-0.0, 3, "0"}, Rounded{-3.14159, 3, "-3.14"},
                                          Rounded{99.96, 3, "100"}, Rounded{0.99996, 3, "1"}, Rounded{9.996, 3, "10"},
                                          Rounded{123456.0, 2, "120000"}, Rounded{999999.0, 3, "1000000"}, Rounded{1e-7, 2, "0.0000001"},
-                                         Rounded{1e15, 3, "1000000000000000"}, Rounded{2.0, 5, "2"}, Rounded{100.0, 6, "100"},
+                                         Rounded{1e15, 3, "1000000000000000"}, Rounded{-1.2345e308, 3, "-1.23e+308"},
+                                         Rounded{1e-300, 3, "1e-300"}, Rounded{2.0, 5, "2"}, Rounded{100.0, 6, "100"},
                                          Rounded{-0.0004, 1, "-0.0004"}, Rounded{1234.5, 5, "1234.5"}));
 
 TEST(Significant, is_within_half_a_digit) {

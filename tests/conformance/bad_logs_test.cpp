@@ -170,6 +170,8 @@ INSTANTIATE_TEST_SUITE_P(
                            0, "is it in degrees Fahrenheit"},
                     BadRun{"milliamperes", cells([](Cells& row) { row[4] *= 1000.0; }), 0, "is it in milliamperes?"},
                     BadRun{"minutes", cells([](Cells& row) { row[0] /= 60.0; }), 0, "is the time in minutes?"},
+                    BadRun{"wild_current", [](std::vector<Cells>& rows) { rows[70][4] = 1e308; }, 0,
+                           "left out: 1 sample of current_A: outside of what is possible; line 72 (\"1e+308\")"},
                     BadRun{"swapped", cells([](Cells& row) { std::swap(row[1], row[2]); }), 0, "are the two swapped?"},
                     BadRun{"constant", cells([](Cells& row) {
                              row = {row[0], 22.0, 22.0, 22.0, 0.0};

@@ -181,6 +181,15 @@ TEST(Calibrate, ModelThatIsTensOfKelvinOffIsRefused) {
   }
 }
 
+/// The data cannot answer, and nothing is wrong with the arithmetic.
+TEST(Calibrate, CurrentsThatNoMotorSurvivesAreNoAnswer) {
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", spoilt(each_cell(4, [](double current_A) { return std::to_string(10.0 * current_A); })));
+  const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path()));
+  EXPECT_EQ(found.exit_code, 3) << found.err;
+  EXPECT_THAT(found.err, HasSubstr("are the units of the heat inputs right?"));
+}
+
 TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {
   const TemporaryFolder folder;
   write(folder.path() / "log.csv", spoilt([](std::vector<CsvCells>& rows) {

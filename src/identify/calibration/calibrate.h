@@ -63,7 +63,7 @@ struct Calibration {
 };
 
 /// Of logs that admit() (identify/admission.h) let pass. Throws Failure: bad_input where the logs lack what is needed, cannot_answer where
-/// nothing can be learned from them (with the reason), numerics_failed where no fit succeeds.
+/// nothing can be learned from them (with the reason) or no fit succeeds.
 Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
                       const CalibrationOptions& options);
 

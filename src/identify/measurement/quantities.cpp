@@ -17,6 +17,8 @@ using Kind = QuantityKind;
 
 constexpr Range kTemperature_C = Range::between(-100.0, 1000.0);
 constexpr Range kAny = Range::any();
+/// Whatever the unit: beyond it squares and sums of them lose all meaning.
+constexpr Range kHeatInput = Range::between(-1e12, 1e12);
 
 constexpr std::array kTypes{
     QuantityType{"time_s", Kind::time, "s", kAny, false, "time of the row; any origin, strictly increasing"},
@@ -29,20 +31,20 @@ constexpr std::array kTypes{
     QuantityType{"coolant_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of a cooling liquid"},
     QuantityType{"driver_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of the motor's driver"},
     QuantityType{"neighbour_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of another motor close by"},
-    QuantityType{"current_A", Kind::heat_input, "A", kAny, false,
+    QuantityType{"current_A", Kind::heat_input, "A", kHeatInput, false,
                  "current as the motor's torque constant counts it: rms over the interval, sign of its mean"},
-    QuantityType{"current_d_A", Kind::heat_input, "A", kAny, false, "field-producing current, peak of a phase"},
-    QuantityType{"current_q_A", Kind::heat_input, "A", kAny, false, "torque-producing current, peak of a phase"},
-    QuantityType{"speed_rad_per_s", Kind::heat_input, "rad/s", kAny, false, "speed of the motor's shaft"},
-    QuantityType{"torque_Nm", Kind::heat_input, "Nm", kAny, false, "torque at the motor's shaft"},
-    QuantityType{"motor_V", Kind::heat_input, "V", kAny, false, "voltage at the motor's terminals, with sign"},
-    QuantityType{"motor_d_V", Kind::heat_input, "V", kAny, false, "voltage along the field"},
-    QuantityType{"motor_q_V", Kind::heat_input, "V", kAny, false, "voltage across the field"},
-    QuantityType{"bus_V", Kind::heat_input, "V", kAny, false, "voltage of the supply at the driver"},
-    QuantityType{"bus_A", Kind::heat_input, "A", kAny, false, "current from the supply into the driver"},
-    QuantityType{"power_in_W", Kind::heat_input, "W", kAny, false, "electric power into the driver, its losses included"},
-    QuantityType{"power_out_W", Kind::heat_input, "W", kAny, false, "mechanical power at the shaft"},
-    QuantityType{"duty_ratio", Kind::heat_input, "", kAny, false, "modulation of the driver, -1 … 1"},
+    QuantityType{"current_d_A", Kind::heat_input, "A", kHeatInput, false, "field-producing current, peak of a phase"},
+    QuantityType{"current_q_A", Kind::heat_input, "A", kHeatInput, false, "torque-producing current, peak of a phase"},
+    QuantityType{"speed_rad_per_s", Kind::heat_input, "rad/s", kHeatInput, false, "speed of the motor's shaft"},
+    QuantityType{"torque_Nm", Kind::heat_input, "Nm", kHeatInput, false, "torque at the motor's shaft"},
+    QuantityType{"motor_V", Kind::heat_input, "V", kHeatInput, false, "voltage at the motor's terminals, with sign"},
+    QuantityType{"motor_d_V", Kind::heat_input, "V", kHeatInput, false, "voltage along the field"},
+    QuantityType{"motor_q_V", Kind::heat_input, "V", kHeatInput, false, "voltage across the field"},
+    QuantityType{"bus_V", Kind::heat_input, "V", kHeatInput, false, "voltage of the supply at the driver"},
+    QuantityType{"bus_A", Kind::heat_input, "A", kHeatInput, false, "current from the supply into the driver"},
+    QuantityType{"power_in_W", Kind::heat_input, "W", kHeatInput, false, "electric power into the driver, its losses included"},
+    QuantityType{"power_out_W", Kind::heat_input, "W", kHeatInput, false, "mechanical power at the shaft"},
+    QuantityType{"duty_ratio", Kind::heat_input, "", kHeatInput, false, "modulation of the driver, -1 … 1"},
     QuantityType{"battery_V", Kind::signal, "V", kAny, false, "voltage of the robot's battery"},
     QuantityType{"vehicle_speed_m_per_s", Kind::signal, "m/s", kAny, false, "speed over ground: airflow"},
     QuantityType{"heading_rad", Kind::signal, "rad", kAny, false, "direction of travel in the robot's frame, 0 is ahead, anticlockwise"},
