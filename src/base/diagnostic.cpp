@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 namespace heatsoak {
@@ -16,6 +18,19 @@ std::string with_list(const std::string& message, const std::vector<Diagnostic>&
     text += fmt::format("{}{}", text.empty() ? "" : "\n", to_string(each));
   }
   return text;
+}
+
+std::string in_small_letters(std::string_view word) {
+  std::string small(word);
+  std::ranges::transform(small, small.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return small;
+}
+
+bool has_letters_in_order(std::string_view word, std::string_view letters) {
+  for (const char c : word) {
+    letters.remove_prefix(!letters.empty() && letters.front() == c ? 1 : 0);
+  }
+  return letters.empty();
 }
 
 /// Levenshtein distance; the words are short.
@@ -70,40 +85,36 @@ void Diagnostics::throw_if_any() const {
 }
 
 std::string did_you_mean(std::string_view written, std::span<const std::string> candidates) {
-  std::string given(written);
-  std::ranges::transform(given, given.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string given = in_small_letters(written);
+  std::vector<std::string> known;
+  std::ranges::transform(candidates, std::back_inserter(known), in_small_letters);
   // Two letters of a short word are most of it.
   std::size_t best_distance = std::max<std::size_t>(given.size() < 4 ? 1 : 2, given.size() / 3) + 1;
-  const std::string* best = nullptr;
-  const std::string* begins_alike = nullptr;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(given, candidate);
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const std::size_t distance = edit_distance(given, known[i]);
     if (distance < best_distance) {
       best_distance = distance;
-      best = &candidate;
+      best = i;
     }
   }
-  for (std::size_t i = 0; !best && given.size() >= 3 && i < candidates.size(); ++i) {
-    // What somebody leaves out: "tigers" for "tigers_v2020".
-    best = candidates[i].find(given) != std::string::npos ? &candidates[i] : nullptr;
-  }
-  for (std::size_t i = 0; !best && given.size() >= 6 && i < candidates.size(); ++i) {
-    // "roboteam_v2024" for "roboteam_twente_v2024".
-    auto left = given.begin();
-    for (const char c : candidates[i]) {
-      left += left != given.end() && *left == c ? 1 : 0;
-    }
-    best = left == given.end() ? &candidates[i] : nullptr;
-  }
+  const auto take_first = [&](const auto& is_meant) {
+    const auto found = best ? known.end() : std::ranges::find_if(known, is_meant);
+    best = found == known.end() ? best : static_cast<std::size_t>(found - known.begin());
+  };
+  // What somebody leaves out: "tigers" for "tigers_v2020", "roboteam_v2024" for "roboteam_twente_v2024".
+  take_first([&](const std::string& each) { return given.size() >= 3 && each.find(given) != std::string::npos; });
+  take_first([&](const std::string& each) { return given.size() >= 6 && has_letters_in_order(each, given); });
   // What begins alike: "iron_lossX" for "iron_loss_eddy".
   std::size_t longest_match = std::max<std::size_t>(3, (2 * given.size() + 2) / 3) - 1;
-  for (std::size_t i = 0; !best && i < candidates.size(); ++i) {
-    const auto match = static_cast<std::size_t>(std::ranges::mismatch(given, candidates[i]).in1 - given.begin());
-    begins_alike = match > longest_match ? &candidates[i] : begins_alike;
+  std::optional<std::size_t> begins_alike;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto match = static_cast<std::size_t>(std::ranges::mismatch(given, known[i]).in1 - given.begin());
+    begins_alike = match > longest_match ? i : begins_alike;
     longest_match = std::max(longest_match, match);
   }
   best = best ? best : begins_alike;
-  return best ? fmt::format("; did you mean '{}'?", *best) : std::string();
+  return best ? fmt::format("; did you mean '{}'?", candidates[*best]) : std::string();
 }
 
 }  // namespace heatsoak
