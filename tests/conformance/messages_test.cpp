@@ -149,6 +149,9 @@ TEST(Evaluate, an_absurd_current_is_bad_input) {
 }
 
 TEST(Outputs, larger_than_the_limit_of_the_user_are_refused_and_leave_nothing) {
+#ifdef HEATSOAK_COUNTED
+  GTEST_SKIP() << "the limit would cut the counters' own files, and no later run could add to them";
+#endif
   const TemporaryFolder folder;
   RunOptions inside;
   inside.folder = folder.path();

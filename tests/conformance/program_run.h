@@ -14,7 +14,7 @@ struct RunOptions {
   std::string program = HEATSOAK_PROGRAM;
   std::filesystem::path stdout_file;  ///< for devices; captured where empty
   std::filesystem::path stderr_file;
-  unsigned time_limit_s = 120;
+  unsigned time_limit_s = 120;  ///< ten times as much where sanitizers or counters are built in
 };
 
 /// What stands on a command line.
