@@ -76,7 +76,7 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   duty.load = as_factor(torque_on ? *torque_on : *current_on);
   duty.figures.emplace_back(torque_on ? torque : current, torque_on ? *torque_on : *current_on);
   for (const auto& [spec, value] : {std::pair(speed, *speed_on), {time_on, *on_s}, {time_off, *off_s}, {cycles, *repeats}}) {
-    duty.figures.emplace_back(spec, Figure{.value = value});
+    duty.figures.emplace_back(spec, Figure{}).second.value = value;
   }
   const double torque_Nm = torque_on ? torque_on->value : 0.0;
   const double current_A = current_on ? current_on->value : 0.0;
