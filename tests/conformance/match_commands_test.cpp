@@ -161,13 +161,20 @@ TEST(Describe, a_duty_shape_is_a_file_to_start_from) {
   }
 }
 
+/// A folder to work in that holds mine.toml.
+struct OwnRobot {
+  OwnRobot() {
+    write(folder.path() / "mine.toml", robot);
+    options.folder = folder.path();
+  }
+  const TemporaryFolder folder;
+  const std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  RunOptions options;
+};
+
 /// Whoever takes --json for a switch names a file of his own behind it.
 TEST(Outputs, an_answer_replaces_answers_only) {
-  const TemporaryFolder folder;
-  RunOptions options;
-  options.folder = folder.path();
-  const std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
-  write(folder.path() / "mine.toml", robot);
+  const auto& [folder, robot, options] = OwnRobot();
   for (const Words& line : {Words{"lint", "--json", "mine.toml"}, Words{"steady", "--json=mine.toml"},
                             Words{"evaluate", "--sampels", "0", "--json", "mine.toml"}, Words{"list", "motors", "--json", "mine.toml"}}) {
     const ProgramRun result = run(line, options);
@@ -184,11 +191,7 @@ TEST(Outputs, an_answer_replaces_answers_only) {
 }
 
 TEST(Outputs, never_replace_what_the_command_reads) {
-  const TemporaryFolder folder;
-  RunOptions options;
-  options.folder = folder.path();
-  const std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
-  write(folder.path() / "mine.toml", robot);
+  const auto& [folder, robot, options] = OwnRobot();
   const Words duty{"--robot", "mine.toml", "--duty", "paper_intermittent"};
   const Words evaluate{"--motors", "maxon_ecx_flat_42m_24v", "--samples", "0", "--json", "./mine.toml"};
   for (const Words& line : {Words{"duty", "--out", "mine.csv"} + duty, Words{"evaluate"} + duty + evaluate}) {
