@@ -69,6 +69,7 @@ LinearisedRun Averaging::run() const {
   out.residual_K = average(run_.residual_K);
   out.residual_K = (weight_.array() > 0.0).select(out.residual_K, std::numeric_limits<double>::quiet_NaN());
   out.by_start = average(run_.by_start);
+  auto doubt = run_.doubts.begin();
   for (Eigen::Index stretch = 0; stretch < stretches_; ++stretch) {
     out.state_C.col(stretch) = run_.state_C.col(middle_of(stretch));
     if (stretch + 1 == stretches_) {
@@ -77,11 +78,26 @@ LinearisedRun Averaging::run() const {
     RowMajor transition = RowMajor::Identity(x, x);
     RowMajor injection = RowMajor::Zero(x, q);
     double duration_s = 0.0;
+    Eigen::MatrixXd doubt_K2 = Eigen::MatrixXd::Zero(x, x);
+    bool has_doubt = false;
     for (Eigen::Index k = middle_of(stretch); k < middle_of(stretch + 1); ++k) {
       const Eigen::Map<const RowMajor> step(run_.transition.data() + k * x * x, x, x);
       transition = step * transition.eval();
       injection = step * injection.eval() + Eigen::Map<const RowMajor>(run_.injection.data() + k * x * q, x, q);
       duration_s += run_.duration_s[static_cast<std::size_t>(k)];
+      while (doubt != run_.doubts.end() && doubt->interval < k) {
+        ++doubt;
+      }
+      if (has_doubt) {
+        doubt_K2 = step * doubt_K2.eval() * step.transpose();
+      }
+      if (doubt != run_.doubts.end() && doubt->interval == k) {
+        doubt_K2 += doubt->covariance_K2;
+        has_doubt = true;
+      }
+    }
+    if (has_doubt) {
+      out.doubts.push_back({stretch, doubt_K2});
     }
     out.transition.insert(out.transition.end(), transition.data(), transition.data() + x * x);
     out.injection.insert(out.injection.end(), injection.data(), injection.data() + x * q);

@@ -13,6 +13,12 @@ namespace heatsoak {
 /// Row = sample · sensors + sensor. Stored row by row, for filters go through time.
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Of inputs that nobody logged: covariance that the state gains by the end of the interval, x × x.
+struct StateDoubt {
+  Eigen::Index interval = 0;
+  Eigen::MatrixXd covariance_K2;
+};
+
 /// n samples, s sensors, x state nodes, q nodes that unknown heat may reach, w wanted parameters.
 struct LinearisedRun {
   Eigen::Index states = 0;
@@ -25,6 +31,7 @@ struct LinearisedRun {
   std::vector<double> transition;  ///< per interval x × x, row by row: d state(k+1) / d state(k)
   std::vector<double> injection;   ///< per interval x × q, row by row, K/W: response to 1 W held over the interval
   std::vector<double> duration_s;  ///< per interval
+  std::vector<StateDoubt> doubts;  ///< by interval, ascending
 
   [[nodiscard]] Eigen::Index samples() const { return state_C.cols(); }
   [[nodiscard]] Eigen::Index sensors() const { return static_cast<Eigen::Index>(sensor_node.size()); }

@@ -9,6 +9,7 @@
 
 #include "base/diagnostic.h"
 #include "base/unknown.h"
+#include "identify/mean_inputs.h"
 #include "identify/measurement/noise.h"
 
 namespace heatsoak {
@@ -16,6 +17,9 @@ namespace {
 
 /// A stretch with fewer samples has nothing to say about thermal time constants.
 constexpr std::size_t kLeastSamples = 10;
+/// Beyond so many usual steps nobody knows what the inputs did; a step longer than kLostRow_ratio usual ones lacks a row.
+constexpr double kLongestUnknown_ratio = 3.0;
+constexpr double kLostRow_ratio = 1.5;
 
 struct SignalChannel {
   Signal signal;
@@ -73,6 +77,8 @@ class MeasuredRows {
         neighbour_C_(values("neighbour_C", recording)),
         age_h_(values("age_h", recording)),
         surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
+        turns_unseen_(!speed_rad_per_s_ && current_A_ &&
+                      std::ranges::any_of(*current_A_, [](double each_A) { return std::abs(each_A) > 0.0; })),
         time_s_(recording.time_s),
         options_(options) {}
 
@@ -93,6 +99,7 @@ class MeasuredRows {
     at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
     at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
     at.neighbour_C = at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
+    at.unlogged_speed_share = turns_unseen_ ? 1.0 : 0.0;
     at.age_h = of(age_h_, row);
     return at;
   }
@@ -131,6 +138,7 @@ class MeasuredRows {
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
       *neighbour_C_, *age_h_;
   std::vector<double> surroundings_C_;
+  bool turns_unseen_;  ///< without any current it stands
   const std::vector<double>& time_s_;
   const MeasuredRunOptions& options_;
 };
@@ -158,42 +166,6 @@ double quantity_of(const OperatingPoint<double>& at, Signal signal) {
   }
   return kUnknown;
 }
-
-/// Means over what was merged, so that heat stays: squares for currents and the rms speed.
-class Mean {
- public:
-  void add(const OperatingPoint<double>& at, double duration_s) {
-    duration_s_ += duration_s;
-    const OperatingPoint<double> squares = squared(at);
-    for_each_quantity([&](double& sum, const double& value) { sum += duration_s * value; }, sum_, squares);
-  }
-  [[nodiscard]] double duration_s() const { return duration_s_; }
-  [[nodiscard]] OperatingPoint<double> take() {
-    OperatingPoint<double> mean = sum_;
-    for_each_quantity([&](double& value) { value /= duration_s_; }, mean);
-    mean.current_rms_A = std::sqrt(mean.current_rms_A);
-    mean.speed_rms_rad_per_s = std::sqrt(mean.speed_rms_rad_per_s);
-    mean.resistive_headroom_V = OperatingPoint<double>{}.resistive_headroom_V;
-    *this = {};
-    return mean;
-  }
-
- private:
-  static OperatingPoint<double> zero() {
-    OperatingPoint<double> at;
-    for_each_quantity([](double& value) { value = 0.0; }, at);
-    return at;
-  }
-  static OperatingPoint<double> squared(OperatingPoint<double> at) {
-    at.current_rms_A *= at.current_rms_A;
-    at.speed_rms_rad_per_s *= at.speed_rms_rad_per_s;
-    at.resistive_headroom_V = 0.0;
-    return at;
-  }
-
-  double duration_s_ = 0.0;
-  OperatingPoint<double> sum_ = zero();
-};
 
 /// The mean of the samples within `reach_s` of the row, moved along their own slope to the row's time.
 double sample_at(const std::vector<double>& time_s, const std::vector<double>& value_C, std::size_t begin, std::size_t end, std::size_t row,
@@ -237,10 +209,12 @@ class Builder {
   MeasuredRuns build() {
     check();
     for (const auto& [begin, end] : recording_.runs()) {
+      const double longest_s = kLongestUnknown_ratio * usual_step_s(begin, end);
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
         while (last + 1 < end && is_known(last)) {
-          ++last;
+          const std::size_t next = known_from(last + 1, end);
+          last = next < end && recording_.time_s[next] - recording_.time_s[last] <= longest_s ? next : last + 1;
         }
         take(first, last);
         first = last + 1;
@@ -288,6 +262,28 @@ class Builder {
            std::ranges::none_of(options_.needed, [&](Signal signal) { return std::isnan(quantity_of(at, signal)); });
   }
 
+  /// The first row from this one on of which everything is known, or `end`.
+  [[nodiscard]] std::size_t known_from(std::size_t row, std::size_t end) const {
+    while (row < end && !is_known(row)) {
+      ++row;
+    }
+    return row;
+  }
+
+  /// Median of the steps between rows of a run.
+  [[nodiscard]] double usual_step_s(std::size_t begin, std::size_t end) const {
+    std::vector<double> steps_s;
+    for (std::size_t row = begin; row + 1 < end; ++row) {
+      steps_s.push_back(recording_.time_s[row + 1] - recording_.time_s[row]);
+    }
+    if (steps_s.empty()) {
+      return 0.0;
+    }
+    const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+    std::ranges::nth_element(steps_s, middle);
+    return *middle;
+  }
+
   [[nodiscard]] bool is_sampled(std::size_t row) const {
     return std::ranges::any_of(sensor_values_, [&](const auto* values) { return !std::isnan((*values)[row]); });
   }
@@ -306,15 +302,17 @@ class Builder {
     run.conditions = recording_.conditions;
     run.conditions.emplace("run", recording_.name);
     const std::vector<double>& time_s = recording_.time_s;
-    const double usual_s = (time_s[last] - time_s[first]) / static_cast<double>(last - first);
-    const bool is_merged = usual_s < 0.5 * options_.longest_step_s;
+    const bool is_merged = (time_s[last] - time_s[first]) / static_cast<double>(last - first) < 0.5 * options_.longest_step_s;
+    const double usual_s = usual_step_s(first, last + 1);
     std::vector<std::size_t> kept{first};
-    Mean mean;
+    MeanInputs mean;
+    std::size_t known = first;
     for (std::size_t row = first; row < last; ++row) {
-      mean.add(filled(row), time_s[row + 1] - time_s[row]);
+      known = is_known(row) ? row : known;
+      add_inputs(row, known, last, usual_s, mean);
       const bool would_be_long = row + 1 < last && mean.duration_s() + 0.5 * (time_s[row + 2] - time_s[row + 1]) > options_.longest_step_s;
       if (!is_merged || would_be_long || row + 1 == last) {
-        run.at.push_back(mean.take());
+        mean.take(run);
         kept.push_back(row + 1);
       }
     }
@@ -332,6 +330,22 @@ class Builder {
     if (kept.size() >= kLeastSamples) {
       run.name = all_.runs.empty() ? recording_.name : fmt::format("{}#{}", recording_.name, all_.runs.size() + 1);
       all_.runs.push_back(std::move(run));
+    }
+  }
+
+  /// What is known from `row` to the next: the inputs of `known`, the last row that has all of them, for a usual step.
+  void add_inputs(std::size_t row, std::size_t known, std::size_t last, double usual_s, MeanInputs& mean) const {
+    const double duration_s = recording_.time_s[row + 1] - recording_.time_s[row];
+    const double held_s = row > known ? 0.0 : (duration_s > kLostRow_ratio * usual_s ? usual_s : duration_s);
+    const std::size_t next = held_s < duration_s ? known_from(row + 1, last + 1) : last + 1;
+    if (next > last) {
+      mean.add(filled(known), duration_s);
+    } else {
+      // They change in the middle of the rest, or at its beginning or end.
+      const OperatingPoint<double> after = filled(next);
+      mean.add(filled(known), held_s);
+      mean.add_unknown(filled(known), after, 0.5 * (duration_s - held_s));
+      mean.add(after, 0.5 * (duration_s - held_s));
     }
   }
 
@@ -400,11 +414,17 @@ MeasuredRun thinned(const MeasuredRun& run, int merged) {
   thin.signals = run.signals;
   thin.conditions = run.conditions;
   std::vector<Eigen::Index> kept{0};
-  Mean mean;
+  MeanInputs mean;
+  auto unknown = run.unknown_inputs.begin();
   for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k) {
-    mean.add(run.at[k], run.time_s[k + 1] - run.time_s[k]);
+    const double duration_s = run.time_s[k + 1] - run.time_s[k];
+    if (unknown != run.unknown_inputs.end() && unknown->interval == static_cast<Eigen::Index>(k)) {
+      mean.add_unknown(run.at[k], (unknown++)->other, duration_s);
+    } else {
+      mean.add(run.at[k], duration_s);
+    }
     if ((k + 1) % static_cast<std::size_t>(merged) == 0 || k + 2 == run.time_s.size()) {
-      thin.at.push_back(mean.take());
+      mean.take(thin);
       kept.push_back(static_cast<Eigen::Index>(k) + 1);
     }
   }

@@ -20,11 +20,18 @@ struct Sensor {
   double step_K = 0.0;   ///< resolution; 0 where none is seen
 };
 
+/// Rows that nobody logged, while the inputs changed: over `interval` they may as well have been `other`, or as far on the other side.
+struct UnknownInputs {
+  Eigen::Index interval = 0;
+  OperatingPoint<double> other;
+};
+
 /// n samples; between sample k and k+1 the inputs are at[k].
 struct MeasuredRun {
   std::string name;  ///< of the recording, with #2, #3 … where it was split
   std::vector<double> time_s;
-  std::vector<OperatingPoint<double>> at;  ///< n − 1
+  std::vector<OperatingPoint<double>> at;     ///< n − 1
+  std::vector<UnknownInputs> unknown_inputs;  ///< by interval, ascending
   std::vector<Sensor> sensors;
   Eigen::MatrixXd measured_C;   ///< n × sensors; NaN: not known
   std::vector<Signal> signals;  ///< what of the operating points was measured
@@ -40,7 +47,7 @@ struct MeasuredRun {
 struct MeasuredRunOptions {
   /// Rows closer than this are merged; inputs become means that conserve heat. Rows further apart than half of it stay.
   double longest_step_s = 2.0;
-  /// Heat inputs that the model reacts to; where one of them is not known the run is split.
+  /// Heat inputs that the model reacts to; where one of them is not known for longer than three usual steps the run is split.
   std::vector<Signal> needed;
   double ambient_C = kNotStated_C;  ///< where the recording has neither coolant nor ambient; NaN: it must have one
   static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();

@@ -79,6 +79,10 @@ void Whitening::add_unknown(Eigen::Index interval, Matrix& covariance) const {
     const double rms_W = flux_.rms_W[static_cast<std::size_t>(f)];
     covariance(run_->states + f, run_->states + f) += of_flux * rms_W * rms_W;
   }
+  const auto doubt = std::ranges::lower_bound(run_->doubts, interval, {}, &StateDoubt::interval);
+  if (doubt != run_->doubts.end() && doubt->interval == interval) {
+    covariance.topLeftCorner(run_->states, run_->states) += doubt->covariance_K2;
+  }
   if (wanders_) {
     const double of_wander = gained_ratio(wander_forget_ratio_);
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {

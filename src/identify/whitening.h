@@ -64,7 +64,7 @@ class Whitening {
   void build(const SensorNoise& noise);
   template <class Matrix>
   void set_transition(Eigen::Index interval, Matrix& transition) const;
-  /// What fluxes and slow errors gain in variance before interval `interval` ends; −1: all of it, at the start.
+  /// What fluxes, slow errors and doubts gain in variance before interval `interval` ends; −1: all of it, at the start.
   template <class Matrix>
   void add_unknown(Eigen::Index interval, Matrix& covariance) const;
   [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }

@@ -25,6 +25,7 @@ struct OperatingPoint {
   S vehicle_speed_m_per_s = S(0.0);    ///< mean of the magnitude
   S neighbour_C = S(25.0);             ///< temperature of the motor next to this one, used where neighbour_share is 1
   S neighbour_share = S(0.0);          ///< 1 where neighbour_C is known, else 0
+  S unlogged_speed_share = S(0.0);     ///< 1 where the machine may turn at a speed that nobody logged, else 0
   S age_h = S(0.0);                    ///< hours of running behind it
   S velocity_rad_per_s = S(0.0);       ///< signed mean of ω, motor shaft: a log of |ω| alone has none of its sign
   S acceleration_rad_per_s2 = S(0.0);  ///< mean of |dω/dt|, motor shaft
@@ -47,6 +48,7 @@ constexpr void for_each_quantity(F&& f, Point&... at) {
   f(at.vehicle_speed_m_per_s...);
   f(at.neighbour_C...);
   f(at.neighbour_share...);
+  f(at.unlogged_speed_share...);
   f(at.age_h...);
   f(at.velocity_rad_per_s...);
   f(at.acceleration_rad_per_s2...);

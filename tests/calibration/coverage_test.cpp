@@ -20,10 +20,13 @@ std::vector<CaseResult> cases(const Case& like, std::size_t count) {
   return results;
 }
 
-TEST(Calibration, IntervalsHoldTheTruthAndAreNoWiderThanTheyMustBe) {
+class Intervals : public testing::TestWithParam<double> {};
+
+TEST_P(Intervals, hold_the_truth_and_are_no_wider_than_they_must_be) {
   constexpr std::size_t kCases = 20;
   Case like;
   like.making.duration_s = 1200.0;
+  like.making.lost_row_share = GetParam();
   const std::vector<CaseResult> results = cases(like, kCases);
   for (std::size_t f = 0; f < results.front().marks.size(); ++f) {
     const std::string& name = results.front().marks[f].name;
@@ -45,6 +48,9 @@ TEST(Calibration, IntervalsHoldTheTruthAndAreNoWiderThanTheyMustBe) {
     EXPECT_LT(errors[kCases / 2], 0.01) << name;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Calibration, Intervals, testing::Values(0.0, 0.05),
+                         [](const auto& param) { return param.param > 0.0 ? "with_rows_lost" : "of_whole_logs"; });
 
 TEST(Calibration, UnknownHeatDoesNotFoolIt) {
   constexpr std::size_t kCases = 6;

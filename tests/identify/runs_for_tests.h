@@ -32,6 +32,7 @@ struct LogMaking {
   double flux_time_scale_s = 180.0;
   double outlier_share = 0.003;
   double dropout_share = 0.01;
+  double lost_row_share = 0.0;
   double largest_current_A = 9.0;
   bool winding_is_sensed = true;
   double ambient_swing_K = 0.5;
@@ -55,6 +56,22 @@ inline std::vector<double> robot_current_A(Random& random, int rows, double larg
   }
   current_A.resize(static_cast<std::size_t>(rows));
   return current_A;
+}
+
+/// Rows that never reached the log.
+inline void lose_rows(Recording& log, double share, Random random) {
+  std::vector<bool> is_lost(log.rows());
+  for (std::size_t row = 1; row < is_lost.size(); ++row) {
+    is_lost[row] = random.uniform() < share;
+  }
+  const auto thin_out = [&](std::vector<double>& values) {
+    std::size_t row = 0;
+    std::erase_if(values, [&](double) { return is_lost[row++]; });
+  };
+  thin_out(log.time_s);
+  for (Channel& channel : log.channels) {
+    thin_out(channel.values);
+  }
 }
 
 /// Heun's method with steps of 1/20 of a row; the unknown heat moves with every step.
@@ -114,6 +131,9 @@ inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& makin
     add("winding_C", std::move(shown_winding_C));
   }
   add("stator_C", std::move(shown_stator_C));
+  if (making.lost_row_share > 0.0) {
+    lose_rows(log, making.lost_row_share, Random(seed, stream + 1000));
+  }
   return log;
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "identify/averaged_run.h"
 #include "identify/evidence.h"
 #include "runs_for_tests.h"
 
@@ -29,6 +30,10 @@ MeasuredRun random_run(std::uint64_t seed, int samples) {
       OperatingPoint<double> at;
       at.current_rms_A = (k / 20) % 3 * 4.0 * random.uniform();
       run.at.push_back(at);
+      if (k % 17 == 11) {
+        at.current_rms_A += 6.0;
+        run.unknown_inputs.push_back({k, at});
+      }
     }
     for (int sensor = 0; sensor < 2; ++sensor) {
       run.measured_C(k, sensor) = random.uniform() < 0.1 ? kNan : 25.0 + 5.0 * random.uniform();
@@ -45,7 +50,23 @@ LinearisedRun linearised(const Model& model, const MeasuredRun& run) {
   return linearise(model.network, model.values, wanted, model.flux_nodes, std::vector<double>{25.0, 25.0}, run);
 }
 
-/// The covariance of the sensors' samples, written out: noise on the diagonal, and the response to every moment of the flux.
+/// What the sensors show after one kick at the state by the end of interval `j`, row by row.
+Eigen::VectorXd response_to(const LinearisedRun& run, Eigen::Index j, Eigen::VectorXd state) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::VectorXd response = Eigen::VectorXd::Zero(run.residual_K.size());
+  for (Eigen::Index k = j + 1; k < run.samples(); ++k) {
+    for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
+      response[k * run.sensors() + sensor] = state[run.sensor_node[static_cast<std::size_t>(sensor)]];
+    }
+    if (k + 1 < run.samples()) {
+      state = Eigen::Map<const RowMajor>(run.transition.data() + k * run.states * run.states, run.states, run.states) * state.eval();
+    }
+  }
+  return response;
+}
+
+/// The covariance of the sensors' samples, written out: noise on the diagonal, and the response to every moment of the flux and to
+/// inputs that nobody logged.
 Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Index samples = run.samples();
@@ -59,15 +80,8 @@ Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flu
     for (Eigen::Index j = 0; j + 1 < samples; ++j) {
       begin_s.push_back(moment_s);
       moment_s += run.duration_s[static_cast<std::size_t>(j)];
-      Eigen::VectorXd state = Eigen::Map<const RowMajor>(run.injection.data() + j * run.states * run.fluxes, run.states, run.fluxes).col(f);
-      for (Eigen::Index k = j + 1; k < samples; ++k) {
-        for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
-          response(k * run.sensors() + sensor, j) = state[run.sensor_node[static_cast<std::size_t>(sensor)]];
-        }
-        if (k + 1 < samples) {
-          state = Eigen::Map<const RowMajor>(run.transition.data() + k * run.states * run.states, run.states, run.states) * state.eval();
-        }
-      }
+      response.col(j) = response_to(
+          run, j, Eigen::Map<const RowMajor>(run.injection.data() + j * run.states * run.fluxes, run.states, run.fluxes).col(f));
     }
     for (Eigen::Index i = 0; i + 1 < samples; ++i) {
       for (Eigen::Index j = 0; j + 1 < samples; ++j) {
@@ -76,6 +90,13 @@ Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flu
       }
     }
     covariance += response * memory * response.transpose();
+  }
+  for (const StateDoubt& doubt : run.doubts) {
+    // Of rank one: the difference between two courses of the inputs.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(doubt.covariance_K2);
+    const Eigen::VectorXd response =
+        response_to(run, doubt.interval, modes.eigenvectors().rightCols(1) * std::sqrt(modes.eigenvalues().tail(1)[0]));
+    covariance += response * response.transpose();
   }
   for (std::size_t sensor = 0; sensor < noise.wander_K.size(); ++sensor) {
     std::vector<double> at_s{0.0};
@@ -152,7 +173,9 @@ TEST_P(SmoothedFlux, is_the_conditional_mean) {
   // The response to the conditional mean of the flux is what V does not call an error of the sensors: V_flux·V⁻¹·y.
   const Eigen::VectorXd residual = reference.columns.rightCols(1);
   const Eigen::VectorXd weighted = reference.covariance.ldlt().solve(residual);
-  const Eigen::VectorXd explained = dense(run, flux, {{0.0, 0.0}, {}}).covariance * weighted;
+  LinearisedRun certain = run;
+  certain.doubts.clear();
+  const Eigen::VectorXd explained = dense(certain, flux, {{0.0, 0.0}, {}}).covariance * weighted;
   const Eigen::MatrixXd flux_W = Whitening(run, flux, noise).smoothed_flux(run.residual_K).mean_W;
   Eigen::VectorXd state = Eigen::VectorXd::Zero(2);
   Eigen::Index kept = 0;
@@ -216,6 +239,28 @@ TEST(Whitening, a_common_factor_of_heat_capacities_conductances_and_sources_chan
   const LinearisedRun a = linearised(two_node_model(plain, 1.0), run);
   const LinearisedRun b = linearised(two_node_model(scaled, 1.0), run);
   EXPECT_LT((a.state_C - b.state_C).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+/// Covariance of the state at the end of interval `to` − 1, from the doubts of intervals `from` … `to` − 1.
+Eigen::MatrixXd doubt_after_K2(const LinearisedRun& run, Eigen::Index from, Eigen::Index to) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::MatrixXd covariance_K2 = Eigen::MatrixXd::Zero(run.states, run.states);
+  for (Eigen::Index k = from; k < to; ++k) {
+    const Eigen::Map<const RowMajor> step(run.transition.data() + k * run.states * run.states, run.states, run.states);
+    covariance_K2 = step * covariance_K2.eval() * step.transpose();
+    for (const StateDoubt& doubt : run.doubts) {
+      covariance_K2 += doubt.interval == k ? doubt.covariance_K2 : Eigen::MatrixXd::Zero(run.states, run.states);
+    }
+  }
+  return covariance_K2;
+}
+
+TEST(AveragedRun, doubts_of_its_stretches_are_those_of_the_run) {
+  const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 90));
+  ASSERT_GT(run.doubts.size(), 3u);
+  const LinearisedRun averaged = Averaging(run, {}, 3).run();  // from sample 1 to sample 88
+  EXPECT_LT((doubt_after_K2(averaged, 0, averaged.samples() - 1) - doubt_after_K2(run, 1, 88)).norm(), 1e-12);
+  EXPECT_GT(doubt_after_K2(run, 1, 88).norm(), 1e-3);
 }
 
 TEST(Evidence, one_more_column_gains_what_the_projected_score_says) {

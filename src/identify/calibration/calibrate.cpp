@@ -74,9 +74,7 @@ class Calibrating {
     all_.holdout = runs_of(holdout_, how, all_.notes);
     std::ranges::transform(recordings_, std::back_inserter(all_.fitted), name_and_fingerprint);
     if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
-      open_loss_at_speed(all_.motor_model, most_loss_W);
-      fill_loss_at_speed(all_.runs, motor);
-      fill_loss_at_speed(all_.holdout, motor);
+      open_loss_at_speed(all_.motor_model, motor);
       all_.notes.push_back(
           fmt::format("where a log has a current but no speed, the loss at speed is taken as unknown, from none to the {} W at no-load "
                       "speed; a motor that "

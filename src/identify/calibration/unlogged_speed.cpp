@@ -6,6 +6,7 @@
 
 #include "motor/datasheet_network.h"
 #include "thermal/effect.h"
+#include "thermal/scalar.h"
 
 namespace heatsoak {
 namespace {
@@ -18,12 +19,14 @@ constexpr double kMean_sd_share = 0.3;
 constexpr double kComesAndGoes_share = 0.25;
 /// Less than this share of the no-load current turns no motor.
 constexpr double kDrives_share = 0.5;
+constexpr double kStepsPerCurrent = 20.0;
 
-/// Of two operating quantities that only a speed column would give a meaning (fill_loss_at_speed).
 struct LossAtUnloggedSpeed {
+  enum { share, share_with_current, most_W, least_current_A };
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.source(0, x.parameter(0) * x.at.input_power_W + x.parameter(1) * x.at.shaft_power_W);
+    const S is_driven = soft_step(kStepsPerCurrent * (x.at.current_rms_A / x.parameter(least_current_A) - 1.0));
+    heat.source(0, (x.parameter(share) + x.parameter(share_with_current) * is_driven) * x.parameter(most_W) * x.at.unlogged_speed_share);
   }
 };
 
@@ -31,11 +34,13 @@ const EffectType& loss_at_unlogged_speed() {
   static const EffectType type{
       .name = kLossAtUnloggedSpeed,
       .summary = "Loss at a speed that no log tells.",
-      .equation = "P_stator = (k + k_driven · [current flows]) · P_most",
+      .equation = "P_stator = (k + k_driven · [I > I_least]) · P_most",
       .reference = "",
       .nodes = {{"stator", "stator"}},
       .parameters = {{"share", "", Range::any(), "of the loss at no-load speed, throughout"},
-                     {"share_with_current", "", Range::any(), "of the loss at no-load speed, while current flows"}},
+                     {"share_with_current", "", Range::any(), "of the loss at no-load speed, while current flows"},
+                     {"most_loss", "W", Range::positive(), "the loss at no-load speed"},
+                     {"least_current", "A", Range::positive(), "less turns no motor"}},
       .typical = "",
       .look_alike = "",
       .example = {},
@@ -54,38 +59,25 @@ double most_loss_at_speed_W(const Motor& motor) {
   return most_W > 0.0 ? most_W : 0.0;
 }
 
-bool turns_unseen(const MeasuredRun& run) {
-  return !run.has(Signal::speed) && std::ranges::any_of(run.at, [](const OperatingPoint<double>& at) { return at.current_rms_A > 0.0; });
-}
+bool turns_unseen(const MeasuredRun& run) { return run.at.front().unlogged_speed_share > 0.0; }
 
-void open_loss_at_speed(MotorModel& motor, double most_W) {
-  Model& model = motor.model;
-  const std::vector<double> shares(loss_at_unlogged_speed().parameters.size(), kMean_share);
-  model.network.add_effect(std::string(kLossAtUnloggedSpeed), loss_at_unlogged_speed(), std::vector<std::string>{"stator"}, shares);
-  for (const double share : shares) {
-    model.values.push_back(share);
-    motor.nuisances.push_back(static_cast<int>(model.free.size()));
+void open_loss_at_speed(MotorModel& model, const Motor& motor) {
+  const double most_W = most_loss_at_speed_W(motor);
+  Model& opened = model.model;
+  const std::size_t first = opened.values.size();
+  const std::vector<double> values{kMean_share, kMean_share, most_W, kDrives_share * motor.nominal.no_load_current_A};
+  opened.network.add_effect(std::string(kLossAtUnloggedSpeed), loss_at_unlogged_speed(), std::vector<std::string>{"stator"}, values);
+  opened.values.insert(opened.values.end(), values.begin(), values.end());
+  for (const int share : {LossAtUnloggedSpeed::share, LossAtUnloggedSpeed::share_with_current}) {
+    model.nuisances.push_back(static_cast<int>(opened.free.size()));
     // Below 0 too: a bound would push what it cannot take onto the figures.
     constexpr double kFar = 10.0;
-    model.set_free({.place = static_cast<int>(model.values.size()) - 1, .by_log = false, .scale = 1.0, .low = -kFar, .high = kFar},
-                   kMean_sd_share);
+    opened.set_free({.place = static_cast<int>(first) + share, .by_log = false, .scale = 1.0, .low = -kFar, .high = kFar}, kMean_sd_share);
   }
-  for (FittedFigure& each : motor.figures) {
-    each.exponents.conservativeResizeLike(Eigen::VectorXd::Zero(model.free_count()));
+  for (FittedFigure& each : model.figures) {
+    each.exponents.conservativeResizeLike(Eigen::VectorXd::Zero(opened.free_count()));
   }
-  model.least_flux_W = {0.0, kComesAndGoes_share * most_W};
-}
-
-void fill_loss_at_speed(std::span<MeasuredRun> runs, const Motor& motor) {
-  const double most_W = most_loss_at_speed_W(motor);
-  for (MeasuredRun& run : runs) {
-    const bool turns = turns_unseen(run);
-    for (OperatingPoint<double>& at : run.at) {
-      const bool is_driven = at.current_rms_A > kDrives_share * motor.nominal.no_load_current_A;
-      at.input_power_W = turns ? most_W : 0.0;
-      at.shaft_power_W = turns && is_driven ? most_W : 0.0;
-    }
-  }
+  opened.least_flux_W = {0.0, kComesAndGoes_share * most_W};
 }
 
 }  // namespace heatsoak

@@ -1,5 +1,5 @@
 // How the calibration does on motors of which everything is known: tables.
-//   heatsoak_calibration_table [CASES [both|stator|resistance|local [FIRST_SEED]]]
+//   heatsoak_calibration_table [CASES [both|stator|lost|resistance|local [FIRST_SEED]]]
 // "local": what four runs tell of each parameter at the truth, without any prior, beside what a prototype of the method found.
 #include <fmt/format.h>
 
@@ -131,6 +131,11 @@ int main(int argc, char** argv) {
     Case like;
     like.making.winding_is_sensed = false;
     tabulate("only the stator sensed", {}, like, cases, first_seed);
+  }
+  if (which.empty() || which == "lost") {
+    Case like;
+    like.making.lost_row_share = 0.05;
+    tabulate("winding and stator sensed, 5 % of the rows lost", {}, like, cases, first_seed);
   }
   if (which.empty() || which == "resistance") {
     tabulate("resistance to 5 %", {.truth = {}, .resistance_spread = ", tolerance = \"5 %\""}, {}, cases, first_seed);

@@ -1,0 +1,128 @@
+#include "identify/measured_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct Row {
+  double time_s;
+  double current_A;
+  double winding_C = 30.0;
+};
+
+Recording recording_of(const std::vector<Row>& rows) {
+  Recording log;
+  log.name = "log";
+  log.file = "log.csv";
+  log.run_begins = {0};
+  std::vector<double> current_A, winding_C;
+  for (const Row& row : rows) {
+    log.time_s.push_back(row.time_s);
+    current_A.push_back(row.current_A);
+    winding_C.push_back(row.winding_C + 0.1 * static_cast<double>(winding_C.size() % 3));
+  }
+  log.channels.push_back({*quantity_named("current_A"), current_A});
+  log.channels.push_back({*quantity_named("winding_C"), winding_C});
+  return log;
+}
+
+/// 1 Hz, 2 A in the first ten seconds and 6 A after.
+std::vector<Row> rows_of_a_step() {
+  std::vector<Row> rows;
+  for (int k = 0; k < 20; ++k) {
+    rows.push_back({static_cast<double>(k), k < 10 ? 2.0 : 6.0});
+  }
+  return rows;
+}
+
+MeasuredRuns runs_of(const std::vector<Row>& rows, double longest_step_s = 2.0) {
+  return measured_runs(recording_of(rows), {.longest_step_s = longest_step_s, .needed = {Signal::current}, .ambient_C = 25.0});
+}
+
+/// ∫ I² dt.
+double heat_A2s(const MeasuredRun& run) {
+  double heat = 0.0;
+  for (std::size_t k = 0; k < run.at.size(); ++k) {
+    heat += run.at[k].current_rms_A * run.at[k].current_rms_A * (run.time_s[k + 1] - run.time_s[k]);
+  }
+  return heat;
+}
+
+TEST(MeasuredRun, a_lost_row_is_no_loss_of_certainty_where_nothing_changed) {
+  std::vector<Row> rows = rows_of_a_step();
+  rows.erase(rows.begin() + 4);
+  const MeasuredRuns all = runs_of(rows);
+  ASSERT_EQ(all.runs.size(), 1u);
+  EXPECT_DOUBLE_EQ(heat_A2s(all.runs[0]), 10 * 4.0 + 9 * 36.0);
+  for (const UnknownInputs& each : all.runs[0].unknown_inputs) {
+    EXPECT_EQ(each.other.current_rms_A, all.runs[0].at[static_cast<std::size_t>(each.interval)].current_rms_A);
+  }
+}
+
+TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_middle_and_both_ends_are_within_the_doubt) {
+  std::vector<Row> rows = rows_of_a_step();
+  rows.erase(rows.begin() + 10);  // from the row at 9 s on 2 A, at 11 s 6 A
+  const MeasuredRun run = runs_of(rows).runs.at(0);
+  EXPECT_DOUBLE_EQ(heat_A2s(run), 10 * 4.0 + 0.5 * (4.0 + 36.0) + 8 * 36.0);
+  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  EXPECT_EQ(run.unknown_inputs[0].interval, 9);
+  const double mean_A2s = 2.0 * std::pow(run.at[9].current_rms_A, 2);
+  const double other_A2s = 2.0 * std::pow(run.unknown_inputs[0].other.current_rms_A, 2);
+  EXPECT_NEAR(std::abs(other_A2s - mean_A2s), 0.5 * (36.0 - 4.0), 1e-12);
+}
+
+TEST(MeasuredRun, empty_cells_of_a_heat_input_are_as_a_lost_row_up_to_three_steps_and_split_the_run_beyond) {
+  std::vector<Row> rows = rows_of_a_step();
+  rows[10].current_A = kNan;
+  const MeasuredRuns bridged = runs_of(rows);
+  ASSERT_EQ(bridged.runs.size(), 1u);
+  EXPECT_EQ(bridged.runs[0].samples(), 20);
+  EXPECT_DOUBLE_EQ(heat_A2s(bridged.runs[0]), 10 * 4.0 + 0.5 * (4.0 + 36.0) + 8 * 36.0);
+  EXPECT_EQ(bridged.runs[0].unknown_inputs.size(), 1u);
+  rows.insert(rows.end(), 10, {0.0, 6.0});
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].time_s = static_cast<double>(k);
+    rows[k].current_A = k >= 12 && k < 15 ? kNan : rows[k].current_A;
+  }
+  EXPECT_THAT(runs_of(rows).runs, testing::SizeIs(2)) << "from the row at 11 s to that at 15 s";
+}
+
+TEST(MeasuredRun, a_run_that_begins_or_ends_without_inputs_loses_those_rows_only) {
+  std::vector<Row> rows = rows_of_a_step();
+  rows.front().current_A = rows.back().current_A = kNan;
+  const MeasuredRun run = runs_of(rows).runs.at(0);
+  EXPECT_EQ(run.time_s.front(), 1.0);
+  EXPECT_EQ(run.time_s.back(), 19.0);
+  EXPECT_THAT(run.unknown_inputs, testing::IsEmpty());
+}
+
+TEST(MeasuredRun, merging_keeps_heat_and_doubt) {
+  std::vector<Row> rows;
+  for (int k = 0; k < 200; ++k) {
+    rows.push_back({0.1 * k, k % 50 < 25 ? 2.0 : 6.0});
+  }
+  rows.erase(rows.begin() + 75);
+  const MeasuredRun run = runs_of(rows).runs.at(0);
+  EXPECT_LT(run.samples(), 20);
+  EXPECT_NEAR(heat_A2s(run), 0.1 * (100 * 4.0 + 99 * 36.0 - 0.5 * (36.0 - 4.0)), 1e-9);
+  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  const auto place = static_cast<std::size_t>(run.unknown_inputs[0].interval);
+  const double duration_s = run.time_s[place + 1] - run.time_s[place];
+  const double doubt_A2s = duration_s * (std::pow(run.unknown_inputs[0].other.current_rms_A, 2) - std::pow(run.at[place].current_rms_A, 2));
+  EXPECT_NEAR(std::abs(doubt_A2s), 0.1 * 0.5 * (36.0 - 4.0), 1e-9);
+  const MeasuredRun thin = thinned(run, 2);
+  EXPECT_NEAR(heat_A2s(thin), heat_A2s(run), 1e-9);
+  EXPECT_EQ(thin.unknown_inputs.size(), 1u);
+}
+
+}  // namespace
+}  // namespace heatsoak
