@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "base/unknown.h"
@@ -304,12 +304,13 @@ class Builder {
     const std::vector<double>& time_s = recording_.time_s;
     const bool is_merged = (time_s[last] - time_s[first]) / static_cast<double>(last - first) < 0.5 * options_.longest_step_s;
     const double usual_s = usual_step_s(first, last + 1);
+    const double hidden_A2 = hidden_square_A2(first, last);
     std::vector<std::size_t> kept{first};
     MeanInputs mean;
     std::size_t known = first;
     for (std::size_t row = first; row < last; ++row) {
       known = is_known(row) ? row : known;
-      add_inputs(row, known, last, usual_s, mean);
+      add_inputs(row, known, last, usual_s, hidden_A2, mean);
       const bool would_be_long = row + 1 < last && mean.duration_s() + 0.5 * (time_s[row + 2] - time_s[row + 1]) > options_.longest_step_s;
       if (!is_merged || would_be_long || row + 1 == last) {
         mean.take(run);
@@ -333,19 +334,46 @@ class Builder {
     }
   }
 
+  static double square_A2(const OperatingPoint<double>& at) { return at.current_rms_A * at.current_rms_A; }
+
+  /// How far a row's square of the current lies, rms, from the middle between its neighbours beyond half of their difference.
+  [[nodiscard]] double hidden_square_A2(std::size_t first, std::size_t last) const {
+    double sum_A4 = 0.0;
+    double count = 0.0;
+    double before_A2 = kUnknown;
+    double here_A2 = square_A2(rows_.at(first));
+    for (std::size_t row = first + 1; row < last; ++row) {
+      const double after_A2 = square_A2(rows_.at(row));
+      const double off_A2 = here_A2 - 0.5 * (before_A2 + after_A2);
+      const double more_A4 = off_A2 * off_A2 - 0.25 * (after_A2 - before_A2) * (after_A2 - before_A2);
+      if (!std::isnan(more_A4)) {
+        sum_A4 += more_A4;
+        count += 1.0;
+      }
+      before_A2 = std::exchange(here_A2, after_A2);
+    }
+    return count > 0.0 ? std::sqrt(std::max(0.0, sum_A4 / count)) : 0.0;
+  }
+
   /// What is known from `row` to the next: the inputs of `known`, the last row that has all of them, for a usual step.
-  void add_inputs(std::size_t row, std::size_t known, std::size_t last, double usual_s, MeanInputs& mean) const {
+  void add_inputs(std::size_t row, std::size_t known, std::size_t last, double usual_s, double hidden_A2, MeanInputs& mean) const {
     const double duration_s = recording_.time_s[row + 1] - recording_.time_s[row];
     const double held_s = row > known ? 0.0 : (duration_s > kLostRow_ratio * usual_s ? usual_s : duration_s);
     const std::size_t next = held_s < duration_s ? known_from(row + 1, last + 1) : last + 1;
     if (next > last) {
       mean.add(filled(known), duration_s);
     } else {
-      // They change in the middle of the rest, or at its beginning or end.
+      // They change in the middle of the rest, or at its beginning or end, or more often than the rows on both sides show.
+      const OperatingPoint<double> before = filled(known);
       const OperatingPoint<double> after = filled(next);
-      mean.add(filled(known), held_s);
-      mean.add_unknown(filled(known), after, 0.5 * (duration_s - held_s));
-      mean.add(after, 0.5 * (duration_s - held_s));
+      OperatingPoint<double> other = after;
+      const double middle_A2 = 0.5 * (square_A2(before) + square_A2(after));
+      const double doubt_A2 = std::hypot(0.5 * (square_A2(after) - square_A2(before)), hidden_A2);
+      const bool is_downward = square_A2(after) < square_A2(before) && doubt_A2 <= middle_A2;
+      other.current_rms_A = std::sqrt(middle_A2 + (is_downward ? -doubt_A2 : doubt_A2));
+      mean.add(before, held_s);
+      mean.add_unknown(before, other, 0.5 * (duration_s - held_s));
+      mean.add_unknown(after, other, 0.5 * (duration_s - held_s));
     }
   }
 

@@ -80,6 +80,20 @@ TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_mi
   EXPECT_NEAR(std::abs(other_A2s - mean_A2s), 0.5 * (36.0 - 4.0), 1e-12);
 }
 
+TEST(MeasuredRun, bursts_of_one_row_are_within_the_doubt_of_a_lost_row_between_equal_ones) {
+  std::vector<Row> rows;
+  for (int k = 0; k < 61; ++k) {
+    rows.push_back({static_cast<double>(k), k % 6 == 3 ? 6.0 : 0.0});
+  }
+  rows.erase(rows.begin() + 27);  // a burst
+  const MeasuredRun run = runs_of(rows).runs.at(0);
+  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  const auto place = static_cast<std::size_t>(run.unknown_inputs[0].interval);
+  EXPECT_EQ(run.at[place].current_rms_A, 0.0);
+  // One row in six is off by 36 A², and both of its neighbours by half of it, of which half their own difference explains all.
+  EXPECT_NEAR(2.0 * std::pow(run.unknown_inputs[0].other.current_rms_A, 2), 36.0 / std::sqrt(6.0), 1.5);
+}
+
 TEST(MeasuredRun, empty_cells_of_a_heat_input_are_as_a_lost_row_up_to_three_steps_and_split_the_run_beyond) {
   std::vector<Row> rows = rows_of_a_step();
   rows[10].current_A = kNan;
