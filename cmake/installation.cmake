@@ -12,4 +12,8 @@ install(DIRECTORY duty_profiles/ DESTINATION "${HEATSOAK_SHARE}/duty_profiles" $
 install(DIRECTORY robot_core/robots/ DESTINATION "${HEATSOAK_SHARE}/robots" ${DATA_ONLY})
 # The logs that the examples of the help begin from.
 install(DIRECTORY reports/soak reports/friction_test DESTINATION "${HEATSOAK_SHARE}/reports" ${DATA_ONLY})
+# The page of the project, and what it links to where it links to it.
 install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(DIRECTORY reports DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES motor_db/README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/motor_db")
+install(FILES robot_core/robots/README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/robot_core/robots")

@@ -173,6 +173,10 @@ void stall_torque(const Motor& motor, Findings& findings) {
                                          "; with saturation, which conventions.stall_includes_saturation declares, expected less; "
                                          "set it to false if the sheet's line is straight");
     }
+  } else if (around_one(kStallTolerance).excludes(ratio) &&
+             std::abs(v.stall_torque_Nm / (v.torque_constant_Nm_per_A * v.stall_current_A) - 1.0) < kStallTolerance) {
+    // Torque and current at stall agree with each other: nothing saturates.
+    findings.error("stall_torque", found + ", expected the same within 1.5 %" + resistance_hint(ratio));
   } else if (ratio < kLooksSaturated) {
     findings.error("stall_torque", found +
                                        ", expected the same within 1.5 %; this looks like a torque with saturation: "

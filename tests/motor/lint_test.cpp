@@ -288,7 +288,7 @@ TEST(Slip, half_the_resistance_is_named_one_phase) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   motor.nominal.terminal_resistance_ohm *= 0.5;
 
-  for (const std::string check : {"mechanical_time_constant", "speed_torque_gradient", "stall_current"}) {
+  for (const std::string check : {"mechanical_time_constant", "speed_torque_gradient", "stall_current", "stall_torque"}) {
     EXPECT_THAT(said_by(check, motor), HasSubstr("phase_to_star")) << check;
   }
 }

@@ -310,6 +310,35 @@ TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
   EXPECT_GT(name->number("y"), last->number("y") + 12.0);
 }
 
+TEST_F(ChartTest, NamesOfCloseLimitsStandApart) {
+  Chart chart = warm_up();
+  const std::vector<std::string> names{"winding limit of one motor 150 °C", "winding limit of another 153 °C",
+                                       "winding limit of a third 156 °C", "winding limit of a fourth 159 °C"};
+  chart.panels[1].levels.clear();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    chart.panels[1].levels.push_back({names[i], 150.0 + 3.0 * static_cast<double>(i)});
+  }
+  struct Place {
+    double left_px, right_px, y_px;
+  };
+  std::map<std::string, Place> places;
+  for (const Element& each : drawn(chart)) {
+    if (each.name == "text" && std::ranges::find(names, each.text) != names.end()) {
+      const double width_px = 5.0 * static_cast<double>(each.text.size());  // narrower than it is
+      const double x_px = each.number("x");
+      const bool ends_there = each.at("text-anchor") == "end";
+      places[each.text] = {ends_there ? x_px - width_px : x_px, ends_there ? x_px : x_px + width_px, each.number("y")};
+    }
+  }
+  ASSERT_EQ(places.size(), names.size());
+  for (const auto& [name, a] : places) {
+    for (const auto& [other, b] : places) {
+      const bool are_beside = a.right_px <= b.left_px || b.right_px <= a.left_px;
+      EXPECT_TRUE(name == other || are_beside || std::abs(a.y_px - b.y_px) >= 11.0) << name << " over " << other;
+    }
+  }
+}
+
 TEST_F(ChartTest, EverythingIsInsideThePlotWithHeadroom) {
   Chart chart = warm_up();
   chart.panels[1].levels = {{"far above", 400.0}, {"far below", -100.0}};

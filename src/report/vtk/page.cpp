@@ -282,9 +282,13 @@ class PageBuilder {
         text.y_px = line_px + 0.36 * limit_style.size_px;
         text.anchor = Anchor::left;
         names.push_back(outside);
-      } else {  // on a curve it is still readable, on another name it is not
+      } else {  // on a curve or on another level it is still readable, on another name it is not
         const Box& beside = top_is_near ? below : above;
-        names.push_back(free_place(beside, left_px_, taken, {}).value_or(beside));
+        std::optional<Box> readable = free_place(beside, left_px_, taken, {});
+        if (!readable) {
+          readable = free_place(beside, left_px_, names, {});
+        }
+        names.push_back(readable.value_or(beside));
         text.x_px = names.back().right_px;
         text.y_px = names.back().bottom_px - 3.0;
       }
