@@ -312,11 +312,12 @@ TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
 
 TEST_F(ChartTest, NamesOfCloseLimitsStandApart) {
   Chart chart = warm_up();
-  const std::vector<std::string> names{"winding limit of one motor 150 °C", "winding limit of another 153 °C",
-                                       "winding limit of a third 156 °C", "winding limit of a fourth 159 °C"};
+  const std::vector<std::string> names{
+      "winding limit of a motor with a long name 150.0 °C", "winding limit of another with a long name 151.5 °C",
+      "winding limit of a third with a long name 153.0 °C", "winding limit of a fourth with a long name 154.5 °C"};
   chart.panels[1].levels.clear();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    chart.panels[1].levels.push_back({names[i], 150.0 + 3.0 * static_cast<double>(i)});
+    chart.panels[1].levels.push_back({names[i], 150.0 + 1.5 * static_cast<double>(i)});
   }
   struct Place {
     double left_px, right_px, y_px;

@@ -283,12 +283,13 @@ class PageBuilder {
         text.anchor = Anchor::left;
         names.push_back(outside);
       } else {  // on a curve or on another level it is still readable, on another name it is not
-        const Box& beside = top_is_near ? below : above;
-        std::optional<Box> readable = free_place(beside, left_px_, taken, {});
-        if (!readable) {
-          readable = free_place(beside, left_px_, names, {});
+        std::optional<Box> readable = free_place(top_is_near ? below : above, left_px_, taken, {});
+        for (Box lower = below; !readable && lower.bottom_px < vertical.low_px;) {
+          readable = free_place(lower, left_px_, names, {});
+          lower.top_px += limit_style.size_px + 2.0;
+          lower.bottom_px += limit_style.size_px + 2.0;
         }
-        names.push_back(readable.value_or(beside));
+        names.push_back(readable.value_or(below));
         text.x_px = names.back().right_px;
         text.y_px = names.back().bottom_px - 3.0;
       }
