@@ -4,28 +4,25 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "base/diagnostic.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-struct Row {
+struct LogRow {
   double time_s;
   double current_A;
   double winding_C = 30.0;
 };
 
-Recording recording_of(const std::vector<Row>& rows) {
+Recording recording_of(const std::vector<LogRow>& rows) {
   Recording log;
   log.name = "log";
   log.file = "log.csv";
   log.run_begins = {0};
   std::vector<double> current_A, winding_C;
-  for (const Row& row : rows) {
+  for (const LogRow& row : rows) {
     log.time_s.push_back(row.time_s);
     current_A.push_back(row.current_A);
     winding_C.push_back(row.winding_C + 0.1 * static_cast<double>(winding_C.size() % 3));
@@ -36,15 +33,15 @@ Recording recording_of(const std::vector<Row>& rows) {
 }
 
 /// 1 Hz, 2 A in the first ten seconds and 6 A after.
-std::vector<Row> rows_of_a_step() {
-  std::vector<Row> rows;
+std::vector<LogRow> rows_of_a_step() {
+  std::vector<LogRow> rows;
   for (int k = 0; k < 20; ++k) {
     rows.push_back({static_cast<double>(k), k < 10 ? 2.0 : 6.0});
   }
   return rows;
 }
 
-MeasuredRuns runs_of(const std::vector<Row>& rows, double longest_step_s = 2.0) {
+MeasuredRuns runs_of(const std::vector<LogRow>& rows, double longest_step_s = 2.0) {
   return measured_runs(recording_of(rows), {.longest_step_s = longest_step_s, .needed = {Signal::current}, .ambient_C = 25.0});
 }
 
@@ -58,7 +55,7 @@ double heat_A2s(const MeasuredRun& run) {
 }
 
 TEST(MeasuredRun, a_lost_row_is_no_loss_of_certainty_where_nothing_changed) {
-  std::vector<Row> rows = rows_of_a_step();
+  std::vector<LogRow> rows = rows_of_a_step();
   rows.erase(rows.begin() + 4);
   const MeasuredRuns all = runs_of(rows);
   ASSERT_EQ(all.runs.size(), 1u);
@@ -69,7 +66,7 @@ TEST(MeasuredRun, a_lost_row_is_no_loss_of_certainty_where_nothing_changed) {
 }
 
 TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_middle_and_both_ends_are_within_the_doubt) {
-  std::vector<Row> rows = rows_of_a_step();
+  std::vector<LogRow> rows = rows_of_a_step();
   rows.erase(rows.begin() + 10);  // from the row at 9 s on 2 A, at 11 s 6 A
   const MeasuredRun run = runs_of(rows).runs.at(0);
   EXPECT_DOUBLE_EQ(heat_A2s(run), 10 * 4.0 + 0.5 * (4.0 + 36.0) + 8 * 36.0);
@@ -81,7 +78,7 @@ TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_mi
 }
 
 TEST(MeasuredRun, bursts_of_one_row_are_within_the_doubt_of_a_lost_row_between_equal_ones) {
-  std::vector<Row> rows;
+  std::vector<LogRow> rows;
   for (int k = 0; k < 61; ++k) {
     rows.push_back({static_cast<double>(k), k % 6 == 3 ? 6.0 : 0.0});
   }
@@ -95,8 +92,8 @@ TEST(MeasuredRun, bursts_of_one_row_are_within_the_doubt_of_a_lost_row_between_e
 }
 
 TEST(MeasuredRun, empty_cells_of_a_heat_input_are_as_a_lost_row_up_to_three_steps_and_split_the_run_beyond) {
-  std::vector<Row> rows = rows_of_a_step();
-  rows[10].current_A = kNan;
+  std::vector<LogRow> rows = rows_of_a_step();
+  rows[10].current_A = std::nan("");
   const MeasuredRuns bridged = runs_of(rows);
   ASSERT_EQ(bridged.runs.size(), 1u);
   EXPECT_EQ(bridged.runs[0].samples(), 20);
@@ -105,14 +102,14 @@ TEST(MeasuredRun, empty_cells_of_a_heat_input_are_as_a_lost_row_up_to_three_step
   rows.insert(rows.end(), 10, {0.0, 6.0});
   for (std::size_t k = 0; k < rows.size(); ++k) {
     rows[k].time_s = static_cast<double>(k);
-    rows[k].current_A = k >= 12 && k < 15 ? kNan : rows[k].current_A;
+    rows[k].current_A = k >= 12 && k < 15 ? std::nan("") : rows[k].current_A;
   }
   EXPECT_THAT(runs_of(rows).runs, testing::SizeIs(2)) << "from the row at 11 s to that at 15 s";
 }
 
 TEST(MeasuredRun, a_run_that_begins_or_ends_without_inputs_loses_those_rows_only) {
-  std::vector<Row> rows = rows_of_a_step();
-  rows.front().current_A = rows.back().current_A = kNan;
+  std::vector<LogRow> rows = rows_of_a_step();
+  rows.front().current_A = rows.back().current_A = std::nan("");
   const MeasuredRun run = runs_of(rows).runs.at(0);
   EXPECT_EQ(run.time_s.front(), 1.0);
   EXPECT_EQ(run.time_s.back(), 19.0);
@@ -120,7 +117,7 @@ TEST(MeasuredRun, a_run_that_begins_or_ends_without_inputs_loses_those_rows_only
 }
 
 TEST(MeasuredRun, merging_keeps_heat_and_doubt) {
-  std::vector<Row> rows;
+  std::vector<LogRow> rows;
   for (int k = 0; k < 200; ++k) {
     rows.push_back({0.1 * k, k % 50 < 25 ? 2.0 : 6.0});
   }
