@@ -11,6 +11,7 @@
 #include "base/unknown.h"
 #include "identify/mean_inputs.h"
 #include "identify/measurement/noise.h"
+#include "identify/row_steps.h"
 
 namespace heatsoak {
 namespace {
@@ -77,8 +78,8 @@ class MeasuredRows {
         neighbour_C_(values("neighbour_C", recording)),
         age_h_(values("age_h", recording)),
         surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
-        turns_unseen_(!speed_rad_per_s_ && current_A_ &&
-                      std::ranges::any_of(*current_A_, [](double each_A) { return std::abs(each_A) > 0.0; })),
+        is_driven_(current_A_ &&
+                   std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
         time_s_(recording.time_s),
         options_(options) {}
 
@@ -99,7 +100,7 @@ class MeasuredRows {
     at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
     at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
     at.neighbour_C = at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
-    at.unlogged_speed_share = turns_unseen_ ? 1.0 : 0.0;
+    at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
     at.age_h = of(age_h_, row);
     return at;
   }
@@ -138,7 +139,7 @@ class MeasuredRows {
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
       *neighbour_C_, *age_h_;
   std::vector<double> surroundings_C_;
-  bool turns_unseen_;  ///< without any current it stands
+  bool is_driven_;  ///< at any time
   const std::vector<double>& time_s_;
   const MeasuredRunOptions& options_;
 };
@@ -209,7 +210,7 @@ class Builder {
   MeasuredRuns build() {
     check();
     for (const auto& [begin, end] : recording_.runs()) {
-      const double longest_s = kLongestUnknown_ratio * usual_step_s(begin, end);
+      const double longest_s = kLongestUnknown_ratio * steps_of(begin, end).usual_s;
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
         while (last + 1 < end && is_known(last)) {
@@ -221,10 +222,7 @@ class Builder {
       }
     }
     if (all_.runs.empty()) {
-      throw Failure(
-          ExitCode::cannot_answer,
-          fmt::format("{}: no stretch of {} rows or more has temperatures and all of the heat inputs; see `heatsoak log inspect {}`",
-                      recording_.name, kLeastSamples, recording_.file.string()));
+      throw Failure(ExitCode::cannot_answer, why_nothing_is_left());
     }
     if (all_.runs.size() > 1) {
       all_.notes.push_back(
@@ -255,6 +253,32 @@ class Builder {
     }
   }
 
+  [[nodiscard]] std::string why_nothing_is_left() const {
+    std::vector<std::string> reasons;
+    const auto runs = recording_.runs();
+    if (runs.size() > 1) {
+      reasons.push_back(fmt::format("gaps split its {} rows into {} runs ([runs] longest_gap of a mapping says what counts as one)",
+                                    recording_.rows(), runs.size()));
+    }
+    const auto tell = [&](std::string_view key, auto&& is_lacking) {
+      std::size_t lacking = 0;
+      for (std::size_t row = 0; row < recording_.rows(); ++row) {
+        lacking += is_lacking(row) ? 1 : 0;
+      }
+      if (lacking > 0) {
+        reasons.push_back(fmt::format("{} of {} rows have no {}", lacking, recording_.rows(), key));
+      }
+    };
+    for (const Signal signal : options_.needed) {
+      tell(std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->key,
+           [&](std::size_t row) { return std::isnan(quantity_of(rows_.at(row), signal)); });
+    }
+    tell("temperature of the surroundings within a minute", [&](std::size_t row) { return std::isnan(rows_.at(row).ambient_C); });
+    tell("temperature of winding or stator", [&](std::size_t row) { return !is_sampled(row); });
+    return fmt::format("{}: no stretch of {} rows or more has temperatures and all of the heat inputs: {}; see `heatsoak log inspect {}`",
+                       recording_.name, kLeastSamples, fmt::join(reasons, ", "), recording_.file.string());
+  }
+
   /// Whether what happens from this row to the next is known.
   [[nodiscard]] bool is_known(std::size_t row) const {
     const OperatingPoint<double> at = rows_.at(row);
@@ -270,18 +294,8 @@ class Builder {
     return row;
   }
 
-  /// Median of the steps between rows of a run.
-  [[nodiscard]] double usual_step_s(std::size_t begin, std::size_t end) const {
-    std::vector<double> steps_s;
-    for (std::size_t row = begin; row + 1 < end; ++row) {
-      steps_s.push_back(recording_.time_s[row + 1] - recording_.time_s[row]);
-    }
-    if (steps_s.empty()) {
-      return 0.0;
-    }
-    const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-    std::ranges::nth_element(steps_s, middle);
-    return *middle;
+  [[nodiscard]] RowSteps steps_of(std::size_t begin, std::size_t end) const {
+    return row_steps(std::span(recording_.time_s).subspan(begin, end - begin));
   }
 
   [[nodiscard]] bool is_sampled(std::size_t row) const {
@@ -303,14 +317,14 @@ class Builder {
     run.conditions.emplace("run", recording_.name);
     const std::vector<double>& time_s = recording_.time_s;
     const bool is_merged = (time_s[last] - time_s[first]) / static_cast<double>(last - first) < 0.5 * options_.longest_step_s;
-    const double usual_s = usual_step_s(first, last + 1);
+    const RowSteps steps = steps_of(first, last + 1);
     const double hidden_A2 = hidden_square_A2(first, last);
     std::vector<std::size_t> kept{first};
     MeanInputs mean;
     std::size_t known = first;
     for (std::size_t row = first; row < last; ++row) {
       known = is_known(row) ? row : known;
-      add_inputs(row, known, last, usual_s, hidden_A2, mean);
+      add_inputs(row, known, last, steps, hidden_A2, mean);
       const bool would_be_long = row + 1 < last && mean.duration_s() + 0.5 * (time_s[row + 2] - time_s[row + 1]) > options_.longest_step_s;
       if (!is_merged || would_be_long || row + 1 == last) {
         mean.take(run);
@@ -355,26 +369,29 @@ class Builder {
     return count > 0.0 ? std::sqrt(std::max(0.0, sum_A4 / count)) : 0.0;
   }
 
-  /// What is known from `row` to the next: the inputs of `known`, the last row that has all of them, for a usual step.
-  void add_inputs(std::size_t row, std::size_t known, std::size_t last, double usual_s, double hidden_A2, MeanInputs& mean) const {
+  /// From `row` to the next, `known` being the last row that has all inputs: they are its own for a usual step, at that end of a longer
+  /// one which its samples speak of; what they were in the rest nobody logged.
+  void add_inputs(std::size_t row, std::size_t known, std::size_t last, const RowSteps& steps, double hidden_A2, MeanInputs& mean) const {
     const double duration_s = recording_.time_s[row + 1] - recording_.time_s[row];
-    const double held_s = row > known ? 0.0 : (duration_s > kLostRow_ratio * usual_s ? usual_s : duration_s);
-    const std::size_t next = held_s < duration_s ? known_from(row + 1, last + 1) : last + 1;
+    const bool lacks_rows = steps.is_regular && duration_s > kLostRow_ratio * steps.usual_s && recording_.inputs != InputHabit::linear;
+    const bool speaks_of_end = row == known && recording_.inputs == InputHabit::previous_interval;
+    const double known_s = row > known ? 0.0 : (lacks_rows ? steps.usual_s : duration_s);
+    const std::size_t next = known_s == duration_s ? last + 1 : (speaks_of_end ? row : known_from(row + 1, last + 1));
     if (next > last) {
       mean.add(filled(known), duration_s);
-    } else {
-      // They change in the middle of the rest, or at its beginning or end, or more often than the rows on both sides show.
-      const OperatingPoint<double> before = filled(known);
-      const OperatingPoint<double> after = filled(next);
-      OperatingPoint<double> other = after;
-      const double middle_A2 = 0.5 * (square_A2(before) + square_A2(after));
-      const double doubt_A2 = std::hypot(0.5 * (square_A2(after) - square_A2(before)), hidden_A2);
-      const bool is_downward = square_A2(after) < square_A2(before) && doubt_A2 <= middle_A2;
-      other.current_rms_A = std::sqrt(middle_A2 + (is_downward ? -doubt_A2 : doubt_A2));
-      mean.add(before, held_s);
-      mean.add_unknown(before, other, 0.5 * (duration_s - held_s));
-      mean.add_unknown(after, other, 0.5 * (duration_s - held_s));
+      return;
     }
+    const double unknown_s = duration_s - known_s;
+    const OperatingPoint<double> before = filled(speaks_of_end && row > 0 && is_known(row - 1) ? row - 1 : known);
+    const OperatingPoint<double> after = filled(next);
+    mean.add(filled(known), known_s);
+    // They change in the middle of the rest, or at its beginning or end, or more often than the rows on both sides show.
+    mean.add(before, 0.5 * unknown_s);
+    mean.add(after, 0.5 * unknown_s);
+    mean.doubt(before, after, 0.5 * unknown_s);
+    OperatingPoint<double> burst = before;
+    burst.current_rms_A = std::sqrt(square_A2(before) + hidden_A2);
+    mean.doubt(before, burst, unknown_s);
   }
 
   /// A quantity that is not needed and not known becomes 0, so that means stay numbers.
@@ -446,10 +463,9 @@ MeasuredRun thinned(const MeasuredRun& run, int merged) {
   auto unknown = run.unknown_inputs.begin();
   for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k) {
     const double duration_s = run.time_s[k + 1] - run.time_s[k];
+    mean.add(run.at[k], duration_s);
     if (unknown != run.unknown_inputs.end() && unknown->interval == static_cast<Eigen::Index>(k)) {
-      mean.add_unknown(run.at[k], (unknown++)->other, duration_s);
-    } else {
-      mean.add(run.at[k], duration_s);
+      mean.doubt(run.at[k], (unknown++)->other, duration_s);
     }
     if ((k + 1) % static_cast<std::size_t>(merged) == 0 || k + 2 == run.time_s.size()) {
       mean.take(thin);

@@ -49,6 +49,7 @@ struct MeasuredRunOptions {
   double longest_step_s = 2.0;
   /// Heat inputs that the model reacts to; where one of them is not known for longer than three usual steps the run is split.
   std::vector<Signal> needed;
+  double least_current_A = 0.0;     ///< less turns no motor: a log that never has more is one of a motor that stands
   double ambient_C = kNotStated_C;  ///< where the recording has neither coolant nor ambient; NaN: it must have one
   static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
 };

@@ -426,7 +426,8 @@ TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("(no interval) V s/rad with it"));
   EXPECT_THAT(result.err, Not(HasSubstr("(given)")));
-  for (const json& wheel : result.json().at("wheels")) {
+  const json wheels = result.json().at("wheels");
+  for (const json& wheel : wheels) {
     EXPECT_GT(wheel.at("damping_V_s_per_rad").at("value"), 0.0);
     EXPECT_TRUE(wheel.at("damping_V_s_per_rad").at("ci95").at(0).is_null());
   }

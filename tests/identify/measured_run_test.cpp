@@ -91,6 +91,59 @@ TEST(MeasuredRun, bursts_of_one_row_are_within_the_doubt_of_a_lost_row_between_e
   EXPECT_NEAR(2.0 * std::pow(run.unknown_inputs[0].other.current_rms_A, 2), 36.0 / std::sqrt(6.0), 1.5);
 }
 
+TEST(MeasuredRun, a_mean_over_the_time_before_its_row_speaks_of_the_end_of_a_gap) {
+  std::vector<LogRow> rows = rows_of_a_step();
+  rows.erase(rows.begin() + 12);  // 6 A on both sides; after to_interval_values() the row at 11 s has what was logged at 13 s
+  Recording log = recording_of(rows);
+  log.inputs = InputHabit::previous_interval;
+  log.channels[0].values[11] = 3.0;
+  const MeasuredRun run = measured_runs(log, {.needed = {Signal::current}, .ambient_C = 25.0}).runs.at(0);
+  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  EXPECT_EQ(run.unknown_inputs[0].interval, 11);
+  EXPECT_DOUBLE_EQ(2.0 * std::pow(run.at[11].current_rms_A, 2), 9.0 + 0.5 * (36.0 + 9.0)) << "3 A in its last second";
+}
+
+TEST(MeasuredRun, rows_that_came_when_something_changed_lack_none) {
+  Recording log = recording_of(rows_of_a_step());
+  double time_s = 0.0;
+  for (std::size_t row = 0; row < log.rows(); ++row) {
+    log.time_s[row] = time_s;
+    time_s += 1.0 + static_cast<double>(row * row % 7) / 3.0;
+  }
+  const MeasuredRuns all = measured_runs(log, {.needed = {Signal::current}, .ambient_C = 25.0});
+  ASSERT_EQ(all.runs.size(), 1u);
+  EXPECT_THAT(all.runs[0].unknown_inputs, testing::IsEmpty());
+  EXPECT_EQ(all.runs[0].at[9].current_rms_A, 2.0);
+}
+
+TEST(MeasuredRun, a_speed_is_unlogged_in_the_rows_that_lack_it_and_where_something_drives) {
+  Recording log = recording_of(rows_of_a_step());
+  std::vector<double> speed_rad_per_s(log.rows(), 100.0);
+  std::fill(speed_rad_per_s.begin() + 5, speed_rad_per_s.begin() + 15, std::nan(""));
+  log.channels.push_back({*quantity_named("speed_rad_per_s"), speed_rad_per_s});
+  MeasuredRunOptions how{.needed = {Signal::current}, .ambient_C = 25.0};
+  const MeasuredRun driven = measured_runs(log, how).runs.at(0);
+  EXPECT_EQ(driven.at[4].unlogged_speed_share, 0.0);
+  EXPECT_EQ(driven.at[5].unlogged_speed_share, 1.0);
+  how.least_current_A = 6.5;
+  const MeasuredRun standing = measured_runs(log, how).runs.at(0);
+  EXPECT_EQ(standing.at[5].unlogged_speed_share, 0.0);
+}
+
+TEST(MeasuredRun, says_why_no_stretch_is_left) {
+  std::vector<LogRow> rows = rows_of_a_step();
+  for (std::size_t row = 0; row < rows.size(); row += 5) {
+    rows[row].current_A = rows[row + 1].current_A = rows[row + 2].current_A = std::nan("");
+  }
+  try {
+    runs_of(rows);
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
+    EXPECT_THAT(failure.what(), testing::HasSubstr("12 of 20 rows have no current_A"));
+  }
+}
+
 TEST(MeasuredRun, empty_cells_of_a_heat_input_are_as_a_lost_row_up_to_three_steps_and_split_the_run_beyond) {
   std::vector<LogRow> rows = rows_of_a_step();
   rows[10].current_A = std::nan("");

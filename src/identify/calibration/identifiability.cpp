@@ -233,9 +233,18 @@ void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, st
 }  // namespace
 
 bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
+  // A current sensor that does not show 0 A where there is none heats nothing.
+  constexpr double kNothing_K = 1.0;
+  const auto value = [&](std::string_view name) {
+    const auto parameters = motor.model.network.parameters();
+    return motor.model.values[static_cast<std::size_t>(std::ranges::find(parameters, name, &NetworkParameter::name) - parameters.begin())];
+  };
+  const double across_K_per_W = value("winding_stator.thermal_resistance") + value("stator_ambient.thermal_resistance");
+  const double by_current_ohm = motor.heat == HeatInput::current ? value("copper_loss.terminal_resistance") : 0.0;
   return std::ranges::any_of(runs, [&](const MeasuredRun& run) {
     return std::ranges::any_of(run.at, [&](const OperatingPoint<double>& at) {
-      return (motor.heat == HeatInput::current ? at.current_rms_A : at.input_power_W) > 0.0;
+      const double heat_W = motor.heat == HeatInput::current ? at.current_rms_A * at.current_rms_A * by_current_ohm : at.input_power_W;
+      return heat_W * across_K_per_W > kNothing_K;
     });
   });
 }

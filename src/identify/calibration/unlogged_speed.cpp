@@ -59,13 +59,17 @@ double most_loss_at_speed_W(const Motor& motor) {
   return most_W > 0.0 ? most_W : 0.0;
 }
 
-bool turns_unseen(const MeasuredRun& run) { return run.at.front().unlogged_speed_share > 0.0; }
+bool turns_unseen(const MeasuredRun& run) {
+  return std::ranges::any_of(run.at, [](const OperatingPoint<double>& at) { return at.unlogged_speed_share > 0.0; });
+}
+
+double least_driving_current_A(const Motor& motor) { return kDrives_share * std::max(0.0, motor.nominal.no_load_current_A); }
 
 void open_loss_at_speed(MotorModel& model, const Motor& motor) {
   const double most_W = most_loss_at_speed_W(motor);
   Model& opened = model.model;
   const std::size_t first = opened.values.size();
-  const std::vector<double> values{kMean_share, kMean_share, most_W, kDrives_share * motor.nominal.no_load_current_A};
+  const std::vector<double> values{kMean_share, kMean_share, most_W, least_driving_current_A(motor)};
   opened.network.add_effect(std::string(kLossAtUnloggedSpeed), loss_at_unlogged_speed(), std::vector<std::string>{"stator"}, values);
   opened.values.insert(opened.values.end(), values.begin(), values.end());
   for (const int share : {LossAtUnloggedSpeed::share, LossAtUnloggedSpeed::share_with_current}) {

@@ -10,6 +10,9 @@ namespace heatsoak {
 /// The loss of a motor that turns at its no-load speed; 0 where it has none or its file does not tell.
 double most_loss_at_speed_W(const Motor& motor);
 
+/// Less turns no motor.
+double least_driving_current_A(const Motor& motor);
+
 /// Whether the motor may turn while its speed is not known.
 bool turns_unseen(const MeasuredRun& run);
 

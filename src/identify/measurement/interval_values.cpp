@@ -74,6 +74,7 @@ std::vector<double> shifted_samples(std::span<const double> time_s, std::span<co
 }  // namespace
 
 void to_interval_values(Recording& recording, InputHabit habit, std::span<const double> offsets_s) {
+  recording.inputs = habit;
   for (std::size_t i = 0; i < recording.channels.size(); ++i) {
     Channel& channel = recording.channels[i];
     const bool is_input = stands_for_an_interval(channel.quantity);

@@ -9,16 +9,10 @@
 
 #include "base/diagnostic.h"
 #include "identify/measurement/quantities.h"
+#include "identify/measurement/recording.h"
 #include "input/number_table.h"
 
 namespace heatsoak {
-
-/// What a heat input's sample stands for in the file.
-enum class InputHabit {
-  held,              ///< the interval that begins at the row's time (canonical)
-  linear,            ///< the moment itself; between rows it changes evenly
-  previous_interval  ///< the interval that ends at the row's time
-};
 
 /// What replaces a blank cell, and on which rows. Blank is unknown unless a fill says otherwise.
 struct GapFill {

@@ -18,6 +18,13 @@ struct Channel {
   std::vector<double> values;  ///< one per row, in the quantity's unit; NaN where left out or not recorded
 };
 
+/// What a heat input's sample stands for in the file.
+enum class InputHabit {
+  held,              ///< the interval that begins at the row's time (canonical)
+  linear,            ///< the moment itself; between rows it changes evenly
+  previous_interval  ///< the interval that ends at the row's time
+};
+
 /// Rows of a log. Heat inputs and surroundings stand for the interval from the row's time to the next row's (a current is
 /// the rms over it with the sign of its mean, the others are means), whatever the logger did: loggers with other habits
 /// are brought to this one while reading. Temperatures and other signals are instantaneous.
@@ -33,6 +40,7 @@ struct Recording {
   /// Of all that was read, of which this may be a part: content_hash() and the time of its first row.
   std::string content = {};
   double content_begin_s = 0.0;
+  InputHabit inputs = InputHabit::held;  ///< before it was brought to this one: which end of a gap a sample speaks of
 
   [[nodiscard]] const Channel* find(std::string_view key) const;
   [[nodiscard]] std::size_t rows() const { return time_s.size(); }
