@@ -23,22 +23,26 @@ namespace {
 /// Beyond this standard deviation of a logarithm the parabola at the optimum is no picture of the likelihood.
 constexpr double kCurvatureHolds_sd = 0.1;
 
+bool has_speed(const Recording& recording) {
+  const std::vector<Signal> signals = signals_of(recording);
+  return std::ranges::find(signals, Signal::speed) != signals.end();
+}
+
+/// Where heat is reckoned from the current, a log that has a speed must tell it in every row that something is learned from.
 std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const MeasuredRunOptions& options,
                                  std::vector<std::string>& notes) {
   std::vector<MeasuredRun> all;
   for (const Recording& recording : recordings) {
-    MeasuredRuns found = measured_runs(recording, options);
+    MeasuredRunOptions here = options;
+    const auto needs = [&](Signal signal) { return std::ranges::find(here.needed, signal) != here.needed.end(); };
+    if (needs(Signal::current) && has_speed(recording) && !needs(Signal::speed)) {
+      here.needed.push_back(Signal::speed);
+    }
+    MeasuredRuns found = measured_runs(recording, here);
     std::ranges::move(found.runs, std::back_inserter(all));
     std::ranges::move(found.notes, std::back_inserter(notes));
   }
   return all;
-}
-
-bool all_have_speed(std::span<const Recording> recordings) {
-  return std::ranges::all_of(recordings, [](const Recording& each) {
-    const std::vector<Signal> signals = signals_of(each);
-    return std::ranges::find(signals, Signal::speed) != signals.end();
-  });
 }
 
 std::vector<ErrorBeforeAfter> errors(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs) {
@@ -60,7 +64,7 @@ class Calibrating {
       : recordings_(recordings), holdout_(holdout), options_(options) {}
 
   Calibration run(const Motor& motor) {
-    all_.motor_model = motor_model(motor, heat_input_for(recordings_), all_have_speed(recordings_));
+    all_.motor_model = motor_model(motor, heat_input_for(recordings_), std::ranges::all_of(recordings_, has_speed));
     const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     MeasuredRunOptions how;
