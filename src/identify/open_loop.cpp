@@ -127,4 +127,24 @@ std::vector<SignalError> open_loop_error(const Network& network, std::span<const
   return errors;
 }
 
+double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal) {
+  double sum_C = 0.0;
+  double squares_C2 = 0.0;
+  double count = 0.0;
+  for (const MeasuredRun& run : runs) {
+    const auto sensor = std::ranges::find(run.sensors, signal, &Sensor::signal);
+    if (sensor == run.sensors.end()) {
+      continue;
+    }
+    for (const double each_C : run.measured_C.col(sensor - run.sensors.begin())) {
+      if (!std::isnan(each_C)) {
+        sum_C += each_C;
+        squares_C2 += each_C * each_C;
+        count += 1.0;
+      }
+    }
+  }
+  return std::sqrt(std::max(0.0, squares_C2 / count - sum_C * sum_C / (count * count)));
+}
+
 }  // namespace heatsoak

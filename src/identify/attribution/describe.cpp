@@ -40,6 +40,11 @@ std::string effect_in_words(const FoundEffect& effect) {
                           parameter.high);
       break;
     }
+    if (parameter.is_at_bound) {
+      text += fmt::format("; {} {:.3g} {}, the bound of what is looked for: perhaps it is something else", parameter.name, parameter.value,
+                          parameter.unit);
+      break;
+    }
   }
   if (effect.mean_W > 0.0) {
     text += fmt::format("; {} W on average, up to {} W", significant(effect.mean_W, 2), significant(effect.peak_W, 2));
@@ -83,7 +88,9 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
 std::string verdict_in_words(const Diagnosis& diagnosis) {
   switch (diagnosis.verdict) {
     case DiagnosisVerdict::effect_found:
-      return "The runs show heat that the model does not have, and it follows a known law.";
+      return std::ranges::any_of(diagnosis.effects, &FoundEffect::has_heat)
+                 ? "The runs show heat that the model does not have, and it follows a known law."
+                 : "The sensors show what is not so, and it follows a known law.";
     case DiagnosisVerdict::nothing_missing:
       return "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
              "smooth heat of the size that every model leaves.";

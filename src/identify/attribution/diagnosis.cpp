@@ -122,8 +122,10 @@ class Teller {
         const auto own = after().model.model.free_count() + static_cast<Eigen::Index>(i);
         const double sd = type.typical_size * std::sqrt(after().covariance(own, own));
         const double value = after().model.sensors[i].value;
-        effect.parameters.push_back({std::string(type.size.key), std::string(type.size.unit), value,
-                                     std::max(value - kInterval_sd * sd, type.size.range.low), value + kInterval_sd * sd});
+        FittedParameter size{std::string(type.size.key), std::string(type.size.unit), value,
+                             std::max(value - kInterval_sd * sd, type.size.range.low), value + kInterval_sd * sd};
+        drop_interval_at_bound(own, size);
+        effect.parameters.push_back(std::move(size));
         effect.p_value = p_of(value, sd);
       }
     }
@@ -153,6 +155,16 @@ class Teller {
     return sd > 0.0 ? 2.0 * boost::math::cdf(boost::math::complement(boost::math::normal(), std::min(37.0, std::abs(value) / sd))) : 1.0;
   }
 
+  void drop_interval_at_bound(Eigen::Index coordinate, FittedParameter& parameter) const {
+    constexpr double kThere = 1e-6;
+    const ExtendedModel& model = after().model;
+    const double theta = model.theta()[coordinate];
+    if (theta < model.low(coordinate) + kThere || theta > model.high(coordinate) - kThere) {
+      parameter.is_at_bound = true;
+      parameter.low = parameter.high = parameter.value;
+    }
+  }
+
   void tell_parameters(const EffectInPlace& in_place, FoundEffect& effect) const {
     const Model& model = after().model.model;
     const Eigen::VectorXd theta = model.theta();
@@ -173,6 +185,7 @@ class Teller {
           parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
           parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
           effect.p_value = std::min(effect.p_value, model.free[static_cast<std::size_t>(i)].by_log ? p_of(1.0, sd) : p_of(theta[i], sd));
+          drop_interval_at_bound(i, parameter);
         }
       }
       effect.parameters.push_back(std::move(parameter));
@@ -352,6 +365,10 @@ class Teller {
     }
     for (const auto& [node, rms_W] : out_.flux_rms_after_W) {
       if (rms_W > kTolerableUnknown_share * out_.selection.mean_heat_W && !is_told(node)) {
+        if (const ScanResult* const refused = driver_of_what_was_refused(node)) {
+          add_curve(*refused, {});
+          continue;
+        }
         Unexplained heat;
         heat.node = node;
         heat.rms_W = rms_W;
@@ -372,6 +389,19 @@ class Teller {
         out_.unexplained.push_back(std::move(heat));
       }
     }
+  }
+
+  /// A law that the base could stand for gets no name, but the signal that its heat goes with is known. Null where nothing was refused.
+  [[nodiscard]] const ScanResult* driver_of_what_was_refused(const std::string& node) const {
+    if (out_.selection.refused.empty() || out_.selection.rounds.empty()) {
+      return nullptr;
+    }
+    // The round whose model is the one that is left.
+    const Round& round = out_.selection.terms.empty() ? out_.selection.rounds.front() : out_.selection.rounds.back();
+    const std::vector<ScanResult>& scan = round.scan;
+    const auto found = std::ranges::find_if(
+        scan, [&](const ScanResult& each) { return each.term.node == node && each.gain_nats >= SelectionRules{}.least_gain_nats; });
+    return found == scan.end() ? nullptr : &*found;
   }
 
   /// The curve as the model has it, which is what physics leaves of the scan's.

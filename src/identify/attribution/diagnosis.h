@@ -37,8 +37,9 @@ struct FittedParameter {
   std::string name;
   std::string unit;
   double value = 0.0;
-  double low = 0.0;  ///< of the 95 % interval
+  double low = 0.0;  ///< of the 95 % interval; both the value where there is none
   double high = 0.0;
+  bool is_at_bound = false;  ///< of what is looked for: the search ended there, not the runs
 };
 
 struct FoundEffect {

@@ -286,7 +286,7 @@ class Calibrating {
     constexpr double kFar_share = 0.4;
     std::string why;
     for (const ErrorBeforeAfter& each : all_.fit_error) {
-      const double moves_K = standard_deviation_K(each.signal);
+      const double moves_K = standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
         why += fmt::format("\n  {} is {} K rms off, {} it moves (standard deviation {} K)", each.signal, significant(each.after.rmse_K, 2),
                            each.after.rmse_K > moves_K ? "more than" : "much of what", significant(moves_K, 2));
@@ -308,7 +308,7 @@ class Calibrating {
     constexpr double kFar_K = 15.0;
     constexpr double kFar_share = 0.2;
     for (const ErrorBeforeAfter& each : all_.fit_error) {
-      const double moves_K = standard_deviation_K(each.signal);
+      const double moves_K = standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
         all_.notes.push_back(fmt::format(
             "the fitted model is {} K rms off {}, which moves by {} K (standard deviation): do not rely on its figures; is it another "
@@ -316,26 +316,6 @@ class Calibrating {
             significant(each.after.rmse_K, 2), each.signal, significant(moves_K, 2)));
       }
     }
-  }
-
-  [[nodiscard]] double standard_deviation_K(const std::string& signal) const {
-    double sum_K = 0.0;
-    double squares_K2 = 0.0;
-    double count = 0.0;
-    for (const MeasuredRun& run : all_.runs) {
-      const auto sensor = std::ranges::find(run.sensors, signal, &Sensor::signal);
-      if (sensor == run.sensors.end()) {
-        continue;
-      }
-      for (const double each_C : run.measured_C.col(sensor - run.sensors.begin())) {
-        if (!std::isnan(each_C)) {
-          sum_K += each_C;
-          squares_K2 += each_C * each_C;
-          count += 1.0;
-        }
-      }
-    }
-    return std::sqrt(std::max(0.0, squares_K2 / count - sum_K * sum_K / (count * count)));
   }
 
   std::span<const Recording> recordings_;

@@ -7,12 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/measured/diagnosis_answer.h"
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "identify/admission.h"
 #include "identify/attribution/model_file.h"
+#include "identify/open_loop.h"
 #include "motor/write_motor.h"
 
 namespace heatsoak::commands {
@@ -40,6 +42,22 @@ std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const
     }
   }
   return all;
+}
+
+/// What is found in runs that no extended model follows either is no effect.
+void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInput& input) {
+  constexpr double kFar_K = 20.0;
+  for (const auto& [signal, error] : diagnosis.after_train) {
+    const double moves_K = standard_deviation_K(input.train, signal);
+    if (error.rmse_K > std::max(kFar_K, moves_K)) {
+      throw Failure(
+          ExitCode::cannot_answer,
+          fmt::format("no effect makes the model follow these logs: {} is {} K rms off, more than it moves (standard deviation {} "
+                      "K)\n  is it another motor, a wrong unit (degrees Fahrenheit, minutes, milliamperes) or a sensor elsewhere? "
+                      "`heatsoak log inspect` shows each channel",
+                      signal, significant(error.rmse_K, 2), significant(moves_K, 2)));
+    }
+  }
 }
 
 void hand_out(const Options& options, const Motor& extended, const Diagnosis& diagnosis, const DiagnosisInput& input, Session& session) {
@@ -76,6 +94,7 @@ ExitCode run(const Options& options, Session& session) {
   input.train = runs_of(train, how, &input.free, notes);
   input.holdout = runs_of(holdout, how, nullptr, notes);
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
+  refuse_where_nothing_follows(diagnosis, input);
   diagnosis.notes = notes;
   session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), fmt::join(diagnosis.words, "\n")));
   for (const std::string& note : notes) {
