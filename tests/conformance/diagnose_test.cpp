@@ -1,6 +1,11 @@
 // `heatsoak diagnose` as a user meets it: the shipped logs, short ones, and the extended model in another verb.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
 
 #include "program_run.h"
 #include "soak_example.h"
@@ -59,6 +64,27 @@ TEST(Diagnose, AnswersOnLogsOfSeconds) {
     EXPECT_THAT(done.exit_code, testing::AnyOf(0, 3)) << part << done.err;
     EXPECT_THAT(done.json().value("verdict", "an error"), testing::Not("effect_found")) << part;
   }
+}
+
+// A motor that warms by 60 K on a current of 0 A lacks no effect.
+TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {
+  const TemporaryFolder folder;
+  std::istringstream logged(content_of(kSoak / "bench.csv"));
+  std::string text, line;
+  for (int row = 0; std::getline(logged, line); ++row) {
+    std::vector<std::string> cells;
+    std::istringstream of_line(line);
+    for (std::string cell; std::getline(of_line, cell, ',');) {
+      cells.push_back(row > 0 && cells.size() == 4 ? "0" : cell);  // current_A
+    }
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  const fs::path file = folder.path() / "dead_sensor.csv";
+  std::ofstream(file) << text;
+  const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", file.string(), "--as-is", "--out", "found"}, in(folder));
+  EXPECT_EQ(done.exit_code, 3) << done.out;
+  EXPECT_THAT(done.err, HasSubstr("no effect makes the model follow these logs: stator_C"));
+  EXPECT_FALSE(fs::exists(folder.path() / "found"));
 }
 
 }  // namespace
