@@ -1,5 +1,5 @@
 // How the calibration does on motors of which everything is known: tables.
-//   heatsoak_calibration_table [CASES [both|stator|lost|resistance|local [FIRST_SEED]]]
+//   heatsoak_calibration_table [CASES [both|two|stator|lost|resistance|local [FIRST_SEED]]]
 // "local": what four runs tell of each parameter at the truth, without any prior, beside what a prototype of the method found.
 #include <fmt/format.h>
 
@@ -126,6 +126,11 @@ int main(int argc, char** argv) {
   const std::uint64_t first_seed = argc > 3 ? std::stoull(argv[3]) : 1;
   if (which.empty() || which == "both") {
     tabulate("winding and stator sensed", {}, {}, cases, first_seed);
+  }
+  if (which.empty() || which == "two") {
+    Case like;
+    like.runs = 2;
+    tabulate("winding and stator sensed", {}, like, cases, first_seed);
   }
   if (which.empty() || which == "stator") {
     Case like;
