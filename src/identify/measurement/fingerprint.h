@@ -1,4 +1,5 @@
-// Which rows of which measurements: known again under another file name, another clock or as a part.
+// Which rows of which measurements: known again under another file name, on another clock, or as a part that LOG@0-60% takes. Rows cut out
+// into a file of their own are another content.
 #pragma once
 
 #include <string>
