@@ -292,7 +292,7 @@ void read(const std::filesystem::path& file, const ImportOptions& /*options*/, L
     throw bad_input({file.string()}, "", "is packed by gzip; unpack it first");
   }
   const std::array<CsvWords, 1> words{CsvWords{"team", {"yellow", "blue"}}};
-  const CsvColumns columns{{kColumns.begin(), kColumns.end()}, {}, {kColumns[x], kColumns[y], kColumns[yaw]}};
+  CsvColumns columns{{kColumns.begin(), kColumns.end()}, {}, {kColumns[x], kColumns[y], kColumns[yaw]}};
   ImportReport& report = events.report();
   report.source = "positions in a table";
   Rows rows(file, events);
