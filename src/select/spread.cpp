@@ -42,7 +42,12 @@ DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<cons
   std::vector<double> sorted_C(samples_C.begin(), samples_C.end());
   std::ranges::sort(sorted_C);
   const boost::math::binomial_distribution<> below(count, 0.95);
-  const auto at = [&](double place) { return place > count - 1.0 ? kNotKnown : sorted_C[static_cast<std::size_t>(std::max(0.0, place))]; };
+  const auto at = [&](double place) {
+    if (place > count - 1.0) {
+      return kNotKnown;
+    }
+    return sorted_C[static_cast<std::size_t>(std::max(0.0, place))];
+  };
   return {{at(boost::math::quantile(below, kTail) - 1.0), at(boost::math::quantile(boost::math::complement(below, kTail)))},
           {std::max(0.0, middle - half), std::min(1.0, middle + half)}};
 }
