@@ -58,7 +58,7 @@ TEST(MeasuredRun, a_lost_row_is_no_loss_of_certainty_where_nothing_changed) {
   std::vector<LogRow> rows = rows_of_a_step();
   rows.erase(rows.begin() + 4);
   const MeasuredRuns all = runs_of(rows);
-  ASSERT_EQ(all.runs.size(), 1u);
+  ASSERT_EQ(all.runs.size(), 1U);
   EXPECT_DOUBLE_EQ(heat_A2s(all.runs[0]), 10 * 4.0 + 9 * 36.0);
   for (const UnknownInputs& each : all.runs[0].unknown_inputs) {
     EXPECT_EQ(each.other.current_rms_A, all.runs[0].at[static_cast<std::size_t>(each.interval)].current_rms_A);
@@ -70,7 +70,7 @@ TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_mi
   rows.erase(rows.begin() + 10);  // from the row at 9 s on 2 A, at 11 s 6 A
   const MeasuredRun run = runs_of(rows).runs.at(0);
   EXPECT_DOUBLE_EQ(heat_A2s(run), 10 * 4.0 + 0.5 * (4.0 + 36.0) + 8 * 36.0);
-  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  ASSERT_EQ(run.unknown_inputs.size(), 1U);
   EXPECT_EQ(run.unknown_inputs[0].interval, 9);
   const double mean_A2s = 2.0 * std::pow(run.at[9].current_rms_A, 2);
   const double other_A2s = 2.0 * std::pow(run.unknown_inputs[0].other.current_rms_A, 2);
@@ -84,7 +84,7 @@ TEST(MeasuredRun, bursts_of_one_row_are_within_the_doubt_of_a_lost_row_between_e
   }
   rows.erase(rows.begin() + 27);  // a burst
   const MeasuredRun run = runs_of(rows).runs.at(0);
-  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  ASSERT_EQ(run.unknown_inputs.size(), 1U);
   const auto place = static_cast<std::size_t>(run.unknown_inputs[0].interval);
   EXPECT_EQ(run.at[place].current_rms_A, 0.0);
   // One row in six is off by 36 A², and both of its neighbours by half of it, of which half their own difference explains all.
@@ -98,7 +98,7 @@ TEST(MeasuredRun, a_mean_over_the_time_before_its_row_speaks_of_the_end_of_a_gap
   log.inputs = InputHabit::previous_interval;
   log.channels[0].values[11] = 3.0;
   const MeasuredRun run = measured_runs(log, {.needed = {Signal::current}, .ambient_C = 25.0}).runs.at(0);
-  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  ASSERT_EQ(run.unknown_inputs.size(), 1U);
   EXPECT_EQ(run.unknown_inputs[0].interval, 11);
   EXPECT_DOUBLE_EQ(2.0 * std::pow(run.at[11].current_rms_A, 2), 9.0 + 0.5 * (36.0 + 9.0)) << "3 A in its last second";
 }
@@ -111,7 +111,7 @@ TEST(MeasuredRun, rows_that_came_when_something_changed_lack_none) {
     time_s += 1.0 + static_cast<double>(row * row % 7) / 3.0;
   }
   const MeasuredRuns all = measured_runs(log, {.needed = {Signal::current}, .ambient_C = 25.0});
-  ASSERT_EQ(all.runs.size(), 1u);
+  ASSERT_EQ(all.runs.size(), 1U);
   EXPECT_THAT(all.runs[0].unknown_inputs, testing::IsEmpty());
   EXPECT_EQ(all.runs[0].at[9].current_rms_A, 2.0);
 }
@@ -148,10 +148,10 @@ TEST(MeasuredRun, empty_cells_of_a_heat_input_are_as_a_lost_row_up_to_three_step
   std::vector<LogRow> rows = rows_of_a_step();
   rows[10].current_A = std::nan("");
   const MeasuredRuns bridged = runs_of(rows);
-  ASSERT_EQ(bridged.runs.size(), 1u);
+  ASSERT_EQ(bridged.runs.size(), 1U);
   EXPECT_EQ(bridged.runs[0].samples(), 20);
   EXPECT_DOUBLE_EQ(heat_A2s(bridged.runs[0]), 10 * 4.0 + 0.5 * (4.0 + 36.0) + 8 * 36.0);
-  EXPECT_EQ(bridged.runs[0].unknown_inputs.size(), 1u);
+  EXPECT_EQ(bridged.runs[0].unknown_inputs.size(), 1U);
   rows.insert(rows.end(), 10, {0.0, 6.0});
   for (std::size_t k = 0; k < rows.size(); ++k) {
     rows[k].time_s = static_cast<double>(k);
@@ -178,14 +178,14 @@ TEST(MeasuredRun, merging_keeps_heat_and_doubt) {
   const MeasuredRun run = runs_of(rows).runs.at(0);
   EXPECT_LT(run.samples(), 20);
   EXPECT_NEAR(heat_A2s(run), 0.1 * (100 * 4.0 + 99 * 36.0 - 0.5 * (36.0 - 4.0)), 1e-9);
-  ASSERT_EQ(run.unknown_inputs.size(), 1u);
+  ASSERT_EQ(run.unknown_inputs.size(), 1U);
   const auto place = static_cast<std::size_t>(run.unknown_inputs[0].interval);
   const double duration_s = run.time_s[place + 1] - run.time_s[place];
   const double doubt_A2s = duration_s * (std::pow(run.unknown_inputs[0].other.current_rms_A, 2) - std::pow(run.at[place].current_rms_A, 2));
   EXPECT_NEAR(std::abs(doubt_A2s), 0.1 * 0.5 * (36.0 - 4.0), 1e-9);
   const MeasuredRun thin = thinned(run, 2);
   EXPECT_NEAR(heat_A2s(thin), heat_A2s(run), 1e-9);
-  EXPECT_EQ(thin.unknown_inputs.size(), 1u);
+  EXPECT_EQ(thin.unknown_inputs.size(), 1U);
 }
 
 }  // namespace

@@ -257,7 +257,7 @@ Eigen::MatrixXd doubt_after_K2(const LinearisedRun& run, Eigen::Index from, Eige
 
 TEST(AveragedRun, doubts_of_its_stretches_are_those_of_the_run) {
   const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 90));
-  ASSERT_GT(run.doubts.size(), 3u);
+  ASSERT_GT(run.doubts.size(), 3U);
   const LinearisedRun averaged = Averaging(run, {}, 3).run();  // from sample 1 to sample 88
   EXPECT_LT((doubt_after_K2(averaged, 0, averaged.samples() - 1) - doubt_after_K2(run, 1, 88)).norm(), 1e-12);
   EXPECT_GT(doubt_after_K2(run, 1, 88).norm(), 1e-3);
