@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "identify/measurement/spread.h"
+
 namespace heatsoak {
 
 RowSteps row_steps(std::span<const double> time_s) {
@@ -14,9 +16,7 @@ RowSteps row_steps(std::span<const double> time_s) {
   if (steps_s.empty()) {
     return {};
   }
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::ranges::nth_element(steps_s, middle);
-  RowSteps steps{*middle, false};
+  const double usual_s = middle_of(steps_s);
   // Jitter of a logger with other things to do, and a third of the rows lost, are still regular.
   constexpr double kJitter_ratio = 0.25;
   constexpr double kUsual_share = 0.6;
@@ -24,11 +24,11 @@ RowSteps row_steps(std::span<const double> time_s) {
   const auto share_of = [&](auto&& is_such) {
     return static_cast<double>(std::ranges::count_if(steps_s, is_such)) / static_cast<double>(steps_s.size());
   };
-  const auto is_near = [&](double step_s, double times) { return std::abs(step_s / steps.usual_s - times) <= kJitter_ratio; };
-  steps.is_regular =
+  const auto is_near = [&](double step_s, double times) { return std::abs(step_s / usual_s - times) <= kJitter_ratio; };
+  const bool is_regular =
       share_of([&](double step_s) { return is_near(step_s, 1.0); }) >= kUsual_share &&
-      share_of([&](double step_s) { return is_near(step_s, std::max(1.0, std::round(step_s / steps.usual_s))); }) >= kMultiples_share;
-  return steps;
+      share_of([&](double step_s) { return is_near(step_s, std::max(1.0, std::round(step_s / usual_s))); }) >= kMultiples_share;
+  return {usual_s, is_regular};
 }
 
 }  // namespace heatsoak
