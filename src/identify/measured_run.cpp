@@ -11,6 +11,7 @@
 #include "base/unknown.h"
 #include "identify/mean_inputs.h"
 #include "identify/measurement/noise.h"
+#include "identify/measurement/row_order.h"
 #include "identify/row_steps.h"
 
 namespace heatsoak {
@@ -18,8 +19,7 @@ namespace {
 
 /// A stretch with fewer samples has nothing to say about thermal time constants.
 constexpr std::size_t kLeastSamples = 10;
-/// Beyond so many usual steps nobody knows what the inputs did; a step longer than kLostRow_ratio usual ones lacks a row.
-constexpr double kLongestUnknown_ratio = 3.0;
+/// Of the usual step: a longer one lacks a row.
 constexpr double kLostRow_ratio = 1.5;
 
 struct SignalChannel {
@@ -210,7 +210,7 @@ class Builder {
   MeasuredRuns build() {
     check();
     for (const auto& [begin, end] : recording_.runs()) {
-      const double longest_s = kLongestUnknown_ratio * steps_of(begin, end).usual_s;
+      const double longest_s = kLongestStep_ratio * steps_of(begin, end).usual_s;
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
         while (last + 1 < end && is_known(last)) {
