@@ -34,6 +34,8 @@ class Session {
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
   /// The same for content that is put out as it is made. Lives as long as the session.
   StreamedFile& stream(const std::filesystem::path& path) { return *streams_.emplace_back(std::make_unique<StreamedFile>(path)); }
+  /// A folder for files, made with them or not at all.
+  void make_folder(std::filesystem::path path) { folders_.push_back(std::move(path)); }
   /// The answer, for where --json asks for it; nothing without --json.
   void answer(const nlohmann::ordered_json& json);
   void finish();
@@ -46,6 +48,7 @@ class Session {
   std::string json_target_;
   std::string text_;
   std::string json_text_;  ///< for stdout
+  std::vector<std::filesystem::path> folders_;
   std::vector<OutputFile> files_;
   std::vector<std::unique_ptr<StreamedFile>> streams_;
 };

@@ -67,6 +67,24 @@ std::string verb_of(const CLI::App& app) {
   return verbs.empty() ? app.get_name() : fmt::format("{} {}", app.get_name(), verbs.front()->get_name());
 }
 
+/// Makes what is not there yet; returns that, the innermost first.
+std::vector<std::filesystem::path> made_folders(const std::vector<std::filesystem::path>& wanted) {
+  std::vector<std::filesystem::path> made;
+  for (const std::filesystem::path& folder : wanted) {
+    std::vector<std::filesystem::path> missing;
+    for (std::filesystem::path each = folder; !each.empty() && !std::filesystem::exists(each); each = each.parent_path()) {
+      missing.push_back(each);
+    }
+    std::error_code problem;
+    std::filesystem::create_directories(folder, problem);
+    if (problem) {
+      throw Failure(ExitCode::bad_input, fmt::format("{}: the folder cannot be made: {}", folder.string(), problem.message()));
+    }
+    made.insert(made.begin(), missing.begin(), missing.end());
+  }
+  return made;
+}
+
 /// Unlike fmt::print this does not throw: a full disk is found at the end (see written_out), a full stderr is borne.
 /// What a terminal would obey, and names of files may hold, is shown as a question mark.
 void put(std::FILE* file, std::string text) {
@@ -173,7 +191,16 @@ void Session::finish() {
   if (!read.empty()) {
     throw Failure(ExitCode::bad_input, "", std::move(read));
   }
-  write_files(files_, streams_);
+  const std::vector<std::filesystem::path> made = made_folders(folders_);
+  try {
+    write_files(files_, streams_);
+  } catch (...) {
+    for (const std::filesystem::path& folder : made) {
+      std::error_code in_use;
+      std::filesystem::remove(folder, in_use);
+    }
+    throw;
+  }
   put(json_target_ == "-" ? stderr : stdout, text_);
   put(stdout, json_text_);
 }
@@ -181,6 +208,7 @@ void Session::finish() {
 void Session::answer_failure(const Failure& failure) {
   text_.clear();
   json_text_.clear();
+  folders_.clear();
   files_.clear();
   streams_.clear();
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();

@@ -75,8 +75,14 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
     }
   }
   std::vector<std::string> unknown;
+  std::string_view before = app.get_name();
   for (const std::string_view word : words) {
     const std::string name(word.substr(0, word.find('=')));
+    if (word.empty() || word.size() == name.size() + 1) {
+      unknown.push_back(fmt::format("what follows {} is empty: a variable of the shell that is not set?", word.empty() ? before : name));
+      continue;
+    }
+    before = word;
     if (name == "--") {
       break;
     }

@@ -58,10 +58,18 @@ bool is_stuck(const Channel& channel) {
   return low == high;
 }
 
-bool is_there(const Recording& recording, Signal signal) {
-  const auto* const found = std::ranges::find(kSignalChannels, signal, &SignalChannel::signal);
-  const bool is_recorded = has_values(recording.find(found->key));
-  return signal == Signal::shaft_power ? is_recorded && has_values(recording.find("speed_rad_per_s")) : is_recorded;
+bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
+  const auto is_recorded = [&](Signal each) {
+    return has_values(recording.find(std::ranges::find(kSignalChannels, each, &SignalChannel::signal)->key));
+  };
+  if (signal != Signal::shaft_power) {
+    return is_recorded(signal);
+  }
+  return is_recorded(Signal::speed) && (is_recorded(signal) || (torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::current)));
+}
+
+bool has_negative(const std::vector<double>* values) {
+  return values && std::ranges::any_of(*values, [](double value) { return value < 0.0; });
 }
 
 /// Operating points of single rows; NaN where a quantity is not known there.
@@ -78,6 +86,7 @@ class MeasuredRows {
         neighbour_C_(values("neighbour_C", recording)),
         age_h_(values("age_h", recording)),
         surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
+        is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),
         is_driven_(current_A_ &&
                    std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
         time_s_(recording.time_s),
@@ -93,7 +102,7 @@ class MeasuredRows {
       at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
     }
     at.ambient_C = surroundings_C_.empty() ? options_.ambient_C : surroundings_C_[row];
-    at.shaft_power_W = of(torque_Nm_, row) * speed_rad_per_s;
+    at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
     at.input_power_W = of(input_power_W_, row);
     at.bus_V = of(bus_V_, row);
     at.modulation_ratio = std::abs(of(modulation_, row));
@@ -136,9 +145,16 @@ class MeasuredRows {
   /// 0 where there is no such channel: what the model needs is checked beforehand.
   static double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
 
+  /// Only a current and a speed that both have signs tell braking from driving.
+  [[nodiscard]] double power_of_current_W(double current_A, double speed_rad_per_s) const {
+    const double drives_A_rad_per_s = is_signed_ ? current_A * speed_rad_per_s : std::abs(current_A * speed_rad_per_s);
+    return options_.torque.per_current_Nm_per_A * drives_A_rad_per_s - options_.torque.drag_Nm * std::abs(speed_rad_per_s);
+  }
+
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
       *neighbour_C_, *age_h_;
   std::vector<double> surroundings_C_;
+  bool is_signed_;  ///< current and speed
   bool is_driven_;  ///< at any time
   const std::vector<double>& time_s_;
   const MeasuredRunOptions& options_;
@@ -194,7 +210,7 @@ class Builder {
  public:
   Builder(const Recording& recording, const MeasuredRunOptions& options)
       : recording_(recording), options_(options), rows_(recording, options) {
-    signals_ = signals_of(recording);
+    signals_ = signals_of(recording, options.torque);
     for (const SensorPlace& place : kSensorPlaces) {
       const Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();
@@ -440,10 +456,10 @@ Eigen::Index MeasuredRun::sensor_at(std::string_view node) const {
   return found == sensors.end() ? -1 : found - sensors.begin();
 }
 
-std::vector<Signal> signals_of(const Recording& recording) {
+std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque) {
   std::vector<Signal> signals;
   for (const SignalChannel& each : kSignalChannels) {
-    if (is_there(recording, each.signal)) {
+    if (is_there(recording, each.signal, torque)) {
       signals.push_back(each.signal);
     }
   }

@@ -44,12 +44,19 @@ struct MeasuredRun {
   [[nodiscard]] Eigen::Index sensor_at(std::string_view node) const;
 };
 
+/// Torque at the shaft of a motor whose current is known; nothing where a log's torque is all that counts.
+struct ShaftTorque {
+  double per_current_Nm_per_A = 0.0;
+  double drag_Nm = 0.0;  ///< that the motor loses inside while it turns
+};
+
 struct MeasuredRunOptions {
   /// Rows closer than this are merged; inputs become means that conserve heat. Rows further apart than half of it stay.
   double longest_step_s = 2.0;
   /// Heat inputs that the model reacts to; where one of them is not known for longer than three usual steps the run is split.
   std::vector<Signal> needed;
   double least_current_A = 0.0;     ///< less turns no motor: a log that never has more is one of a motor that stands
+  ShaftTorque torque = {};          ///< where the recording has none but current and speed
   double ambient_C = kNotStated_C;  ///< where the recording has neither coolant nor ambient; NaN: it must have one
   static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
 };
@@ -59,8 +66,8 @@ struct MeasuredRuns {
   std::vector<std::string> notes;  ///< what was left out or taken for granted, in sentences
 };
 
-/// Signals that a recording has.
-std::vector<Signal> signals_of(const Recording& recording);
+/// Signals that a recording has, the shaft's power among them where it has a torque or its current tells one.
+std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque = {});
 
 /// Throws Failure: bad_input where a needed signal or the surroundings' temperature is no column, cannot_answer where
 /// no stretch is left with all of them. Temperatures become means over the tenth of a step around the sample's time, where there are such

@@ -26,8 +26,7 @@ DiagnosisInput input_of(const ModelOfLogs& model, const std::vector<Recording>& 
                         double ambient_C = MeasuredRunOptions::kNotStated_C) {
   DiagnosisInput input;
   input.model = model.model;
-  MeasuredRunOptions how;
-  how.needed = model.needed;
+  MeasuredRunOptions how = model.how;
   how.ambient_C = ambient_C;
   for (const Recording& recording : train) {
     for (MeasuredRun& run : measured_runs(recording, how).runs) {

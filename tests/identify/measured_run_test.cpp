@@ -130,6 +130,27 @@ TEST(MeasuredRun, a_speed_is_unlogged_in_the_rows_that_lack_it_and_where_somethi
   EXPECT_EQ(standing.at[5].unlogged_speed_share, 0.0);
 }
 
+TEST(MeasuredRun, current_stands_for_a_torque_that_nobody_logged) {
+  Recording log = recording_of(rows_of_a_step());
+  log.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), -100.0)});
+  MeasuredRunOptions how{.needed = {Signal::current}, .ambient_C = 25.0};
+  EXPECT_FALSE(measured_runs(log, how).runs.at(0).has(Signal::shaft_power));
+  how.torque = {.per_current_Nm_per_A = 0.03, .drag_Nm = 0.002};
+  const MeasuredRun driven = measured_runs(log, how).runs.at(0);
+  EXPECT_TRUE(driven.has(Signal::shaft_power));
+  // 0.03 N m/A · 2 A · 100 rad/s = 6 W, less 0.2 W of drag; the current has no sign, so that turning backwards is no braking.
+  EXPECT_NEAR(driven.at[0].shaft_power_W, 5.8, 1e-9);
+  // A current with a sign brakes where it is against the speed.
+  for (double& current_A : log.channels[0].values) {
+    current_A -= 4.0;
+  }
+  const MeasuredRun signed_run = measured_runs(log, how).runs.at(0);
+  EXPECT_NEAR(signed_run.at[0].shaft_power_W, 5.8, 1e-9);
+  EXPECT_NEAR(signed_run.at[15].shaft_power_W, -6.2, 1e-9);
+  log.channels.push_back({*quantity_named("torque_Nm"), std::vector<double>(log.rows(), 0.01)});
+  EXPECT_NEAR(measured_runs(log, how).runs.at(0).at[0].shaft_power_W, -1.0, 1e-9);
+}
+
 TEST(MeasuredRun, says_why_no_stretch_is_left) {
   std::vector<LogRow> rows = rows_of_a_step();
   for (std::size_t row = 0; row < rows.size(); row += 5) {

@@ -19,7 +19,7 @@ struct Levels {
   double bus_V = 0.0;
   double input_power_W = 0.0;
   double vehicle_speed_m_per_s = 0.0;
-  double volts_per_rad_per_s_ratio = 0.0;  ///< modulation per speed
+  double shaft_W_per_A_rad_per_s = 0.0;
   double ambient_C = 25.0;
 };
 
@@ -31,6 +31,9 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
       most.speed_rad_per_s = std::max(most.speed_rad_per_s, at.speed_mean_rad_per_s);
       most.bus_V = std::max(most.bus_V, at.bus_V);
       most.input_power_W = std::max(most.input_power_W, at.input_power_W);
+      if (const double turns_A_rad_per_s = at.current_rms_A * at.speed_mean_rad_per_s; turns_A_rad_per_s > 0.0) {
+        most.shaft_W_per_A_rad_per_s = std::max(most.shaft_W_per_A_rad_per_s, std::abs(at.shaft_power_W) / turns_A_rad_per_s);
+      }
       most.vehicle_speed_m_per_s = std::max(most.vehicle_speed_m_per_s, at.vehicle_speed_m_per_s);
     }
   }
@@ -76,6 +79,7 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
       at.current_rms_A = current_share * levels.current_A;
       at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = at.velocity_rad_per_s = speed_share * levels.speed_rad_per_s;
       at.input_power_W = current_share * current_share * levels.input_power_W;
+      at.shaft_power_W = levels.shaft_W_per_A_rad_per_s * at.current_rms_A * at.speed_mean_rad_per_s;
       at.bus_V = levels.bus_V;
       at.modulation_ratio = std::min(1.0, 0.9 * speed_share);
       at.ambient_C = levels.ambient_C;

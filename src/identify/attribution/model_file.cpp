@@ -8,15 +8,17 @@
 #include <set>
 
 #include "base/diagnostic.h"
+#include "base/quantity.h"
 #include "identify/admission.h"
+#include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
 #include "identify/measurement/fingerprint.h"
 
 namespace heatsoak {
 namespace {
 
-bool has_signal(const Recording& recording, Signal signal) {
-  const std::vector<Signal> signals = signals_of(recording);
+bool has_signal(const Recording& recording, Signal signal, const ShaftTorque& torque = {}) {
+  const std::vector<Signal> signals = signals_of(recording, torque);
   return std::ranges::find(signals, signal) != signals.end();
 }
 
@@ -27,9 +29,10 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
   }
   bool has_heat = false;
   for (const Signal signal : wanted) {
-    const bool is_anywhere = std::ranges::any_of(recordings, [&](const Recording& each) { return has_signal(each, signal); });
+    const bool is_anywhere =
+        std::ranges::any_of(recordings, [&](const Recording& each) { return has_signal(each, signal, out.how.torque); });
     if (is_anywhere) {
-      out.needed.push_back(signal);
+      out.how.needed.push_back(signal);
       has_heat = has_heat || signal == Signal::current || signal == Signal::input_power;
     }
   }
@@ -40,7 +43,7 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
   }
   for (const EffectInPlace& effect : out.model.model.network.effects()) {
     for (const Signal signal : effect.type->needs) {
-      if (std::ranges::find(out.needed, signal) == out.needed.end()) {
+      if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
         out.notes.push_back(fmt::format("no log has what {} needs: it counts as 0", effect.name));
         break;
       }
@@ -143,7 +146,6 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
     return;
   }
-  constexpr double kSheet_sd = 0.4;
   for (const std::string& name : motor.fit->figures) {
     Figure* const figure = find_figure(motor, name);
     // Of the others the fit has said that it does not tell them.
@@ -173,6 +175,14 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   }
   std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
   MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
+  out.how.torque = shaft_torque_of(motor);
+  out.how.least_current_A = least_driving_current_A(motor);
+  if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
+    out.notes.push_back(
+        fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of what is unexplained, and no curve over another "
+                    "signal is added in its place",
+                    significant(most_loss_at_speed_W(motor), 2)));
+  }
   out.model.model = std::move(built.model);
   out.figures = std::move(built.figures);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
@@ -184,6 +194,12 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
     }
   }
   set_needed(out, motor, recordings);
+  const bool has_torque = have(Signal::shaft_power);
+  if (!has_torque &&
+      std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, Signal::shaft_power, out.how.torque); })) {
+    out.notes.emplace_back(
+        "not every log has a torque: where there is none, current times torque constant less the no-load drag stands for it");
+  }
   return out;
 }
 

@@ -13,7 +13,7 @@ namespace heatsoak {
 struct ModelOfLogs {
   ExtendedModel model;
   std::vector<FittedFigure> figures;  ///< of the motor's file, as the model's parameters make them
-  std::vector<Signal> needed;         ///< heat inputs that runs must have for it
+  MeasuredRunOptions how;             ///< what its runs must have and how they are read; but for the ambient temperature
   std::vector<std::string> fitted;    ///< rows that the figures know, as name_and_fingerprint()
   std::vector<std::string> notes;     ///< what is taken for granted because no log has it
 };

@@ -73,6 +73,7 @@ class Calibrating {
     constexpr double kLongest_s = 2.0;
     how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 5.0, kShortest_s, kLongest_s);
     how.needed = all_.motor_model.needed;
+    how.torque = shaft_torque_of(motor);
     how.least_current_A = least_driving_current_A(motor);
     how.ambient_C = options_.ambient_C;
     all_.runs = runs_of(recordings_, how, all_.notes);

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/diagnostic.h"
-#include "identify/measured_run.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
@@ -22,7 +21,7 @@ struct Trust {
   double unstated_sd;
   double widening;
 };
-constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, 0.4, 1.5}, Trust{Origin::third_party, 0.5, 1.5},
+constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, kSheet_sd, 1.5}, Trust{Origin::third_party, 0.5, 1.5},
                             Trust{Origin::derived, 0.5, 1.5}, Trust{Origin::estimated, 0.9, 2.0}};
 
 /// Mean of what motors are made of (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and how well a motor's mass tells its
@@ -233,6 +232,11 @@ double prior_sd_of(const Figure& figure) {
   }
   // Both kinds of spread hold for some 95 %: ± 2 standard deviations.
   return trust->widening * 0.25 * std::log(figure.spread->high / figure.spread->low);
+}
+
+ShaftTorque shaft_torque_of(const Motor& motor) {
+  const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
+  return {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
 }
 
 HeatInput heat_input_for(std::span<const Recording> recordings) {

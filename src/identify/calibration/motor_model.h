@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "identify/measurement/recording.h"
+#include "identify/measured_run.h"
 #include "identify/model.h"
 #include "motor/motor.h"
 
@@ -15,6 +15,9 @@ namespace heatsoak {
 
 /// Effect with the loss at a speed that no log tells, where it is open.
 inline constexpr std::string_view kLossAtUnloggedSpeed = "loss_at_unlogged_speed";
+
+/// How well a data sheet's bare figure is known: standard deviation of its logarithm.
+inline constexpr double kSheet_sd = 0.4;
 
 /// What the heat of a model is computed from.
 enum class HeatInput { current, input_power };
@@ -41,6 +44,9 @@ struct MotorModel {
   std::vector<int> nuisances;     ///< free parameters that are no figure of the motor
   std::vector<std::string> held;  ///< what was not fitted and why, in sentences
 };
+
+/// Torque at the shaft as the motor's torque constant and its no-load current tell it.
+ShaftTorque shaft_torque_of(const Motor& motor);
 
 /// What all of the recordings can drive: the copper loss where each has a current, else the input power. Throws Failure
 /// (bad_input) where they have neither.

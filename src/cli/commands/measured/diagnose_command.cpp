@@ -62,11 +62,7 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
 
 void hand_out(const Options& options, const Motor& extended, const Diagnosis& diagnosis, const DiagnosisInput& input, Session& session) {
   const std::filesystem::path folder(options.out);
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem) {
-    throw Failure(ExitCode::bad_input, fmt::format("{}: the folder cannot be made: {}", options.out, problem.message()));
-  }
+  session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
   for (const DiagnosisPicture& picture : diagnosis_pictures(diagnosis, input)) {
     svg.emplace_back(picture.name, draw_svg(picture.chart));
@@ -86,8 +82,7 @@ ExitCode run(const Options& options, Session& session) {
   std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C), std::back_inserter(notes));
   ModelOfLogs model = model_of_logs(motor, train);
   notes.insert(notes.end(), model.notes.begin(), model.notes.end());
-  MeasuredRunOptions how;
-  how.needed = model.needed;
+  MeasuredRunOptions how = model.how;
   how.ambient_C = options.logs.ambient_C;
   DiagnosisInput input;
   input.model = model.model;
