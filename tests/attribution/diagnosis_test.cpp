@@ -72,6 +72,36 @@ TEST(Examination, HeatThatNoMeasuredSignalFollowsGetsNoName) {
   EXPECT_FALSE(names(answer.named, subject("iron_loss_eddy")) || names(answer.named, subject("iron_loss_hysteresis"))) << account(answer);
 }
 
+// A motor that was known to 2 % and then screwed to something else: 1.4 times the resistance to the air in its file.
+TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
+  const Case one = sealed({}, 5);
+  const Runs runs = record(one);
+  DiagnosisInput input = question(one, runs);
+  input.model = diagnose(input, {}).selection.before.model;
+  Model& known = input.model.model;
+  known.prior = {known.theta(), Eigen::MatrixXd::Identity(known.free_count(), known.free_count()) / (0.02 * 0.02)};
+  EXPECT_THAT(diagnose(input, {}).changed, testing::IsEmpty());
+  Eigen::Index coordinate = 0;
+  while (known.name(coordinate) != "stator_ambient.thermal_resistance") {
+    ++coordinate;
+  }
+  double& out_K_per_W = known.values[static_cast<std::size_t>(known.free[static_cast<std::size_t>(coordinate)].place)];
+  const double true_K_per_W = out_K_per_W;
+  out_K_per_W *= 1.4;
+  known.prior.mean = known.theta();
+  const Diagnosis found = diagnose(input, {});
+  EXPECT_EQ(found.verdict, DiagnosisVerdict::not_identifiable) << found.description;
+  EXPECT_THAT(found.effects, testing::IsEmpty()) << found.description;
+  ASSERT_EQ(found.changed.size(), 1U) << found.description;
+  EXPECT_EQ(found.changed.front().name, known.name(coordinate));
+  EXPECT_NEAR(found.changed.front().before, 1.4 * true_K_per_W, 1e-9);
+  EXPECT_NEAR(found.changed.front().value, true_K_per_W, 0.05 * true_K_per_W);
+  EXPECT_LT(found.changed.front().low, true_K_per_W);
+  EXPECT_GT(found.changed.front().high, true_K_per_W);
+  EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) / 3.0);
+  EXPECT_THAT(found.description, testing::HasSubstr("Does not hold here: stator_ambient.thermal_resistance"));
+}
+
 TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
   const Answer answer = examine(sealed(subject("windage").make(0.6), 41));
   ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "program_run.h"
@@ -66,25 +67,73 @@ TEST(Diagnose, AnswersOnLogsOfSeconds) {
   }
 }
 
-// A motor that warms by 60 K on a current of 0 A lacks no effect.
-TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {
-  const TemporaryFolder folder;
-  std::istringstream logged(content_of(kSoak / "bench.csv"));
+/// The shipped log with every line's cells changed; line 0 is the header.
+std::string changed_log(const TemporaryFolder& folder, const std::string& name,
+                        const std::function<void(int line, std::vector<std::string>& cells)>& change) {
+  std::istringstream logged(content_of(kSoak / name));
   std::string text, line;
-  for (int row = 0; std::getline(logged, line); ++row) {
+  for (int number = 0; std::getline(logged, line); ++number) {
     std::vector<std::string> cells;
     std::istringstream of_line(line);
     for (std::string cell; std::getline(of_line, cell, ',');) {
-      cells.push_back(row > 0 && cells.size() == 4 ? "0" : cell);  // current_A
+      cells.push_back(cell);
     }
+    change(number, cells);
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
-  const fs::path file = folder.path() / "dead_sensor.csv";
+  const fs::path file = folder.path() / name;
   std::ofstream(file) << text;
-  const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", file.string(), "--as-is", "--out", "found"}, in(folder));
+  return file.string();
+}
+constexpr std::size_t kCurrent = 4;  // of time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s
+
+// A motor that warms by 60 K on a current of 0 A lacks no effect.
+TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {
+  const TemporaryFolder folder;
+  const std::string file = changed_log(
+      folder, "bench.csv", [](int line, std::vector<std::string>& cells) { cells[kCurrent] = line > 0 ? "0" : cells[kCurrent]; });
+  const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", file, "--as-is", "--out", "found"}, in(folder));
   EXPECT_EQ(done.exit_code, 3) << done.out;
   EXPECT_THAT(done.err, HasSubstr("no effect makes the model follow these logs: stator_C"));
   EXPECT_FALSE(fs::exists(folder.path() / "found"));
+}
+
+// What the motor lost at speeds that nobody logged goes with the current: a curve over the current would be a wrong model.
+TEST(Diagnose, AddsNoCurveInPlaceOfASpeedThatNobodyLogged) {
+  const TemporaryFolder folder;
+  const auto without_speed = [&](const char* name) {
+    return changed_log(folder, name, [](int, std::vector<std::string>& cells) { cells.resize(kCurrent + 1); });
+  };
+  const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", without_speed("match_1.csv"), without_speed("match_2.csv"),
+                               without_speed("bench.csv"), "--holdout", without_speed("match_3.csv"), "--json", "-"},
+                              in(folder));
+  EXPECT_THAT(done.err, HasSubstr("the loss at speed, up to 5.5 W, is part of what is unexplained"));
+  const nlohmann::json answer = done.json();
+  for (const nlohmann::json& effect : answer["effects"]) {
+    EXPECT_NE(effect["id"], "tabulated");
+  }
+  for (const char* signal : {"winding_C", "stator_C"}) {
+    EXPECT_LT(answer["after"]["holdout"][signal]["rmse_K"].get<double>(), answer["before"]["holdout"][signal]["rmse_K"].get<double>());
+  }
+}
+
+TEST(Diagnose, LeavesNoFolderWhereAnOutputCannotBeWritten) {
+  const TemporaryFolder folder;
+  const ProgramRun done =
+      run({"diagnose", "--model", kMotor, "--train", log("bench.csv"), "--out", "deep/found", "--json", "no/such/answer.json"}, in(folder));
+  EXPECT_EQ(done.exit_code, 2) << done.out;
+  EXPECT_FALSE(fs::exists(folder.path() / "deep"));
+}
+
+TEST(Diagnose, RefusesAnEmptyName) {
+  const TemporaryFolder folder;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--out", ""}, {"--json="}}) {
+    std::vector<std::string> line{"diagnose", "--model", kMotor, "--train", log("bench.csv")};
+    line.insert(line.end(), words.begin(), words.end());
+    const ProgramRun done = run(line, in(folder));
+    EXPECT_EQ(done.exit_code, 2) << done.out;
+    EXPECT_THAT(done.err, HasSubstr(fmt::format("what follows {} is empty", words.front().substr(0, words.front().find('=')))));
+  }
 }
 
 }  // namespace

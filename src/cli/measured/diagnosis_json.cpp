@@ -120,6 +120,15 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
   json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(diagnosis.refitted_holdout)}};
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = diagnosis.description;
+  json["figures_contradicted"] = Json::array();
+  for (const ChangedFigure& figure : diagnosis.changed) {
+    json["figures_contradicted"].push_back({{"name", figure.name},
+                                            {"unit", figure.unit},
+                                            {"before", figure.before},
+                                            {"value", figure.value},
+                                            {"ci95", {figure.low, figure.high}},
+                                            {"nats", rounded(figure.gain_nats, 2)}});
+  }
   if (!diagnosis.unexplained.empty()) {
     json["unexplained"] = unexplained_json(diagnosis.unexplained.front());
     json["unexplained_all"] = Json::array();

@@ -69,8 +69,8 @@ class BackwardCheck {
       return false;
     }
     const AcceptedTerm& term = out_.terms[least];
-    out_.refused.push_back(fmt::format("{}: {:.0f} nats, but all but {:.1f} % of it could be the base parameters and the other effects",
-                                       term.candidate->id, term.loss_without_nats, 100.0 * term.visibility_ratio));
+    out_.refuse(term.candidate->id, term.loss_without_nats,
+                fmt::format("all but {:.1f} % of it could be the base parameters and the other effects", 100.0 * term.visibility_ratio));
     const std::vector<bool> stays = all_but(least);
     keep(stays, refit_with(stays));
     return true;
@@ -120,7 +120,7 @@ class BackwardCheck {
   }
 
   [[nodiscard]] ExtendedModel model_with(const std::vector<bool>& stays) const {
-    ExtendedModel model = out_.before.model;
+    ExtendedModel model = out_.base;
     for (std::size_t i = 0; i < out_.terms.size(); ++i) {
       const AcceptedTerm& term = out_.terms[i];
       if (!stays[i]) {

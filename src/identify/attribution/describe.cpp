@@ -56,14 +56,6 @@ std::string effect_in_words(const FoundEffect& effect) {
   return text;
 }
 
-double rms_K(const Errors& errors) {
-  double squares_K2 = 0.0;
-  for (const auto& [signal, error] : errors) {
-    squares_K2 += error.rmse_K * error.rmse_K;
-  }
-  return std::sqrt(squares_K2 / static_cast<double>(std::max<std::size_t>(1, errors.size())));
-}
-
 /// What the reader must know before he trusts the model on other runs.
 std::string doubts_in_words(const Diagnosis& diagnosis) {
   constexpr double kWorse_ratio = 1.1;
@@ -99,6 +91,12 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
     case DiagnosisVerdict::not_identifiable:
       break;
   }
+  if (!diagnosis.changed.empty()) {
+    return "The runs contradict the file's own figures. Whether those have changed since (another mounting, another piece of the motor) or "
+           "an "
+           "effect is missing that acts like such a change, these runs cannot tell; no name is given, and the figures are those of these "
+           "runs.";
+  }
   return diagnosis.selection.refused.empty()
              ? fmt::format(
                    "These runs cannot tell whether something is missing: at their usual size only {:.0f} % of the effects of the "
@@ -107,6 +105,11 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
              : std::string(
                    "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no name "
                    "is given.");
+}
+
+std::string changed_in_words(const ChangedFigure& figure) {
+  return fmt::format("Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs (95 %: {:.3g} to {:.3g}). {:.0f} nats.",
+                     figure.name, figure.before, figure.unit, figure.value, figure.unit, figure.low, figure.high, figure.gain_nats);
 }
 
 std::string unexplained_in_words(const Unexplained& heat) {
@@ -129,6 +132,9 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
     if (effect.is_from_catalogue) {
       all.push_back(effect_in_words(effect));
     }
+  }
+  for (const ChangedFigure& figure : diagnosis.changed) {
+    all.push_back(changed_in_words(figure));
   }
   for (const Unexplained& heat : diagnosis.unexplained) {
     all.push_back(unexplained_in_words(heat));

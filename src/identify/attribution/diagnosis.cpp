@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "identify/attribution/advisor.h"
 #include "identify/attribution/coverage.h"
+#include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/interval.h"
 
@@ -18,26 +18,11 @@ namespace {
 /// Unknown heat below this share of the heat that the model knows is what every model leaves.
 constexpr double kTolerableUnknown_share = 0.03;
 
+/// A figure of the file that is further off than this (of its logarithm) is no longer the same mounting.
+constexpr double kOtherMounting = 0.1;
+
 /// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
 constexpr double kLeastSeen_share = 0.5;
-
-struct HeatOfEffect {
-  double mean_W = 0.0;
-  double peak_W = 0.0;
-};
-
-/// Heat of one effect along a run: effects × nodes per interval.
-template <class Visit>
-void along(const RefitResult& fit, const MeasuredRun& run, const LinearisedRun& path, const Visit& visit) {
-  const Network& network = fit.model.model.network;
-  const std::vector<double> values = fit.model.values_in(run);
-  std::vector<double> heat_W(network.effects().size() * static_cast<std::size_t>(network.node_count()));
-  for (std::size_t k = 0; k < run.at.size(); ++k) {
-    const std::span<const double> state_C(path.state_C.col(static_cast<Eigen::Index>(k)).data(), static_cast<std::size_t>(path.states));
-    network.balance_W(run.at[k], values, state_C, heat_W);
-    visit(k, std::span<const double>(heat_W));
-  }
-}
 
 class Teller {
  public:
@@ -45,8 +30,9 @@ class Teller {
 
   Diagnosis tell() {
     for (const AcceptedTerm& term : out_.selection.terms) {
-      out_.effects.push_back(found(term));
+      out_.effects.push_back(found_effect(term, out_.selection, input_.train));
     }
+    tell_changed_figures();
     out_.runs = input_.train;
     tell_errors();
     tell_flux();
@@ -65,169 +51,18 @@ class Teller {
  private:
   [[nodiscard]] const RefitResult& after() const { return out_.selection.after; }
 
-  [[nodiscard]] const EffectInPlace* effect_named(const std::string& name) const {
-    for (const EffectInPlace& effect : after().model.model.network.effects()) {
-      if (effect.name == name) {
-        return &effect;
-      }
-    }
-    return nullptr;
-  }
-
-  FoundEffect found(const AcceptedTerm& term) const {
-    FoundEffect effect;
-    effect.name = term.effect_name;
-    effect.gain_nats = term.loss_without_nats;
-    effect.delta_bic = -2.0 * term.loss_without_nats;
-    effect.visibility_ratio = term.visibility_ratio;
-    effect.confusable_with = term.confusable_with;
-    if (term.candidate && term.candidate->sensor_type) {
-      tell_sensor(*term.candidate->sensor_type, effect);
-      return effect;
-    }
-    if (term.candidate && term.candidate->is_heat_share()) {
-      tell_heat_share(*term.candidate, effect);
-      return effect;
-    }
-    const EffectInPlace& in_place = *effect_named(term.effect_name);
-    effect.id = in_place.type->name;
-    effect.node = after().model.model.network.node_name(in_place.node_index.front());
-    effect.description = in_place.type->summary;
-    effect.look_alike = in_place.type->look_alike;
-    for (const ConditionalTerm& conditional : after().model.conditional) {
-      if (conditional.effect_name == term.effect_name) {
-        effect.condition = conditional.condition;
-      }
-    }
-    if (term.curve) {
-      effect.node = term.curve->term.node;
-      effect.drivers.push_back(out_.selection.drivers[static_cast<std::size_t>(term.curve->term.driver)].name);
-      effect.is_from_catalogue = !effect.condition.empty();
-    }
-    tell_parameters(in_place, effect);
-    const HeatOfEffect heat = heat_of([&](const EffectInPlace& each) { return &each == &in_place; }, effect.condition);
-    effect.mean_W = heat.mean_W;
-    effect.peak_W = heat.peak_W;
-    return effect;
-  }
-
-  void tell_sensor(const SensorEffectType& type, FoundEffect& effect) const {
-    effect.id = type.name;
-    effect.has_heat = false;
-    effect.node = type.signal.substr(0, type.signal.rfind('_'));
-    effect.description = type.summary;
-    effect.look_alike = type.look_alike;
-    for (std::size_t i = 0; i < after().model.sensors.size(); ++i) {
-      if (after().model.sensors[i].type == &type) {
-        const auto own = after().model.model.free_count() + static_cast<Eigen::Index>(i);
-        const double sd = type.typical_size * std::sqrt(after().covariance(own, own));
-        const double value = after().model.sensors[i].value;
-        FittedParameter size{std::string(type.size.key), std::string(type.size.unit), value,
-                             std::max(value - kInterval_sd * sd, type.size.range.low), value + kInterval_sd * sd};
-        drop_interval_at_bound(own, size);
-        effect.parameters.push_back(std::move(size));
-        effect.p_value = p_of(value, sd);
-      }
-    }
-  }
-
-  void tell_heat_share(const Candidate& candidate, FoundEffect& effect) const {
-    const auto& terms = after().model.heat_shares;
-    const auto place = std::ranges::find(terms, candidate.condition, &HeatShareTerm::condition) - terms.begin();
-    const Eigen::Index own = after().model.first_heat_share() + place;
-    const double value = terms[static_cast<std::size_t>(place)].deviation_share;
-    const double sd = kUsualDeviation_share * std::sqrt(after().covariance(own, own));
-    effect.id = "heat_share";
-    effect.node = "winding";
-    effect.condition = candidate.condition;
-    effect.description =
-        "More or less heat goes in than the log says: another phase carries the current, or the driver takes another share.";
-    effect.parameters.push_back(
-        {std::string(candidate.size_spec().key), "", value, std::max(value - kInterval_sd * sd, -1.0), value + kInterval_sd * sd});
-    effect.p_value = p_of(value, sd);
-    const HeatOfEffect heat = heat_of([](const EffectInPlace& in_place) { return is_heat_input(*in_place.type); }, candidate.condition);
-    const double share = std::abs(value) / std::max(0.01, 1.0 + value);
-    effect.mean_W = share * heat.mean_W;
-    effect.peak_W = share * heat.peak_W;
-  }
-
-  static double p_of(double value, double sd) {
-    return sd > 0.0 ? 2.0 * boost::math::cdf(boost::math::complement(boost::math::normal(), std::min(37.0, std::abs(value) / sd))) : 1.0;
-  }
-
-  void drop_interval_at_bound(Eigen::Index coordinate, FittedParameter& parameter) const {
-    constexpr double kThere = 1e-6;
-    const ExtendedModel& model = after().model;
-    const double theta = model.theta()[coordinate];
-    if (theta < model.low(coordinate) + kThere || theta > model.high(coordinate) - kThere) {
-      parameter.is_at_bound = true;
-      parameter.low = parameter.high = parameter.value;
-    }
-  }
-
-  void tell_parameters(const EffectInPlace& in_place, FoundEffect& effect) const {
+  void tell_changed_figures() {
     const Model& model = after().model.model;
     const Eigen::VectorXd theta = model.theta();
-    std::vector<double> values;
-    for (const int place : in_place.parameter_index) {
-      values.push_back(model.values[static_cast<std::size_t>(place)]);
+    for (ChangedFigure figure : out_.selection.changed) {
+      const Eigen::Index own = figure.coordinate;
+      const double reach = kInterval_sd * std::sqrt(after().covariance(own, own));
+      figure.before = input_.model.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
+      figure.value = model.value_of(own, theta[own]);
+      figure.low = model.value_of(own, theta[own] - reach);
+      figure.high = model.value_of(own, theta[own] + reach);
+      out_.changed.push_back(std::move(figure));
     }
-    for (std::size_t p = 0; p < values.size(); ++p) {
-      const ParameterSpec& spec = in_place.type->parameters[p];
-      if (!spec.choices.empty()) {
-        continue;
-      }
-      FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p],
-                                values[p]};
-      for (Eigen::Index i = 0; i < model.free_count(); ++i) {
-        if (model.free[static_cast<std::size_t>(i)].place == in_place.parameter_index[p]) {
-          const double sd = std::sqrt(after().covariance(i, i));
-          parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
-          parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
-          effect.p_value = std::min(effect.p_value, model.free[static_cast<std::size_t>(i)].by_log ? p_of(1.0, sd) : p_of(theta[i], sd));
-          drop_interval_at_bound(i, parameter);
-        }
-      }
-      effect.parameters.push_back(std::move(parameter));
-    }
-  }
-
-  /// Into the first node of the effects that `counts` says, in runs of the condition.
-  template <class Counts>
-  [[nodiscard]] HeatOfEffect heat_of(const Counts& counts, const std::map<std::string, std::string>& condition) const {
-    const auto nodes = static_cast<std::size_t>(after().model.model.network.node_count());
-    std::vector<std::size_t> places;
-    for (const EffectInPlace& in_place : after().model.model.network.effects()) {
-      if (counts(in_place)) {
-        const auto effect = static_cast<std::size_t>(&in_place - after().model.model.network.effects().data());
-        places.push_back(effect * nodes + static_cast<std::size_t>(in_place.node_index.front()));
-      }
-    }
-    std::vector<double> magnitude_W;
-    HeatOfEffect out;
-    double time_s = 0.0;
-    for (std::size_t r = 0; r < input_.train.size(); ++r) {
-      const MeasuredRun& run = input_.train[r];
-      if (!has_condition(run, condition)) {
-        continue;
-      }
-      along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
-        const double duration_s = run.time_s[k + 1] - run.time_s[k];
-        magnitude_W.push_back(0.0);
-        for (const std::size_t place : places) {
-          magnitude_W.back() += std::abs(heat_W[place]);
-        }
-        out.mean_W += duration_s * magnitude_W.back();
-        time_s += duration_s;
-      });
-    }
-    if (!magnitude_W.empty()) {
-      out.mean_W /= time_s;
-      const auto peak = magnitude_W.begin() + static_cast<std::ptrdiff_t>(magnitude_W.size() * 99 / 100);
-      std::nth_element(magnitude_W.begin(), peak, magnitude_W.end());
-      out.peak_W = *peak;
-    }
-    return out;
   }
 
   void tell_errors() {
@@ -283,7 +118,7 @@ class Teller {
     double time_s = 0.0;
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
       const MeasuredRun& run = input_.train[r];
-      along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
+      heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
         const double duration_s = run.time_s[k + 1] - run.time_s[k];
         time_s += duration_s;
         for (std::size_t i = 0; i < energy_J.size(); ++i) {
@@ -397,7 +232,8 @@ class Teller {
       return nullptr;
     }
     // The round whose model is the one that is left.
-    const Round& round = out_.selection.terms.empty() ? out_.selection.rounds.front() : out_.selection.rounds.back();
+    const Round& round =
+        out_.selection.terms.empty() && out_.selection.changed.empty() ? out_.selection.rounds.front() : out_.selection.rounds.back();
     const std::vector<ScanResult>& scan = round.scan;
     const auto found = std::ranges::find_if(
         scan, [&](const ScanResult& each) { return each.term.node == node && each.gain_nats >= SelectionRules{}.least_gain_nats; });
@@ -411,7 +247,7 @@ class Teller {
     heat.mean_W = heat.rms_W = effect->mean_W;
     heat.peak_W = effect->peak_W;
     const Model& model = after().model.model;
-    const EffectInPlace& in_place = *effect_named(term.effect_name);
+    const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
     const std::size_t first = in_place.parameter_index.size() - heat.curve.size();
     for (std::size_t knot = 0; knot < heat.curve.size(); ++knot) {
       const int place = in_place.parameter_index[first + knot];
@@ -454,8 +290,11 @@ class Teller {
     if (!out_.unexplained.empty()) {
       return DiagnosisVerdict::unexplained;
     }
+    const bool is_same_mounting = std::ranges::none_of(
+        out_.changed, [](const ChangedFigure& figure) { return std::abs(std::log(figure.value / figure.before)) > kOtherMounting; });
     const bool would_show = out_.selection.seen_share >= kLeastSeen_share;
-    return out_.selection.refused.empty() && would_show ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::not_identifiable;
+    return out_.selection.refused.empty() && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
+                                                                            : DiagnosisVerdict::not_identifiable;
   }
 
   const DiagnosisInput& input_;

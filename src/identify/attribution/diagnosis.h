@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "identify/attribution/found_effects.h"
+#include "identify/attribution/open_loop.h"
 #include "identify/attribution/residual_tests.h"
-#include "identify/attribution/selection.h"
 
 namespace heatsoak {
 
@@ -18,48 +19,6 @@ struct DiagnosisInput {
   std::vector<MeasuredRun> train;
   std::vector<FreeSignals> free;  ///< of the training runs
   std::vector<MeasuredRun> holdout;
-};
-
-struct ErrorOfSignal {
-  double rmse_K = 0.0;
-  double max_abs_K = 0.0;
-};
-/// By signal, "winding_C".
-using Errors = std::map<std::string, ErrorOfSignal>;
-
-/// The model run freely from the first measured temperatures. A run that goes on where one of `before_them` ends begins where the model's
-/// free run of that one has arrived: nothing but the beginning of the log is looked at.
-Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
-/// Predictions of one run, n × sensors.
-Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);
-
-struct FittedParameter {
-  std::string name;
-  std::string unit;
-  double value = 0.0;
-  double low = 0.0;  ///< of the 95 % interval; both the value where there is none
-  double high = 0.0;
-  bool is_at_bound = false;  ///< of what is looked for: the search ended there, not the runs
-};
-
-struct FoundEffect {
-  std::string id;    ///< of the catalogue; "tabulated" and the like for curves
-  std::string name;  ///< of the instance in the model file; empty for faults of sensors
-  std::string node;
-  std::string description;  ///< one line in words
-  std::vector<FittedParameter> parameters;
-  std::map<std::string, std::string> condition;  ///< where it acts; empty: everywhere
-  std::vector<std::string> drivers;              ///< of a curve
-  double mean_W = 0.0;                           ///< of the magnitude over the time of the runs in which it acts
-  double peak_W = 0.0;                           ///< 99 % of the magnitude
-  bool has_heat = true;                          ///< false: a fault of a sensor
-  double gain_nats = 0.0;                        ///< that the final model would lose without it
-  double delta_bic = 0.0;                        ///< −2 · gain
-  double p_value = 1.0;                          ///< of the size being 0, one parameter
-  double visibility_ratio = 0.0;
-  std::vector<std::string> confusable_with;  ///< on these runs
-  std::string look_alike;                    ///< in general, and what tells them apart: the catalogue's own words
-  bool is_from_catalogue = true;
 };
 
 struct Unexplained {
@@ -102,6 +61,7 @@ struct Experiment {
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   std::vector<FoundEffect> effects;
+  std::vector<ChangedFigure> changed;  ///< figures of the file that do not hold in these runs
   std::vector<Unexplained> unexplained;
   Errors before_train, before_holdout, after_train, after_holdout;
   Errors refitted_train, refitted_holdout;  ///< the model's own figures fitted to the training runs, nothing added

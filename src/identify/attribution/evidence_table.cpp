@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -175,22 +176,40 @@ SetScore EvidenceTable::best(std::span<const int> set, const FluxGrid::Place& st
   return best;
 }
 
-std::vector<double> EvidenceTable::single_gains_nats(const SetScore& base) {
-  std::vector<FluxGrid::Place> places{base.place};
-  for (std::size_t axis = 0; axis + 1 < base.place.size(); ++axis) {
+namespace {
+
+/// The base's and those with less unknown heat: what explains something takes its place.
+std::vector<FluxGrid::Place> places_of_less(const FluxGrid::Place& base) {
+  std::vector<FluxGrid::Place> places{base};
+  for (std::size_t axis = 0; axis + 1 < base.size(); ++axis) {
     for (int less = 1; less <= 3; ++less) {
-      FluxGrid::Place place = base.place;
+      FluxGrid::Place place = base;
       place[axis] = std::max(0, place[axis] - less);
       places.push_back(place);
     }
   }
-  FluxGrid::Place all_less = base.place;
+  FluxGrid::Place all_less = base;
   std::for_each(all_less.begin(), all_less.end() - 1, [](int& index) { index = std::max(0, index - 2); });
   places.push_back(all_less);
   std::ranges::sort(places);
   places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
+}  // namespace
+
+double EvidenceTable::best_nats_with(const ThetaPrior& prior, const SetScore& base) {
+  double best_nats = -std::numeric_limits<double>::infinity();
+  for (const FluxGrid::Place& place : places_of_less(base.place)) {
+    const RunEvidence chosen = selected(at(place).all, {});
+    best_nats = std::max(best_nats, linear_fit({&chosen, 1}, prior.mean, prior.precision).log_evidence + grid_.log_prior_nats(place));
+  }
+  return best_nats;
+}
+
+std::vector<double> EvidenceTable::single_gains_nats(const SetScore& base) {
   std::vector<double> gain_nats(candidates_.size(), 0.0);
-  for (const FluxGrid::Place& place : places) {
+  for (const FluxGrid::Place& place : places_of_less(base.place)) {
     for (std::size_t j = 0; j < candidates_.size(); ++j) {
       if (std::ranges::find(base.candidates, static_cast<int>(j)) != base.candidates.end()) {
         continue;

@@ -80,6 +80,9 @@ class EvidenceTable {
   /// unknown heat; 0 where the sign is wrong.
   [[nodiscard]] std::vector<double> single_gains_nats(const SetScore& base);
 
+  /// Evidence of the base with another prior of θ, best over the same places.
+  [[nodiscard]] double best_nats_with(const ThetaPrior& prior, const SetScore& base);
+
   /// Predictive gain of `set` over `base` on each run with all that is fitted on the other runs.
   [[nodiscard]] std::vector<double> left_out_gains_nats(const SetScore& base, const SetScore& set);
   /// Share of a candidate's whitened column that θ and the members of `base` do not absorb: 1 − R².

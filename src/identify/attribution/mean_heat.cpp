@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "identify/attribution/refit.h"
-
 namespace heatsoak {
 
 double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
@@ -35,6 +33,17 @@ double longest_s(const std::vector<MeasuredRun>& runs) {
     longest = std::max(longest, run.time_s.back() - run.time_s.front());
   }
   return longest;
+}
+
+void heat_along(const RefitResult& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit) {
+  const Network& network = fit.model.model.network;
+  const std::vector<double> values = fit.model.values_in(run);
+  std::vector<double> heat_W(network.effects().size() * static_cast<std::size_t>(network.node_count()));
+  for (std::size_t k = 0; k < run.at.size(); ++k) {
+    const std::span<const double> state_C(path.state_C.col(static_cast<Eigen::Index>(k)).data(), static_cast<std::size_t>(path.states));
+    network.balance_W(run.at[k], values, state_C, heat_W);
+    visit(k, std::span<const double>(heat_W));
+  }
 }
 
 }  // namespace heatsoak

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/attribution/diagnosis.h"
+#include "identify/attribution/open_loop.h"
 
 namespace heatsoak {
 namespace {
@@ -92,6 +92,14 @@ Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRu
     error.rmse_K = std::sqrt(error.rmse_K / std::max(1.0, counts[signal]));
   }
   return errors;
+}
+
+double rms_K(const Errors& errors) {
+  double squares_K2 = 0.0;
+  for (const auto& [signal, error] : errors) {
+    squares_K2 += error.rmse_K * error.rmse_K;
+  }
+  return std::sqrt(squares_K2 / static_cast<double>(std::max<std::size_t>(1, errors.size())));
 }
 
 }  // namespace heatsoak

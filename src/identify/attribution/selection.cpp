@@ -11,14 +11,20 @@
 #include "identify/attribution/backward_check.h"
 #include "identify/attribution/effect_sets.h"
 #include "identify/attribution/mean_heat.h"
+#include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
 #include "identify/averaged_run.h"
+#include "identify/calibration/unlogged_speed.h"
 
 namespace heatsoak {
 namespace {
 
 /// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
 constexpr double kMuchUnknown_share = 0.05;
+
+/// How much the free-running error on the training runs may grow: by a curve, and by the mean over what is probable of unknown heat.
+constexpr double kMostWorse_ratio = 1.1;
+constexpr double kMostMoved_ratio = 1.5;
 
 constexpr int kMostCurvesTried = 3;
 
@@ -41,15 +47,23 @@ class Selector {
     look_at_sensors(out_.before);
     out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
     out_.after = out_.before;
+    out_.base = out_.before.model;
     out_.grid = options_.grid;
     while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
     }
     out_.errors = options_.errors;
     check_backwards(out_, input_, rules_, options_);
-    if (!out_.terms.empty()) {
+    while (!out_.refused.empty() && doubt_once_more()) {
+    }
+    if (!out_.terms.empty() || !out_.changed.empty()) {
       options_.place = out_.after.place;
       options_.averages_flux = true;
-      out_.after = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
+      RefitResult averaged = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
+      if (leads_away(averaged.model, kMostMoved_ratio)) {
+        out_.after.covariance = std::move(averaged.covariance);
+      } else {
+        out_.after = std::move(averaged);
+      }
     }
     return std::move(out_);
   }
@@ -182,6 +196,35 @@ class Selector {
     double gain_nats;
   };
 
+  /// Where an effect may not be named, a figure of the file may still have changed.
+  bool doubt_once_more() {
+    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, {}),
+                        options_.grid, prior_here(out_.after.model), {});
+    return take_doubt(table, table.best({}, out_.after.place), 0.0);
+  }
+
+  /// Gives the figure that the runs contradict most its doubt back, where that explains them as well as anything else does.
+  bool take_doubt(EvidenceTable& table, const SetScore& base, double rival_nats) {
+    const double least_nats = std::max(rules_.least_gain_nats, rival_nats - rules_.ambiguous_within_nats);
+    std::optional<ChangedFigure> figure = most_contradicted(out_.after.model, table, base, least_nats);
+    if (!figure) {
+      return false;
+    }
+    ExtendedModel doubted = out_.after.model;
+    doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
+    RefitOptions options = options_;
+    options.place = base.place;
+    RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options);
+    figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
+    if (figure->gain_nats < least_nats) {
+      return false;
+    }
+    out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
+    out_.after = std::move(fit);
+    out_.changed.push_back(std::move(*figure));
+    return true;
+  }
+
   bool take_best(Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
     double least_nats = rules_.least_gain_nats;
     for (const AcceptedTerm& term : out_.terms) {
@@ -193,10 +236,15 @@ class Selector {
     const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
     const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
     const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
+    if (take_doubt(table, base, std::max(best_nats, best_scan_nats - beyond_nats))) {
+      return true;
+    }
     const bool is_ahead = best_scan_nats >= least_nats && best_scan_nats > best_nats + beyond_nats;
     const double catalogue_nats = is_ahead ? sets.catalogue_gain_nats() : 0.0;
     if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
-      if (take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
+      // What goes with the current then may well be the loss at the speed that nobody logged.
+      const bool is_speed_open = std::ranges::any_of(input_.runs, turns_unseen);
+      if (!is_speed_open && take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
         return true;
       }
       const ScanResult& front = round.scan.front();
@@ -231,11 +279,10 @@ class Selector {
       const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
       if (each.visibility_ratio < rules_.least_visibility_ratio || fails_elsewhere) {
         if (each.gain_nats >= least_nats) {
-          out_.refused.push_back(
-              fmt::format("{}: {:.0f} nats, but {}", each.candidate.id, each.gain_nats,
-                          each.visibility_ratio < rules_.least_visibility_ratio
-                              ? fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * each.visibility_ratio)
-                              : std::string("runs left out of the fit get no better")));
+          out_.refuse(each.candidate.id, each.gain_nats,
+                      each.visibility_ratio < rules_.least_visibility_ratio
+                          ? fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * each.visibility_ratio)
+                          : std::string("runs left out of the fit get no better"));
         }
         continue;
       }
@@ -347,6 +394,14 @@ class Selector {
     return true;
   }
 
+  /// What explains the unknown from second to second may still lead the model away over a whole run.
+  [[nodiscard]] bool leads_away(const ExtendedModel& model, double most_ratio) const {
+    constexpr double kMatters_K = 0.1;
+    const double before_K = rms_K(open_loop_errors(out_.after.model, input_.runs, {}));
+    const double with_K = rms_K(open_loop_errors(model, input_.runs, {}));
+    return with_K > most_ratio * before_K && with_K > before_K + kMatters_K;
+  }
+
   /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.
   bool take_curve(const Round& round, double least_nats) {
     int tries = 0;
@@ -370,7 +425,7 @@ class Selector {
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < least_nats) {
+      if (term.gain_nats < least_nats || leads_away(fit.model, kMostWorse_ratio)) {
         continue;
       }
       term.effect_name = std::string(fit.model.model.network.effects().back().name);
@@ -397,6 +452,11 @@ class Selector {
 };
 
 }  // namespace
+
+void Selection::refuse(const std::string& id, double gain_nats, std::string_view why) {
+  std::erase_if(refused, [&](const std::string& known) { return known.starts_with(id + ":"); });
+  refused.push_back(fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why));
+}
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
 

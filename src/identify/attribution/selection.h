@@ -3,8 +3,10 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "identify/attribution/changed_figures.h"
 #include "identify/attribution/driver_scan.h"
 #include "identify/attribution/refit.h"
 
@@ -64,6 +66,8 @@ struct AcceptedTerm {
 struct Selection {
   RefitResult before;
   RefitResult after;
+  ExtendedModel base;  ///< the model as it was, with doubt where the runs contradict its file
+  std::vector<ChangedFigure> changed;
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
   std::vector<Driver> drivers;  ///< that the scans looked at
@@ -75,6 +79,9 @@ struct Selection {
   std::vector<std::string> unseen;   ///< effects that at their typical size would not show in these runs
   double seen_share = 1.0;           ///< of the effects that were judged
   std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
+
+  /// Takes the place of what was said of it before.
+  void refuse(const std::string& id, double gain_nats, std::string_view why);
 };
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);
