@@ -65,6 +65,10 @@ class Selector {
         out_.after = std::move(averaged);
       }
     }
+    for (const AcceptedTerm& term : out_.terms) {
+      // A later round has found what an earlier one could not tell.
+      out_.forget_refusal(term.candidate ? term.candidate->id : std::string());
+    }
     return std::move(out_);
   }
 
@@ -453,8 +457,12 @@ class Selector {
 
 }  // namespace
 
-void Selection::refuse(const std::string& id, double gain_nats, std::string_view why) {
+void Selection::forget_refusal(const std::string& id) {
   std::erase_if(refused, [&](const std::string& known) { return known.starts_with(id + ":"); });
+}
+
+void Selection::refuse(const std::string& id, double gain_nats, std::string_view why) {
+  forget_refusal(id);
   refused.push_back(fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why));
 }
 

@@ -80,6 +80,7 @@ struct Selection {
   double seen_share = 1.0;           ///< of the effects that were judged
   std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
 
+  void forget_refusal(const std::string& id);
   /// Takes the place of what was said of it before.
   void refuse(const std::string& id, double gain_nats, std::string_view why);
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <tuple>
@@ -232,6 +233,20 @@ class PageBuilder {
     }
   }
 
+  /// Right of the panel beside the line, or a few lines of text away where other names are.
+  [[nodiscard]] std::optional<Box> place_outside(double line_px, double width_px, const std::vector<Box>& names) const {
+    const double left_px = right_px_ + 8.0;
+    const double height_px = 1.2 * limit_style.size_px;
+    for (const double half_lines : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, -1.0, -2.0, -3.0}) {
+      const double middle_px = line_px + half_lines * 0.5 * height_px;
+      const Box place{left_px, left_px + width_px, middle_px - 0.5 * height_px, middle_px + 0.5 * height_px};
+      if (place.right_px <= page_.width_px - 6.0 && place.top_px > legend_bottom_px_ && !is_taken(place, names, {})) {
+        return place;
+      }
+    }
+    return std::nullopt;
+  }
+
   /// Just above the line at its right end; below where the top or another level is near; further left where a curve or another
   /// name is in the way; outside, below the legend, where curves are everywhere.
   void add_level_names(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
@@ -240,16 +255,16 @@ class PageBuilder {
     }
     const auto curves = curves_px(panel, horizontal, vertical);
     std::vector<Box> names;
-    for (const ChartLevel& level : panel.levels) {
-      if (level.name.empty() || !std::isfinite(level.y)) {
-        continue;
-      }
+    std::vector<ChartLevel> from_above = panel.levels;
+    std::erase_if(from_above, [](const ChartLevel& level) { return level.name.empty() || !std::isfinite(level.y); });
+    std::ranges::stable_sort(from_above, std::greater(), &ChartLevel::y);
+    for (const ChartLevel& level : from_above) {
       const std::string name = printable(level.name);
       const double width_px = text_width_px(name, limit_style);
       const double line_px = vertical.to_px(level.y);
       std::vector<Box> taken = names;
       for (const ChartLevel& other : panel.levels) {
-        if (&other != &level && std::isfinite(other.y)) {
+        if (other.y != level.y && std::isfinite(other.y)) {
           taken.push_back({left_px_, right_px_, vertical.to_px(other.y) - 1.0, vertical.to_px(other.y) + 1.0});
         }
       }
@@ -259,10 +274,7 @@ class PageBuilder {
       const Box above = baseline_at(line_px - 5.0);
       const Box below = baseline_at(line_px + 14.0);
       const bool top_is_near = line_px - vertical.high_px < limit_style.size_px + 1.0;
-      const Box outside{right_px_ + 8.0, right_px_ + 8.0 + width_px, line_px - 0.6 * limit_style.size_px,
-                        line_px + 0.6 * limit_style.size_px};
-      const bool has_room_outside =
-          outside.right_px <= page_.width_px - 6.0 && outside.top_px > legend_bottom_px_ && !is_taken(outside, names, {});
+      const std::optional<Box> outside = place_outside(line_px, width_px, names);
       PlacedText text{.text = name,
                       .x_px = above.right_px,
                       .y_px = above.bottom_px - 3.0,
@@ -277,11 +289,11 @@ class PageBuilder {
         text.x_px = free->right_px;
         text.y_px = free->bottom_px - 3.0;
         names.push_back(*free);
-      } else if (has_room_outside) {
-        text.x_px = outside.left_px;
-        text.y_px = line_px + 0.36 * limit_style.size_px;
+      } else if (outside) {
+        text.x_px = outside->left_px;
+        text.y_px = outside->bottom_px - 0.24 * limit_style.size_px;
         text.anchor = Anchor::left;
-        names.push_back(outside);
+        names.push_back(*outside);
       } else {  // on a curve or on another level it is still readable, on another name it is not
         std::optional<Box> readable = free_place(top_is_near ? below : above, left_px_, taken, {});
         for (Box lower = below; !readable && lower.bottom_px < vertical.low_px;) {
