@@ -73,20 +73,21 @@ LinearisedRun linearise(const Network& network, std::span<const double> paramete
   out.state_C.col(0) = Eigen::Map<const Eigen::VectorXd>(start_C.data(), out.states);
   recorder.note(0);
   TangentRun tangent(network, parameters, wanted, flux_nodes);
-  Eigen::VectorXd other_C(out.states);
+  Eigen::MatrixXd others_C;
   auto unknown = run.unknown_inputs.begin();
   for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
     const auto place = static_cast<std::size_t>(k);
     const std::span<const double> start(out.state_C.col(k).data(), static_cast<std::size_t>(out.states));
     const double duration_s = run.time_s[place + 1] - run.time_s[place];
-    const bool has_doubt = unknown != run.unknown_inputs.end() && unknown->interval == k;
-    if (has_doubt) {
-      other_C = tangent.over(start, duration_s, (unknown++)->other).state_C;
+    others_C.resize(out.states, 0);
+    for (; unknown != run.unknown_inputs.end() && unknown->interval == k; ++unknown) {
+      others_C.conservativeResize(Eigen::NoChange, others_C.cols() + 1);
+      others_C.rightCols<1>() = tangent.over(start, duration_s, unknown->other).state_C;
     }
     recorder.advance(k, tangent.over(start, duration_s, run.at[place]));
-    if (has_doubt) {
-      other_C -= out.state_C.col(k + 1);
-      out.doubts.push_back({k, other_C * other_C.transpose()});
+    if (others_C.cols() > 0) {
+      others_C.colwise() -= out.state_C.col(k + 1);
+      out.doubts.push_back({k, others_C * others_C.transpose()});
     }
     recorder.note(k + 1);
   }

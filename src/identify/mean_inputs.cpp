@@ -20,6 +20,15 @@ OperatingPoint<double> rooted(OperatingPoint<double> at) {
   return at;
 }
 
+/// A motor may push hard and stand, or turn fast and push little: what moves is no part of what drives.
+void set_motion(OperatingPoint<double>& at, const OperatingPoint<double>& from) {
+  at.speed_mean_rad_per_s = from.speed_mean_rad_per_s;
+  at.speed_rms_rad_per_s = from.speed_rms_rad_per_s;
+  at.velocity_rad_per_s = from.velocity_rad_per_s;
+  at.acceleration_rad_per_s2 = from.acceleration_rad_per_s2;
+  at.vehicle_speed_m_per_s = from.vehicle_speed_m_per_s;
+}
+
 }  // namespace
 
 OperatingPoint<double> MeanInputs::zero() {
@@ -52,7 +61,16 @@ void MeanInputs::take(MeasuredRun& run) {
   if (has_doubt_) {
     OperatingPoint<double> other = mean;
     for_each_quantity([&](double& value, const double& square) { value += std::sqrt(square) / duration_s_; }, other, doubt_squared_);
-    run.unknown_inputs.push_back({static_cast<Eigen::Index>(run.at.size()), rooted(other)});
+    OperatingPoint<double> moves = mean;
+    set_motion(moves, other);
+    set_motion(other, mean);
+    for (const OperatingPoint<double>& each : {other, moves}) {
+      bool is_doubted = false;
+      for_each_quantity([&](const double& value, const double& usual) { is_doubted = is_doubted || value != usual; }, each, mean);
+      if (is_doubted) {
+        run.unknown_inputs.push_back({static_cast<Eigen::Index>(run.at.size()), rooted(each)});
+      }
+    }
   }
   run.at.push_back(rooted(mean));
   *this = {};

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "base/diagnostic.h"
+#include "base/quantity.h"
 #include "base/unknown.h"
+#include "identify/gap_habits.h"
+#include "identify/log_rows.h"
 #include "identify/mean_inputs.h"
 #include "identify/measurement/noise.h"
 #include "identify/measurement/row_order.h"
@@ -19,22 +21,10 @@ namespace {
 
 /// A stretch with fewer samples has nothing to say about thermal time constants.
 constexpr std::size_t kLeastSamples = 10;
+/// A little more than ten seconds, so that rounding splits nothing.
+constexpr double kLongestPause_s = 10.0 * (1.0 + 1e-6);
 /// Of the usual step: a longer one lacks a row.
 constexpr double kLostRow_ratio = 1.5;
-
-struct SignalChannel {
-  Signal signal;
-  std::string_view key;
-};
-constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A"},
-                                     SignalChannel{Signal::speed, "speed_rad_per_s"},
-                                     SignalChannel{Signal::shaft_power, "torque_Nm"},
-                                     SignalChannel{Signal::input_power, "power_in_W"},
-                                     SignalChannel{Signal::modulation, "duty_ratio"},
-                                     SignalChannel{Signal::bus_voltage, "bus_V"},
-                                     SignalChannel{Signal::vehicle_speed, "vehicle_speed_m_per_s"},
-                                     SignalChannel{Signal::neighbour_temperature, "neighbour_C"},
-                                     SignalChannel{Signal::age, "age_h"}};
 
 /// Where temperatures of a recording sit in the network; of two for one node the first that the recording has counts.
 struct SensorPlace {
@@ -44,10 +34,6 @@ struct SensorPlace {
 constexpr std::array kSensorPlaces{SensorPlace{"winding_C", "winding"}, SensorPlace{"stator_C", "stator"},
                                    SensorPlace{"housing_C", "stator"}};
 
-bool has_values(const Channel* channel) {
-  return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
-}
-
 bool is_stuck(const Channel& channel) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
@@ -56,132 +42,6 @@ bool is_stuck(const Channel& channel) {
     high = std::fmax(high, value);
   }
   return low == high;
-}
-
-bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
-  const auto is_recorded = [&](Signal each) {
-    return has_values(recording.find(std::ranges::find(kSignalChannels, each, &SignalChannel::signal)->key));
-  };
-  if (signal != Signal::shaft_power) {
-    return is_recorded(signal);
-  }
-  return is_recorded(Signal::speed) && (is_recorded(signal) || (torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::current)));
-}
-
-bool has_negative(const std::vector<double>* values) {
-  return values && std::ranges::any_of(*values, [](double value) { return value < 0.0; });
-}
-
-/// Operating points of single rows; NaN where a quantity is not known there.
-class MeasuredRows {
- public:
-  MeasuredRows(const Recording& recording, const MeasuredRunOptions& options)
-      : current_A_(values("current_A", recording)),
-        speed_rad_per_s_(values("speed_rad_per_s", recording)),
-        torque_Nm_(values("torque_Nm", recording)),
-        input_power_W_(values("power_in_W", recording)),
-        bus_V_(values("bus_V", recording)),
-        modulation_(values("duty_ratio", recording)),
-        vehicle_speed_m_per_s_(values("vehicle_speed_m_per_s", recording)),
-        neighbour_C_(values("neighbour_C", recording)),
-        age_h_(values("age_h", recording)),
-        surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
-        is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),
-        is_driven_(current_A_ &&
-                   std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
-        time_s_(recording.time_s),
-        options_(options) {}
-
-  [[nodiscard]] OperatingPoint<double> at(std::size_t row) const {
-    const double speed_rad_per_s = of(speed_rad_per_s_, row);
-    OperatingPoint<double> at;
-    at.current_rms_A = std::abs(of(current_A_, row));
-    at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
-    at.velocity_rad_per_s = speed_rad_per_s;
-    if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
-      at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
-    }
-    at.ambient_C = surroundings_C_.empty() ? options_.ambient_C : surroundings_C_[row];
-    at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
-    at.input_power_W = of(input_power_W_, row);
-    at.bus_V = of(bus_V_, row);
-    at.modulation_ratio = std::abs(of(modulation_, row));
-    at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
-    at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
-    at.neighbour_C = at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
-    at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
-    at.age_h = of(age_h_, row);
-    return at;
-  }
-  [[nodiscard]] bool has_surroundings() const { return !surroundings_C_.empty(); }
-
- private:
-  static const std::vector<double>* values(std::string_view key, const Recording& recording) {
-    const Channel* const channel = recording.find(key);
-    return has_values(channel) ? &channel->values : nullptr;
-  }
-  /// Air and coolant change slowly: between two samples less than a minute apart a straight line is what they did.
-  static std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s) {
-    constexpr double kSlow_s = 60.0;
-    std::vector<double> all = values ? *values : std::vector<double>();
-    std::size_t last = all.size();
-    for (std::size_t row = 0; row < all.size(); ++row) {
-      if (std::isnan(all[row])) {
-        continue;
-      }
-      for (std::size_t gap = last + 1; last < row && time_s[row] - time_s[last] < kSlow_s && gap < row; ++gap) {
-        all[gap] = all[last] + (all[row] - all[last]) * (time_s[gap] - time_s[last]) / (time_s[row] - time_s[last]);
-      }
-      if (last == all.size() && row > 0 && time_s[row] - time_s.front() < kSlow_s) {
-        std::fill(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(row), all[row]);
-      }
-      last = row;
-    }
-    if (last < all.size() && time_s.back() - time_s[last] < kSlow_s) {
-      std::fill(all.begin() + static_cast<std::ptrdiff_t>(last), all.end(), all[last]);
-    }
-    return all;
-  }
-  /// 0 where there is no such channel: what the model needs is checked beforehand.
-  static double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
-
-  /// Only a current and a speed that both have signs tell braking from driving.
-  [[nodiscard]] double power_of_current_W(double current_A, double speed_rad_per_s) const {
-    const double drives_A_rad_per_s = is_signed_ ? current_A * speed_rad_per_s : std::abs(current_A * speed_rad_per_s);
-    return options_.torque.per_current_Nm_per_A * drives_A_rad_per_s - options_.torque.drag_Nm * std::abs(speed_rad_per_s);
-  }
-
-  const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
-      *neighbour_C_, *age_h_;
-  std::vector<double> surroundings_C_;
-  bool is_signed_;  ///< current and speed
-  bool is_driven_;  ///< at any time
-  const std::vector<double>& time_s_;
-  const MeasuredRunOptions& options_;
-};
-
-double quantity_of(const OperatingPoint<double>& at, Signal signal) {
-  switch (signal) {
-    case Signal::current:
-      return at.current_rms_A;
-    case Signal::speed:
-      return at.speed_mean_rad_per_s;
-    case Signal::shaft_power:
-      return at.shaft_power_W;
-    case Signal::input_power:
-      return at.input_power_W;
-    case Signal::modulation:
-      return at.modulation_ratio;
-    case Signal::bus_voltage:
-      return at.bus_V;
-    case Signal::vehicle_speed:
-      return at.vehicle_speed_m_per_s;
-    case Signal::neighbour_temperature:
-      return at.neighbour_C;
-    case Signal::age:
-      return at.age_h;
-  }
-  return kUnknown;
 }
 
 /// The mean of the samples within `reach_s` of the row, moved along their own slope to the row's time.
@@ -225,8 +85,8 @@ class Builder {
 
   MeasuredRuns build() {
     check();
-    for (const auto& [begin, end] : recording_.runs()) {
-      const double longest_s = kLongestStep_ratio * steps_of(begin, end).usual_s;
+    for (const auto& [begin, end] : stretches()) {
+      const double longest_s = std::max(kLongestStep_ratio * steps_of(begin, end).usual_s, kLongestPause_s);
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
         while (last + 1 < end && is_known(last)) {
@@ -238,7 +98,16 @@ class Builder {
       }
     }
     if (all_.runs.empty()) {
-      throw Failure(ExitCode::cannot_answer, why_nothing_is_left());
+      throw Failure(
+          ExitCode::cannot_answer,
+          fmt::format("{}: no stretch of {} rows or more has temperatures and all of the heat inputs: {}; see `heatsoak log inspect {}`",
+                      recording_.name, kLeastSamples, fmt::join(reasons_of_loss(), ", "), recording_.file.string()));
+    }
+    constexpr double kMostUnused_share = 0.1;
+    const std::size_t unused = recording_.rows() - used_rows_;
+    if (static_cast<double>(unused) > kMostUnused_share * static_cast<double>(recording_.rows())) {
+      all_.notes.push_back(fmt::format("{}: {} of {} rows are not used: {}", recording_.name, unused, recording_.rows(),
+                                       fmt::join(reasons_of_loss(), ", ")));
     }
     if (all_.runs.size() > 1) {
       all_.notes.push_back(
@@ -249,12 +118,34 @@ class Builder {
   }
 
  private:
+  /// The recording's runs, those as one between which there was no more than a pause: what happened in it is unknown, but little beside a
+  /// motor's time constants, while every run would take up anew what is not known of the heat.
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> stretches() const {
+    const double usual_s = usual_period_s(recording_.time_s);
+    std::vector<std::pair<std::size_t, std::size_t>> all;
+    for (const auto& run : recording_.runs()) {
+      if (!all.empty() && is_pause(all.back().second - 1, run.first, usual_s)) {
+        all.back().second = run.second;
+      } else {
+        all.push_back(run);
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] bool is_pause(std::size_t last, std::size_t first, double usual_s) const {
+    constexpr double kJump_K = 5.0;
+    const double step_s = recording_.time_s[first] - recording_.time_s[last];
+    return step_s > kLongestStep_ratio * usual_s && step_s <= kLongestPause_s &&
+           std::ranges::none_of(sensor_values_, [&](const auto* values) { return std::abs((*values)[first] - (*values)[last]) > kJump_K; });
+  }
+
   void check() const {
     std::vector<Diagnostic> lacking;
     for (const Signal signal : options_.needed) {
       if (std::ranges::find(signals_, signal) == signals_.end()) {
-        const auto* const channel = std::ranges::find(kSignalChannels, signal, &SignalChannel::signal);
-        lacking.push_back({{recording_.file.string()}, std::string(channel->key), "the model needs it, and the log has no such column"});
+        lacking.push_back(
+            {{recording_.file.string()}, std::string(column_of(signal)), "the model needs it, and the log has no such column"});
       }
     }
     if (!rows_.has_surroundings() && std::isnan(options_.ambient_C)) {
@@ -269,7 +160,7 @@ class Builder {
     }
   }
 
-  [[nodiscard]] std::string why_nothing_is_left() const {
+  [[nodiscard]] std::vector<std::string> reasons_of_loss() const {
     std::vector<std::string> reasons;
     const auto runs = recording_.runs();
     if (runs.size() > 1) {
@@ -286,13 +177,17 @@ class Builder {
       }
     };
     for (const Signal signal : options_.needed) {
-      tell(std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->key,
-           [&](std::size_t row) { return std::isnan(quantity_of(rows_.at(row), signal)); });
+      tell(column_of(signal), [&](std::size_t row) { return std::isnan(quantity_of(rows_.at(row), signal)); });
     }
     tell("temperature of the surroundings within a minute", [&](std::size_t row) { return std::isnan(rows_.at(row).ambient_C); });
     tell("temperature of winding or stator", [&](std::size_t row) { return !is_sampled(row); });
-    return fmt::format("{}: no stretch of {} rows or more has temperatures and all of the heat inputs: {}; see `heatsoak log inspect {}`",
-                       recording_.name, kLeastSamples, fmt::join(reasons, ", "), recording_.file.string());
+    if (reasons.empty()) {
+      const double whole_s = recording_.time_s.back() - recording_.time_s.front();
+      reasons.push_back(all_.runs.empty() ? fmt::format("its {} s make fewer than {} intervals of {} s", significant(whole_s, 2),
+                                                        kLeastSamples - 1, significant(options_.longest_step_s, 2))
+                                          : std::string("stretches are too short"));
+    }
+    return reasons;
   }
 
   /// Whether what happens from this row to the next is known.
@@ -320,7 +215,7 @@ class Builder {
 
   /// Rows first … last, between which everything is known.
   void take(std::size_t first, std::size_t last) {
-    while (first < last && !is_sampled(first)) {
+    while (first < last && (!is_sampled(first) || !is_known(first))) {
       ++first;
     }
     if (last < first + kLeastSamples - 1) {
@@ -334,18 +229,20 @@ class Builder {
     const std::vector<double>& time_s = recording_.time_s;
     const bool is_merged = (time_s[last] - time_s[first]) / static_cast<double>(last - first) < 0.5 * options_.longest_step_s;
     const RowSteps steps = steps_of(first, last + 1);
-    const double hidden_A2 = hidden_square_A2(first, last);
+    Habits habits = habits_of(first, last, steps);
     std::vector<std::size_t> kept{first};
     MeanInputs mean;
-    std::size_t known = first;
-    for (std::size_t row = first; row < last; ++row) {
-      known = is_known(row) ? row : known;
-      add_inputs(row, known, last, steps, hidden_A2, mean);
-      const bool would_be_long = row + 1 < last && mean.duration_s() + 0.5 * (time_s[row + 2] - time_s[row + 1]) > options_.longest_step_s;
-      if (!is_merged || would_be_long || row + 1 == last) {
-        mean.take(run);
-        kept.push_back(row + 1);
-      }
+    for (std::size_t row = first; row < last;) {
+      // What nobody logged is one thing from the row before to the row after.
+      const std::size_t next = known_from(row + 1, last);
+      add_inputs(row, next, steps, habits, mean, [&](std::size_t end) {
+        const bool would_be_long = end < last && mean.duration_s() + 0.5 * (time_s[end + 1] - time_s[end]) > options_.longest_step_s;
+        if (!is_merged || would_be_long || end == last) {
+          mean.take(run);
+          kept.push_back(end);
+        }
+      });
+      row = next;
     }
     for (const std::size_t row : kept) {
       run.time_s.push_back(time_s[row]);
@@ -361,53 +258,103 @@ class Builder {
     if (kept.size() >= kLeastSamples) {
       run.name = all_.runs.empty() ? recording_.name : fmt::format("{}#{}", recording_.name, all_.runs.size() + 1);
       all_.runs.push_back(std::move(run));
+      used_rows_ += last - first + 1;
     }
   }
 
   static double square_A2(const OperatingPoint<double>& at) { return at.current_rms_A * at.current_rms_A; }
 
-  /// How far a row's square of the current lies, rms, from the middle between its neighbours beyond half of their difference.
-  [[nodiscard]] double hidden_square_A2(std::size_t first, std::size_t last) const {
-    double sum_A4 = 0.0;
-    double count = 0.0;
-    double before_A2 = kUnknown;
-    double here_A2 = square_A2(rows_.at(first));
-    for (std::size_t row = first + 1; row < last; ++row) {
-      const double after_A2 = square_A2(rows_.at(row));
-      const double off_A2 = here_A2 - 0.5 * (before_A2 + after_A2);
-      const double more_A4 = off_A2 * off_A2 - 0.25 * (after_A2 - before_A2) * (after_A2 - before_A2);
-      if (!std::isnan(more_A4)) {
-        sum_A4 += more_A4;
-        count += 1.0;
-      }
-      before_A2 = std::exchange(here_A2, after_A2);
+  struct Habits {
+    GapHabits square_A2, speed_rad_per_s;
+  };
+  [[nodiscard]] Habits habits_of(std::size_t first, std::size_t last, const RowSteps& steps) const {
+    std::vector<double> all_A2, all_rad_per_s;
+    for (std::size_t row = first; row <= last; ++row) {
+      const OperatingPoint<double> at = rows_.at(row);
+      all_A2.push_back(square_A2(at));
+      all_rad_per_s.push_back(at.speed_mean_rad_per_s);
     }
-    return count > 0.0 ? std::sqrt(std::max(0.0, sum_A4 / count)) : 0.0;
+    const std::span<const double> time_s = std::span(recording_.time_s).subspan(first, last - first + 1);
+    return {{time_s, std::move(all_A2), steps.usual_s}, {time_s, std::move(all_rad_per_s), steps.usual_s}};
   }
 
-  /// From `row` to the next, `known` being the last row that has all inputs: they are its own for a usual step, at that end of a longer
-  /// one which its samples speak of; what they were in the rest nobody logged.
-  void add_inputs(std::size_t row, std::size_t known, std::size_t last, const RowSteps& steps, double hidden_A2, MeanInputs& mean) const {
-    const double duration_s = recording_.time_s[row + 1] - recording_.time_s[row];
-    const bool lacks_rows = steps.is_regular && duration_s > kLostRow_ratio * steps.usual_s && recording_.inputs != InputHabit::linear;
-    const bool speaks_of_end = row == known && recording_.inputs == InputHabit::previous_interval;
-    const double known_s = row > known ? 0.0 : (lacks_rows ? steps.usual_s : duration_s);
-    const std::size_t next = known_s == duration_s ? last + 1 : (speaks_of_end ? row : known_from(row + 1, last + 1));
-    if (next > last) {
-      mean.add(filled(known), duration_s);
+  /// From `row` to `next`, the next one whose inputs are known: they are its own to the row behind it, or for a usual step, at that end of
+  /// a longer one which its samples speak of; what they were in the rest nobody logged, but for the cells that are there.
+  /// Rows whose heat is known but for what the speed brings stay rows of their own. `ends` is told every row at which an interval may end.
+  template <class Ends>
+  void add_inputs(std::size_t row, std::size_t next, const RowSteps& steps, Habits& habits, MeanInputs& mean, const Ends& ends) const {
+    const double duration_s = recording_.time_s[next] - recording_.time_s[row];
+    const double own_s = recording_.time_s[row + 1] - recording_.time_s[row];
+    const bool lacks_rows = steps.is_regular && own_s > kLostRow_ratio * steps.usual_s && recording_.inputs != InputHabit::linear;
+    const bool speaks_of_end = lacks_rows && next == row + 1 && recording_.inputs == InputHabit::previous_interval;
+    const double unknown_s = duration_s - (lacks_rows ? steps.usual_s : own_s);
+    const std::size_t behind = speaks_of_end ? row : next;
+    if (!(unknown_s > 0.0) || !is_known(behind)) {
+      mean.add(filled(row), duration_s);
+      ends(next);
       return;
     }
-    const double unknown_s = duration_s - known_s;
-    const OperatingPoint<double> before = filled(speaks_of_end && row > 0 && is_known(row - 1) ? row - 1 : known);
-    const OperatingPoint<double> after = filled(next);
-    mean.add(filled(known), known_s);
-    // They change in the middle of the rest, or at its beginning or end, or more often than the rows on both sides show.
-    mean.add(before, 0.5 * unknown_s);
-    mean.add(after, 0.5 * unknown_s);
-    mean.doubt(before, after, 0.5 * unknown_s);
-    OperatingPoint<double> burst = before;
-    burst.current_rms_A = std::sqrt(square_A2(before) + hidden_A2);
-    mean.doubt(before, burst, unknown_s);
+    OperatingPoint<double> before = filled(speaks_of_end && row > 0 && is_known(row - 1) ? row - 1 : row);
+    OperatingPoint<double> after = filled(behind);
+    mean.add(filled(row), duration_s - unknown_s);
+    OperatingPoint<double> first_half = before, second_half = after;
+    if (recording_.inputs == InputHabit::linear) {
+      const double from_A = before.current_rms_A, to_A = after.current_rms_A;
+      first_half.current_rms_A = second_half.current_rms_A = std::sqrt((from_A * from_A + from_A * to_A + to_A * to_A) / 3.0);
+    }
+    const auto add_middle = [&](const OperatingPoint<double>& cells, double middle_s) {
+      mean.add(with_cells(first_half, cells), 0.5 * middle_s);
+      mean.add(with_cells(second_half, cells), 0.5 * middle_s);
+    };
+    const auto rows = static_cast<std::size_t>(std::lround(unknown_s / steps.usual_s));
+    const GapHabit& of_current = habits.square_A2.over(rows);
+    const GapHabit& of_speed = habits.speed_rad_per_s.over(rows);
+    // They change at any time, or more often than the rows on both sides show.
+    const auto doubt = [&](const OperatingPoint<double>& cells, double doubted_s) {
+      const OperatingPoint<double> from = with_cells(before, cells);
+      mean.doubt(from, with_cells(after, cells), std::max(of_current.step_share, of_speed.step_share) * doubted_s);
+      OperatingPoint<double> burst = from;
+      burst.current_rms_A = std::sqrt(square_A2(from) + (std::isnan(cells.current_rms_A) ? of_current.beyond_sd : 0.0));
+      burst.speed_mean_rad_per_s += std::isnan(cells.speed_mean_rad_per_s) ? of_speed.beyond_sd : 0.0;
+      mean.doubt(from, burst, doubted_s);
+    };
+    OperatingPoint<double> always = lacks_rows ? nowhere() : rows_.at(row + 1);
+    for (std::size_t blank = row + 1; blank < next; ++blank) {
+      const OperatingPoint<double> cells = rows_.at(blank);
+      for_each_quantity([](double& all, const double& cell) { all = std::isnan(cell) ? kUnknown : all; }, always, cells);
+    }
+    if (lacks_rows) {
+      add_middle(always, own_s - steps.usual_s);
+    }
+    const bool lacks_speed_only = !std::isnan(always.current_rms_A) && !std::isnan(always.input_power_W);
+    for (std::size_t blank = row + 1; blank < next; ++blank) {
+      const OperatingPoint<double> cells = rows_.at(blank);
+      const double blank_s = recording_.time_s[blank + 1] - recording_.time_s[blank];
+      if (lacks_speed_only) {
+        ends(blank);
+        add_middle(cells, blank_s);
+        doubt(cells, blank_s);
+      } else {
+        add_middle(cells, blank_s);
+      }
+    }
+    if (!lacks_speed_only) {
+      doubt(always, unknown_s);
+    }
+    ends(next);
+  }
+
+  static OperatingPoint<double> nowhere() {
+    OperatingPoint<double> none;
+    for_each_quantity([](double& value) { value = kUnknown; }, none);
+    return none;
+  }
+  /// What is known of a row's cells in place of what is supposed.
+  static OperatingPoint<double> with_cells(OperatingPoint<double> supposed, const OperatingPoint<double>& cells) {
+    const double unlogged_share = supposed.unlogged_speed_share;
+    for_each_quantity([](double& value, const double& cell) { value = std::isnan(cell) ? value : cell; }, supposed, cells);
+    supposed.unlogged_speed_share = unlogged_share;
+    return supposed;
   }
 
   /// A quantity that is not needed and not known becomes 0, so that means stay numbers.
@@ -440,11 +387,12 @@ class Builder {
 
   const Recording& recording_;
   const MeasuredRunOptions& options_;
-  MeasuredRows rows_;
+  LogRows rows_;
   std::vector<Signal> signals_;
   std::vector<Sensor> sensors_;
   std::vector<const std::vector<double>*> sensor_values_;
   MeasuredRuns all_;
+  std::size_t used_rows_ = 0;
 };
 
 }  // namespace
@@ -456,44 +404,6 @@ Eigen::Index MeasuredRun::sensor_at(std::string_view node) const {
   return found == sensors.end() ? -1 : found - sensors.begin();
 }
 
-std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque) {
-  std::vector<Signal> signals;
-  for (const SignalChannel& each : kSignalChannels) {
-    if (is_there(recording, each.signal, torque)) {
-      signals.push_back(each.signal);
-    }
-  }
-  return signals;
-}
-
 MeasuredRuns measured_runs(const Recording& recording, const MeasuredRunOptions& options) { return Builder(recording, options).build(); }
-
-MeasuredRun thinned(const MeasuredRun& run, int merged) {
-  MeasuredRun thin;
-  thin.name = run.name;
-  thin.sensors = run.sensors;
-  thin.signals = run.signals;
-  thin.conditions = run.conditions;
-  std::vector<Eigen::Index> kept{0};
-  MeanInputs mean;
-  auto unknown = run.unknown_inputs.begin();
-  for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k) {
-    const double duration_s = run.time_s[k + 1] - run.time_s[k];
-    mean.add(run.at[k], duration_s);
-    if (unknown != run.unknown_inputs.end() && unknown->interval == static_cast<Eigen::Index>(k)) {
-      mean.doubt(run.at[k], (unknown++)->other, duration_s);
-    }
-    if ((k + 1) % static_cast<std::size_t>(merged) == 0 || k + 2 == run.time_s.size()) {
-      mean.take(thin);
-      kept.push_back(static_cast<Eigen::Index>(k) + 1);
-    }
-  }
-  thin.measured_C.resize(static_cast<Eigen::Index>(kept.size()), run.measured_C.cols());
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    thin.time_s.push_back(run.time_s[static_cast<std::size_t>(kept[k])]);
-    thin.measured_C.row(static_cast<Eigen::Index>(k)) = run.measured_C.row(kept[k]);
-  }
-  return thin;
-}
 
 }  // namespace heatsoak

@@ -31,7 +31,7 @@ struct MeasuredRun {
   std::string name;  ///< of the recording, with #2, #3 … where it was split
   std::vector<double> time_s;
   std::vector<OperatingPoint<double>> at;     ///< n − 1
-  std::vector<UnknownInputs> unknown_inputs;  ///< by interval, ascending
+  std::vector<UnknownInputs> unknown_inputs;  ///< by interval, ascending; several of one interval are independent
   std::vector<Sensor> sensors;
   Eigen::MatrixXd measured_C;   ///< n × sensors; NaN: not known
   std::vector<Signal> signals;  ///< what of the operating points was measured
@@ -53,7 +53,8 @@ struct ShaftTorque {
 struct MeasuredRunOptions {
   /// Rows closer than this are merged; inputs become means that conserve heat. Rows further apart than half of it stay.
   double longest_step_s = 2.0;
-  /// Heat inputs that the model reacts to; where one of them is not known for longer than three usual steps the run is split.
+  /// Heat inputs that the model reacts to; where one of them is not known for longer than ten seconds and three usual steps the run is
+  /// split.
   std::vector<Signal> needed;
   double least_current_A = 0.0;     ///< less turns no motor: a log that never has more is one of a motor that stands
   ShaftTorque torque = {};          ///< where the recording has none but current and speed

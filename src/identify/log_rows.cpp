@@ -1,0 +1,152 @@
+#include "identify/log_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/unknown.h"
+
+namespace heatsoak {
+namespace {
+
+struct SignalChannel {
+  Signal signal;
+  std::string_view key;
+};
+constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A"},
+                                     SignalChannel{Signal::speed, "speed_rad_per_s"},
+                                     SignalChannel{Signal::shaft_power, "torque_Nm"},
+                                     SignalChannel{Signal::input_power, "power_in_W"},
+                                     SignalChannel{Signal::modulation, "duty_ratio"},
+                                     SignalChannel{Signal::bus_voltage, "bus_V"},
+                                     SignalChannel{Signal::vehicle_speed, "vehicle_speed_m_per_s"},
+                                     SignalChannel{Signal::neighbour_temperature, "neighbour_C"},
+                                     SignalChannel{Signal::age, "age_h"}};
+
+bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
+  const auto is_recorded = [&](Signal each) { return has_values(recording.find(column_of(each))); };
+  if (signal != Signal::shaft_power) {
+    return is_recorded(signal);
+  }
+  return is_recorded(Signal::speed) && (is_recorded(signal) || (torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::current)));
+}
+
+bool has_negative(const std::vector<double>* values) {
+  return values && std::ranges::any_of(*values, [](double value) { return value < 0.0; });
+}
+
+const std::vector<double>* values(std::string_view key, const Recording& recording) {
+  const Channel* const channel = recording.find(key);
+  return has_values(channel) ? &channel->values : nullptr;
+}
+/// Air and coolant change slowly: between two samples less than a minute apart a straight line is what they did.
+std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s) {
+  constexpr double kSlow_s = 60.0;
+  std::vector<double> all = values ? *values : std::vector<double>();
+  std::size_t last = all.size();
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    if (std::isnan(all[row])) {
+      continue;
+    }
+    for (std::size_t gap = last + 1; last < row && time_s[row] - time_s[last] < kSlow_s && gap < row; ++gap) {
+      all[gap] = all[last] + (all[row] - all[last]) * (time_s[gap] - time_s[last]) / (time_s[row] - time_s[last]);
+    }
+    if (last == all.size() && row > 0 && time_s[row] - time_s.front() < kSlow_s) {
+      std::fill(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(row), all[row]);
+    }
+    last = row;
+  }
+  if (last < all.size() && time_s.back() - time_s[last] < kSlow_s) {
+    std::fill(all.begin() + static_cast<std::ptrdiff_t>(last), all.end(), all[last]);
+  }
+  return all;
+}
+/// 0 where there is no such channel: what the model needs is checked beforehand.
+double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
+
+}  // namespace
+
+std::string_view column_of(Signal signal) { return std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->key; }
+
+bool has_values(const Channel* channel) {
+  return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
+}
+
+LogRows::LogRows(const Recording& recording, const MeasuredRunOptions& options)
+    : current_A_(values("current_A", recording)),
+      speed_rad_per_s_(values("speed_rad_per_s", recording)),
+      torque_Nm_(values("torque_Nm", recording)),
+      input_power_W_(values("power_in_W", recording)),
+      bus_V_(values("bus_V", recording)),
+      modulation_(values("duty_ratio", recording)),
+      vehicle_speed_m_per_s_(values("vehicle_speed_m_per_s", recording)),
+      neighbour_C_(values("neighbour_C", recording)),
+      age_h_(values("age_h", recording)),
+      surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
+      is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),
+      is_driven_(current_A_ && std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
+      time_s_(recording.time_s),
+      options_(options) {}
+
+OperatingPoint<double> LogRows::at(std::size_t row) const {
+  const double speed_rad_per_s = of(speed_rad_per_s_, row);
+  OperatingPoint<double> at;
+  at.current_rms_A = std::abs(of(current_A_, row));
+  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
+  at.velocity_rad_per_s = speed_rad_per_s;
+  if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
+    at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
+  }
+  at.ambient_C = surroundings_C_.empty() ? options_.ambient_C : surroundings_C_[row];
+  at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
+  at.input_power_W = of(input_power_W_, row);
+  at.bus_V = of(bus_V_, row);
+  at.modulation_ratio = std::abs(of(modulation_, row));
+  at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
+  at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
+  at.neighbour_C = at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
+  at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
+  at.age_h = of(age_h_, row);
+  return at;
+}
+
+double LogRows::power_of_current_W(double current_A, double speed_rad_per_s) const {
+  const double drives_A_rad_per_s = is_signed_ ? current_A * speed_rad_per_s : std::abs(current_A * speed_rad_per_s);
+  return options_.torque.per_current_Nm_per_A * drives_A_rad_per_s - options_.torque.drag_Nm * std::abs(speed_rad_per_s);
+}
+
+double quantity_of(const OperatingPoint<double>& at, Signal signal) {
+  switch (signal) {
+    case Signal::current:
+      return at.current_rms_A;
+    case Signal::speed:
+      return at.speed_mean_rad_per_s;
+    case Signal::shaft_power:
+      return at.shaft_power_W;
+    case Signal::input_power:
+      return at.input_power_W;
+    case Signal::modulation:
+      return at.modulation_ratio;
+    case Signal::bus_voltage:
+      return at.bus_V;
+    case Signal::vehicle_speed:
+      return at.vehicle_speed_m_per_s;
+    case Signal::neighbour_temperature:
+      return at.neighbour_C;
+    case Signal::age:
+      return at.age_h;
+  }
+  return kUnknown;
+}
+
+std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque) {
+  std::vector<Signal> signals;
+  for (const SignalChannel& each : kSignalChannels) {
+    if (is_there(recording, each.signal, torque)) {
+      signals.push_back(each.signal);
+    }
+  }
+  return signals;
+}
+
+}  // namespace heatsoak
