@@ -631,7 +631,7 @@ INSTANTIATE_TEST_SUITE_P(
             "unknown_duty", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermitent"}, "did you mean 'paper_intermittent'?"},
         Mistake{"unknown_name", {"describe", "conducton"}, "did you mean 'conduction'?"},
         Mistake{
-            "empty_motor", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""}, "there is no motor ''"},
+            "empty_motor", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""}, "what follows --motors is empty"},
         Mistake{"current_in_volt",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"},
                 "unit of something else"},
