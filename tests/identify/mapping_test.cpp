@@ -146,6 +146,21 @@ TEST(Mapping, FilesNameTheirMotorAndConditions) {
   EXPECT_THROW(read_mapping(map, "other.csv"), Failure);
 }
 
+TEST(Mapping, two_files_of_one_name_may_not_contradict_each_other) {
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,25\n", R"(
+[[files]]
+name = "*.csv"
+conditions = { fan = "on" }
+[[files]]
+name = "*.csv"
+conditions = { fan = "off" }
+[quantities]
+time_s = { column = "time_s" }
+winding_C = { column = "winding_C" }
+)"),
+              HasSubstr("contradicts \"on\", which another [[files]] says of *.csv"));
+}
+
 TEST(Mapping, IsFoundBesideTheLog) {
   const LogFile file("run.csv", "t,T\n0,20\n");
   EXPECT_TRUE(mapping_for(file.path(), "").is_canonical());

@@ -70,6 +70,10 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
   } else if (before_K < after_K - kMatters_K && before_K * kWorse_ratio < after_K) {
     text += " The error on runs the fit never saw grows: do not rely on the new model there.";
   }
+  const double fitted_before_K = rms_K(diagnosis.before_train);
+  if (diagnosis.effects.empty() && fitted_before_K < train_K - kMatters_K && fitted_before_K * kWorse_ratio < train_K) {
+    text += " The error on the training runs grows: keep the model's own figures.";
+  }
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
     text += fmt::format(" It is {:.0f} times that on the training runs: those runs hold something that these do not show.",
                         after_K / std::max(kMatters_K, train_K));
@@ -84,8 +88,10 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                  ? "The runs show heat that the model does not have, and it follows a known law."
                  : "The sensors show what is not so, and it follows a known law.";
     case DiagnosisVerdict::nothing_missing:
-      return "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
-             "smooth heat of the size that every model leaves.";
+      return diagnosis.changed.empty()
+                 ? "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
+                   "smooth heat of the size that every model leaves."
+                 : "No effect is missing that these runs show, but not all of the file's figures hold in them.";
     case DiagnosisVerdict::unexplained:
       return "The runs show heat that the model does not have, and no law of the catalogue explains it.";
     case DiagnosisVerdict::not_identifiable:
@@ -108,8 +114,13 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
 }
 
 std::string changed_in_words(const ChangedFigure& figure) {
-  return fmt::format("Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs (95 %: {:.3g} to {:.3g}). {:.0f} nats.",
-                     figure.name, figure.before, figure.unit, figure.value, figure.unit, figure.low, figure.high, figure.gain_nats);
+  // The interval has the scale of all heat in it, on which the file agrees: where it reaches the file's own figure it would mislead.
+  const bool is_beyond_scale = figure.before < figure.low || figure.before > figure.high;
+  return fmt::format(
+      "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; as it stands the runs would be e^{:.0f} times less "
+      "probable.",
+      figure.name, figure.before, figure.unit, figure.value, figure.unit,
+      is_beyond_scale ? fmt::format(" (95 %: {:.3g} to {:.3g})", figure.low, figure.high) : std::string(), figure.gain_nats);
 }
 
 std::string unexplained_in_words(const Unexplained& heat) {
@@ -135,6 +146,9 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
   }
   for (const ChangedFigure& figure : diagnosis.changed) {
     all.push_back(changed_in_words(figure));
+  }
+  if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
+    all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
   }
   for (const Unexplained& heat : diagnosis.unexplained) {
     all.push_back(unexplained_in_words(heat));

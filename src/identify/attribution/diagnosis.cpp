@@ -67,10 +67,10 @@ class Teller {
 
   void tell_errors() {
     out_.before_train = open_loop_errors(input_.model, input_.train, {});
-    out_.refitted_train = open_loop_errors(out_.selection.before.model, input_.train, {});
+    out_.refitted_train = open_loop_errors(out_.selection.own.model, input_.train, {});
     out_.after_train = open_loop_errors(after().model, input_.train, {});
     out_.before_holdout = open_loop_errors(input_.model, input_.holdout, input_.train);
-    out_.refitted_holdout = open_loop_errors(out_.selection.before.model, input_.holdout, input_.train);
+    out_.refitted_holdout = open_loop_errors(out_.selection.own.model, input_.holdout, input_.train);
     out_.after_holdout = open_loop_errors(after().model, input_.holdout, input_.train);
   }
 

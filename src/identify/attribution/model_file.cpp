@@ -179,8 +179,8 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.how.least_current_A = least_driving_current_A(motor);
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
     out.notes.push_back(
-        fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of what is unexplained, and no curve over another "
-                    "signal is added in its place",
+        fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of what is unexplained; no effect at the stator is "
+                    "named and no curve over another signal added in its place",
                     significant(most_loss_at_speed_W(motor), 2)));
   }
   out.model.model = std::move(built.model);

@@ -30,7 +30,8 @@ constexpr int kMostCurvesTried = 3;
 
 class Selector {
  public:
-  Selector(const SelectionInput& input, const SelectionRules& rules) : input_(input), rules_(rules) {}
+  Selector(const SelectionInput& input, const SelectionRules& rules)
+      : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
 
   Selection run() {
     out_.mean_heat_W = mean_heat_W(input_.model.model, input_.runs);
@@ -54,6 +55,11 @@ class Selector {
     out_.errors = options_.errors;
     check_backwards(out_, input_, rules_, options_);
     while (!out_.refused.empty() && doubt_once_more()) {
+    }
+    out_.own = out_.before;
+    if (!out_.changed.empty()) {
+      options_.place = out_.before.place;
+      out_.own = refit(out_.base, input_.runs, out_.before.start_C, options_);
     }
     if (!out_.terms.empty() || !out_.changed.empty()) {
       options_.place = out_.after.place;
@@ -246,12 +252,16 @@ class Selector {
     const bool is_ahead = best_scan_nats >= least_nats && best_scan_nats > best_nats + beyond_nats;
     const double catalogue_nats = is_ahead ? sets.catalogue_gain_nats() : 0.0;
     if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
-      // What goes with the current then may well be the loss at the speed that nobody logged.
-      const bool is_speed_open = std::ranges::any_of(input_.runs, turns_unseen);
-      if (!is_speed_open && take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
+      if (!is_speed_open_ && take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
         return true;
       }
       const ScanResult& front = round.scan.front();
+      // What is left over the signal that a curve follows already is the shape between its knots.
+      if (std::ranges::any_of(out_.terms, [&](const AcceptedTerm& term) {
+            return term.curve && term.curve->term.driver == front.term.driver && term.curve->term.node == front.term.node;
+          })) {
+        return false;
+      }
       const std::string& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)].name;
       out_.open_curve = front;
       // Heat that goes by the clock, or of which all laws together explain less than half, is none of theirs.
@@ -278,6 +288,12 @@ class Selector {
       const bool is_variant = std::ranges::any_of(
           tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id && t.gain_nats >= each.gain_nats; });
       if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats || is_variant) {
+        continue;
+      }
+      if (is_speed_open_ && each.candidate.type && each.candidate.nodes.front() == "stator") {
+        if (each.gain_nats >= least_nats) {
+          out_.refuse(each.candidate.id, each.gain_nats, "the loss at the speed that not every log has could be it");
+        }
         continue;
       }
       const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
@@ -357,7 +373,7 @@ class Selector {
   bool take_set(const EffectSets& sets, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
                 double best_single_nats) {
     const LatentFlux flux = table.grid().at(base.place);
-    if (*std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W) {
+    if (is_speed_open_ || *std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W) {
       return false;
     }
     std::optional<RefitResult> best;
@@ -450,6 +466,7 @@ class Selector {
 
   const SelectionInput& input_;
   const SelectionRules& rules_;
+  bool is_speed_open_;  ///< heat at the stator then may well be the loss at the speed that nobody logged
   RefitOptions options_;
   FluxGrid::Place first_place_;
   Selection out_;

@@ -68,6 +68,7 @@ struct Selection {
   RefitResult after;
   ExtendedModel base;  ///< the model as it was, with doubt where the runs contradict its file
   std::vector<ChangedFigure> changed;
+  RefitResult own;  ///< `before` once more with that doubt: the model's own figures, nothing added
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
   std::vector<Driver> drivers;  ///< that the scans looked at

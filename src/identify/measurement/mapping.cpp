@@ -148,12 +148,18 @@ void read_conditions(Reader& table, std::map<std::string, std::string>& conditio
 /// Returns whether any of the [[files]] is for this log.
 bool read_files(Reader& root, const fs::path& log, Mapping& mapping) {
   bool is_named = false;
+  std::map<std::pair<std::string, std::string>, std::string> said;  // of a name and a condition
   for (Reader& file : root.tables("files")) {
     const std::string name = file.text("name", Need::required).value_or("");
     std::map<std::string, std::string> conditions;
     const std::optional<std::string> motor = file.text("motor", Need::optional);
     if (std::optional<Reader> table = file.table("conditions", Need::optional)) {
       read_conditions(*table, conditions);
+      for (const auto& [key, text] : conditions) {
+        if (const auto& [before, is_new] = said.try_emplace({name, key}, text); !is_new && before->second != text) {
+          table->problem(key, fmt::format("contradicts \"{}\", which another [[files]] says of {}", before->second, name));
+        }
+      }
     }
     if (matches(name, log)) {
       is_named = true;
