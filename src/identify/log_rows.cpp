@@ -104,7 +104,7 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   at.modulation_ratio = std::abs(of(modulation_, row));
   at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
   at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
-  at.neighbour_C = at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
+  at.neighbour_C = neighbour_C_ && at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
   at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
   at.age_h = of(age_h_, row);
   return at;
