@@ -12,16 +12,17 @@ namespace {
 struct SignalChannel {
   Signal signal;
   std::string_view key;
+  std::string_view words;
 };
-constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A"},
-                                     SignalChannel{Signal::speed, "speed_rad_per_s"},
-                                     SignalChannel{Signal::shaft_power, "torque_Nm"},
-                                     SignalChannel{Signal::input_power, "power_in_W"},
-                                     SignalChannel{Signal::modulation, "duty_ratio"},
-                                     SignalChannel{Signal::bus_voltage, "bus_V"},
-                                     SignalChannel{Signal::vehicle_speed, "vehicle_speed_m_per_s"},
-                                     SignalChannel{Signal::neighbour_temperature, "neighbour_C"},
-                                     SignalChannel{Signal::age, "age_h"}};
+constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A", "current"},
+                                     SignalChannel{Signal::speed, "speed_rad_per_s", "speed"},
+                                     SignalChannel{Signal::shaft_power, "torque_Nm", "torque and speed"},
+                                     SignalChannel{Signal::input_power, "power_in_W", "input power"},
+                                     SignalChannel{Signal::modulation, "duty_ratio", "duty ratio"},
+                                     SignalChannel{Signal::bus_voltage, "bus_V", "supply voltage"},
+                                     SignalChannel{Signal::vehicle_speed, "vehicle_speed_m_per_s", "vehicle speed"},
+                                     SignalChannel{Signal::neighbour_temperature, "neighbour_C", "temperature of the neighbour"},
+                                     SignalChannel{Signal::age, "age_h", "hours of running"}};
 
 bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
   const auto is_recorded = [&](Signal each) { return has_values(recording.find(column_of(each))); };
@@ -67,6 +68,8 @@ double of(const std::vector<double>* values, std::size_t row) { return values ? 
 }  // namespace
 
 std::string_view column_of(Signal signal) { return std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->key; }
+
+std::string_view words_of(Signal signal) { return std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->words; }
 
 bool has_values(const Channel* channel) {
   return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });

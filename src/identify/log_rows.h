@@ -12,6 +12,8 @@ namespace heatsoak {
 
 /// Column of a canonical log that a signal is read from; the shaft's power from its torque.
 std::string_view column_of(Signal signal);
+/// What a signal is called in sentences: "torque and speed".
+std::string_view words_of(Signal signal);
 
 bool has_values(const Channel* channel);
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "identify/attribution/extended_model.h"
+#include "identify/log_rows.h"
 
 namespace heatsoak {
 namespace {
@@ -19,26 +19,12 @@ const ParameterSpec& heat_share_spec() {
   return spec;
 }
 
-struct SignalName {
-  Signal signal;
-  std::string_view name;
-};
-constexpr std::array kSignalNames{SignalName{Signal::current, "current"},
-                                  SignalName{Signal::speed, "speed"},
-                                  SignalName{Signal::shaft_power, "torque and speed"},
-                                  SignalName{Signal::input_power, "input power"},
-                                  SignalName{Signal::modulation, "duty ratio"},
-                                  SignalName{Signal::bus_voltage, "supply voltage"},
-                                  SignalName{Signal::vehicle_speed, "vehicle speed"},
-                                  SignalName{Signal::neighbour_temperature, "temperature of the neighbour"},
-                                  SignalName{Signal::age, "hours of running"}};
-
 /// Names of the signals that some run lacks.
 std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const std::vector<MeasuredRun>& runs) {
   std::vector<std::string_view> names;
   for (const Signal signal : needs) {
     if (std::ranges::any_of(runs, [&](const MeasuredRun& run) { return !run.has(signal); })) {
-      names.push_back(std::ranges::find(kSignalNames, signal, &SignalName::signal)->name);
+      names.push_back(words_of(signal));
     }
   }
   return names;

@@ -1,4 +1,3 @@
-// Predictions of a model that runs freely: errors and the power balance.
 #include "identify/open_loop.h"
 
 #include <algorithm>
