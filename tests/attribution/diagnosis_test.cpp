@@ -103,7 +103,7 @@ TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
 }
 
 TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
-  const Answer answer = examine(sealed(subject("windage").make(0.6), 41));
+  const Answer answer = examine(sealed(subject("windage").make(0.8), 41));
   ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
   ASSERT_FALSE(answer.diagnosis.effects.front().confusable_with.empty()) << account(answer);
   ASSERT_EQ(answer.diagnosis.experiments.size(), answer.diagnosis.effects.front().confusable_with.size());
@@ -112,6 +112,33 @@ TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
     EXPECT_FALSE(experiment.what.empty());
   }
   EXPECT_GT(answer.diagnosis.experiments.front().expected_nats, 1.0);
+}
+
+/// The eight parts of the truth are not of one temperature each: without a doubt about that the intervals of these held 2 of 6.
+TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
+  int held = 0;
+  for (const std::uint64_t seed : {434028, 434035, 434042, 434049, 434056, 434070}) {
+    const Answer answer = examine(sealed(subject("connection_resistance").make(1.0), seed));
+    ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
+    const FittedParameter& size = answer.diagnosis.effects.front().parameters.front();
+    held += size.low <= 0.02 && 0.02 <= size.high ? 1 : 0;
+    EXPECT_LT(size.high - size.low, 0.03) << account(answer);
+  }
+  EXPECT_GE(held, 5);
+}
+
+TEST(Examination, FinerGridKeepsItsPlaces) {
+  const FluxGrid grid = flux_grid(4.0, 900.0);
+  const FluxGrid finer = grid.finer();
+  for (const FluxGrid::Place& place : {FluxGrid::Place{0, 3, 2}, FluxGrid::Place{1, 0, 0}, FluxGrid::Place{5, 6, 4}}) {
+    const LatentFlux flux = grid.at(place), same = finer.at(FluxGrid::in_finer(place));
+    EXPECT_EQ(flux.rms_W, same.rms_W);
+    EXPECT_EQ(flux.time_scale_s, same.time_scale_s);
+  }
+  EXPECT_EQ(finer.rms_W.size(), 2 * grid.rms_W.size() - 2);
+  EXPECT_TRUE(std::ranges::is_sorted(finer.rms_W));
+  EXPECT_EQ(finer.time_scale_s.size(), 2 * grid.time_scale_s.size() - 1);
+  EXPECT_TRUE(std::ranges::is_sorted(finer.time_scale_s));
 }
 
 TEST(Examination, OrderOfRunsChangesNothing) {

@@ -29,6 +29,29 @@ double FluxGrid::log_prior_nats(const Place& place) const {
   return nats;
 }
 
+FluxGrid FluxGrid::finer() const {
+  const auto between = [](std::span<const double> values) {
+    std::vector<double> all;
+    for (const double value : values) {
+      if (!all.empty()) {
+        all.push_back(std::sqrt(all.back() * value));
+      }
+      all.push_back(value);
+    }
+    return all;
+  };
+  FluxGrid grid{{rms_W.front()}, between(time_scale_s), mean_heat_W};
+  const std::vector<double> strengths_W = between(std::span(rms_W).subspan(1));
+  grid.rms_W.insert(grid.rms_W.end(), strengths_W.begin(), strengths_W.end());
+  return grid;
+}
+
+FluxGrid::Place FluxGrid::in_finer(Place place) {
+  std::for_each(place.begin(), place.end() - 1, [](int& strength) { strength = std::max(0, 2 * strength - 1); });
+  place.back() *= 2;
+  return place;
+}
+
 FluxGrid flux_grid(double mean_heat_W, double longest_s) {
   FluxGrid grid{{0.0}, {}, mean_heat_W};
   for (double rms_W = 0.004 * mean_heat_W; rms_W < 3.0 * mean_heat_W; rms_W *= 2.0) {

@@ -34,6 +34,10 @@ struct FluxGrid {
   /// How probable a place is before anything is measured: models leave a few per cent of the heat they know unexplained. Exponential in
   /// the strengths (Simpson et al. 2017, the prior that penalises complexity), 5 % of it beyond a tenth of the mean heat.
   [[nodiscard]] double log_prior_nats(const Place& place) const;
+  /// One more value between every two (σ = 0 keeps its neighbour): how sure a figure is depends on σ and ℓ more finely than what is named.
+  [[nodiscard]] FluxGrid finer() const;
+  /// The same (σ, ℓ) in the grid that finer() gives.
+  [[nodiscard]] static Place in_finer(Place place);
 };
 
 /// Steps of 2 between 0.4 % and three times `mean_heat_W`, and times between 20 s and `longest_s`.

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
+#include "identify/attribution/uneven_bodies.h"
 #include "identify/averaged_run.h"
 #include "identify/open_loop.h"
 
@@ -136,7 +138,7 @@ class Fitter {
       }
     }
     if (options_.averages_flux) {
-      average(table);
+      average();
     }
     return std::move(now_);
   }
@@ -157,10 +159,8 @@ class Fitter {
     return bounded_fit(table.all_runs(now_.place), table.prior_of({}), low_ - theta, high_ - theta);
   }
 
-  /// Mean and covariance over the places around the best: Σ w·(covariance + step·stepᵀ), w by evidence.
-  void average(EvidenceTable& table) {
-    const Eigen::VectorXd theta = now_.model.theta();
-    const ThetaPrior prior = table.prior_of({});
+  /// The places beside the best one, itself among them.
+  [[nodiscard]] std::vector<FluxGrid::Place> places_around() const {
     std::vector<FluxGrid::Place> places{now_.place};
     for (std::size_t axis = 0; axis < now_.place.size(); ++axis) {
       const auto count = static_cast<int>(axis + 1 < now_.place.size() ? options_.grid.rms_W.size() : options_.grid.time_scale_s.size());
@@ -175,16 +175,33 @@ class Fitter {
         }
       }
     }
+    return places;
+  }
+
+  /// Mean and covariance over the places around the best: Σ w·(covariance + step·stepᵀ), w by evidence. Bodies may be a little uneven.
+  void average() {
+    const std::vector<Columns> uneven = uneven_bodies(now_.fitted, runs_);
+    std::vector<int> doubts(static_cast<std::size_t>(uneven.front().cols()));
+    std::iota(doubts.begin(), doubts.end(), 0);
+    EvidenceTable table(design(now_.model.model.network, now_.fitted, runs_, options_.errors, options_.merged, uneven), options_.grid,
+                        prior_here(now_.model), std::vector<CandidateColumn>(doubts.size(), {true, kUneven_share}));
+    const Eigen::VectorXd theta = now_.model.theta();
+    const Eigen::Index count = theta.size();
+    const ThetaPrior prior = table.prior_of(doubts);
+    Eigen::VectorXd low = Eigen::VectorXd::Constant(prior.mean.size(), -1.0);
+    Eigen::VectorXd high = -low;
+    low.head(count) = low_ - theta;
+    high.head(count) = high_ - theta;
     std::vector<LinearFit> fits;
     double best_nats = -std::numeric_limits<double>::infinity();
-    for (const FluxGrid::Place& place : places) {
-      fits.push_back(bounded_fit(table.all_runs(place), prior, low_ - theta, high_ - theta));
+    for (const FluxGrid::Place& place : places_around()) {
+      fits.push_back(bounded_fit(table.all_runs(place), prior, low, high));
       fits.back().log_evidence += options_.grid.log_prior_nats(place);
       best_nats = std::max(best_nats, fits.back().log_evidence);
     }
     double total_weight = 0.0;
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(theta.size());
-    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(prior.mean.size());
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(mean.size(), mean.size());
     for (const LinearFit& fit : fits) {
       const double weight = std::exp(fit.log_evidence - best_nats);
       total_weight += weight;
@@ -192,9 +209,9 @@ class Fitter {
       square += weight * (fit.covariance + fit.coefficients * fit.coefficients.transpose());
     }
     mean /= total_weight;
-    now_.covariance = square / total_weight - mean * mean.transpose();
+    now_.covariance = (square / total_weight - mean * mean.transpose()).topLeftCorner(count, count);
     try {
-      now_ = moved(mean, start_steps_K(mean, table), 1.0);
+      now_ = moved(mean.head(count), start_steps_K(mean, table), 1.0);
     } catch (const Failure&) {
       return;
     }

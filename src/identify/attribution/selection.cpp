@@ -56,6 +56,7 @@ class Selector {
     check_backwards(out_, input_, rules_, options_);
     while (!out_.refused.empty() && doubt_once_more()) {
     }
+    look_more_finely();
     out_.own = out_.before;
     if (!out_.changed.empty()) {
       options_.place = out_.before.place;
@@ -79,6 +80,12 @@ class Selector {
   }
 
  private:
+  void look_more_finely() {
+    options_.grid = out_.grid = options_.grid.finer();
+    out_.before.place = FluxGrid::in_finer(out_.before.place);
+    out_.after.place = FluxGrid::in_finer(out_.after.place);
+  }
+
   void look_at_sensors(const RefitResult& fit) {
     options_.place = fit.place;
     options_.errors = with_wander(fit, input_.runs, options_.grid, options_.merged, kMuchUnknown_share * out_.mean_heat_W, options_.errors);
