@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "drive_rows.h"
+#include "identify/attribution/advisor.h"
 #include "scoring.h"
 
 namespace heatsoak::truth {
@@ -139,6 +140,18 @@ TEST(Examination, FinerGridKeepsItsPlaces) {
   EXPECT_TRUE(std::ranges::is_sorted(finer.rms_W));
   EXPECT_EQ(finer.time_scale_s.size(), 2 * grid.time_scale_s.size() - 1);
   EXPECT_TRUE(std::ranges::is_sorted(finer.time_scale_s));
+}
+
+/// A peak of one row is no level for minutes: ten minutes of it would melt the motor.
+TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
+  const Case one = sealed(subject("windage").make(0.8), 41);
+  DiagnosisInput input = question(one, record(one));
+  const Diagnosis diagnosis = diagnose(input, {});
+  input.train.front().at[100].current_rms_A = 200.0;
+  const std::vector<Experiment> experiments = next_experiments(diagnosis.selection, input.train);
+  ASSERT_FALSE(experiments.empty());
+  EXPECT_THAT(experiments.front().what, testing::HasSubstr("no hotter than these runs"));
+  EXPECT_GT(experiments.front().expected_nats, 1.0);
 }
 
 TEST(Examination, OrderOfRunsChangesNothing) {

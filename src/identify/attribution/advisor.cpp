@@ -1,11 +1,16 @@
 #include "identify/attribution/advisor.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
 
 namespace heatsoak {
 namespace {
@@ -21,6 +26,7 @@ struct Levels {
   double vehicle_speed_m_per_s = 0.0;
   double shaft_W_per_A_rad_per_s = 0.0;
   double ambient_C = 25.0;
+  double measured_C = 0.0;
 };
 
 Levels levels_of(const std::vector<MeasuredRun>& runs) {
@@ -38,6 +44,14 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
     }
   }
   most.ambient_C = runs.front().at.front().ambient_C;
+  // Where nothing got warm this much hurts nothing either.
+  constexpr double kHarmless_K = 10.0;
+  most.measured_C = most.ambient_C + kHarmless_K;
+  for (const MeasuredRun& run : runs) {
+    for (const double each_C : run.measured_C.reshaped()) {
+      most.measured_C = std::fmax(most.measured_C, each_C);
+    }
+  }
   return most;
 }
 
@@ -91,14 +105,64 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
   return run;
 }
 
+/// An experiment that stays below what the runs measured, and the path of the model along it.
+struct Plan {
+  std::string what;
+  MeasuredRun run;
+  LinearisedRun path;
+};
+
+double hottest_C(const ExtendedModel& model, const MeasuredRun& run, LinearisedRun& path) {
+  const std::vector<double> start_C(static_cast<std::size_t>(model.model.network.state_count()), run.at.front().ambient_C);
+  try {
+    path = linearise(model, start_C, run);
+  } catch (const Failure&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return path.state_C.maxCoeff();
+}
+
+std::string told(const Primitive& primitive, const MeasuredRun& run) {
+  const double most_A = std::ranges::max(run.at, {}, &OperatingPoint<double>::current_rms_A).current_rms_A;
+  const double fastest_rad_per_s = std::ranges::max(run.at, {}, &OperatingPoint<double>::speed_mean_rad_per_s).speed_mean_rad_per_s;
+  std::vector<std::string> levels;
+  if (most_A > 0.0) {
+    levels.push_back(significant(most_A, 2) + " A");
+  }
+  if (fastest_rad_per_s > 0.0) {
+    levels.push_back(significant(fastest_rad_per_s, 2) + " rad/s");
+  }
+  return levels.empty() ? std::string(primitive.what)
+                        : fmt::format("{}; with at most {} it gets no hotter than these runs", primitive.what, fmt::join(levels, " and "));
+}
+
+/// The menu, each with as much of the runs' highest current as they were hot: a peak of tenths of a second is no level for minutes.
+std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRun>& runs) {
+  constexpr double kStep_ratio = 0.7;
+  constexpr int kTries = 12;
+  std::vector<Plan> all;
+  for (const Primitive& primitive : menu()) {
+    Levels levels = levels_of(runs);
+    for (int i = 0; i < kTries; ++i, levels.current_A *= kStep_ratio, levels.input_power_W *= kStep_ratio * kStep_ratio) {
+      Plan plan{{}, planned(primitive, levels, runs.front()), {}};
+      if (hottest_C(selection.after.model, plan.run, plan.path) <= levels.measured_C &&
+          hottest_C(selection.before.model, plan.run, plan.path) <= levels.measured_C) {
+        plan.what = told(primitive, plan.run);
+        all.push_back(std::move(plan));
+        break;
+      }
+    }
+  }
+  return all;
+}
+
 /// Of ½‖φ·(column − its part along θ and the rival)‖², θ as known as the fit knows it.
 double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
-                       const MeasuredRun& run) {
-  const std::vector<MeasuredRun> runs{run};
-  const std::vector<double> start_C(static_cast<std::size_t>(fit.model.model.network.state_count()), run.at.front().ambient_C);
-  const std::vector<LinearisedRun> path{linearise(fit.model, start_C, run)};
+                       const Plan& plan) {
+  const std::vector<MeasuredRun> runs{plan.run};
+  const std::vector<LinearisedRun> path{plan.path};
   const std::vector<DesignRun> designs =
-      design(fit.model.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), run)});
+      design(fit.model.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), plan.run)});
   const Whitening whitening(path.front(), flux, designs.front().noise);
   const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
   const Eigen::Index own = fit.model.free_count();
@@ -129,7 +193,8 @@ bool has_nodes_of(const Network& network, const Candidate& candidate) {
 
 std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs) {
   std::vector<Experiment> experiments;
-  const Levels levels = levels_of(runs);
+  const bool has_rivals = std::ranges::any_of(selection.terms, [](const AcceptedTerm& term) { return !term.confusable_with.empty(); });
+  const std::vector<Plan> menu_here = has_rivals ? plans(selection, runs) : std::vector<Plan>();
   for (std::size_t t = 0; t < selection.terms.size(); ++t) {
     const AcceptedTerm& term = selection.terms[t];
     for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
@@ -150,12 +215,12 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
       Experiment best;
       best.rivals = fmt::format("{} or {}", term.candidate->id, found->candidate.id);
       best.what = term.experiments[rival];
-      for (const Primitive& primitive : menu()) {
+      for (const Plan& plan : menu_here) {
         const double nats = separation_nats(selection.before, selection.grid.at(selection.after.place), pair,
-                                            own == ladder.end() ? 1.0 : own->size_share, planned(primitive, levels, runs.front()));
+                                            own == ladder.end() ? 1.0 : own->size_share, plan);
         if (nats > best.expected_nats) {
           best.expected_nats = nats;
-          best.what = primitive.what;
+          best.what = plan.what;
         }
       }
       // What ten minutes cannot tell needs another set-up: that stands with the effect.
