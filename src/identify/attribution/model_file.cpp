@@ -175,8 +175,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   }
   std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
   MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
-  out.how.torque = shaft_torque_of(motor);
-  out.how.least_current_A = least_driving_current_A(motor);
+  out.how = how_to_read(motor);
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
     out.notes.push_back(
         fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of what is unexplained; no effect at the stator is "

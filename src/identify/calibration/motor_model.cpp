@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/diagnostic.h"
+#include "identify/calibration/unlogged_speed.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
@@ -21,8 +22,8 @@ struct Trust {
   double unstated_sd;
   double widening;
 };
-constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, kSheet_sd, 1.5}, Trust{Origin::third_party, 0.5, 1.5},
-                            Trust{Origin::derived, 0.5, 1.5}, Trust{Origin::estimated, 0.9, 2.0}};
+constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, kSheet_sd, 1.5},
+                            Trust{Origin::third_party, 0.5, 1.5}, Trust{Origin::derived, 0.5, 1.5}, Trust{Origin::estimated, 0.9, 2.0}};
 
 /// Mean of what motors are made of (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and how well a motor's mass tells its
 /// heat capacity: part of the mass hangs loosely on the stator.
@@ -234,9 +235,16 @@ double prior_sd_of(const Figure& figure) {
   return trust->widening * 0.25 * std::log(figure.spread->high / figure.spread->low);
 }
 
-ShaftTorque shaft_torque_of(const Motor& motor) {
+MeasuredRunOptions how_to_read(const Motor& motor) {
+  // However short the sheet says that the time constant is.
+  constexpr double kShortest_s = 0.05;
+  constexpr double kLongest_s = 2.0;
   const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
-  return {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
+  MeasuredRunOptions how;
+  how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 20.0, kShortest_s, kLongest_s);
+  how.torque = {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
+  how.least_current_A = least_driving_current_A(motor);
+  return how;
 }
 
 HeatInput heat_input_for(std::span<const Recording> recordings) {

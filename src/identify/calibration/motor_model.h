@@ -45,8 +45,10 @@ struct MotorModel {
   std::vector<std::string> held;  ///< what was not fitted and why, in sentences
 };
 
-/// Torque at the shaft as the motor's torque constant and its no-load current tell it.
-ShaftTorque shaft_torque_of(const Motor& motor);
+/// How logs of the motor are read, but for what its model needs of them and the air. Rows are merged up to a twentieth of the winding's
+/// time constant τ: means over a step h make τ smaller by h²/(12·τ²) of it. Where a log has no torque, torque constant and no-load current
+/// tell it.
+MeasuredRunOptions how_to_read(const Motor& motor);
 
 /// What all of the recordings can drive: the copper loss where each has a current, else the input power. Throws Failure
 /// (bad_input) where they have neither.
