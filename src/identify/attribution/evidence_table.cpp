@@ -147,12 +147,14 @@ SetScore EvidenceTable::score(std::span<const int> set, const FluxGrid::Place& p
 
 namespace {
 
-/// One axis after the other, then along the ridges that strengths and time scale form: much heat that changes slowly looks like little that
-/// changes fast.
-std::vector<FluxGrid::Place> directions(std::size_t axes) {
+/// One axis after the other, then along the ridges that strengths and time scale form.
+std::vector<FluxGrid::Place> directions(std::size_t axes, Search search) {
   std::vector<FluxGrid::Place> all;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     all.emplace_back(axes, 0)[axis] = 1;
+  }
+  if (search == Search::rough) {
+    return all;
   }
   for (std::size_t axis = 0; axis + 1 < axes && axes > 2; ++axis) {
     all.emplace_back(axes, 0)[axis] = 1;
@@ -165,7 +167,7 @@ std::vector<FluxGrid::Place> directions(std::size_t axes) {
 
 }  // namespace
 
-SetScore EvidenceTable::best(std::span<const int> set, const FluxGrid::Place& start) {
+SetScore EvidenceTable::best(std::span<const int> set, const FluxGrid::Place& start, Search search) {
   SetScore best = score(set, start);
   const auto is_inside = [&](const FluxGrid::Place& place) {
     for (std::size_t axis = 0; axis < place.size(); ++axis) {
@@ -176,7 +178,7 @@ SetScore EvidenceTable::best(std::span<const int> set, const FluxGrid::Place& st
     }
     return true;
   };
-  const std::vector<FluxGrid::Place> ways = directions(start.size());
+  const std::vector<FluxGrid::Place> ways = directions(start.size(), search);
   for (bool moved = true; moved;) {
     moved = false;
     for (std::size_t way = 0; way < ways.size() && !(way >= start.size() && moved); ++way) {

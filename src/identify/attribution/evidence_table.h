@@ -71,6 +71,10 @@ struct SizeInRun {
   double sd_share = 0.0;
 };
 
+/// rough: one number of a place after the other; thorough: also several at once, for much heat that changes slowly looks like little that
+/// changes fast.
+enum class Search { rough, thorough };
+
 class EvidenceTable {
  public:
   EvidenceTable(std::vector<DesignRun> runs, FluxGrid grid, ThetaPrior prior, std::vector<CandidateColumn> candidates);
@@ -78,7 +82,7 @@ class EvidenceTable {
   /// The set at one place.
   [[nodiscard]] SetScore score(std::span<const int> set, const FluxGrid::Place& place);
   /// The set at its best place: from `start` step by step as long as the evidence grows.
-  [[nodiscard]] SetScore best(std::span<const int> set, const FluxGrid::Place& start);
+  [[nodiscard]] SetScore best(std::span<const int> set, const FluxGrid::Place& start, Search search = Search::thorough);
 
   /// Gain over `base` of each single candidate added to its set, best over the places around the base's and those with less
   /// unknown heat; 0 where the sign is wrong.

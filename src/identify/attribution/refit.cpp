@@ -121,7 +121,7 @@ class Fitter {
     for (int step = 0; step < options_.most_steps; ++step) {
       // Far from the best fit its misfit would pass for unknown heat.
       if (step > 0) {
-        now_.place = table.best({}, now_.place).place;
+        now_.place = table.best({}, now_.place, Search::rough).place;
       }
       const double misfit = table.misfit_now(now_.place);
       const LinearFit fit = bounded_step(table);
@@ -129,13 +129,16 @@ class Fitter {
       now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
       now_.covariance = fit.covariance;
       now_.converged = promised < 0.02;
-      if (now_.converged && step > 0) {
-        break;
-      }
+      const bool rests = now_.converged || !take(fit, misfit, table);
       // What no step improves at first may move once the unknown heat is what the misfit asks for.
-      if (!take(fit, misfit, table) && step > 0) {
+      if (!rests || step == 0) {
+        continue;
+      }
+      const FluxGrid::Place place = table.best({}, now_.place).place;
+      if (place == now_.place) {
         break;
       }
+      now_.place = place;
     }
     if (options_.averages_flux) {
       average();

@@ -23,7 +23,7 @@ class Trial {
 
   double evidence_nats(const SensorErrors& errors) {
     EvidenceTable table(design(fit_.model.model.network, fit_.fitted, runs_, errors, merged_, {}), grid_, prior_here(fit_.model), {});
-    const SetScore best = table.best({}, place_);
+    const SetScore best = table.best({}, place_, Search::rough);
     last_ = best.place;
     return best.evidence_nats;
   }

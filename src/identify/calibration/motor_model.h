@@ -45,9 +45,9 @@ struct MotorModel {
   std::vector<std::string> held;  ///< what was not fitted and why, in sentences
 };
 
-/// How logs of the motor are read, but for what its model needs of them and the air. Rows are merged up to a twentieth of the winding's
-/// time constant τ: means over a step h make τ smaller by h²/(12·τ²) of it. Where a log has no torque, torque constant and no-load current
-/// tell it.
+/// How logs of the motor are read, but for what its model needs of them and the air. Rows are merged up to a tenth of the winding's time
+/// constant, no finer: what real windings do within less no network of two bodies follows. Where a log has no torque, torque constant and
+/// no-load current tell it.
 MeasuredRunOptions how_to_read(const Motor& motor);
 
 /// What all of the recordings can drive: the copper loss where each has a current, else the input power. Throws Failure
