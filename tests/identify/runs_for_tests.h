@@ -34,6 +34,7 @@ struct LogMaking {
   double dropout_share = 0.01;
   double lost_row_share = 0.0;
   double largest_current_A = 9.0;
+  int rows_per_load = 1;  ///< for which the load is the same
   bool winding_is_sensed = true;
   double ambient_swing_K = 0.5;
 };
@@ -78,7 +79,11 @@ inline void lose_rows(Recording& log, double share, Random random) {
 inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& making, std::uint64_t seed, std::uint64_t stream) {
   Random random(seed, stream);
   const int rows = static_cast<int>(making.duration_s / making.period_s);
-  const std::vector<double> current_A = robot_current_A(random, rows, making.largest_current_A);
+  const std::vector<double> load_A = robot_current_A(random, (rows - 1) / making.rows_per_load + 1, making.largest_current_A);
+  std::vector<double> current_A;
+  for (int row = 0; row < rows; ++row) {
+    current_A.push_back(load_A[static_cast<std::size_t>(row / making.rows_per_load)]);
+  }
   constexpr int kParts = 20;
   const double step_s = making.period_s / kParts;
   const double kept_ratio = std::exp(-step_s / making.flux_time_scale_s);
