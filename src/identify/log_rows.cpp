@@ -113,6 +113,12 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   return at;
 }
 
+bool LogRows::is_known(std::size_t row) const {
+  const OperatingPoint<double> point = at(row);
+  return !std::isnan(point.ambient_C) &&
+         std::ranges::none_of(options_.needed, [&](Signal signal) { return std::isnan(quantity_of(point, signal)); });
+}
+
 double LogRows::power_of_current_W(double current_A, double speed_rad_per_s) const {
   const double drives_A_rad_per_s = is_signed_ ? current_A * speed_rad_per_s : std::abs(current_A * speed_rad_per_s);
   return options_.torque.per_current_Nm_per_A * drives_A_rad_per_s - options_.torque.drag_Nm * std::abs(speed_rad_per_s);

@@ -25,6 +25,8 @@ class LogRows {
  public:
   LogRows(const Recording& recording, const MeasuredRunOptions& options);
   [[nodiscard]] OperatingPoint<double> at(std::size_t row) const;
+  /// Whether what happens from this row to the next is known.
+  [[nodiscard]] bool is_known(std::size_t row) const;
   [[nodiscard]] bool has_surroundings() const { return !surroundings_C_.empty(); }
 
  private:

@@ -9,12 +9,11 @@
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "base/unknown.h"
-#include "identify/gap_habits.h"
 #include "identify/log_rows.h"
-#include "identify/mean_inputs.h"
 #include "identify/measurement/noise.h"
 #include "identify/measurement/row_order.h"
 #include "identify/row_steps.h"
+#include "identify/stretch_inputs.h"
 
 namespace heatsoak {
 namespace {
@@ -23,8 +22,6 @@ namespace {
 constexpr std::size_t kLeastSamples = 10;
 /// A little more than ten seconds, so that rounding splits nothing.
 constexpr double kLongestPause_s = 10.0 * (1.0 + 1e-6);
-/// Of the usual step: a longer one lacks a row.
-constexpr double kLostRow_ratio = 1.5;
 
 /// Where temperatures of a recording sit in the network; of two for one node the first that the recording has counts.
 struct SensorPlace {
@@ -89,7 +86,7 @@ class Builder {
       const double longest_s = std::max(kLongestStep_ratio * steps_of(begin, end).usual_s, kLongestPause_s);
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
-        while (last + 1 < end && is_known(last)) {
+        while (last + 1 < end && rows_.is_known(last)) {
           const std::size_t next = known_from(last + 1, end);
           last = next < end && recording_.time_s[next] - recording_.time_s[last] <= longest_s ? next : last + 1;
         }
@@ -190,16 +187,9 @@ class Builder {
     return reasons;
   }
 
-  /// Whether what happens from this row to the next is known.
-  [[nodiscard]] bool is_known(std::size_t row) const {
-    const OperatingPoint<double> at = rows_.at(row);
-    return !std::isnan(at.ambient_C) &&
-           std::ranges::none_of(options_.needed, [&](Signal signal) { return std::isnan(quantity_of(at, signal)); });
-  }
-
   /// The first row from this one on of which everything is known, or `end`.
   [[nodiscard]] std::size_t known_from(std::size_t row, std::size_t end) const {
-    while (row < end && !is_known(row)) {
+    while (row < end && !rows_.is_known(row)) {
       ++row;
     }
     return row;
@@ -215,7 +205,7 @@ class Builder {
 
   /// Rows first … last, between which everything is known.
   void take(std::size_t first, std::size_t last) {
-    while (first < last && (!is_sampled(first) || !is_known(first))) {
+    while (first < last && (!is_sampled(first) || !rows_.is_known(first))) {
       ++first;
     }
     if (last < first + kLeastSamples - 1) {
@@ -228,20 +218,20 @@ class Builder {
     run.conditions.emplace("run", recording_.name);
     const std::vector<double>& time_s = recording_.time_s;
     const bool is_merged = (time_s[last] - time_s[first]) / static_cast<double>(last - first) < 0.5 * options_.longest_step_s;
-    const RowSteps steps = steps_of(first, last + 1);
-    Habits habits = habits_of(first, last, steps);
+    StretchInputs inputs(recording_, rows_, first, last);
     std::vector<std::size_t> kept{first};
     MeanInputs mean;
+    const StretchInputs::Ends ends = [&](std::size_t end) {
+      const bool would_be_long = end < last && mean.duration_s() + 0.5 * (time_s[end + 1] - time_s[end]) > options_.longest_step_s;
+      if (!is_merged || would_be_long || end == last) {
+        mean.take(run);
+        kept.push_back(end);
+      }
+    };
     for (std::size_t row = first; row < last;) {
       // What nobody logged is one thing from the row before to the row after.
       const std::size_t next = known_from(row + 1, last);
-      add_inputs(row, next, steps, habits, mean, [&](std::size_t end) {
-        const bool would_be_long = end < last && mean.duration_s() + 0.5 * (time_s[end + 1] - time_s[end]) > options_.longest_step_s;
-        if (!is_merged || would_be_long || end == last) {
-          mean.take(run);
-          kept.push_back(end);
-        }
-      });
+      inputs.add(row, next, mean, ends);
       row = next;
     }
     for (const std::size_t row : kept) {
@@ -260,108 +250,6 @@ class Builder {
       all_.runs.push_back(std::move(run));
       used_rows_ += last - first + 1;
     }
-  }
-
-  static double square_A2(const OperatingPoint<double>& at) { return at.current_rms_A * at.current_rms_A; }
-
-  struct Habits {
-    GapHabits square_A2, speed_rad_per_s;
-  };
-  [[nodiscard]] Habits habits_of(std::size_t first, std::size_t last, const RowSteps& steps) const {
-    std::vector<double> all_A2, all_rad_per_s;
-    for (std::size_t row = first; row <= last; ++row) {
-      const OperatingPoint<double> at = rows_.at(row);
-      all_A2.push_back(square_A2(at));
-      all_rad_per_s.push_back(at.speed_mean_rad_per_s);
-    }
-    const std::span<const double> time_s = std::span(recording_.time_s).subspan(first, last - first + 1);
-    return {{time_s, std::move(all_A2), steps.usual_s}, {time_s, std::move(all_rad_per_s), steps.usual_s}};
-  }
-
-  /// From `row` to `next`, the next one whose inputs are known: they are its own to the row behind it, or for a usual step, at that end of
-  /// a longer one which its samples speak of; what they were in the rest nobody logged, but for the cells that are there.
-  /// Rows whose heat is known but for what the speed brings stay rows of their own. `ends` is told every row at which an interval may end.
-  template <class Ends>
-  void add_inputs(std::size_t row, std::size_t next, const RowSteps& steps, Habits& habits, MeanInputs& mean, const Ends& ends) const {
-    const double duration_s = recording_.time_s[next] - recording_.time_s[row];
-    const double own_s = recording_.time_s[row + 1] - recording_.time_s[row];
-    const bool lacks_rows = steps.is_regular && own_s > kLostRow_ratio * steps.usual_s && recording_.inputs != InputHabit::linear;
-    const bool speaks_of_end = lacks_rows && next == row + 1 && recording_.inputs == InputHabit::previous_interval;
-    const double unknown_s = duration_s - (lacks_rows ? steps.usual_s : own_s);
-    const std::size_t behind = speaks_of_end ? row : next;
-    if (!(unknown_s > 0.0) || !is_known(behind)) {
-      mean.add(filled(row), duration_s);
-      ends(next);
-      return;
-    }
-    OperatingPoint<double> before = filled(speaks_of_end && row > 0 && is_known(row - 1) ? row - 1 : row);
-    OperatingPoint<double> after = filled(behind);
-    mean.add(filled(row), duration_s - unknown_s);
-    OperatingPoint<double> first_half = before, second_half = after;
-    if (recording_.inputs == InputHabit::linear) {
-      const double from_A = before.current_rms_A, to_A = after.current_rms_A;
-      first_half.current_rms_A = second_half.current_rms_A = std::sqrt((from_A * from_A + from_A * to_A + to_A * to_A) / 3.0);
-    }
-    const auto add_middle = [&](const OperatingPoint<double>& cells, double middle_s) {
-      mean.add(with_cells(first_half, cells), 0.5 * middle_s);
-      mean.add(with_cells(second_half, cells), 0.5 * middle_s);
-    };
-    const auto rows = static_cast<std::size_t>(std::lround(unknown_s / steps.usual_s));
-    const GapHabit& of_current = habits.square_A2.over(rows);
-    const GapHabit& of_speed = habits.speed_rad_per_s.over(rows);
-    // They change at any time, or more often than the rows on both sides show.
-    const auto doubt = [&](const OperatingPoint<double>& cells, double doubted_s) {
-      const OperatingPoint<double> from = with_cells(before, cells);
-      mean.doubt(from, with_cells(after, cells), std::max(of_current.step_share, of_speed.step_share) * doubted_s);
-      OperatingPoint<double> burst = from;
-      burst.current_rms_A = std::sqrt(square_A2(from) + (std::isnan(cells.current_rms_A) ? of_current.beyond_sd : 0.0));
-      burst.speed_mean_rad_per_s += std::isnan(cells.speed_mean_rad_per_s) ? of_speed.beyond_sd : 0.0;
-      mean.doubt(from, burst, doubted_s);
-    };
-    OperatingPoint<double> always = lacks_rows ? nowhere() : rows_.at(row + 1);
-    for (std::size_t blank = row + 1; blank < next; ++blank) {
-      const OperatingPoint<double> cells = rows_.at(blank);
-      for_each_quantity([](double& all, const double& cell) { all = std::isnan(cell) ? kUnknown : all; }, always, cells);
-    }
-    if (lacks_rows) {
-      add_middle(always, own_s - steps.usual_s);
-    }
-    const bool lacks_speed_only = !std::isnan(always.current_rms_A) && !std::isnan(always.input_power_W);
-    for (std::size_t blank = row + 1; blank < next; ++blank) {
-      const OperatingPoint<double> cells = rows_.at(blank);
-      const double blank_s = recording_.time_s[blank + 1] - recording_.time_s[blank];
-      if (lacks_speed_only) {
-        ends(blank);
-        add_middle(cells, blank_s);
-        doubt(cells, blank_s);
-      } else {
-        add_middle(cells, blank_s);
-      }
-    }
-    if (!lacks_speed_only) {
-      doubt(always, unknown_s);
-    }
-    ends(next);
-  }
-
-  static OperatingPoint<double> nowhere() {
-    OperatingPoint<double> none;
-    for_each_quantity([](double& value) { value = kUnknown; }, none);
-    return none;
-  }
-  /// What is known of a row's cells in place of what is supposed.
-  static OperatingPoint<double> with_cells(OperatingPoint<double> supposed, const OperatingPoint<double>& cells) {
-    const double unlogged_share = supposed.unlogged_speed_share;
-    for_each_quantity([](double& value, const double& cell) { value = std::isnan(cell) ? value : cell; }, supposed, cells);
-    supposed.unlogged_speed_share = unlogged_share;
-    return supposed;
-  }
-
-  /// A quantity that is not needed and not known becomes 0, so that means stay numbers.
-  [[nodiscard]] OperatingPoint<double> filled(std::size_t row) const {
-    OperatingPoint<double> at = rows_.at(row);
-    for_each_quantity([](double& value) { value = std::isnan(value) ? 0.0 : value; }, at);
-    return at;
   }
 
   /// One level per sensor, from all runs of the recording as they were merged.
