@@ -30,8 +30,8 @@ std::string in_words(const Share& share) {
   const double n = share.of, p = share.right / n, z = 1.96;
   const double middle = (p + z * z / (2 * n)) / (1 + z * z / n);
   const double half = z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n);
-  return fmt::format("{:.1f} % ({}/{}; 95 %: {:.1f} to {:.1f})", 100 * p, share.right, share.of, 100 * (middle - half),
-                     100 * (middle + half));
+  return fmt::format("{:.1f} % ({}/{}; 95 %: {:.1f} to {:.1f})", 100 * p, share.right, share.of, 100 * std::max(0.0, middle - half),
+                     100 * std::min(1.0, middle + half));
 }
 
 bool names(const std::vector<std::string>& named, const Subject& subject) {

@@ -340,10 +340,10 @@ class Selector {
   }
 
   /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
-  /// where the promise is not kept, once more from what was known beforehand.
+  /// where the promise is not kept, or the model has strayed, once more from what was known beforehand.
   RefitResult try_term(const JudgedCandidate& judged, double promised_nats) const {
     RefitResult fit = try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
-    if (fit.evidence_nats > out_.after.evidence_nats + promised_nats) {
+    if (fit.evidence_nats > out_.after.evidence_nats + promised_nats && !has_strayed(out_.after.model, input_.model)) {
       return fit;
     }
     RefitOptions options = options_;

@@ -190,4 +190,9 @@ ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
   return model;
 }
 
+bool has_strayed(const ExtendedModel& model, const ExtendedModel& from) {
+  constexpr double kFar = 0.7;
+  return (model.model.theta() - with_values_of(model, from).model.theta()).cwiseAbs().maxCoeff() > kFar;
+}
+
 }  // namespace heatsoak

@@ -19,5 +19,7 @@ std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanRe
 
 /// `model` with the values that parameters and sensors of the same name have in `other`.
 ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other);
+/// One of the figures that both have is off by a factor of two or more: from there not every step leads back.
+bool has_strayed(const ExtendedModel& model, const ExtendedModel& from);
 
 }  // namespace heatsoak
