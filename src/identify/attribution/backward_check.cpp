@@ -58,22 +58,37 @@ class BackwardCheck {
 
   bool drops_invisible() {
     std::size_t least = out_.terms.size();
+    double least_ratio = rules_.least_visibility_ratio;
     for (std::size_t i = 0; i < out_.terms.size(); ++i) {
-      if (out_.terms[i].candidate) {
-        out_.terms[i].visibility_ratio = visibility_ratio(i);
-        const bool is_less = least == out_.terms.size() || out_.terms[i].visibility_ratio < out_.terms[least].visibility_ratio;
-        least = is_less ? i : least;
+      const double ratio = out_.terms[i].candidate ? visibility_ratio(i) : 1.0;
+      if (ratio >= rules_.least_visibility_ratio) {
+        out_.terms[i].visibility_ratio = out_.terms[i].candidate ? ratio : out_.terms[i].visibility_ratio;
+      } else if (ratio < least_ratio && !beats_changed_figures(i)) {
+        least = i;
+        least_ratio = ratio;
       }
     }
-    if (least == out_.terms.size() || out_.terms[least].visibility_ratio >= rules_.least_visibility_ratio) {
+    if (least == out_.terms.size()) {
       return false;
     }
     const AcceptedTerm& term = out_.terms[least];
     out_.refuse(term.candidate->id, term.loss_without_nats,
-                fmt::format("all but {:.1f} % of it could be the base parameters and the other effects", 100.0 * term.visibility_ratio));
+                fmt::format("all but {:.1f} % of it could be the base parameters and the other effects", 100.0 * least_ratio));
     const std::vector<bool> stays = all_but(least);
     keep(stays, refit_with(stays));
     return true;
+  }
+
+  /// In the shape that was found little of it may be its own, and the runs still tell that little from whatever figures of the file do.
+  [[nodiscard]] bool beats_changed_figures(std::size_t term) const {
+    ExtendedModel doubted = model_with(all_but(term));
+    for (Eigen::Index i = 0; i < doubted.model.free_count(); ++i) {
+      doubted.model.prior = with_doubt(doubted.model.prior, i);
+    }
+    RefitOptions options = options_;
+    options.place = out_.after.place;
+    const RefitResult without = refit(std::move(doubted), input_.runs, out_.before.start_C, options);
+    return out_.after.evidence_nats - without.evidence_nats >= rules_.unmistakable_nats;
   }
 
   /// Of the whitened response to the term's size from nothing, in the shape that was found, what all else leaves of it: 1 − R².

@@ -27,6 +27,7 @@ struct SelectionRules {
   double outside_beyond_share = 0.2;  ///< of its own evidence: laws are never exact, and much data sees the least difference of shape
   double beside_curve_share = 0.05;   ///< of a curve's evidence: less than that beside it is what seven knots leave of its shape
   double least_visibility_ratio = 0.02;
+  double unmistakable_nats = 20.0;  ///< over the model without it and doubt in all figures: then it stays though little of it is visible
   int refitted = 6;
   int most_terms = 4;
 };
