@@ -170,7 +170,15 @@ TEST(OpenDirections, FigureThatIsNotToldHasAReasonAndAnExperiment) {
   EXPECT_THAT(result.next_experiment, Not(IsEmpty()));
 }
 
-/// Half an hour of two currents with rests, in which the motor turns at three quarters of its no-load speed or stands still.
+/// Half an hour of two currents with rests; `drag_W` while current flows.
+Recording two_currents(double drag_W) {
+  return log_of({}, 0.0, 2400.0, drag_W, [](double time_s) {
+    const double within_s = std::fmod(time_s, 1200.0);
+    return within_s < 300.0 ? 4.0 : within_s < 700.0 ? 2.5 : 0.0;
+  });
+}
+
+/// The motor turns at three quarters of its no-load speed, or stands still.
 class UnloggedSpeed : public testing::TestWithParam<double> {};
 
 TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
@@ -178,10 +186,7 @@ TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
   const double most_W = sheet.no_load_current_A * 24.0;
   const TwoNodeTruth truth;
-  const Recording silent = log_of(truth, 0.0, 2400.0, GetParam() * most_W, [](double time_s) {
-    const double within_s = std::fmod(time_s, 1200.0);
-    return within_s < 300.0 ? 4.0 : within_s < 700.0 ? 2.5 : 0.0;
-  });
+  const Recording silent = two_currents(GetParam() * most_W);
   Recording still = silent;
   add_speed(still, 0.0);
   const auto calibrated = [&](const Recording& log) {
@@ -205,6 +210,32 @@ TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(StillAndTurning, UnloggedSpeed, testing::Values(0.0, 0.75));
+
+/// On average over the log that is held out its loss at speed is what is expected where no log tells.
+TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
+  Recording still = two_currents(0.0);
+  add_speed(still, 0.0);
+  const Recording silent = two_currents(0.5 * sheet.no_load_current_A * 24.0);
+  Recording said_to_stand = silent;
+  add_speed(said_to_stand, 0.0);
+  const auto calibrated = [&](const Recording& fitted, const Recording& held_out) {
+    const std::vector<Recording> logs{read_log(write_log(fitted, folder.path() / "log.csv"))};
+    const std::vector<Recording> others{read_log(write_log(held_out, folder.path() / "held_out.csv"))};
+    return calibrate(sheet.motor(folder), logs, others, {});
+  };
+  const auto stator_K = [](const Calibration& found) {
+    return std::ranges::find(found.holdout_error, "stator_C", &ErrorBeforeAfter::signal)->after.rmse_K;
+  };
+  const Calibration without_speed = calibrated(still, silent);
+  const Calibration stands = calibrated(still, said_to_stand);
+  EXPECT_THAT(without_speed.notes, Contains(HasSubstr("a log held out has a current but no speed")));
+  EXPECT_THAT(stands.notes, Not(Contains(HasSubstr("held out"))));
+  EXPECT_LT(stator_K(without_speed), 0.6 * stator_K(stands));
+  EXPECT_EQ(figure(without_speed, "stator_heat_capacity").value, figure(stands, "stator_heat_capacity").value);
+  EXPECT_GT(stator_K(calibrated(silent, still)), 0.0);
+}
 
 TEST(GuessedResistance, IsNoScaleToRelyOn) {
   for (const char* const origin : {"datasheet", "estimated"}) {
