@@ -237,6 +237,45 @@ TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
   EXPECT_GT(stator_K(calibrated(silent, still)), 0.0);
 }
 
+/// At 529 rad/s the drag of 0.2 A is 3.6 W.
+TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
+  constexpr double kConstant_Nm_per_A = 0.034;
+  constexpr double kTurning_rad_per_s = 3.6 / (kConstant_Nm_per_A * 0.2);
+  Recording log = two_currents(3.6);
+  std::vector<double> power_W, torque_Nm, speed_rad_per_s;
+  for (std::size_t row = 0; row < log.rows(); ++row) {
+    const double flows_A = log.find("current_A")->values[row];
+    const double hot_K = log.find("winding_C")->values[row] - 25.0;
+    speed_rad_per_s.push_back(flows_A > 0.0 ? kTurning_rad_per_s : 0.0);
+    torque_Nm.push_back(flows_A > 0.0 ? kConstant_Nm_per_A * (flows_A - 0.2) : 0.0);
+    power_W.push_back(flows_A * flows_A * sheet.truth.resistance_25C_ohm * (1.0 + sheet.truth.temperature_coefficient_per_K * hot_K) +
+                      kConstant_Nm_per_A * flows_A * speed_rad_per_s.back());
+  }
+  std::erase_if(log.channels, [](const Channel& channel) { return channel.quantity.key == "current_A"; });
+  log.channels.push_back({*quantity_named("power_in_W"), std::move(power_W)});
+  log.channels.push_back({*quantity_named("torque_Nm"), std::move(torque_Nm)});
+  log.channels.push_back({*quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
+  const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "power.csv"))};
+  const Calibration found = calibrate(sheet.motor(folder), logs, {}, {});
+  EXPECT_THAT(found.notes, Contains(HasSubstr("what no_load_current makes of it is taken to arise at the stator")));
+  const auto is_near = [&](const char* name, double truth) {
+    const CalibratedFigure& each = figure(found, name);
+    EXPECT_LT(each.low, truth) << name;
+    EXPECT_GT(each.high, truth) << name;
+    EXPECT_NEAR(each.value, truth, 0.05 * truth) << name;
+  };
+  is_near("thermal_resistance_winding_stator", sheet.truth.winding_stator_K_per_W);
+  is_near("winding_heat_capacity", sheet.truth.winding_J_per_K);
+  EXPECT_NEAR(figure(found, "no_load_current").value, 0.2, 0.005);
+  Motor guessed = sheet.motor(folder);
+  guessed.figures.find("no_load_current")->second.origin = Origin::estimated;
+  for (const Motor& motor : {guessed, Sheet{}.motor(folder)}) {
+    EXPECT_THAT(calibrate(motor, logs, {}, {}).notes, Contains(HasSubstr("all of it is taken to arise at the winding")));
+  }
+}
+
 TEST(GuessedResistance, IsNoScaleToRelyOn) {
   for (const char* const origin : {"datasheet", "estimated"}) {
     const CaseResult result = calibrate_case({.truth = {}, .resistance_spread = {}, .resistance_origin = origin}, short_case());
