@@ -630,8 +630,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{
             "unknown_duty", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermitent"}, "did you mean 'paper_intermittent'?"},
         Mistake{"unknown_name", {"describe", "conducton"}, "did you mean 'conduction'?"},
-        Mistake{
-            "empty_motor", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""}, "what follows --motors is empty"},
+        Mistake{"empty_motor",
+                {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""},
+                "what follows --motors is empty"},
         Mistake{"current_in_volt",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"},
                 "unit of something else"},
@@ -753,6 +754,34 @@ TEST(Output, keeps_links_and_devices) {
   EXPECT_EQ(run(kSteady + Words{"--json", "/dev/null"}, inside).exit_code, 0);
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   EXPECT_THAT(folder.names(), UnorderedElementsAre("link.json", "real.json"));
+}
+
+TEST(Output, of_two_options_is_not_one_file) {
+  const TemporaryFolder folder;
+  write(folder.path() / "mine.json", "{}");
+  fs::create_symlink("mine.json", folder.path() / "link.svg");
+  RunOptions inside;
+  inside.folder = folder.path();
+  const Words friction{"friction", "--robot", "roboteam_twente_v2024", kFrictionLog.string()};
+  struct Two {
+    Words words;
+    const char* message;
+  };
+  for (const auto& [words, message] :
+       {Two{friction + Words{"--json", "new.toml", "--out", "new.toml"}, "--out and --json name one file"},
+        Two{kSimulate + Words{"--out", "new.csv", "--json", "./new.csv"}, "--out and --json name one file"},
+        Two{kSimulate + Words{"--out=new.csv", "--json=new.csv"}, "--out and --json name one file"},
+        Two{kEvaluate + Words{"--plot", "link.svg", "--json", "mine.json"}, "--plot and --json name one file"},
+        Two{{"calibrate", "--motor", "x", "no.csv", "--out", "a", "--json", "a"}, "--out and --json"},
+        Two{{"diagnose", "--model", "x", "--train", "no.csv", "--out", "a", "--json", "a"}, "--out and --json"}}) {
+    const ProgramRun result = run(words, inside);
+    EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(words);
+    EXPECT_THAT(result.err, HasSubstr(message)) << testing::PrintToString(words);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(folder.names(), UnorderedElementsAre("link.svg", "mine.json"));
+    EXPECT_EQ(content_of(folder.path() / "mine.json"), "{}");
+  }
+  EXPECT_EQ(run(friction + Words{"--out", "/dev/null", "--json", "/dev/null"}, inside).exit_code, 0);
 }
 
 // Surroundings.
