@@ -51,6 +51,11 @@ bool is_input(const std::filesystem::path& path) {
   return inputs().paths.contains(without_links(path));
 }
 
+bool are_one_file(const std::filesystem::path& one, const std::filesystem::path& other) {
+  std::error_code missing;
+  return without_links(one) == without_links(other) && !std::filesystem::is_other(one, missing);
+}
+
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes) {
   // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

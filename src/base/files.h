@@ -17,6 +17,9 @@ void note_input(const std::filesystem::path& path);
 /// Whether this process has read the file, under whatever name.
 bool is_input(const std::filesystem::path& path);
 
+/// Whether both name one file, under whatever name; a device or pipe takes any number of outputs.
+bool are_one_file(const std::filesystem::path& one, const std::filesystem::path& other);
+
 struct OutputFile {
   std::filesystem::path path;
   std::string content;

@@ -5,6 +5,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -32,6 +33,9 @@ constexpr std::string_view kFooter =
 
 constexpr std::string_view kWithoutMeasured =
     "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
+
+/// Options that name what a verb writes.
+constexpr std::array kOutputs{"--out", "--plot", "--json"};
 
 /// An option that stands where a file should is none.
 bool is_output(std::string_view word) { return word == "-" || !word.starts_with('-'); }
@@ -111,6 +115,25 @@ int fail(Session& session, const Failure& found) {
   return static_cast<int>(failure.code());
 }
 
+/// Before anything is computed. The refusal itself then goes to stderr only: as JSON it would stand where the other output should.
+void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
+  std::vector<std::pair<const char*, std::string>> given;
+  for (const char* const name : kOutputs) {
+    const CLI::Option* const option = verb.get_option_no_throw(name);
+    if (!option || option->empty() || option->results().front() == "-") {
+      continue;
+    }
+    const std::string& file = option->results().front();
+    for (const auto& [other, taken] : given) {
+      if (are_one_file(file, taken)) {
+        session.set_json_target({});
+        throw Failure(ExitCode::bad_input, fmt::format("{} and {} name one file, {}; give each a file of its own", other, name, file));
+      }
+    }
+    given.emplace_back(name, file);
+  }
+}
+
 int parse_and_run(int argc, const char* const* argv, Session& session) {
   CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
   app.set_version_flag("--version", std::string(kVersion));
@@ -123,7 +146,10 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
     CLI::App* verb = app.add_subcommand(std::string(command.name), std::string(command.summary));
     verb->footer(fmt::format("\nExample:\n  {}\n", command.example));
     const std::function<ExitCode()> run = command.declare(*verb, session);
-    verb->callback([run, &code] { code = run(); });
+    verb->callback([run, verb, &session, &code] {
+      refuse_one_file_for_two(*verb, session);
+      code = run();
+    });
   }
   session.set_json_target(json_target(argc, argv));
   const auto words = std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);

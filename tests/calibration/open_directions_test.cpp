@@ -170,7 +170,15 @@ TEST(OpenDirections, FigureThatIsNotToldHasAReasonAndAnExperiment) {
   EXPECT_THAT(result.next_experiment, Not(IsEmpty()));
 }
 
-/// Half an hour of two currents with rests, in which the motor turns at three quarters of its no-load speed or stands still.
+/// Half an hour of two currents with rests; `drag_W` while current flows.
+Recording two_currents(double drag_W) {
+  return log_of({}, 0.0, 2400.0, drag_W, [](double time_s) {
+    const double within_s = std::fmod(time_s, 1200.0);
+    return within_s < 300.0 ? 4.0 : within_s < 700.0 ? 2.5 : 0.0;
+  });
+}
+
+/// The motor turns at three quarters of its no-load speed, or stands still.
 class UnloggedSpeed : public testing::TestWithParam<double> {};
 
 TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
@@ -178,10 +186,7 @@ TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
   const double most_W = sheet.no_load_current_A * 24.0;
   const TwoNodeTruth truth;
-  const Recording silent = log_of(truth, 0.0, 2400.0, GetParam() * most_W, [](double time_s) {
-    const double within_s = std::fmod(time_s, 1200.0);
-    return within_s < 300.0 ? 4.0 : within_s < 700.0 ? 2.5 : 0.0;
-  });
+  const Recording silent = two_currents(GetParam() * most_W);
   Recording still = silent;
   add_speed(still, 0.0);
   const auto calibrated = [&](const Recording& log) {
@@ -205,6 +210,71 @@ TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(StillAndTurning, UnloggedSpeed, testing::Values(0.0, 0.75));
+
+/// On average over the log that is held out its loss at speed is what is expected where no log tells.
+TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
+  Recording still = two_currents(0.0);
+  add_speed(still, 0.0);
+  const Recording silent = two_currents(0.5 * sheet.no_load_current_A * 24.0);
+  Recording said_to_stand = silent;
+  add_speed(said_to_stand, 0.0);
+  const auto calibrated = [&](const Recording& fitted, const Recording& held_out) {
+    const std::vector<Recording> logs{read_log(write_log(fitted, folder.path() / "log.csv"))};
+    const std::vector<Recording> others{read_log(write_log(held_out, folder.path() / "held_out.csv"))};
+    return calibrate(sheet.motor(folder), logs, others, {});
+  };
+  const auto stator_K = [](const Calibration& found) {
+    return std::ranges::find(found.holdout_error, "stator_C", &ErrorBeforeAfter::signal)->after.rmse_K;
+  };
+  const Calibration without_speed = calibrated(still, silent);
+  const Calibration stands = calibrated(still, said_to_stand);
+  EXPECT_THAT(without_speed.notes, Contains(HasSubstr("a log held out has a current but no speed")));
+  EXPECT_THAT(stands.notes, Not(Contains(HasSubstr("held out"))));
+  EXPECT_LT(stator_K(without_speed), 0.6 * stator_K(stands));
+  EXPECT_EQ(figure(without_speed, "stator_heat_capacity").value, figure(stands, "stator_heat_capacity").value);
+  EXPECT_GT(stator_K(calibrated(silent, still)), 0.0);
+}
+
+/// At 529 rad/s the drag of 0.2 A is 3.6 W.
+TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
+  constexpr double kConstant_Nm_per_A = 0.034;
+  constexpr double kTurning_rad_per_s = 3.6 / (kConstant_Nm_per_A * 0.2);
+  Recording log = two_currents(3.6);
+  std::vector<double> power_W, torque_Nm, speed_rad_per_s;
+  for (std::size_t row = 0; row < log.rows(); ++row) {
+    const double flows_A = log.find("current_A")->values[row];
+    const double hot_K = log.find("winding_C")->values[row] - 25.0;
+    speed_rad_per_s.push_back(flows_A > 0.0 ? kTurning_rad_per_s : 0.0);
+    torque_Nm.push_back(flows_A > 0.0 ? kConstant_Nm_per_A * (flows_A - 0.2) : 0.0);
+    power_W.push_back(flows_A * flows_A * sheet.truth.resistance_25C_ohm * (1.0 + sheet.truth.temperature_coefficient_per_K * hot_K) +
+                      kConstant_Nm_per_A * flows_A * speed_rad_per_s.back());
+  }
+  std::erase_if(log.channels, [](const Channel& channel) { return channel.quantity.key == "current_A"; });
+  log.channels.push_back({*quantity_named("power_in_W"), std::move(power_W)});
+  log.channels.push_back({*quantity_named("torque_Nm"), std::move(torque_Nm)});
+  log.channels.push_back({*quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
+  const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "power.csv"))};
+  const Calibration found = calibrate(sheet.motor(folder), logs, {}, {});
+  EXPECT_THAT(found.notes, Contains(HasSubstr("what no_load_current makes of it is taken to arise at the stator")));
+  const auto is_near = [&](const char* name, double truth) {
+    const CalibratedFigure& each = figure(found, name);
+    EXPECT_LT(each.low, truth) << name;
+    EXPECT_GT(each.high, truth) << name;
+    EXPECT_NEAR(each.value, truth, 0.05 * truth) << name;
+  };
+  is_near("thermal_resistance_winding_stator", sheet.truth.winding_stator_K_per_W);
+  is_near("winding_heat_capacity", sheet.truth.winding_J_per_K);
+  EXPECT_NEAR(figure(found, "no_load_current").value, 0.2, 0.005);
+  Motor guessed = sheet.motor(folder);
+  guessed.figures.find("no_load_current")->second.origin = Origin::estimated;
+  for (const Motor& motor : {guessed, Sheet{}.motor(folder)}) {
+    EXPECT_THAT(calibrate(motor, logs, {}, {}).notes, Contains(HasSubstr("all of it is taken to arise at the winding")));
+  }
+}
 
 TEST(GuessedResistance, IsNoScaleToRelyOn) {
   for (const char* const origin : {"datasheet", "estimated"}) {

@@ -1,5 +1,6 @@
 // What every verb keeps to (interfaces.md), found through the program's own help.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -385,6 +386,8 @@ TEST(Json, of_friction_keeps_the_contract) {
       EXPECT_GE(estimate.at("ci95").at(1), estimate.at("value")) << key;
     }
     EXPECT_GT(wheel.at("r2"), 0.5);
+    EXPECT_FALSE(wheel.at("lack_of_fit").get<bool>());
+    EXPECT_TRUE(wheel.at("repeats_V").is_number());
     EXPECT_EQ(wheel.at("rows_used").get<int>() + wheel.at("rows_left_out").get<int>(), answer.at("rows").get<int>());
   }
   EXPECT_TRUE(answer.at("before").at("rmse").is_number());
@@ -431,6 +434,37 @@ TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
     EXPECT_GT(wheel.at("damping_V_s_per_rad").at("value"), 0.0);
     EXPECT_TRUE(wheel.at("damping_V_s_per_rad").at("ci95").at(0).is_null());
   }
+}
+
+/// The example with 1.5 V sin 2θ more at wheel 2: columns are time, battery, heading on the field, yaw, then speed and modulation.
+TEST(Json, of_friction_says_where_its_law_does_not_hold) {
+  std::istringstream log(content_of(kFrictionLog));
+  std::string changed;
+  for (std::string line; std::getline(log, line); changed += '\n') {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) {
+      cells.push_back(cell);
+    }
+    if (!changed.empty() && cells.size() > 7 && !cells[7].empty() && std::abs(std::stod(cells[7])) > 0.01) {
+      const double heading_rad = std::stod(cells[2]) - std::stod(cells[3]);
+      cells[7] = fmt::format("{:.5f}", std::stod(cells[7]) + 1.5 * std::sin(2.0 * heading_rad) / std::stod(cells[1]));
+    }
+    changed += fmt::format("{}", fmt::join(cells, ","));
+  }
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", changed);
+  RunOptions inside;
+  inside.folder = folder.path();
+  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", "log.csv", "--as-is", "--json", "-"}, inside);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json answer = result.json();
+  const char* const sentence = "what is left of wheel 2 follows θ: ";
+  EXPECT_THAT(result.err, HasSubstr(sentence));
+  EXPECT_THAT(answer.at("findings").get<std::vector<std::string>>(), Contains(HasSubstr(sentence)));
+  EXPECT_TRUE(answer.at("wheels").at(1).at("lack_of_fit").get<bool>());
+  EXPECT_FALSE(answer.at("wheels").at(0).at("lack_of_fit").get<bool>());
+  EXPECT_GT(answer["wheels"][1].at("left_V"), 0.5);
 }
 
 TEST(ExitCode, of_friction_refuses_a_log_that_is_given_twice) {
@@ -630,8 +664,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{
             "unknown_duty", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermitent"}, "did you mean 'paper_intermittent'?"},
         Mistake{"unknown_name", {"describe", "conducton"}, "did you mean 'conduction'?"},
-        Mistake{
-            "empty_motor", {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""}, "what follows --motors is empty"},
+        Mistake{"empty_motor",
+                {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""},
+                "what follows --motors is empty"},
         Mistake{"current_in_volt",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"},
                 "unit of something else"},
@@ -753,6 +788,34 @@ TEST(Output, keeps_links_and_devices) {
   EXPECT_EQ(run(kSteady + Words{"--json", "/dev/null"}, inside).exit_code, 0);
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   EXPECT_THAT(folder.names(), UnorderedElementsAre("link.json", "real.json"));
+}
+
+TEST(Output, of_two_options_is_not_one_file) {
+  const TemporaryFolder folder;
+  write(folder.path() / "mine.json", "{}");
+  fs::create_symlink("mine.json", folder.path() / "link.svg");
+  RunOptions inside;
+  inside.folder = folder.path();
+  const Words friction{"friction", "--robot", "roboteam_twente_v2024", kFrictionLog.string()};
+  struct Two {
+    Words words;
+    const char* message;
+  };
+  for (const auto& [words, message] :
+       {Two{friction + Words{"--json", "new.toml", "--out", "new.toml"}, "--out and --json name one file"},
+        Two{kSimulate + Words{"--out", "new.csv", "--json", "./new.csv"}, "--out and --json name one file"},
+        Two{kSimulate + Words{"--out=new.csv", "--json=new.csv"}, "--out and --json name one file"},
+        Two{kEvaluate + Words{"--plot", "link.svg", "--json", "mine.json"}, "--plot and --json name one file"},
+        Two{{"calibrate", "--motor", "x", "no.csv", "--out", "a", "--json", "a"}, "--out and --json"},
+        Two{{"diagnose", "--model", "x", "--train", "no.csv", "--out", "a", "--json", "a"}, "--out and --json"}}) {
+    const ProgramRun result = run(words, inside);
+    EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(words);
+    EXPECT_THAT(result.err, HasSubstr(message)) << testing::PrintToString(words);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(folder.names(), UnorderedElementsAre("link.svg", "mine.json"));
+    EXPECT_EQ(content_of(folder.path() / "mine.json"), "{}");
+  }
+  EXPECT_EQ(run(friction + Words{"--out", "/dev/null", "--json", "/dev/null"}, inside).exit_code, 0);
 }
 
 // Surroundings.

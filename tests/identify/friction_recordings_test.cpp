@@ -83,6 +83,9 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
     print(surface, steady, fit, error);
     EXPECT_EQ(error.headings, 24);
     EXPECT_LT(error.after_V, 0.35 * error.before_V);
+    // Where a wheel turns slowly neighbouring points lie off the curve together.
+    EXPECT_TRUE(fit.wheels[0].lack.is_found);
+    EXPECT_EQ(fit.wheels[0].lack.repeats, "neighbouring headings");
     for (const WheelFriction& wheel : fit.wheels) {
       ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
       EXPECT_TRUE(wheel.damping_is_given);

@@ -28,7 +28,8 @@ bool has_speed(const Recording& recording) {
   return std::ranges::find(signals, Signal::speed) != signals.end();
 }
 
-/// Where heat is reckoned from the current, a log that has a speed must tell it in every row that something is learned from.
+/// Where heat is reckoned from the current, a log that has a speed must tell it in every row that something is learned from; one that is
+/// held out may have none.
 std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const MeasuredRunOptions& options,
                                  std::vector<std::string>& notes) {
   std::vector<MeasuredRun> all;
@@ -37,6 +38,8 @@ std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const Me
     const auto needs = [&](Signal signal) { return std::ranges::find(here.needed, signal) != here.needed.end(); };
     if (needs(Signal::current) && has_speed(recording) && !needs(Signal::speed)) {
       here.needed.push_back(Signal::speed);
+    } else if (!has_speed(recording)) {
+      std::erase(here.needed, Signal::speed);
     }
     MeasuredRuns found = measured_runs(recording, here);
     std::ranges::move(found.runs, std::back_inserter(all));
@@ -45,13 +48,13 @@ std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const Me
   return all;
 }
 
-std::vector<ErrorBeforeAfter> errors(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs) {
+std::vector<ErrorBeforeAfter> errors(const MotorModel& motor, const Eigen::VectorXd& theta, std::span<const MeasuredRun> runs) {
   std::vector<ErrorBeforeAfter> all;
   if (runs.empty()) {
     return all;
   }
   const std::vector<SignalError> before = open_loop_error(motor.model.network, motor.model.values, runs);
-  const std::vector<SignalError> after = open_loop_error(motor.model.network, motor.model.values_at(fit.theta), runs);
+  const std::vector<SignalError> after = open_loop_error(motor.model.network, motor.model.values_at(theta), runs);
   for (std::size_t i = 0; i < after.size(); ++i) {
     all.push_back({after[i].signal, before[i], after[i]});
   }
@@ -82,13 +85,13 @@ class Calibrating {
                       significant(most_loss_W, 2)));
     }
     all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
-    all_.fit_error = errors(all_.motor_model, all_.fit, all_.runs);
+    all_.fit_error = errors(all_.motor_model, all_.fit.theta, all_.runs);
     refuse_where_nothing_is_explained();
     warn();
     widen_by_rows();
     figures();
     all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.figures);
-    all_.holdout_error = errors(all_.motor_model, all_.fit, all_.holdout);
+    all_.holdout_error = errors_of_holdout(motor);
     all_.next_experiment = next_experiment(all_.open);
     tell_common_factor();
     tell_terminal_resistance(motor);
@@ -100,6 +103,25 @@ class Calibrating {
   }
 
  private:
+  /// Where the fitted runs all have a speed, nothing tells the loss of held-out ones that have none: it is what is expected before any run.
+  std::vector<ErrorBeforeAfter> errors_of_holdout(const Motor& motor) {
+    const double most_loss_W = most_loss_at_speed_W(motor);
+    if (all_.motor_model.heat != HeatInput::current || most_loss_W == 0.0 || !all_.motor_model.nuisances.empty() ||
+        std::ranges::none_of(all_.holdout, turns_unseen)) {
+      return errors(all_.motor_model, all_.fit.theta, all_.holdout);
+    }
+    all_.notes.push_back(
+        fmt::format("a log held out has a current but no speed: its error is taken with a loss at speed of {} W, {} W while current flows "
+                    "(at no-load speed it is {} W); a motor that stood still is told by speed_rad_per_s = 0",
+                    significant(expected_loss_at_speed_W(motor, false), 2), significant(expected_loss_at_speed_W(motor, true), 2),
+                    significant(most_loss_W, 2)));
+    MotorModel opened = all_.motor_model;
+    open_loss_at_speed(opened, motor);
+    Eigen::VectorXd theta = opened.model.theta();
+    theta.head(all_.fit.theta.size()) = all_.fit.theta;
+    return errors(opened, theta, all_.holdout);
+  }
+
   /// What the fit says about itself.
   void warn() {
     const Fit& fit = all_.fit;

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/quantity.h"
+#include "identify/calibration/loss_at_stator.h"
 
 namespace heatsoak {
 namespace {
@@ -62,7 +63,7 @@ Roles roles_of(const Model& model) {
           find("stator.heat_capacity"),
           find("stator_ambient.thermal_resistance"),
           find("copper_loss.terminal_resistance"),
-          find("no_load_loss.drag_torque")};
+          std::max(find("no_load_loss.drag_torque"), find(kDragAtStator))};
 }
 
 /// Why something is open, and the cheapest experiment that would settle it.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/diagnostic.h"
+#include "identify/calibration/loss_at_stator.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "motor/datasheet_network.h"
 
@@ -45,6 +46,11 @@ class ModelBuilder {
       // Beside it the copper loss is 0, for no log has a current, and the no-load loss is asked to stay silent.
       all_.model.network.add_effect("input_power_loss", *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
                                     std::vector<double>{1.0});
+      // A guessed no-load current tells of no loss.
+      if (with_speed && motor.nominal.no_load_current_A > 0.0 &&
+          motor.figures.find("no_load_current")->second.origin != Origin::estimated) {
+        add_loss_at_stator(all_.model.network, drag_torque_Nm(motor.nominal));
+      }
     }
     all_.model.values = all_.model.network.values();
     if (heat == HeatInput::input_power) {
@@ -66,8 +72,7 @@ class ModelBuilder {
     if (all_.heat == HeatInput::current) {
       heat_of_current();
     } else {
-      all_.held.emplace_back(
-          "the share of the stated power that becomes heat is held at 1: all heat capacities and resistances scale with it");
+      heat_of_power();
     }
     effects();
     const auto file_figures = all_.figures.size();
@@ -120,6 +125,20 @@ class ModelBuilder {
     } else if (motor_.nominal.no_load_current_A > 0.0) {
       all_.needed.push_back(Signal::speed);
       figure("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
+    }
+  }
+
+  void heat_of_power() {
+    const bool has_loss_at_stator = place_of(all_.model.network, kDragAtStator) >= 0;
+    all_.held.push_back(fmt::format(
+        "the share of the stated power that becomes heat is held at 1: all heat capacities and resistances scale with it; {} to "
+        "arise at the winding, and iron loss, friction or a driver's heat at the stator {}would shift "
+        "thermal_resistance_winding_stator and winding_heat_capacity",
+        has_loss_at_stator ? "what no_load_current makes of it is taken to arise at the stator and all else" : "all of it is taken",
+        has_loss_at_stator ? "beyond that " : ""));
+    if (has_loss_at_stator) {
+      all_.needed.push_back(Signal::speed);
+      figure("no_load_current", {{free(std::string(kDragAtStator)), 1.0}});
     }
   }
 

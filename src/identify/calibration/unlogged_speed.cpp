@@ -59,6 +59,10 @@ double most_loss_at_speed_W(const Motor& motor) {
   return most_W > 0.0 ? most_W : 0.0;
 }
 
+double expected_loss_at_speed_W(const Motor& motor, bool is_driven) {
+  return (is_driven ? 2.0 : 1.0) * kMean_share * most_loss_at_speed_W(motor);
+}
+
 bool turns_unseen(const MeasuredRun& run) {
   return std::ranges::any_of(run.at, [](const OperatingPoint<double>& at) { return at.unlogged_speed_share > 0.0; });
 }

@@ -10,6 +10,9 @@ namespace heatsoak {
 /// The loss of a motor that turns at its no-load speed; 0 where it has none or its file does not tell.
 double most_loss_at_speed_W(const Motor& motor);
 
+/// What of it is expected where no run tells, throughout or while current flows.
+double expected_loss_at_speed_W(const Motor& motor, bool is_driven);
+
 /// Less turns no motor.
 double least_driving_current_A(const Motor& motor);
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "identify/friction/lack_of_fit.h"
 #include "identify/friction/wheel_terms.h"
 #include "robot/friction.h"
 
@@ -89,7 +90,7 @@ Eigen::Vector2d sine_and_constant_at(const Eigen::MatrixXd& X, const Eigen::Vect
 
 /// All terms at φ_0, their intervals widened by how far each moves while φ goes through its doubt.
 std::vector<Estimate> estimates_in_doubt(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
-                                         double given_V_s_per_rad, const RobustFit& fit, double phase_doubt_rad) {
+                                         double given_V_s_per_rad, const RobustFit& fit, double left_V, double phase_doubt_rad) {
   std::vector<Estimate> estimates;
   for (Eigen::Index term = 0; term < std::ssize(terms); ++term) {
     estimates.push_back(fit.estimate(term));
@@ -100,7 +101,8 @@ std::vector<Estimate> estimates_in_doubt(const std::vector<WheelPoint>& points, 
   const std::pair<double, double> bounds_rad = phase_bounds_rad(points, fit.weights);
   for (const double end_rad : {std::max(-phase_doubt_rad, bounds_rad.first), std::min(phase_doubt_rad, bounds_rad.second)}) {
     const auto [X, voltage_V, legs] = regression_of(turned(points, end_rad), wheel, terms, given_V_s_per_rad);
-    const RobustFit there = robust_fit(X, voltage_V, legs);
+    RobustFit there = robust_fit(X, voltage_V, legs);
+    widen(points, X, left_V, there);
     for (Eigen::Index term = 0; term < std::ssize(terms); ++term) {
       Estimate& estimate = estimates[static_cast<std::size_t>(term)];
       const Estimate end = there.estimate(term);
@@ -139,8 +141,8 @@ void judge(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights
   found.r2_ratio = variance_V2 > 0.0 ? 1.0 - error_V2 / variance_V2 : std::numeric_limits<double>::quiet_NaN();
 }
 
-WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinematics, int wheel, const FitSettings& settings,
-                        Eigen::VectorXd& weights) {
+WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> heading, const Kinematics& kinematics, int wheel,
+                        const FitSettings& settings, Eigen::VectorXd& weights) {
   const std::vector<WheelPoint>& points = wheel_points.points;
   WheelFriction found;
   found.parts_standing = wheel_points.standing;
@@ -161,13 +163,17 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, const Kinematics& kinem
   found.damping_is_given = chosen.damping_is_given;
   found.phase_is_given = chosen.phase_is_given;
   const double given = chosen.damping_is_given ? settings.known_damping_V_s_per_rad : 0.0;
-  const auto [X, voltage_V, legs] = regression_of(points, wheel, chosen.terms, given);
-  const RobustFit fit = robust_fit(X, voltage_V, legs);
+  const WheelRegression asked = regression_of(points, wheel, chosen.terms, given);
+  const auto& [X, voltage_V, legs] = asked;
+  RobustFit fit = robust_fit(X, voltage_V, legs);
   weights = fit.weights;
+  found.lack = lack_of_fit(points, heading, asked, chosen.terms, fit);
+  const double left_V = found.lack.is_found ? found.lack.left_V : 0.0;
+  widen(points, X, left_V, fit);
   const auto place = [&](WheelTerm term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
   const auto has = [&](WheelTerm term) { return place(term) < std::ssize(chosen.terms); };
   const std::vector<Estimate> estimates =
-      estimates_in_doubt(points, wheel, chosen.terms, given, fit, chosen.phase_is_given ? settings.phase_doubt_rad : 0.0);
+      estimates_in_doubt(points, wheel, chosen.terms, given, fit, left_V, chosen.phase_is_given ? settings.phase_doubt_rad : 0.0);
   const auto estimate = [&](WheelTerm term) { return has(term) ? estimates[static_cast<std::size_t>(place(term))] : Estimate{}; };
   found.damping_V_s_per_rad = has(WheelTerm::damping) ? estimate(WheelTerm::damping) : Estimate{.value = given};
   found.rotation_V = estimate(WheelTerm::rotation);
@@ -321,7 +327,10 @@ FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics&
   for (int wheel = 0; wheel < kinematics.wheel_count; ++wheel) {
     const WheelPoints points = points_of(parts, kinematics, wheel, settings);
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(points.points.size()));
-    found.wheels.push_back(fit_wheel(points, kinematics, wheel, settings, weights));
+    std::vector<int> heading;
+    std::ranges::transform(points.points, std::back_inserter(heading),
+                           [&](const WheelPoint& point) { return numbers[static_cast<std::size_t>(point.part - parts.data())]; });
+    found.wheels.push_back(fit_wheel(points, heading, kinematics, wheel, settings, weights));
     found.lines.push_back(lines_of(points.points, weights, parts, numbers, wheel, found.wheels.back()));
   }
   return found;

@@ -20,6 +20,15 @@ namespace heatsoak {
 // where there are three per term. The interval of φ is Fieller's, cut off where a wheel that was seen turning one way would
 // have to turn the other; there a and b are the best at that φ. Headings of two directions and their opposites do not
 // tell φ: it is taken as φ_0, and the intervals cover what a and b are while φ lies within its doubt.
+// Where what is left follows θ, the intervals are widened by what of it may hide in a and b (lack_of_fit.h).
+
+/// An error of the law that follows the direction of travel (lack_of_fit.h).
+struct LackOfFit {
+  bool is_found = false;
+  double left_V = std::numeric_limits<double>::quiet_NaN();     ///< root mean square over headings, beyond what does not repeat
+  double repeats_V = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of what does not repeat; NaN: too few tell
+  std::string repeats;                                          ///< what differs by it: "legs on one heading"
+};
 
 struct WheelFriction {
   Estimate damping_V_s_per_rad;                                ///< d
@@ -33,6 +42,7 @@ struct WheelFriction {
   bool phase_is_bounded = false;                               ///< beyond it the wheel would turn another way than it did
   double r2_ratio = std::numeric_limits<double>::quiet_NaN();  ///< share of the voltage's variance that is explained
   double rmse_V = std::numeric_limits<double>::quiet_NaN();
+  LackOfFit lack;  ///< where it is found, the intervals are wider by it
   int parts_used = 0;
   int parts_standing = 0;  ///< the wheel should stand, or does
   int parts_outlying = 0;

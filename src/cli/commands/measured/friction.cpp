@@ -222,6 +222,20 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
   return lines;
 }
 
+/// Wheels of which the law of friction itself is off.
+Findings of_another_law(const FrictionFit& fit) {
+  Findings found;
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (const LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
+      found.push_back(
+          fmt::format("what is left of wheel {} follows θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not hold "
+                      "there, and its intervals are wider by what of it may hide in a and b",
+                      i + 1, significant(lack.left_V, 2), significant(lack.repeats_V, 2), lack.repeats));
+    }
+  }
+  return found;
+}
+
 /// Why nothing was learned: the commonest reason of the wheels.
 Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
   const std::string suspected = suspicions.empty() ? "" : "\n" + suspicions_text(suspicions);
@@ -256,6 +270,9 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
                       {"damping_given", wheel.damping_is_given},
                       {"phase_given", wheel.phase_is_given},
                       {"phase_bounded", wheel.phase_is_bounded},
+                      {"lack_of_fit", wheel.lack.is_found},
+                      {"left_V", wheel.lack.left_V},
+                      {"repeats_V", wheel.lack.repeats_V},
                       {"before_rmse_V", error.before_of_wheel_V[i]},
                       {"after_rmse_V", error.after_of_wheel_V[i]},
                       {"problem", wheel.problem}});
@@ -317,6 +334,7 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
   if (!fit.is_learned()) {
     throw nothing_learned(steady, fit, input.suspicions);
   }
+  std::ranges::move(of_another_law(fit), std::back_inserter(input.findings));
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, before.voltages);
   session.say(fmt::format("{}: {}, {} rows, {} of them steady in {} on {}; {} {}\n{}{}", input.robot.id, counted(input.logs.size(), "log"),
                           steady.rows, steady.rows_steady, counted(static_cast<std::size_t>(steady.legs), "leg"),
