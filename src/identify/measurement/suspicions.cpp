@@ -46,16 +46,10 @@ class Suspector {
   }
 
   void currents() {
-    constexpr double kLargestCurrent_A = 300.0;
     for (const char* key : {"current_A", "current_q_A", "bus_A"}) {
       const Channel* const current = recording_.find(key);
-      const ChannelQuality* const range = quality(key);
-      if (current == nullptr) {
-        continue;
-      }
-      if (std::max(std::abs(range->high), std::abs(range->low)) > kLargestCurrent_A) {
-        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key,
-                                     significant(std::max(std::abs(range->high), std::abs(range->low)), 3)));
+      if (const double top_A = current != nullptr ? top_of_sizes(current->values) : 0.0; top_A > kLargestCurrent_A) {
+        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, significant(top_A, 3)));
       }
     }
     const Channel* const power = recording_.find("power_in_W");
@@ -98,9 +92,8 @@ class Suspector {
 
   void speeds() {
     constexpr double kRpm = 30.0 / std::numbers::pi;
-    constexpr double kFastest_rad_per_s = 4000.0;  // 38 000 rpm
-    for (const ChannelQuality& channel : channels_) {
-      const double fastest = std::max(std::abs(channel.low), std::abs(channel.high));
+    for (const Channel& channel : recording_.channels) {
+      const double fastest = top_of_sizes(channel.values);
       if (channel.quantity.unit == "rad/s" && channel.quantity.key.find("speed") != std::string::npos && fastest > kFastest_rad_per_s) {
         found_.push_back(fmt::format("{} reaches {} rad/s: is it in rpm ({} rad/s) or degrees per second ({} rad/s)?", channel.quantity.key,
                                      significant(fastest, 4), significant(fastest / kRpm, 3),
@@ -148,12 +141,9 @@ class Suspector {
     if (has_wheels && period_s > kLongestPeriod_s && recording_.time_s.back() - recording_.time_s.front() <= kLongest_s) {
       found_.push_back(fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?", significant(period_s, 3)));
     }
-    constexpr double kLargestCurrent_A = 300.0;
     for (const Channel& channel : recording_.channels) {
       const std::string& key = channel.quantity.key;
-      std::vector<double> sizes(channel.values.size());
-      std::ranges::transform(channel.values, sizes.begin(), [](double value) { return std::abs(value); });
-      const double top = percentile(sizes, 0.98);
+      const double top = top_of_sizes(channel.values);
       if (key.starts_with("wheel_pwm_ratio") && top > 1.5) {
         found_.push_back(fmt::format("{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage", key,
                                      significant(top, 3)));
