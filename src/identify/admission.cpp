@@ -8,6 +8,7 @@
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
+#include "identify/measurement/clock_offset.h"
 #include "identify/measurement/fingerprint.h"
 #include "identify/measurement/quality.h"
 #include "identify/measurement/spread.h"
@@ -178,12 +179,31 @@ void faster_than_the_motor(const Motor& motor, const Recording& recording, std::
   }
 }
 
+/// Real sensors lag, and a fit goes on with them: it is only said.
+void late_answers(const Recording& recording, const DataQuality& quality, Admission& admission) {
+  for (const ClockOffset& offset : quality.clock_offsets) {
+    const std::string late = late_answer(offset, quality.sampling.usual_period_s);
+    if (late.empty()) {
+      continue;
+    }
+    admission.notes.push_back(fmt::format("{}: {}", recording.name, late));
+    const std::string next = fmt::format(
+        "{} answers late: let both loggers see one event, such as a step of the current; a clock's offset goes into a mapping "
+        "(clock_offset), for a sensor's lag take one in better contact",
+        offset.temperature);
+    if (std::ranges::find(admission.next_steps, next) == admission.next_steps.end()) {
+      admission.next_steps.push_back(next);
+    }
+  }
+}
+
 }  // namespace
 
-std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out,
-                               bool takes_logs_as_they_are, double ambient_C) {
+Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out, bool takes_logs_as_they_are,
+                double ambient_C) {
   refuse_repeated(fitted, held_out);
-  std::vector<std::string> notes;
+  Admission admission;
+  std::vector<std::string>& notes = admission.notes;
   std::vector<Diagnostic> wrong;
   const auto look = [&](const Recording& recording, const DataQuality& quality) {
     if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
@@ -192,6 +212,7 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
     for (const std::string& each : quality.suspicions) {
       notes.push_back(fmt::format("{}: {}", recording.name, each));
     }
+    late_answers(recording, quality, admission);
     std::vector<std::string> spoiling = quality.spoiling;
     if (spoiling.empty()) {
       beyond_the_motor(motor, recording, spoiling);
@@ -214,7 +235,7 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
                   "units or sensors of the logs look wrong; correct them in a mapping (--map), or if they are right go on with --as-is",
                   std::move(wrong));
   }
-  return notes;
+  return admission;
 }
 
 bool was_fitted_to(const MotorFit& fit, const Recording& recording) {

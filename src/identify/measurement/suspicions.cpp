@@ -7,8 +7,11 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "base/quantity.h"
+#include "identify/measurement/clock_offset.h"
 #include "identify/measurement/row_order.h"
 #include "identify/measurement/sensor_places.h"
 #include "identify/measurement/spread.h"
@@ -19,14 +22,15 @@ namespace {
 
 class Suspector {
  public:
-  Suspector(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C)
-      : recording_(recording), channels_(channels), ambient_C_(ambient_C) {}
+  Suspector(const Recording& recording, const DataQuality& told, double ambient_C)
+      : recording_(recording), told_(told), channels_(told.channels), ambient_C_(ambient_C) {}
 
   Suspicions run() {
     found_ = suspicious_scales(recording_, ambient_C_);
     std::ranges::move(suspicious_places(recording_, channels_), std::back_inserter(found_));
     currents();
     speeds();
+    early_answers();
     const std::size_t of_motors = found_.size();
     clock();
     std::vector<std::string> spoiling = found_;
@@ -165,6 +169,15 @@ class Suspector {
     }
   }
 
+  /// Nothing gets warm before its heat.
+  void early_answers() {
+    for (const ClockOffset& offset : told_.clock_offsets) {
+      if (std::string early = early_answer(offset, told_.sampling.usual_period_s); !early.empty()) {
+        found_.push_back(std::move(early));
+      }
+    }
+  }
+
   /// Whole seconds as minutes or hours, and no motor as fast as that. Loggers of 60 Hz there are: without a motor it is only said.
   void short_clock() {
     const double period_s = usual_period_s(recording_.time_s);
@@ -254,6 +267,7 @@ class Suspector {
   static constexpr double kLongest_s = 2.0 * 86400.0;
 
   const Recording& recording_;
+  const DataQuality& told_;
   std::span<const ChannelQuality> channels_;
   double ambient_C_;
   std::vector<std::string> found_;
@@ -261,8 +275,8 @@ class Suspector {
 
 }  // namespace
 
-Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C) {
-  return Suspector(recording, channels, ambient_C).run();
+Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C) {
+  return Suspector(recording, told, ambient_C).run();
 }
 
 }  // namespace heatsoak
