@@ -8,6 +8,7 @@
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
+#include "identify/measurement/clock_offset.h"
 #include "identify/measurement/fingerprint.h"
 #include "identify/measurement/quality.h"
 #include "identify/measurement/spread.h"
@@ -38,23 +39,55 @@ void refuse_repeated(std::span<const Recording> fitted, std::span<const Recordin
   }
 }
 
-double largest(const DataQuality& quality, std::string_view key) {
-  const auto found = std::ranges::find_if(quality.channels, [key](const ChannelQuality& each) { return each.quantity.key == key; });
-  return found == quality.channels.end() ? 0.0 : std::max(std::abs(found->low), std::abs(found->high));
+struct Reached {
+  double usual = 0.0;    ///< top_of_sizes()
+  double largest = 0.0;  ///< of any row
+  int line = 0;          ///< of that row
+};
+
+Reached reached(const Recording& recording, std::string_view key) {
+  Reached found;
+  const Channel* const channel = recording.find(key);
+  if (channel == nullptr) {
+    return found;
+  }
+  found.usual = top_of_sizes(channel->values);
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    if (std::abs(channel->values[row]) > found.largest) {
+      found.largest = std::abs(channel->values[row]);
+      found.line = recording.line[row];
+    }
+  }
+  return found;
+}
+
+/// Most rows are as they should be: no unit is wrong.
+void single_rows_beyond(const char* key, const char* unit, const char* other_unit, const Reached& reached, double most,
+                        std::vector<std::string>& wrong) {
+  if (reached.largest > most && !(reached.usual > most)) {
+    wrong.push_back(fmt::format(
+        "{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, which less than 2 % of the rows are "
+        "beyond: leave wild samples out by valid = \"…\" in a mapping, or is it in {}?",
+        key, significant(reached.largest, 3), unit, reached.line, significant(most, 3), unit, other_unit));
+  }
 }
 
 /// What this motor cannot do at three times its voltage.
-void beyond_the_motor(const Motor& motor, const DataQuality& quality, std::vector<std::string>& wrong) {
+void beyond_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
   const MotorValues& nominal = motor.nominal;
   const double most_A = kMost_ratio * nominal.nominal_voltage_V / nominal.terminal_resistance_ohm;
-  if (const double reached_A = largest(quality, "current_A"); reached_A > most_A) {
+  const Reached current_A = reached(recording, "current_A");
+  single_rows_beyond("current_A", "A", "milliamperes", current_A, most_A, wrong);
+  if (const double reached_A = current_A.usual; reached_A > most_A) {
     wrong.push_back(
         fmt::format("current_A reaches {} A; through {} ohm at three times the nominal voltage flow {} A: is it in "
                     "milliamperes, or is it another motor?",
                     significant(reached_A, 3), significant(nominal.terminal_resistance_ohm, 3), significant(most_A, 3)));
   }
   const double most_rad_per_s = kMost_ratio * nominal.nominal_voltage_V / nominal.torque_constant_Nm_per_A;
-  if (const double reached_rad_per_s = largest(quality, "speed_rad_per_s"); reached_rad_per_s > most_rad_per_s) {
+  const Reached speed_rad_per_s = reached(recording, "speed_rad_per_s");
+  single_rows_beyond("speed_rad_per_s", "rad/s", "rpm", speed_rad_per_s, most_rad_per_s, wrong);
+  if (const double reached_rad_per_s = speed_rad_per_s.usual; reached_rad_per_s > most_rad_per_s) {
     wrong.push_back(fmt::format(
         "speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm "
         "({} rad/s), or is it another motor?",
@@ -146,12 +179,31 @@ void faster_than_the_motor(const Motor& motor, const Recording& recording, std::
   }
 }
 
+/// Real sensors lag, and a fit goes on with them: it is only said.
+void late_answers(const Recording& recording, const DataQuality& quality, Admission& admission) {
+  for (const ClockOffset& offset : quality.clock_offsets) {
+    const std::string late = late_answer(offset, quality.sampling.usual_period_s);
+    if (late.empty()) {
+      continue;
+    }
+    admission.notes.push_back(fmt::format("{}: {}", recording.name, late));
+    const std::string next = fmt::format(
+        "{} answers late: let both loggers see one event, such as a step of the current; a clock's offset goes into a mapping "
+        "(clock_offset), for a sensor's lag take one in better contact",
+        offset.temperature);
+    if (std::ranges::find(admission.next_steps, next) == admission.next_steps.end()) {
+      admission.next_steps.push_back(next);
+    }
+  }
+}
+
 }  // namespace
 
-std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out,
-                               bool takes_logs_as_they_are, double ambient_C) {
+Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out, bool takes_logs_as_they_are,
+                double ambient_C) {
   refuse_repeated(fitted, held_out);
-  std::vector<std::string> notes;
+  Admission admission;
+  std::vector<std::string>& notes = admission.notes;
   std::vector<Diagnostic> wrong;
   const auto look = [&](const Recording& recording, const DataQuality& quality) {
     if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
@@ -160,9 +212,10 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
     for (const std::string& each : quality.suspicions) {
       notes.push_back(fmt::format("{}: {}", recording.name, each));
     }
+    late_answers(recording, quality, admission);
     std::vector<std::string> spoiling = quality.spoiling;
     if (spoiling.empty()) {
-      beyond_the_motor(motor, quality, spoiling);
+      beyond_the_motor(motor, recording, spoiling);
       faster_than_the_motor(motor, recording, spoiling);
     }
     for (const std::string& each : spoiling) {
@@ -182,7 +235,7 @@ std::vector<std::string> admit(const Motor& motor, std::span<const Recording> fi
                   "units or sensors of the logs look wrong; correct them in a mapping (--map), or if they are right go on with --as-is",
                   std::move(wrong));
   }
-  return notes;
+  return admission;
 }
 
 bool was_fitted_to(const MotorFit& fit, const Recording& recording) {

@@ -9,6 +9,7 @@
 
 #include "input/document.h"
 #include "motor/motor_effects.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -71,8 +72,6 @@ constexpr std::array kSpecs = {
 // clang-format on
 constexpr std::array<std::string_view, 8> kAgreed{"nominal_voltage", "assigned_power", "max_speed",   "pole_pairs",
                                                   "winding_limit",   "stator_limit",   "ambient_min", "ambient_max"};
-
-constexpr double kCopper_per_K = 0.0039;
 
 /// Conversions to the conventions of MotorValues. For a sinusoidal back-EMF the torque constant per peak
 /// phase ampere is √3·π/6 = 0.907 of the one per DC ampere of block commutation; RMS is peak/√2.

@@ -5,6 +5,7 @@ namespace heatsoak {
 
 /// Data sheets give resistance and torque constant at this temperature, and α refers to it.
 inline constexpr double kSheetTemperature_C = 25.0;
+inline constexpr double kCopper_per_K = 0.0039;  ///< α where nothing else is stated
 
 /// R(T)/R25 = 1 + α·(T − 25 °C); copper's α is 0.0039 1/K. For numbers, lanes and derivatives.
 template <class S>

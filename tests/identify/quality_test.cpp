@@ -5,13 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <sstream>
 
 #include "base/diagnostic.h"
 #include "identify/measurement/noise.h"
-#include "identify/measurement/read_recording.h"
-#include "log_files.h"
-#include "synthetic_log.h"
+#include "read_log.h"
 
 namespace heatsoak {
 namespace {
@@ -19,53 +16,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-struct Read {
-  Recording recording;
-  RecordingReport report;
-  DataQuality quality;
-};
-
-Read read(const std::string& text) {
-  const LogFile file("log.csv", text);
-  Read result;
-  result.recording = read_recording(file.path(), {}, result.report);
-  result.quality = assess(result.recording, result.report);
-  return result;
-}
-
-/// Every row of a synthetic log through `change`, which sees time, winding, stator, ambient, current.
-std::string changed(const SyntheticLog& log, const std::function<void(int, std::vector<double>&)>& change) {
-  std::istringstream lines(log.csv());
-  std::string line;
-  std::getline(lines, line);
-  std::string text = line + "\n";
-  for (int row = 0; std::getline(lines, line); ++row) {
-    std::vector<double> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) {
-      cells.push_back(std::stod(cell));
-    }
-    change(row, cells);
-    text += fmt::format("{:.6g}", cells[0]);
-    for (std::size_t i = 1; i < cells.size(); ++i) {
-      text += fmt::format(",{:.6g}", cells[i]);
-    }
-    text += "\n";
-  }
-  return text;
-}
-enum Column { time, winding, stator, ambient, current };
-
-std::vector<int> lines_of(const LeftOut* entry) {
-  std::vector<int> lines;
-  for (const LineRange& range : entry != nullptr ? entry->lines : std::vector<LineRange>{}) {
-    for (int line = range.first; line <= range.last; ++line) {
-      lines.push_back(line);
-    }
-  }
-  return lines;
-}
 
 class Resolution : public testing::TestWithParam<double> {};
 

@@ -78,6 +78,7 @@ TEST(ReadRecording, TimeOfTooFewDigitsIsRefused) {
 }
 
 TEST(ReadRecording, OtherSeparatorsUnitsAndNamesAreSaid) {
+  EXPECT_THAT(failure_of("log of 3 May\ntime_s,winding_C\n0,20\n"), HasSubstr("header_rows"));
   EXPECT_THAT(failure_of("time_s;winding_C\n0;20\n"), HasSubstr("this file seems to have ';'"));
   EXPECT_THAT(failure_of("time_s\twinding_C\n0\t20\n"), HasSubstr("separator = \"tab\""));
   RecordingReport report;
@@ -135,6 +136,7 @@ TEST(ReadRecording, FilesThatAreNoLogs) {
   EXPECT_THAT(failure_of(""), HasSubstr("is empty"));
   EXPECT_THAT(failure_of("time_s,winding_C\n"), HasSubstr("has a header but no rows"));
   EXPECT_THAT(failure_of("winding_C\n20\n"), HasSubstr("the header has one column only"));
+  EXPECT_THAT(failure_of("log of 3 May\ntime_s,winding_C\n0,20\n"), HasSubstr("header_rows"));
   EXPECT_THAT(failure_of("time_s;winding_C\n0;20\n"), HasSubstr("the header has one column only"));
   EXPECT_THAT(failure_of(std::string("time_s,winding_C\n0,\0\n", 21)), HasSubstr("binary file"));
   EXPECT_THAT(failure_of("time_s,winding_C\n0,20,1\n1,20,1\n"), HasSubstr("none of its 2 rows can be used; another number of cells"));

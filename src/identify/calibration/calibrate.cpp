@@ -15,6 +15,7 @@
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
 #include "identify/measurement/fingerprint.h"
+#include "identify/measurement/quality.h"
 #include "thermal/copper.h"
 
 namespace heatsoak {
@@ -312,6 +313,10 @@ class Calibrating {
     std::string why = "nothing can be learned about this motor from these logs";
     for (const OpenDirection& each : all_.open) {
       why += fmt::format("\n  open: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
+    }
+    // A current in kiloamperes, say, looks like none at all.
+    if (std::ranges::any_of(recordings_, [](const Recording& each) { return heat_input_of(each) != nullptr; })) {
+      why += "\n  or is a heat input in another unit (kiloamperes, kilowatts)? `heatsoak log inspect` shows each channel";
     }
     throw Failure(ExitCode::cannot_answer, why);
   }

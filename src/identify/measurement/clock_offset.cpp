@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "base/quantity.h"
 #include "base/unknown.h"
 #include "identify/measurement/noise.h"
 #include "identify/measurement/row_order.h"
+#include "thermal/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -105,6 +107,9 @@ class DelayScan {
     const double bridge_s = 10.0 * usual_period_s(time_s_);
     heat_ = relative_heat(heat_input);
     columns_.push_back(bridged(time_s_, temperature.values, bridge_s));
+    if (heat_input.quantity.unit == "A") {
+      heat_by_hot_copper();
+    }
     for (const Channel& other : recording.channels) {
       const bool is_other = &other != &temperature && other.quantity.kind == QuantityKind::temperature;
       if (is_other && std::ranges::count_if(other.values, [](double value) { return std::isnan(value); }) < std::ssize(other.values) / 10) {
@@ -115,6 +120,25 @@ class DelayScan {
     needed.insert(needed.end(), columns_.begin(), columns_.end());
     pieces_ = known_pieces(recording, needed);
   }
+
+  /// How much of the heat's changes fell into lost rows. Over these the row before is held, so that inputs seem late.
+  [[nodiscard]] double lost_changes_share() const {
+    constexpr double kLost_ratio = 1.5;
+    const double period_s = usual_period_s(time_s_);
+    double lost = 0.0;
+    double all = 0.0;
+    for (std::size_t row = 1; row < time_s_.size(); ++row) {
+      const double change = std::abs(heat_[row] - heat_[row - 1]);
+      if (!std::isnan(change)) {
+        all += change;
+        lost += time_s_[row] - time_s_[row - 1] > kLost_ratio * period_s ? change : 0.0;
+      }
+    }
+    return all > 0.0 ? lost / all : 0.0;
+  }
+
+  /// Where the heat goes that the temperature gives away.
+  [[nodiscard]] bool explains_flow() const { return columns_.size() > 1; }
 
   /// Windows of a length in which the temperature moves well beyond its noise, spread evenly.
   std::size_t place_windows(double noise_K, double reach_s) {
@@ -168,6 +192,13 @@ class DelayScan {
   }
 
  private:
+  /// Else a winding that gets hot makes its current look as if it came earlier than its heat.
+  void heat_by_hot_copper() {
+    for (std::size_t row = 0; row < heat_.size(); ++row) {
+      heat_[row] *= resistance_ratio(kCopper_per_K, columns_.front()[row]);
+    }
+  }
+
   [[nodiscard]] std::vector<Window> windows_of(double length_s, double reach_s) const {
     std::vector<Window> found;
     const std::size_t stride = time_s_.size() / kMostWindows + 1;
@@ -255,9 +286,11 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
     return offset;
   }
   const double mean_s = sum_s / kParts;
+  constexpr double kMany_share = 0.1;
+  const double held_too_long_s = scan.lost_changes_share() > kMany_share ? period_s : 0.0;
   // Jackknife; a step of the heat happens somewhere between two rows.
   const double by_parts_s = std::sqrt(std::max(0.0, (kParts - 1.0) * (sum_s2 / kParts - mean_s * mean_s)));
-  const double standard_error_s = std::hypot(by_parts_s, period_s / std::sqrt(12.0));
+  const double standard_error_s = std::hypot(by_parts_s, period_s / std::sqrt(12.0), held_too_long_s);
   if (standard_error_s > kTooWide_share * reach_s) {
     offset.why_not = fmt::format("parts of the log disagree by {} s", significant(standard_error_s, 2));
     return offset;
@@ -265,6 +298,22 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   offset.delay_s = *delay_s;
   offset.delay_uncertainty_s = standard_error_s;
   return offset;
+}
+
+/// Beyond chance and what means over rows can make. Only the winding answers at once, and only to its current (power does work, too);
+/// without another temperature beside it the heat that it gives away passes for an offset.
+bool is_sure(const ClockOffset& offset, double period_s) {
+  constexpr double kStandardErrors = 3.0;
+  constexpr double kLeast_s = 0.3;
+  constexpr double kLeast_rows = 0.2;
+  constexpr std::array<std::string_view, 2> kDirect{"current_A", "current_q_A"};
+  return offset.delay_s && offset.explains_flow && offset.temperature == "winding_C" &&
+         std::ranges::find(kDirect, offset.heat_input) != kDirect.end() &&
+         std::abs(*offset.delay_s) > std::max({kStandardErrors * offset.delay_uncertainty_s, kLeast_s, kLeast_rows * period_s});
+}
+
+std::string shown(const ClockOffset& offset) {
+  return fmt::format("{} s ± {} s", significant(std::abs(*offset.delay_s), 2), significant(offset.delay_uncertainty_s, 2));
 }
 
 }  // namespace
@@ -285,7 +334,31 @@ ClockOffset clock_offset(const Recording& recording, const Channel& temperature,
   }
   offset.temperature = temperature.quantity.key;
   offset.heat_input = heat_input.quantity.key;
+  offset.explains_flow = scan.explains_flow();
   return offset;
+}
+
+std::string early_answer(const ClockOffset& offset, double period_s) {
+  if (!is_sure(offset, period_s) || *offset.delay_s > 0.0) {
+    return {};
+  }
+  constexpr double kAboutOneRow = 0.3;
+  const bool is_one_row = std::abs(*offset.delay_s + period_s) < std::max(kAboutOneRow * period_s, offset.delay_uncertainty_s);
+  return fmt::format(
+      "{} answers {} before {} changes: the clock of one of them is off; in a mapping give {} and what was logged with it "
+      "clock_offset = \"{:.2g} s\"{}",
+      offset.temperature, shown(offset), offset.heat_input, offset.heat_input, *offset.delay_s,
+      is_one_row ? ", or inputs = \"previous_interval\" where a row's inputs speak of the time before it" : "");
+}
+
+std::string late_answer(const ClockOffset& offset, double period_s) {
+  if (!is_sure(offset, period_s) || *offset.delay_s < 0.0) {
+    return {};
+  }
+  return fmt::format(
+      "{} follows {} {} late: its sensor lags, or a clock is off (clock_offset of a mapping); figures fitted to the winding (heat "
+      "capacity, time constant, resistance to the stator) take it up, beyond what their intervals say",
+      offset.temperature, offset.heat_input, shown(offset));
 }
 
 }  // namespace heatsoak

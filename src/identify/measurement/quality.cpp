@@ -239,7 +239,7 @@ DataQuality Assessment::conclude(const RecordingReport& report, double ambient_C
       }
     }
   }
-  Suspicions suspected = suspicions(rows, quality_.channels, ambient_C);
+  Suspicions suspected = suspicions(rows, quality_, ambient_C);
   quality_.suspicions = std::move(suspected.all);
   quality_.spoiling = std::move(suspected.spoiling);
   quality_.spoiling_wheels = std::move(suspected.spoiling_wheels);

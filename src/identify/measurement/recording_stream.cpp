@@ -50,7 +50,7 @@ std::string other_separator(std::span<const std::string> header) {
                          mark == '\t' ? std::string("tabs") : fmt::format("'{}'", mark), name);
     }
   }
-  return " (a foreign log is read with --map)";
+  return " (a foreign log is read with --map; lines above its header are passed over by [file] header_rows and names_row of the mapping)";
 }
 
 /// Rows as the file has them.

@@ -9,6 +9,7 @@
 
 #include "base/unknown.h"
 #include "identify/measurement/noise.h"
+#include "identify/measurement/spread.h"
 
 namespace heatsoak {
 namespace {
@@ -126,6 +127,7 @@ bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Hab
 bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habits& habits) {
   constexpr double kFine_share = 0.2;
   constexpr std::size_t kPile_ratio = 5;
+  constexpr std::size_t kFewestOthers = 5;  // a coarse sensor that rests shows its neighbouring steps now and then
   if (habits.repeats_share > kFine_share) {
     return false;
   }
@@ -153,7 +155,7 @@ bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habi
       }
     }
   }
-  return there > kPile_ratio * elsewhere;
+  return counts.size() >= kFewestOthers && there > kPile_ratio * elsewhere;
 }
 
 /// Neither five equal neighbours nor ten samples at an end of the range: nothing below could be found. Most long logs end here.
@@ -293,6 +295,46 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
   }
 }
 
+/// 0: nothing of such a channel is too large by itself.
+double largest_of_any_motor(const Quantity& quantity) {
+  if (quantity.kind != QuantityKind::heat_input) {
+    return 0.0;
+  }
+  return quantity.unit == "A" ? kLargestCurrent_A : quantity.unit == "rad/s" ? kFastest_rad_per_s : 0.0;
+}
+
+/// One wild sample among the squares of a current would pass for all the heat. Many of them are rather a unit.
+void leave_out_wild_inputs(Recording& part, Channel& channel, const Reported& reported) {
+  const double largest = largest_of_any_motor(channel.quantity);
+  if (!(largest > 0.0)) {
+    return;
+  }
+  constexpr std::size_t kFew = 3;
+  constexpr std::size_t kFew_rows = 1000;  // one of so many
+  constexpr double kFar_ratio = 10.0;
+  const std::span<const double> values = channel.values;
+  std::vector<std::size_t> wild;
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    const double size = std::abs(values[row]);
+    if (!(size > largest)) {
+      continue;
+    }
+    const std::size_t first = row - std::min(row, kWindow / 2);
+    const std::size_t last = std::min(values.size(), row + kWindow / 2 + 1);
+    std::array<double, kWindow> near{};
+    const auto end = std::transform(values.begin() + static_cast<std::ptrdiff_t>(first), values.begin() + static_cast<std::ptrdiff_t>(last),
+                                    near.begin(), [](double value) { return std::abs(value); });
+    if (size > kFar_ratio * middle_of(std::span(near.begin(), end))) {
+      wild.push_back(row);
+    }
+  }
+  if (wild.size() <= std::max(kFew, values.size() / kFew_rows)) {
+    for (const std::size_t row : wild) {
+      reported.leave_out(part, channel, row, LeftOutReason::outlier);
+    }
+  }
+}
+
 }  // namespace
 
 void Screening::leave_out_bad_samples(Recording& part, std::size_t first, std::size_t last, RecordingReport& report) {
@@ -306,6 +348,7 @@ void Screening::leave_out_bad_samples(Recording& part, std::size_t first, std::s
       leave_out_stretches(part, channel, noise, past_[c].low, past_[c].high, past_[c].value, reported);
       leave_out_outliers(part, channel, noise, reported);
     }
+    leave_out_wild_inputs(part, channel, reported);
   }
 }
 

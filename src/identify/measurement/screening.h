@@ -1,4 +1,4 @@
-// Samples of temperatures that no sensor in order can give: frozen, saturated, outliers.
+// Samples that no sensor in order can give: temperatures frozen, saturated, outliers, and wild heat inputs.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@
 
 namespace heatsoak {
 
-/// Makes them NaN and reports them by line. Heat inputs and other signals may rightly jump and rest: they stay as they are.
+/// Makes them NaN and reports them by line. Heat inputs and other signals may rightly jump and rest: they stay as they are, but for a
+/// few currents and speeds that no motor reaches, far beyond their neighbours (outliers).
 /// - frozen: exactly one value for longer than the channel's noise allows, until an isolated jump frees it or for good after
 ///   a slope. A still sensor whose temperature is still too gives no false value and stays.
 /// - saturated: a climb that stops dead at the largest or smallest value, or noise cut off there.

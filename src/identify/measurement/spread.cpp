@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <vector>
 
 #include "base/unknown.h"
@@ -9,11 +10,12 @@
 namespace heatsoak {
 namespace {
 
-std::vector<double> first_samples(const Channel& channel) {
+/// The first five that are there; of a reversed view the last.
+std::vector<double> first_samples(auto&& values) {
   std::vector<double> first;
-  for (std::size_t i = 0; i < channel.values.size() && first.size() < 5; ++i) {
-    if (!std::isnan(channel.values[i])) {
-      first.push_back(channel.values[i]);
+  for (const double value : values) {
+    if (!std::isnan(value) && first.size() < 5) {
+      first.push_back(value);
     }
   }
   return first;
@@ -39,11 +41,19 @@ double percentile(std::span<const double> values, double share) {
 
 double middle_of(std::span<const double> values) { return percentile(values, 0.5); }
 
+double top_of_sizes(std::span<const double> values) {
+  std::vector<double> sizes(values.size());
+  std::ranges::transform(values, sizes.begin(), [](double value) { return std::abs(value); });
+  return percentile(sizes, 0.98);
+}
+
 double swing(const Channel& channel) { return percentile(channel.values, 0.98) - percentile(channel.values, 0.02); }
 
-double at_start(const Channel& channel) { return middle_of(first_samples(channel)); }
+double at_start(const Channel& channel) { return middle_of(first_samples(channel.values)); }
 
-double coolest_at_start(const Channel& channel) { return percentile(first_samples(channel), 0.0); }
+double at_end(const Channel& channel) { return middle_of(first_samples(std::views::reverse(channel.values))); }
+
+double coolest_at_start(const Channel& channel) { return percentile(first_samples(channel.values), 0.0); }
 
 Regression regress(std::span<const double> x, std::span<const double> y) {
   const auto count = static_cast<double>(x.size());

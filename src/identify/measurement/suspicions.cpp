@@ -7,8 +7,11 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "base/quantity.h"
+#include "identify/measurement/clock_offset.h"
 #include "identify/measurement/row_order.h"
 #include "identify/measurement/sensor_places.h"
 #include "identify/measurement/spread.h"
@@ -19,14 +22,15 @@ namespace {
 
 class Suspector {
  public:
-  Suspector(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C)
-      : recording_(recording), channels_(channels), ambient_C_(ambient_C) {}
+  Suspector(const Recording& recording, const DataQuality& told, double ambient_C)
+      : recording_(recording), told_(told), channels_(told.channels), ambient_C_(ambient_C) {}
 
   Suspicions run() {
     found_ = suspicious_scales(recording_, ambient_C_);
     std::ranges::move(suspicious_places(recording_, channels_), std::back_inserter(found_));
     currents();
     speeds();
+    early_answers();
     const std::size_t of_motors = found_.size();
     clock();
     std::vector<std::string> spoiling = found_;
@@ -46,16 +50,10 @@ class Suspector {
   }
 
   void currents() {
-    constexpr double kLargestCurrent_A = 300.0;
     for (const char* key : {"current_A", "current_q_A", "bus_A"}) {
       const Channel* const current = recording_.find(key);
-      const ChannelQuality* const range = quality(key);
-      if (current == nullptr) {
-        continue;
-      }
-      if (std::max(std::abs(range->high), std::abs(range->low)) > kLargestCurrent_A) {
-        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key,
-                                     significant(std::max(std::abs(range->high), std::abs(range->low)), 3)));
+      if (const double top_A = current != nullptr ? top_of_sizes(current->values) : 0.0; top_A > kLargestCurrent_A) {
+        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, significant(top_A, 3)));
       }
     }
     const Channel* const power = recording_.find("power_in_W");
@@ -98,9 +96,8 @@ class Suspector {
 
   void speeds() {
     constexpr double kRpm = 30.0 / std::numbers::pi;
-    constexpr double kFastest_rad_per_s = 4000.0;  // 38 000 rpm
-    for (const ChannelQuality& channel : channels_) {
-      const double fastest = std::max(std::abs(channel.low), std::abs(channel.high));
+    for (const Channel& channel : recording_.channels) {
+      const double fastest = top_of_sizes(channel.values);
       if (channel.quantity.unit == "rad/s" && channel.quantity.key.find("speed") != std::string::npos && fastest > kFastest_rad_per_s) {
         found_.push_back(fmt::format("{} reaches {} rad/s: is it in rpm ({} rad/s) or degrees per second ({} rad/s)?", channel.quantity.key,
                                      significant(fastest, 4), significant(fastest / kRpm, 3),
@@ -148,12 +145,9 @@ class Suspector {
     if (has_wheels && period_s > kLongestPeriod_s && recording_.time_s.back() - recording_.time_s.front() <= kLongest_s) {
       found_.push_back(fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?", significant(period_s, 3)));
     }
-    constexpr double kLargestCurrent_A = 300.0;
     for (const Channel& channel : recording_.channels) {
       const std::string& key = channel.quantity.key;
-      std::vector<double> sizes(channel.values.size());
-      std::ranges::transform(channel.values, sizes.begin(), [](double value) { return std::abs(value); });
-      const double top = percentile(sizes, 0.98);
+      const double top = top_of_sizes(channel.values);
       if (key.starts_with("wheel_pwm_ratio") && top > 1.5) {
         found_.push_back(fmt::format("{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage", key,
                                      significant(top, 3)));
@@ -172,6 +166,15 @@ class Suspector {
       found_.push_back(fmt::format("the log lasts {} days at {} s per row: is the time in {}?", significant(in_days, 3),
                                    significant(usual_period_s(recording_.time_s), 3),
                                    duration_s > 1e3 * kLongest_s ? "microseconds" : "milliseconds"));
+    }
+  }
+
+  /// Nothing gets warm before its heat.
+  void early_answers() {
+    for (const ClockOffset& offset : told_.clock_offsets) {
+      if (std::string early = early_answer(offset, told_.sampling.usual_period_s); !early.empty()) {
+        found_.push_back(std::move(early));
+      }
     }
   }
 
@@ -264,6 +267,7 @@ class Suspector {
   static constexpr double kLongest_s = 2.0 * 86400.0;
 
   const Recording& recording_;
+  const DataQuality& told_;
   std::span<const ChannelQuality> channels_;
   double ambient_C_;
   std::vector<std::string> found_;
@@ -271,8 +275,8 @@ class Suspector {
 
 }  // namespace
 
-Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C) {
-  return Suspector(recording, channels, ambient_C).run();
+Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C) {
+  return Suspector(recording, told, ambient_C).run();
 }
 
 }  // namespace heatsoak

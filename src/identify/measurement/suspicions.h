@@ -1,7 +1,6 @@
 // What looks like a wrong unit, a wrong sign or swapped channels. Said to the user, never acted on.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,7 @@ struct Suspicions {
   std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
   std::vector<std::string> spoiling_wheels;  ///< of them: the same of a robot's wheels and angles, and of the clock
 };
-/// `ambient_C`: of the air as the user states it, NaN where not.
-Suspicions suspicions(const Recording& recording, std::span<const ChannelQuality> channels, double ambient_C);
+/// Of what is told of sampling, channels and clocks. `ambient_C`: of the air as the user states it, NaN where not.
+Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C);
 
 }  // namespace heatsoak

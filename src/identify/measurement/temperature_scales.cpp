@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "base/quantity.h"
+#include "base/unknown.h"
 #include "identify/measurement/spread.h"
 
 namespace heatsoak {
@@ -22,6 +25,57 @@ double from_fahrenheit_C(double value) { return (value - 32.0) / 1.8; }
 double from_tenths_C(double value) { return 0.1 * value; }
 bool is_of_a_room(double value_C) { return value_C > 12.0 && value_C < 40.0; }
 
+/// Beyond this share of the usual, an input heats.
+constexpr double kHeats_share = 0.01;
+
+/// What does not heat leaves them at 0.
+bool is_watts(const Channel& channel) {
+  return channel.quantity.kind == QuantityKind::heat_input && channel.quantity.unit != "V" && !channel.quantity.unit.empty();
+}
+
+/// The first row after which no heat goes in until the end; the number of rows where it is not known.
+std::size_t heat_ends(const Recording& recording) {
+  std::size_t after = recording.run_begins.empty() ? 0 : recording.run_begins.back();
+  bool is_logged = false;
+  for (const Channel& channel : recording.channels) {
+    if (!is_watts(channel)) {
+      continue;
+    }
+    is_logged = true;
+    const double least = kHeats_share * top_of_sizes(channel.values);
+    // What came after the last row, nobody logged.
+    for (std::size_t row = after; row + 1 < recording.rows(); ++row) {
+      after = std::isnan(channel.values[row]) || std::abs(channel.values[row]) > least ? row + 1 : after;
+    }
+  }
+  return is_logged ? after : recording.rows();
+}
+
+/// Where an even decay from `first` to the log's end comes to rest, by the law of three moments of equal distance; unknown where it is
+/// no decay, or far from its end.
+double rests_at(const Recording& recording, const Channel& channel, std::size_t first) {
+  constexpr std::size_t kFewestRows = 40;
+  constexpr double kFall_K = 3.0;
+  constexpr double kDecay_ratio = 0.72;
+  if (recording.rows() < first + kFewestRows) {
+    return kUnknown;
+  }
+  const double begin_s = recording.time_s[first];
+  const double third_s = (recording.time_s.back() - begin_s) / 3.0;
+  std::array<double, 3> at{};
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    // The middles of stretches of a tenth, the last of which ends with the log.
+    const double middle_s = begin_s + (static_cast<double>(k) + 0.85) * third_s;
+    const auto from = std::ranges::lower_bound(recording.time_s, middle_s - 0.15 * third_s) - recording.time_s.begin();
+    const auto to = std::ranges::upper_bound(recording.time_s, middle_s + 0.15 * third_s) - recording.time_s.begin();
+    at[k] = middle_of(std::span(channel.values).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)));
+  }
+  const double early_K = at[0] - at[1];
+  const double late_K = at[1] - at[2];
+  const bool decays = at[0] - at[2] > kFall_K && late_K > 0.0 && late_K < kDecay_ratio * early_K;
+  return decays ? at[2] - late_K * late_K / (early_K - late_K) : kUnknown;
+}
+
 /// A motor that starts at the temperature of the room never falls below it, one that starts warm does; in steps of `degree`.
 bool never_falls(const Channel& channel, double degree) {
   return percentile(channel.values, 0.02) > coolest_at_start(channel) - kFalls_K * degree;
@@ -29,7 +83,8 @@ bool never_falls(const Channel& channel, double degree) {
 
 class Scales {
  public:
-  Scales(const Recording& recording, double ambient_C) : ambient_(recording.find("ambient_C")), stated_C_(ambient_C) {
+  Scales(const Recording& recording, double ambient_C)
+      : recording_(recording), ambient_(recording.find("ambient_C")), stated_C_(ambient_C) {
     for (const Channel& channel : recording.channels) {
       if (channel.quantity.kind == QuantityKind::temperature) {
         sensors_.push_back(&channel);
@@ -61,6 +116,7 @@ class Scales {
     }
     if (!is_told_) {
       motor_in_fahrenheit();
+      cooling_in_fahrenheit();
     }
     return std::move(found_);
   }
@@ -130,12 +186,35 @@ class Scales {
              std::abs(from_fahrenheit_C(start) - room_C) < kAlike_K && never_falls(*sensor, 1.8);
     });
     if (all) {
+      is_told_ = true;
       found_.push_back(fmt::format(
           "{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
           sensors_.front()->quantity.key, significant(first, 3), significant(room_C, 3), significant(from_fahrenheit_C(first), 3)));
     }
   }
 
+  /// Without heat a motor comes to rest at the air's temperature; in degrees Fahrenheit far above it.
+  void cooling_in_fahrenheit() {
+    const double room_C = ambient_ != nullptr ? middle_of(ambient_->values) : stated_C_;
+    if (std::isnan(room_C) || sensors_.empty() || is_told_) {
+      return;
+    }
+    constexpr double kFlat_share = 0.4;
+    const std::size_t first = heat_ends(recording_);
+    const bool all = std::ranges::all_of(sensors_, [&](const Channel* sensor) {
+      const double rest = rests_at(recording_, *sensor, first);
+      return rest - room_C > kApart_K && at_end(*sensor) - rest < kFlat_share * (rest - room_C) &&
+             std::abs(from_fahrenheit_C(rest) - room_C) < kAlike_K;
+    });
+    if (all) {
+      const double rest = rests_at(recording_, *sensors_.front(), first);
+      found_.push_back(fmt::format(
+          "{} comes to rest at {} °C without heat, in air of {} °C: are the motor's temperatures in degrees Fahrenheit ({} °C)?",
+          sensors_.front()->quantity.key, significant(rest, 3), significant(room_C, 3), significant(from_fahrenheit_C(rest), 3)));
+    }
+  }
+
+  const Recording& recording_;
   const Channel* ambient_;
   double stated_C_;
   bool is_told_ = false;                  ///< that a sensor of the motor looks like degrees Fahrenheit

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
 #include <algorithm>
@@ -75,8 +76,8 @@ std::string text_of(const Motor& motor, const Calibration& result) {
     for (const OpenDirection& each : result.open) {
       text += fmt::format("  {}\n    {}\n    would settle it: {}\n", each.what, each.why, each.experiment);
     }
-    text += fmt::format("next experiment: {}\n", result.next_experiment);
   }
+  text += result.next_experiment.empty() ? "" : fmt::format("next experiment: {}\n", result.next_experiment);
   for (const std::string& note : result.notes) {
     text += fmt::format("note: {}\n", note);
   }
@@ -139,6 +140,14 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
           {"model", out}};
 }
 
+/// What the logs themselves ask for comes first.
+void tell_next_steps(std::vector<std::string> steps, std::string& next_experiment) {
+  if (!next_experiment.empty()) {
+    steps.push_back(next_experiment);
+  }
+  next_experiment = fmt::format("{}", fmt::join(steps, "; then: "));
+}
+
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.motor);
   std::vector<std::string> notes;
@@ -148,8 +157,10 @@ ExitCode run(const Options& options, Session& session) {
   if (!options.how.takes_logs_as_they_are) {
     refuse_runs_of_the_file(motor, logs, holdout);
   }
-  std::ranges::move(admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C), std::back_inserter(notes));
+  Admission admission = admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C);
+  std::ranges::move(admission.notes, std::back_inserter(notes));
   Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C});
+  tell_next_steps(admission.next_steps, result.next_experiment);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
   if (!options.plot.empty()) {

@@ -79,7 +79,8 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<Recording> train = read_logs(session.folders(), options.train, options.logs, notes);
   std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.logs, notes);
   tell_apart(train, holdout);
-  std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C), std::back_inserter(notes));
+  std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C).notes,
+                    std::back_inserter(notes));
   ModelOfLogs model = model_of_logs(motor, train);
   notes.insert(notes.end(), model.notes.begin(), model.notes.end());
   MeasuredRunOptions how = model.how;
