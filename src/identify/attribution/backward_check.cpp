@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/quantity.h"
+#include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 
 namespace heatsoak {
@@ -30,7 +32,7 @@ class BackwardCheck {
       : out_(selection), input_(input), rules_(rules), options_(std::move(options)) {}
 
   void run() {
-    while (drops_superfluous() || drops_invisible()) {
+    while (drops_superfluous() || drops_negligible() || drops_invisible()) {
       has_dropped_ = true;
     }
   }
@@ -39,7 +41,7 @@ class BackwardCheck {
   /// False where none is.
   bool drops_superfluous() {
     for (std::size_t i = out_.terms.size(); i-- > 0;) {
-      if (i + 1 == out_.terms.size() && !has_dropped_) {
+      if (i + 1 == out_.terms.size() && !has_dropped_ && !out_.terms[i].is_of_set) {
         // Without the last one the model is what it was a round before.
         out_.terms[i].loss_without_nats = out_.terms[i].gain_nats;
         continue;
@@ -50,6 +52,26 @@ class BackwardCheck {
       const auto dropped = static_cast<double>(std::ranges::count(stays, false));
       if (out_.terms[i].loss_without_nats < dropped * rules_.least_gain_nats) {
         keep(stays, std::move(without));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Heat that nobody would miss: every law is a little wrong, and perfect data see that.
+  bool drops_negligible() {
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      const AcceptedTerm& term = out_.terms[i];
+      if (!term.candidate || !term.candidate->type) {
+        continue;
+      }
+      const HeatOfEffect heat = heat_of(
+          out_.after, input_.runs, [&](const EffectInPlace& each) { return each.name == term.effect_name; }, term.candidate->condition);
+      if (heat.mean_W < rules_.least_heat_share * out_.mean_heat_W && heat.peak_W < rules_.least_peak_share * out_.mean_heat_W) {
+        out_.refuse(term.candidate->id, term.loss_without_nats,
+                    fmt::format("it is {} W of {} W only", significant(heat.mean_W, 1), significant(out_.mean_heat_W, 2)));
+        const std::vector<bool> stays = all_but(i);
+        keep(stays, refit_with(stays));
         return true;
       }
     }

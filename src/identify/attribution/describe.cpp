@@ -36,8 +36,8 @@ std::string effect_in_words(const FoundEffect& effect) {
   std::string text = fmt::format("Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
   for (const FittedParameter& parameter : effect.parameters) {
     if (parameter.low < parameter.high) {
-      text += fmt::format("; {} {:.3g} {} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit, parameter.low,
-                          parameter.high);
+      text += fmt::format("; {} {:.3g}{}{} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
+                          parameter.unit, parameter.low, parameter.high);
       break;
     }
     if (parameter.is_at_bound) {
@@ -123,13 +123,22 @@ std::string changed_in_words(const ChangedFigure& figure) {
       is_beyond_scale ? fmt::format(" (95 %: {:.3g} to {:.3g})", figure.low, figure.high) : std::string(), figure.gain_nats);
 }
 
+/// Conductances count what flows out, sources what comes in.
+bool is_leaving(const Unexplained& heat) {
+  const double largest = std::ranges::max(heat.curve, {}, [](double value) { return std::abs(value); });
+  return heat.curve_unit == "W/K" ? largest > 0.0 : largest < 0.0;
+}
+
 std::string unexplained_in_words(const Unexplained& heat) {
   if (heat.drivers.empty()) {
     return fmt::format("Unexplained: {} W rms into the {} that come and go within {:.0f} s; no measured signal follows them.",
                        significant(heat.rms_W, 2), heat.node, heat.time_scale_s);
   }
-  return fmt::format("Unnamed: heat at the {} that follows {}, {} W on average, up to {} W.", heat.node, fmt::join(heat.drivers, " or "),
-                     significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
+  const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == kTimeDriver;
+  const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);
+  return (goes_by_clock ? fmt::format("Unexplained: heat {} that no measured signal explains; it goes by the time since a run began", where)
+                        : fmt::format("Unnamed: heat {} that follows {}", where, fmt::join(heat.drivers, " or "))) +
+         fmt::format(", {} W on average, up to {} W.", significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
          (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
          (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
 }

@@ -10,11 +10,6 @@
 namespace heatsoak {
 namespace {
 
-struct HeatOfEffect {
-  double mean_W = 0.0;
-  double peak_W = 0.0;
-};
-
 class EffectTeller {
  public:
   EffectTeller(const Selection& selection, const std::vector<MeasuredRun>& runs) : selection_(selection), runs_(runs) {}
@@ -50,7 +45,8 @@ class EffectTeller {
       effect.is_from_catalogue = !effect.condition.empty();
     }
     tell_parameters(in_place, effect);
-    const HeatOfEffect heat = heat_of([&](const EffectInPlace& each) { return &each == &in_place; }, effect.condition);
+    const HeatOfEffect heat = heat_of(
+        after(), runs_, [&](const EffectInPlace& each) { return &each == &in_place; }, effect.condition);
     effect.mean_W = heat.mean_W;
     effect.peak_W = heat.peak_W;
     return effect;
@@ -91,7 +87,8 @@ class EffectTeller {
     effect.parameters.push_back(
         {std::string(candidate.size_spec().key), "", value, std::max(value - kInterval_sd * sd, -1.0), value + kInterval_sd * sd});
     effect.p_value = p_of(value, sd);
-    const HeatOfEffect heat = heat_of([](const EffectInPlace& in_place) { return is_heat_input(*in_place.type); }, candidate.condition);
+    const HeatOfEffect heat = heat_of(
+        after(), runs_, [](const EffectInPlace& in_place) { return is_heat_input(*in_place.type); }, candidate.condition);
     const double share = std::abs(value) / std::max(0.01, 1.0 + value);
     effect.mean_W = share * heat.mean_W;
     effect.peak_W = share * heat.peak_W;
@@ -136,44 +133,6 @@ class EffectTeller {
       }
       effect.parameters.push_back(std::move(parameter));
     }
-  }
-
-  /// Into the first node of the effects that `counts` says, in runs of the condition.
-  template <class Counts>
-  [[nodiscard]] HeatOfEffect heat_of(const Counts& counts, const std::map<std::string, std::string>& condition) const {
-    const auto nodes = static_cast<std::size_t>(after().model.model.network.node_count());
-    std::vector<std::size_t> places;
-    for (const EffectInPlace& in_place : after().model.model.network.effects()) {
-      if (counts(in_place)) {
-        const auto effect = static_cast<std::size_t>(&in_place - after().model.model.network.effects().data());
-        places.push_back(effect * nodes + static_cast<std::size_t>(in_place.node_index.front()));
-      }
-    }
-    std::vector<double> magnitude_W;
-    HeatOfEffect out;
-    double time_s = 0.0;
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
-      const MeasuredRun& run = runs_[r];
-      if (!has_condition(run, condition)) {
-        continue;
-      }
-      heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
-        const double duration_s = run.time_s[k + 1] - run.time_s[k];
-        magnitude_W.push_back(0.0);
-        for (const std::size_t place : places) {
-          magnitude_W.back() += std::abs(heat_W[place]);
-        }
-        out.mean_W += duration_s * magnitude_W.back();
-        time_s += duration_s;
-      });
-    }
-    if (!magnitude_W.empty()) {
-      out.mean_W /= time_s;
-      const auto peak = magnitude_W.begin() + static_cast<std::ptrdiff_t>(magnitude_W.size() * 99 / 100);
-      std::nth_element(magnitude_W.begin(), peak, magnitude_W.end());
-      out.peak_W = *peak;
-    }
-    return out;
   }
 
   [[nodiscard]] const RefitResult& after() const { return selection_.after; }

@@ -46,4 +46,41 @@ void heat_along(const RefitResult& fit, const MeasuredRun& run, const Linearised
   }
 }
 
+HeatOfEffect heat_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const std::function<bool(const EffectInPlace&)>& counts,
+                     const Condition& condition) {
+  const Network& network = fit.model.model.network;
+  const auto nodes = static_cast<std::size_t>(network.node_count());
+  std::vector<std::size_t> places;
+  for (std::size_t effect = 0; effect < network.effects().size(); ++effect) {
+    if (const EffectInPlace& in_place = network.effects()[effect]; counts(in_place)) {
+      places.push_back(effect * nodes + static_cast<std::size_t>(in_place.node_index.front()));
+    }
+  }
+  std::vector<double> magnitude_W;
+  HeatOfEffect out;
+  double time_s = 0.0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const MeasuredRun& run = runs[r];
+    if (!has_condition(run, condition)) {
+      continue;
+    }
+    heat_along(fit, run, fit.fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
+      const double duration_s = run.time_s[k + 1] - run.time_s[k];
+      magnitude_W.push_back(0.0);
+      for (const std::size_t place : places) {
+        magnitude_W.back() += std::abs(heat_W[place]);
+      }
+      out.mean_W += duration_s * magnitude_W.back();
+      time_s += duration_s;
+    });
+  }
+  if (!magnitude_W.empty()) {
+    out.mean_W /= time_s;
+    const auto peak = magnitude_W.begin() + static_cast<std::ptrdiff_t>(magnitude_W.size() * 99 / 100);
+    std::nth_element(magnitude_W.begin(), peak, magnitude_W.end());
+    out.peak_W = *peak;
+  }
+  return out;
+}
+
 }  // namespace heatsoak

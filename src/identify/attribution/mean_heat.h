@@ -19,4 +19,12 @@ using HeatVisit = std::function<void(std::size_t interval, std::span<const doubl
 /// Visits the intervals of a run along the path that a fit has taken.
 void heat_along(const RefitResult& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit);
 
+struct HeatOfEffect {
+  double mean_W = 0.0;
+  double peak_W = 0.0;  ///< 99 % of the samples have less
+};
+/// Size of the heat into the first node of those effects of the fitted network that `counts` says, in runs of the condition.
+HeatOfEffect heat_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const std::function<bool(const EffectInPlace&)>& counts,
+                     const Condition& condition);
+
 }  // namespace heatsoak

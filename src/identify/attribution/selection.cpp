@@ -188,7 +188,7 @@ class Selector {
       JudgedCandidate judged;
       judged.candidate = candidates[static_cast<std::size_t>(j)];
       judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
-      judged.visibility_ratio = table.visibility_ratio(base.candidates, best.place, j);
+      judged.visibility_ratio = table.visibility_ratio(base.candidates, base.place, j);
       judged.size_share = best.coefficient[table.free_count()];
       judged.place = best.place;
       judged.step = best.coefficient.head(table.free_count());
@@ -414,6 +414,7 @@ class Selector {
       term.effect_name = term.candidate->type ? (name++)->name : std::string();
       term.gain_nats = (best->evidence_nats - out_.after.evidence_nats) / static_cast<double>(chosen.size());
       term.visibility_ratio = table.visibility_ratio(base.candidates, base.place, chosen[i]);
+      term.is_of_set = chosen.size() > 1;
       sets.tell_rivals(chosen, i, term);
       out_.terms.push_back(std::move(term));
     }

@@ -28,6 +28,8 @@ struct SelectionRules {
   double beside_curve_share = 0.05;   ///< of a curve's evidence: less than that beside it is what seven knots leave of its shape
   double least_visibility_ratio = 0.02;
   double unmistakable_nats = 20.0;  ///< over the model without it and doubt in all figures: then it stays though little of it is visible
+  double least_heat_share = 0.005;  ///< of the heat that the model knows: an effect of less on average, and of less than
+  double least_peak_share = 0.02;   ///< that at its peak, is not named
   int refitted = 6;
   int most_terms = 4;
 };
@@ -60,6 +62,7 @@ struct AcceptedTerm {
   double gain_nats = 0.0;              ///< when it was taken in
   double loss_without_nats = 0.0;      ///< of the final model, were it dropped
   double visibility_ratio = 0.0;
+  bool is_of_set = false;                    ///< taken in together with others, none of them without the rest
   std::vector<std::string> confusable_with;  ///< ids within the ambiguity
   std::vector<std::string> experiments;      ///< that would tell them apart
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <string_view>
 
 #include "base/quantity.h"
@@ -201,11 +202,13 @@ class DelayScan {
 
   [[nodiscard]] std::vector<Window> windows_of(double length_s, double reach_s) const {
     std::vector<Window> found;
-    const std::size_t stride = time_s_.size() / kMostWindows + 1;
+    // Uneven steps: even ones would see a load that repeats at a few of its phases only.
+    const std::size_t longest_stride = 2 * (time_s_.size() / kMostWindows) + 1;
+    std::minstd_rand steps;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
       const auto& [begin, end] = pieces_[p];
       std::size_t to = begin;
-      for (std::size_t from = begin; from < end; from += stride) {
+      for (std::size_t from = begin; from < end; from += 1 + steps() % longest_stride) {
         while (to + 1 < end && time_s_[to] - time_s_[from] < length_s) {
           ++to;
         }
