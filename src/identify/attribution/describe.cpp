@@ -71,7 +71,7 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
     text += " The error on runs the fit never saw grows: do not rely on the new model there.";
   }
   const double fitted_before_K = rms_K(diagnosis.before_train);
-  if (diagnosis.effects.empty() && fitted_before_K < train_K - kMatters_K && fitted_before_K * kWorse_ratio < train_K) {
+  if (fitted_before_K < train_K - kMatters_K && fitted_before_K * kWorse_ratio < train_K) {
     text += " The error on the training runs grows: keep the model's own figures.";
   }
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {

@@ -22,7 +22,8 @@ namespace {
 /// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
 constexpr double kMuchUnknown_share = 0.05;
 
-/// How much the free-running error on the training runs may grow: by a curve, and by the mean over what is probable of unknown heat.
+/// How much the free-running error on the training runs may grow: by a curve or a changed figure, and by the mean over what is probable of
+/// unknown heat.
 constexpr double kMostWorse_ratio = 1.1;
 constexpr double kMostMoved_ratio = 1.5;
 
@@ -233,7 +234,7 @@ class Selector {
     options.place = base.place;
     RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options);
     figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-    if (figure->gain_nats < least_nats) {
+    if (figure->gain_nats < least_nats || leads_away(fit.model, kMostWorse_ratio)) {
       return false;
     }
     out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
