@@ -18,7 +18,7 @@ using ::testing::IsEmpty;
 TEST(Screening, CoarseSensorAtRestKeepsItsNeighbouringSteps) {
   for (const double step_K : {1.0, -1.0}) {
     for (const int steps : {1, 2}) {
-      const Read result = read(changed({}, [=](int row, std::vector<double>& cells) {
+      const Read result = read_text(changed({}, [=](int row, std::vector<double>& cells) {
         cells[ambient] = 21.0 + (row % 500 == 250 ? step_K : row % 700 == 350 ? steps * step_K : 0.0);
       }));
       EXPECT_TRUE(result.report.left_out.empty()) << step_K << " K";
@@ -28,7 +28,7 @@ TEST(Screening, CoarseSensorAtRestKeepsItsNeighbouringSteps) {
 }
 
 TEST(Screening, SingleWildCurrentIsLeftOutByLine) {
-  const Read result = read(changed({}, [](int row, std::vector<double>& cells) { cells[current] = row == 700 ? 1e9 : cells[current]; }));
+  const Read result = read_text(changed({}, [](int row, std::vector<double>& cells) { cells[current] = row == 700 ? 1e9 : cells[current]; }));
   EXPECT_THAT(lines_of(result.report.find("current_A", LeftOutReason::outlier)), ElementsAre(702));
   EXPECT_TRUE(std::isnan(result.recording.find("current_A")->values[700]));
   EXPECT_THAT(result.quality.suspicions, IsEmpty());
@@ -46,7 +46,7 @@ SyntheticLog unsteady(double delay_s) {
 
 TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
   for (const auto& [delay_s, remedy] : {std::pair(-1.0, "inputs = \"previous_interval\""), std::pair(-4.0, "clock_offset = \"-")}) {
-    const Read result = read(unsteady(delay_s).csv());
+    const Read result = read_text(unsteady(delay_s).csv());
     EXPECT_THAT(result.quality.spoiling, ElementsAre(testing::AllOf(HasSubstr("winding_C answers"), HasSubstr(remedy)))) << delay_s;
     EXPECT_THAT(result.quality.suspicions, result.quality.spoiling);
   }
@@ -54,7 +54,7 @@ TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
 
 TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
   for (const double delay_s : {0.0, 3.0}) {
-    const Read result = read(unsteady(delay_s).csv());
+    const Read result = read_text(unsteady(delay_s).csv());
     EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "sensors lag";
     const Admission admission = admit(shipped_motor("maxon_ec45_flat_70w_24v"), std::vector{result.recording}, {}, false);
     if (delay_s > 0.0) {
@@ -96,8 +96,8 @@ std::string cooling(double heated_s, int from_s, bool is_fahrenheit) {
 TEST(Suspicion, FahrenheitByWhereACoolingMotorComesToRest) {
   for (const auto& [heated_s, from_s] :
        {std::pair(300.0, 310), std::pair(1500.0, 1500), std::pair(1500.0, 1000), std::pair(1500.0, 1600)}) {
-    EXPECT_THAT(read(cooling(heated_s, from_s, true)).quality.spoiling, ElementsAre(HasSubstr("degrees Fahrenheit"))) << from_s;
-    EXPECT_THAT(read(cooling(heated_s, from_s, false)).quality.suspicions, IsEmpty()) << from_s;
+    EXPECT_THAT(read_text(cooling(heated_s, from_s, true)).quality.spoiling, ElementsAre(HasSubstr("degrees Fahrenheit"))) << from_s;
+    EXPECT_THAT(read_text(cooling(heated_s, from_s, false)).quality.suspicions, IsEmpty()) << from_s;
   }
 }
 

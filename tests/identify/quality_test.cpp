@@ -24,7 +24,7 @@ TEST_P(Resolution, SoundLogKeepsItsSamplesAndRaisesNoSuspicion) {
     SyntheticLog log;
     log.seed = seed;
     log.step_K = GetParam();
-    const Read result = read(log.csv());
+    const Read result = read_text(log.csv());
     std::size_t left_out = 0;
     for (const auto& [what, entry] : result.report.left_out) {
       left_out += entry.count;
@@ -74,7 +74,7 @@ TEST(Noise, ResolutionAmongBadSamples) {
 }
 
 TEST(Screening, PlantedOutliersAreFoundByLine) {
-  const Read result = read(changed({}, [](int row, std::vector<double>& cells) {
+  const Read result = read_text(changed({}, [](int row, std::vector<double>& cells) {
     cells[winding] += row == 400 ? 5.0 : row == 880 || row == 881 ? -6.0 : 0.0;
   }));
   const std::vector<int> lines = lines_of(result.report.find("winding_C", LeftOutReason::outlier));
@@ -85,7 +85,7 @@ TEST(Screening, PlantedOutliersAreFoundByLine) {
 
 TEST(Screening, FrozenSensorIsLeftOutByLine) {
   double held = 0.0;
-  const Read result = read(changed({}, [&held](int row, std::vector<double>& cells) {
+  const Read result = read_text(changed({}, [&held](int row, std::vector<double>& cells) {
     held = row == 320 ? cells[winding] : held;
     cells[winding] = row >= 320 && row < 380 ? held : cells[winding];
   }));
@@ -97,7 +97,7 @@ TEST(Screening, FrozenSensorIsLeftOutByLine) {
 
 TEST(Screening, FrozenToTheEnd) {
   double held = 0.0;
-  const Read result = read(changed({}, [&held](int row, std::vector<double>& cells) {
+  const Read result = read_text(changed({}, [&held](int row, std::vector<double>& cells) {
     held = row == 1550 ? cells[winding] : held;
     cells[winding] = row >= 1550 ? held : cells[winding];
   }));
@@ -106,7 +106,7 @@ TEST(Screening, FrozenToTheEnd) {
 
 TEST(Screening, SaturatedSensorIsLeftOut) {
   int cut = 0;
-  const Read result = read(changed({}, [&cut](int, std::vector<double>& cells) {
+  const Read result = read_text(changed({}, [&cut](int, std::vector<double>& cells) {
     cut += cells[winding] >= 85.0 ? 1 : 0;
     cells[winding] = std::min(cells[winding], 85.0);
   }));
@@ -118,7 +118,7 @@ TEST(ClockOffsets, DelayOfTheTemperaturesIsFound) {
   for (const double delay_s : {0.0, 2.5, 6.0}) {
     SyntheticLog log;
     log.delay_s = delay_s;
-    const Read result = read(log.csv());
+    const Read result = read_text(log.csv());
     ASSERT_EQ(result.quality.clock_offsets.size(), 2U);
     const ClockOffset& offset = result.quality.clock_offsets[0];
     ASSERT_TRUE(offset.delay_s) << offset.why_not;
@@ -136,7 +136,7 @@ TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
       Random random(static_cast<std::uint64_t>(t / 20.0), 5);
       return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
     };
-    const ClockOffset offset = read(log.csv()).quality.clock_offsets[0];
+    const ClockOffset offset = read_text(log.csv()).quality.clock_offsets[0];
     ASSERT_TRUE(offset.delay_s) << offset.why_not;
     EXPECT_NEAR(*offset.delay_s, delay_s, 3.0 * offset.delay_uncertainty_s);
     EXPECT_LT(offset.delay_uncertainty_s, 2.0);
@@ -146,7 +146,7 @@ TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
 TEST(ClockOffsets, SteadyHeatTellsNothing) {
   SyntheticLog log;
   log.current_A = [](double t) { return 5.0 + 1e-3 * std::sin(t / 400.0); };
-  const Read result = read(log.csv());
+  const Read result = read_text(log.csv());
   EXPECT_FALSE(result.quality.clock_offsets[0].delay_s);
   EXPECT_NE(result.quality.clock_offsets[0].why_not, "");
 }
@@ -159,8 +159,8 @@ struct Fault {
 class Suspicion : public testing::TestWithParam<Fault> {};
 
 TEST_P(Suspicion, IsSaidAndNothingIsChanged) {
-  const Read sound = read(SyntheticLog{}.csv());
-  const Read faulty = read(changed({}, GetParam().change));
+  const Read sound = read_text(SyntheticLog{}.csv());
+  const Read faulty = read_text(changed({}, GetParam().change));
   EXPECT_THAT(faulty.quality.suspicions, testing::Contains(HasSubstr(GetParam().said)));
   EXPECT_EQ(faulty.recording.rows(), sound.recording.rows());
 }
@@ -231,9 +231,9 @@ class CoolDown : public testing::TestWithParam<std::tuple<double, int, double>> 
 
 TEST_P(CoolDown, IsSwappedOrNotHoweverLongItsTail) {
   const auto& [heated_s, rest_s, offset_K] = GetParam();
-  EXPECT_THAT(read(cool_down("stator_C,winding_C", heated_s, rest_s, offset_K)).quality.suspicions,
+  EXPECT_THAT(read_text(cool_down("stator_C,winding_C", heated_s, rest_s, offset_K)).quality.suspicions,
               testing::Contains(HasSubstr("are the two swapped?")));
-  EXPECT_THAT(read(cool_down("winding_C,stator_C", heated_s, rest_s, offset_K)).quality.suspicions, IsEmpty());
+  EXPECT_THAT(read_text(cool_down("winding_C,stator_C", heated_s, rest_s, offset_K)).quality.suspicions, IsEmpty());
 }
 INSTANTIATE_TEST_SUITE_P(Synthetic, CoolDown,
                          testing::Combine(testing::Values(60.0, 1500.0), testing::Values(400, 1100, 3000), testing::Values(0.0, 2.0)));
@@ -245,7 +245,7 @@ TEST(Suspicions, NoneInAWarmUpAtConstantCurrent) {
   log.current_A = [](double) { return 6.0; };
   for (const int rows : {240, 900, 1800}) {
     log.rows = rows;
-    EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,power_in_W", 0, log.temperatures_C(),
+    EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,power_in_W", 0, log.temperatures_C(),
                             [](double winding_C, double stator_C, std::size_t) {
                               return fmt::format("{:.3f},{:.3f},22,{:.3f}", winding_C, stator_C,
                                                  16.2 * (1.0 + 0.0039 * (winding_C - 25.0)));
@@ -253,7 +253,7 @@ TEST(Suspicions, NoneInAWarmUpAtConstantCurrent) {
                     .quality.suspicions,
                 IsEmpty())
         << rows;
-    EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
+    EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
                             [rows](double winding_C, double stator_C, std::size_t row) {
                               return fmt::format("{:.3f},{:.3f},22,{:.4f}", winding_C, stator_C,
                                                  6.0 * (1.0 + 0.01 * static_cast<double>(row) / rows));
@@ -286,7 +286,7 @@ TEST(Suspicions, NoneWhereTheIronIsHeated) {
     for (const auto& [current_turning_A, current_resting_A] : {std::pair(0.0, 0.0), std::pair(0.3, 0.3), std::pair(0.3, 0.0)}) {
       const double turning_A = current_turning_A;
       const double resting_A = current_resting_A;
-      EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,current_A,speed_rad_per_s", 0, rows_C,
+      EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A,speed_rad_per_s", 0, rows_C,
                               [=](double of_winding_C, double of_stator_C, std::size_t row) {
                                 return fmt::format("{:.3f},{:.3f},22,{},{}", of_winding_C, of_stator_C, turns(row) ? turning_A : resting_A,
                                                    turns(row) ? 500 : 0);
@@ -308,7 +308,7 @@ TEST(Suspicions, NoneWhereOneSensorStartsWarm) {
     ++first;
   }
   for (const bool of_winding : {false, true}) {
-    EXPECT_THAT(read(run_of(of_winding ? "winding_C,ambient_C,current_A" : "stator_C,ambient_C,current_A", first, rows_C,
+    EXPECT_THAT(read_text(run_of(of_winding ? "winding_C,ambient_C,current_A" : "stator_C,ambient_C,current_A", first, rows_C,
                             [of_winding](double winding_C, double stator_C, std::size_t) {
                               return fmt::format("{:.3f},22,0", of_winding ? winding_C : stator_C);
                             }))
@@ -322,7 +322,7 @@ TEST(Suspicions, NoneOfAMotorBroughtInCold) {
   SyntheticLog log;
   log.current_A = [](double time_s) { return time_s < 60.0 ? 0.0 : 1.0; };
   log.rows = 600;
-  EXPECT_THAT(read(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
+  EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
                           [&log](double winding_C, double stator_C, std::size_t row) {
                             const auto time_s = static_cast<double>(row);
                             const double below_K = 15.0 * std::exp(-time_s / 300.0);
@@ -340,13 +340,13 @@ TEST(Suspicions, PowerThatCannotBe) {
     text += fmt::format("{},{},{:.4f},{:.3f},{},24,{:.2f}\n", i, 25.0 + 0.1 * i, 0.8 * power_W / 300.0, 300.0 * 9.5493, power_W,
                         1000.0 * power_W / 24.0);
   }
-  const Read result = read(text);
+  const Read result = read_text(text);
   EXPECT_THAT(result.quality.suspicions, testing::Contains(HasSubstr("is 7.64 times power_in_W")));
   EXPECT_THAT(result.quality.suspicions, testing::Contains(HasSubstr("power_in_W is 0.001 times bus_V × bus_A")));
 }
 
 std::vector<std::string> lacks_of(const std::string& text) {
-  const Read result = read(text);
+  const Read result = read_text(text);
   if (!result.quality.thermal.is_good()) {
     try {
       require_thermal(result.recording, result.quality);
@@ -387,11 +387,11 @@ std::string standing_run(double current_A, bool is_swapped, double speed_rad_per
 
 TEST(Suspicion, SwappedAtStandstillUnderOneCurrent) {
   for (const double current_A : {4.0, 5.0, 6.0}) {
-    EXPECT_THAT(read(standing_run(current_A, true, 0.0, 0.0)).quality.spoiling, ElementsAre(HasSubstr("are the two swapped")));
-    EXPECT_THAT(read(standing_run(current_A, false, 0.0, 0.0)).quality.suspicions, IsEmpty());
+    EXPECT_THAT(read_text(standing_run(current_A, true, 0.0, 0.0)).quality.spoiling, ElementsAre(HasSubstr("are the two swapped")));
+    EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, 0.0)).quality.suspicions, IsEmpty());
     // Its offset was there from the start; what turns may heat the stator.
-    EXPECT_THAT(read(standing_run(current_A, false, 0.0, -9.0)).quality.suspicions, IsEmpty());
-    EXPECT_THAT(read(standing_run(current_A, true, 200.0, 0.0)).quality.suspicions, IsEmpty());
+    EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, -9.0)).quality.suspicions, IsEmpty());
+    EXPECT_THAT(read_text(standing_run(current_A, true, 200.0, 0.0)).quality.suspicions, IsEmpty());
   }
 }
 
@@ -406,7 +406,7 @@ TEST(Suspicion, FahrenheitBesideAStatedRoom) {
       text += fmt::format("{},{:.3f},{}\n", time_s, is_fahrenheit ? 1.8 * winding_C + 32.0 : winding_C, log.current_A(time_s));
       time_s += log.period_s;
     }
-    const Read result = read(text);
+    const Read result = read_text(text);
     EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "without the room it may be a warm motor";
     const DataQuality beside_room = assess(result.recording, result.report, room_C);
     EXPECT_EQ(beside_room.spoiling.size(), is_fahrenheit ? 1U : 0U) << room_C;
@@ -418,9 +418,9 @@ TEST(Suspicion, MinutesByRowsThatNoMotorFollows) {
   SyntheticLog fast;
   fast.period_s = 1.0 / 60.0;
   fast.rows = 6000;
-  EXPECT_THAT(read(changed(fast, [&](int row, std::vector<double>& cells) { cells[time] = row / 60.0; })).quality.suspicions, IsEmpty());
+  EXPECT_THAT(read_text(changed(fast, [&](int row, std::vector<double>& cells) { cells[time] = row / 60.0; })).quality.suspicions, IsEmpty());
   for (const auto& [unit, in_s] : {std::pair("minutes", 60.0), std::pair("hours", 3600.0)}) {
-    const Read result = read(changed({}, [in_s = in_s](int row, std::vector<double>& cells) { cells[time] = row / in_s; }));
+    const Read result = read_text(changed({}, [in_s = in_s](int row, std::vector<double>& cells) { cells[time] = row / in_s; }));
     EXPECT_THAT(result.quality.suspicions, ElementsAre(HasSubstr(fmt::format("is the time in {}?", unit))));
     EXPECT_THAT(result.quality.spoiling, IsEmpty());
   }

@@ -19,7 +19,7 @@ struct Read {
   DataQuality quality;
 };
 
-inline Read read(const std::string& text) {
+inline Read read_text(const std::string& text) {
   const LogFile file("log.csv", text);
   Read result;
   result.recording = read_recording(file.path(), {}, result.report);
