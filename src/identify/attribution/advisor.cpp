@@ -140,9 +140,10 @@ std::string told(const Primitive& primitive, const MeasuredRun& run) {
 std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRun>& runs) {
   constexpr double kStep_ratio = 0.7;
   constexpr int kTries = 12;
+  const Levels most = levels_of(runs);
   std::vector<Plan> all;
   for (const Primitive& primitive : menu()) {
-    Levels levels = levels_of(runs);
+    Levels levels = most;
     for (int i = 0; i < kTries; ++i, levels.current_A *= kStep_ratio, levels.input_power_W *= kStep_ratio * kStep_ratio) {
       Plan plan{{}, planned(primitive, levels, runs.front()), {}};
       if (hottest_C(selection.after.model, plan.run, plan.path) <= levels.measured_C &&

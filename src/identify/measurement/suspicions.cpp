@@ -23,11 +23,11 @@ namespace {
 class Suspector {
  public:
   Suspector(const Recording& recording, const DataQuality& told, double ambient_C)
-      : recording_(recording), told_(told), channels_(told.channels), ambient_C_(ambient_C) {}
+      : recording_(recording), told_(told), ambient_C_(ambient_C) {}
 
   Suspicions run() {
     found_ = suspicious_scales(recording_, ambient_C_);
-    std::ranges::move(suspicious_places(recording_, channels_), std::back_inserter(found_));
+    std::ranges::move(suspicious_places(recording_, told_.channels), std::back_inserter(found_));
     currents();
     speeds();
     early_answers();
@@ -45,8 +45,8 @@ class Suspector {
 
  private:
   [[nodiscard]] const ChannelQuality* quality(const std::string& key) const {
-    const auto found = std::ranges::find_if(channels_, [&key](const ChannelQuality& each) { return each.quantity.key == key; });
-    return found == channels_.end() ? nullptr : &*found;
+    const auto found = std::ranges::find_if(told_.channels, [&key](const ChannelQuality& each) { return each.quantity.key == key; });
+    return found == told_.channels.end() ? nullptr : &*found;
   }
 
   void currents() {
@@ -126,7 +126,7 @@ class Suspector {
   }
 
   void angles() {
-    for (const ChannelQuality& channel : channels_) {
+    for (const ChannelQuality& channel : told_.channels) {
       const double span = channel.high - channel.low;
       const bool is_angle = channel.quantity.key.starts_with("yaw") || channel.quantity.key.starts_with("heading");
       if (channel.quantity.unit == "rad" && is_angle && span > 100.0 && span <= 721.0) {
@@ -268,7 +268,6 @@ class Suspector {
 
   const Recording& recording_;
   const DataQuality& told_;
-  std::span<const ChannelQuality> channels_;
   double ambient_C_;
   std::vector<std::string> found_;
 };
