@@ -138,8 +138,25 @@ class DelayScan {
     return all > 0.0 ? lost / all : 0.0;
   }
 
-  /// Where the heat goes that the temperature gives away.
-  [[nodiscard]] bool explains_flow() const { return columns_.size() > 1; }
+  /// Where the heat goes that the temperature gives away is known, and it gives some away: what never gets hotter than all beside it
+  /// follows them, whatever the current does.
+  [[nodiscard]] bool explains_flow(double noise_K) const {
+    constexpr double kClearly = 10.0;
+    std::vector<double> above_K;
+    for (std::size_t row = 0; row < time_s_.size() && columns_.size() > 1; ++row) {
+      double highest_C = columns_[1][row];
+      for (std::size_t other = 2; other < columns_.size(); ++other) {
+        highest_C = std::max(highest_C, columns_[other][row]);
+      }
+      if (const double here_K = columns_[0][row] - highest_C; !std::isnan(here_K)) {
+        above_K.push_back(here_K);
+      }
+    }
+    constexpr std::size_t kSeldom = 20;  // a twentieth of the time is enough
+    const auto seldom = above_K.begin() + static_cast<std::ptrdiff_t>(above_K.size() / kSeldom);
+    std::ranges::nth_element(above_K, seldom, std::ranges::greater());
+    return seldom != above_K.end() && *seldom > kClearly * noise_K;
+  }
 
   /// Windows of a length in which the temperature moves well beyond its noise, spread evenly.
   std::size_t place_windows(double noise_K, double reach_s) {
@@ -337,7 +354,7 @@ ClockOffset clock_offset(const Recording& recording, const Channel& temperature,
   }
   offset.temperature = temperature.quantity.key;
   offset.heat_input = heat_input.quantity.key;
-  offset.explains_flow = scan.explains_flow();
+  offset.explains_flow = scan.explains_flow(noise_K);
   return offset;
 }
 
