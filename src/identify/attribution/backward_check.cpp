@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/quantity.h"
 #include "identify/attribution/mean_heat.h"
@@ -32,7 +33,7 @@ class BackwardCheck {
       : out_(selection), input_(input), rules_(rules), options_(std::move(options)) {}
 
   void run() {
-    while (drops_superfluous() || drops_negligible() || drops_invisible()) {
+    while (drops_superfluous() || drops_invisible() || drops_negligible()) {
       has_dropped_ = true;
     }
   }
@@ -51,6 +52,9 @@ class BackwardCheck {
       out_.terms[i].loss_without_nats = out_.after.evidence_nats - without.evidence_nats;
       const auto dropped = static_cast<double>(std::ranges::count(stays, false));
       if (out_.terms[i].loss_without_nats < dropped * rules_.least_gain_nats) {
+        if (out_.terms[i].candidate && drops_shape_of(i)) {
+          return true;
+        }
         keep(stays, std::move(without));
         return true;
       }
@@ -58,24 +62,41 @@ class BackwardCheck {
     return false;
   }
 
-  /// Heat that nobody would miss: every law is a little wrong, and perfect data see that.
+  [[nodiscard]] double gain_of_all_nats() const {
+    return std::accumulate(out_.terms.begin(), out_.terms.end(), 0.0,
+                           [](double sum, const AcceptedTerm& term) { return sum + term.gain_nats; });
+  }
+
+  /// What nobody would miss: every law is a little wrong, and perfect data see that.
   bool drops_negligible() {
     for (std::size_t i = 0; i < out_.terms.size(); ++i) {
       const AcceptedTerm& term = out_.terms[i];
-      if (!term.candidate || !term.candidate->type) {
-        continue;
-      }
-      const HeatOfEffect heat = heat_of(
-          out_.after, input_.runs, [&](const EffectInPlace& each) { return each.name == term.effect_name; }, term.candidate->condition);
-      if (heat.mean_W < rules_.least_heat_share * out_.mean_heat_W && heat.peak_W < rules_.least_peak_share * out_.mean_heat_W) {
-        out_.refuse(term.candidate->id, term.loss_without_nats,
-                    fmt::format("it is {} W of {} W only", significant(heat.mean_W, 1), significant(out_.mean_heat_W, 2)));
+      if (const std::string why = why_negligible(term); !why.empty()) {
+        out_.refuse(term.candidate->id, term.loss_without_nats, why);
         const std::vector<bool> stays = all_but(i);
         keep(stays, refit_with(stays));
         return true;
       }
     }
     return false;
+  }
+
+  /// Empty where it is not.
+  [[nodiscard]] std::string why_negligible(const AcceptedTerm& term) const {
+    if (!term.candidate) {
+      return {};
+    }
+    const double all_nats = gain_of_all_nats();
+    if (term.loss_without_nats < rules_.beside_law_share * all_nats) {
+      return fmt::format("beside effects with {:.0f} nats together", all_nats);
+    }
+    const HeatOfEffect heat = heat_of(
+        out_.after, input_.runs, [&](const EffectInPlace& each) { return each.name == term.effect_name; }, term.candidate->condition);
+    const bool is_little =
+        heat.mean_W < rules_.least_heat_share * out_.mean_heat_W && heat.peak_W < rules_.least_peak_share * out_.mean_heat_W;
+    return term.candidate->type && is_little
+               ? fmt::format("it is {} W of {} W only", significant(heat.mean_W, 1), significant(out_.mean_heat_W, 2))
+               : std::string();
   }
 
   bool drops_invisible() {
@@ -93,12 +114,33 @@ class BackwardCheck {
     if (least == out_.terms.size()) {
       return false;
     }
+    if (drops_shape_of(least)) {
+      return true;
+    }
     const AcceptedTerm& term = out_.terms[least];
     out_.refuse(term.candidate->id, term.loss_without_nats,
                 fmt::format("all but {:.1f} % of it could be the base parameters and the other effects", 100.0 * least_ratio));
     const std::vector<bool> stays = all_but(least);
     keep(stays, refit_with(stays));
     return true;
+  }
+
+  /// Of a law and a curve that hide each other the law stays, unless the curve alone is as far ahead as one must be to be named without it.
+  bool drops_shape_of(std::size_t law) {
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      const AcceptedTerm& curve = out_.terms[i];
+      const double ahead_nats = curve.loss_without_nats - out_.terms[law].loss_without_nats;
+      if (!curve.curve || ahead_nats > std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * gain_of_all_nats())) {
+        continue;
+      }
+      const std::vector<bool> stays = all_but(i);
+      if (!stays[law]) {
+        continue;
+      }
+      keep(stays, refit_with(stays));
+      return true;
+    }
+    return false;
   }
 
   /// In the shape that was found little of it may be its own, and the runs still tell that little from whatever figures of the file do.

@@ -13,11 +13,6 @@ namespace {
 
 /// Heat capacity of the motors that the catalogue's typical sizes are of.
 constexpr double kUsualCapacity_J_per_K = 120.0;
-const ParameterSpec& heat_share_spec() {
-  static const ParameterSpec spec{"deviation", "", Range::between(-0.9, 3.0),
-                                  "of the heat that goes in from what the log says, as a share of it"};
-  return spec;
-}
 
 /// Names of the signals that some run lacks.
 std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const std::vector<MeasuredRun>& runs) {
@@ -131,8 +126,7 @@ std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
   return conditions;
 }
 
-/// What may be different in some of the runs without any signal of it: air that is moved, heat from outside, heat that the log does not
-/// tell.
+/// What may be different in some of the runs without any signal of it: air that is moved or missing, heat from outside or not in the log.
 void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
   const Network& network = model.model.network;
   for (const Condition& condition : conditions_of(runs)) {
@@ -142,8 +136,11 @@ void add_conditional_candidates(const ExtendedModel& model, const std::vector<Me
         if (network.find_node(node) < 0) {
           continue;
         }
-        Candidate candidate{&type, nullptr,  fmt::format("{}@{} in {}", name, node, in_words(condition)), {std::string(node)}, {},
-                            0,     condition};
+        Candidate candidate;
+        candidate.type = &type;
+        candidate.id = fmt::format("{}@{} in {}", name, node, in_words(condition));
+        candidate.nodes.emplace_back(node);
+        candidate.condition = condition;
         for (std::size_t role = 1; role < type.nodes.size(); ++role) {
           candidate.nodes.emplace_back(type.nodes[role].default_node);
         }
@@ -153,10 +150,12 @@ void add_conditional_candidates(const ExtendedModel& model, const std::vector<Me
         }
       }
     }
-    const bool is_there = std::ranges::any_of(model.heat_shares, [&](const HeatShareTerm& term) { return term.condition == condition; });
-    if (!is_there && !heat_input_parameters(network).empty()) {
-      list.candidates.push_back(
-          {nullptr, nullptr, fmt::format("heat_share in {}", in_words(condition)), {}, {kUsualDeviation_share}, 0, condition});
+    for (const RunDeviationType& type : all_run_deviations()) {
+      const bool is_there = std::ranges::any_of(model.deviations, [&](const RunDeviation& each) { return each.is_same(&type, condition); });
+      if (!is_there && !type.places_in(network).empty()) {
+        list.candidates.push_back(
+            {nullptr, nullptr, &type, fmt::format("{} in {}", type.name, in_words(condition)), {}, {type.usual}, 0, condition});
+      }
     }
   }
 }
@@ -182,7 +181,7 @@ void add_network_candidates(const ExtendedModel& model, const std::vector<Measur
     for (const std::vector<std::string>& nodes : placements(model.model.network, type)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
-        Candidate candidate{&type, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, scale), variant++, {}};
+        Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, scale), variant++, {}};
         if (!is_in(model, candidate)) {
           list.candidates.push_back(std::move(candidate));
         }
@@ -301,43 +300,24 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
 int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter : 0; }
 
 const ParameterSpec& Candidate::size_spec() const {
-  if (is_heat_share()) {
-    return heat_share_spec();
+  if (deviation_type) {
+    return deviation_type->size;
   }
   return type ? type->parameters[static_cast<std::size_t>(size_parameter())] : sensor_type->size;
 }
 
 std::string_view Candidate::family() const {
-  if (is_heat_share()) {
-    return "heat that the log does not tell";
+  if (deviation_type) {
+    return deviation_type->family;
   }
   return type ? type->candidacy.family : std::string_view("error of a sensor");
 }
 
 std::string_view Candidate::experiment() const {
-  if (is_heat_share()) {
-    return "current and voltage measured at the motor's own terminals, with the rotor turned by a sixth of an electrical turn between runs";
+  if (deviation_type) {
+    return deviation_type->experiment;
   }
   return type ? type->candidacy.experiment : sensor_type->experiment;
-}
-
-bool has_condition(const MeasuredRun& run, const Condition& condition) {
-  return std::ranges::all_of(condition, [&](const auto& part) {
-    const auto found = run.conditions.find(part.first);
-    return found != run.conditions.end() && found->second == part.second;
-  });
-}
-
-bool is_heat_input(const EffectType& type) { return type.name == "copper_loss" || type.name == "input_power_loss"; }
-
-std::vector<int> heat_input_parameters(const Network& network) {
-  std::vector<int> places;
-  for (const EffectInPlace& effect : network.effects()) {
-    if (is_heat_input(*effect.type)) {
-      places.push_back(effect.parameter_index.front());
-    }
-  }
-  return places;
 }
 
 CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs) {
@@ -348,7 +328,7 @@ CandidateList candidates_for(const ExtendedModel& model, const std::vector<Measu
   for (const SensorEffectType& type : all_sensor_effects()) {
     const bool is_there = std::ranges::find(model.sensors, &type, &SensorTerm::type) != model.sensors.end();
     if (!is_there && is_measured(runs, type.signal)) {
-      list.candidates.push_back({nullptr, &type, std::string(type.name), {}, {type.typical_size}, 0, {}});
+      list.candidates.push_back({nullptr, &type, nullptr, std::string(type.name), {}, {type.typical_size}, 0, {}});
     }
   }
   return list;
@@ -366,8 +346,8 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
     }
     if (candidates[j].type) {
       extend(extended, candidates[j], j, run.at.front().ambient_C);
-    } else if (candidates[j].is_heat_share()) {
-      for (const int place : heat_input_parameters(model.model.network)) {
+    } else if (candidates[j].deviation_type) {
+      for (const int place : candidates[j].deviation_type->places_in(model.model.network)) {
         extended.wanted.push_back(place);
         extended.slope.push_back(candidates[j].typical_size() * parameters[static_cast<std::size_t>(place)]);
         extended.own.push_back(j);

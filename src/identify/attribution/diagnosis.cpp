@@ -8,6 +8,7 @@
 
 #include "identify/attribution/advisor.h"
 #include "identify/attribution/coverage.h"
+#include "identify/attribution/curve.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/interval.h"
@@ -190,7 +191,7 @@ class Teller {
   /// Curves that were found, curves that could not be put into the network, and heat that no signal follows.
   void tell_unexplained() {
     for (const AcceptedTerm& term : out_.selection.terms) {
-      if (term.curve && out_.selection.drivers[static_cast<std::size_t>(term.curve->term.driver)].kind != DriverKind::run) {
+      if (term.curve) {
         add_curve(*term.curve, term.confusable_with);
         tell_as_added(term, out_.unexplained.back());
       }
@@ -249,10 +250,11 @@ class Teller {
     const Model& model = after().model.model;
     const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
     const std::size_t first = in_place.parameter_index.size() - heat.curve.size();
+    const auto value = [&](std::size_t parameter) { return model.values[static_cast<std::size_t>(in_place.parameter_index[parameter])]; };
+    heat.knots = knots_from({value(first - 2), value(first - 1)});
     for (std::size_t knot = 0; knot < heat.curve.size(); ++knot) {
-      const int place = in_place.parameter_index[first + knot];
-      heat.curve[knot] = model.values[static_cast<std::size_t>(place)];
-      const auto free = std::ranges::find(model.free, place, &FreeParameter::place);
+      heat.curve[knot] = value(first + knot);
+      const auto free = std::ranges::find(model.free, in_place.parameter_index[first + knot], &FreeParameter::place);
       const Eigen::Index own = free - model.free.begin();
       heat.curve_sd[knot] = free == model.free.end() ? 0.0 : free->scale * std::sqrt(after().covariance(own, own));
     }

@@ -4,34 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/parallel.h"
+#include "identify/attribution/curve.h"
 
 namespace heatsoak {
 namespace {
 
-constexpr int kKnots = 7;
+/// So many of the best curves may draw their knots together, by half and half again, where that explains more.
+constexpr std::size_t kZoomed = 3;
+constexpr int kHalvings = 3;
+constexpr double kWorthZooming_nats = 10.0;
+constexpr double kWorthKnots_nats = 5.0;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
-
-/// Evenly spaced. Where a driver (no temperature) changes its sign one of them is 0: forwards and backwards, driving and braking differ.
-std::vector<double> knots_between(double low, double high, DriverKind kind) {
-  if (low < 0.0 && high > 0.0 && kind != DriverKind::node_temperature) {
-    const double below = std::clamp(std::round(-low / (high - low) * (kKnots - 1.0)), 1.0, kKnots - 2.0);
-    const double step = std::max(-low / below, high / (kKnots - 1.0 - below));
-    low = -below * step;
-    high = (kKnots - 1.0 - below) * step;
-  }
-  std::vector<double> knots(kKnots);
-  for (int i = 0; i < kKnots; ++i) {
-    knots[static_cast<std::size_t>(i)] = low + (high - low) * i / (kKnots - 1.0);
-  }
-  return knots;
-}
-
-std::vector<double> knots_of(const Driver& driver) {
-  return driver.kind == DriverKind::run ? std::vector<double>{1.0} : knots_between(driver.low, driver.high, driver.kind);
-}
 
 /// How the sensors answer to heats held over the intervals: `heat_W` (intervals × c) into the node with place `flux`, out of `other`.
 Columns response(const LinearisedRun& run, const Columns& heat_W, int flux, int other) {
@@ -54,18 +41,6 @@ Columns response(const LinearisedRun& run, const Columns& heat_W, int flux, int 
     }
   }
   return shown;
-}
-
-/// The two hats of evenly spaced knots that are not 0 at a value.
-struct HatsAt {
-  Eigen::Index left = 0;
-  double right_share = 0.0;
-};
-HatsAt hats_at(const std::vector<double>& knots, double value) {
-  const auto intervals = static_cast<double>(knots.size() - 1);
-  const double place = std::clamp((value - knots.front()) / (knots.back() - knots.front()) * intervals, 0.0, intervals);
-  const double left = std::min(std::floor(place), intervals - 1.0);
-  return {static_cast<Eigen::Index>(left), place - left};
 }
 
 int flux_of(const Model& model, std::string_view node) {
@@ -163,6 +138,10 @@ class Scanner {
       climb(each);
     }
     keep_best(most);
+    for (std::size_t i = 0; i < std::min<std::size_t>(kZoomed, climbers.size()); ++i) {
+      zoom(climbers[i]);
+    }
+    keep_best(most);
     std::vector<ScanResult> results;
     for (const Climber& each : climbers) {
       results.push_back(result(each));
@@ -188,7 +167,7 @@ class Scanner {
       count += static_cast<double>(along.size());
     }
     const double rms = std::sqrt(squares / std::max(1.0, count));
-    return {term, knots_of((*input_.drivers)[static_cast<std::size_t>(driver)]), kUsual_share * input_.mean_heat_W / std::max(1e-9, rms)};
+    return {term, knots_over((*input_.drivers)[static_cast<std::size_t>(driver)]), kUsual_share * input_.mean_heat_W / std::max(1e-9, rms)};
   }
 
   /// Heat of every hat of every family along a run, in units of the families' usual sizes.
@@ -213,13 +192,9 @@ class Scanner {
         const double share =
             (*input_.fitted)[r].duration_s[static_cast<std::size_t>(k)] / design.run.duration_s[static_cast<std::size_t>(row)];
         const double usual_W = sign * share * family.usual * multiplier[k];
-        if (driver.kind == DriverKind::run) {
-          heat_W(row, at) += usual_W * value;
-        } else {
-          const HatsAt hats = hats_at(family.knots, value);
-          heat_W(row, at + hats.left) += usual_W * (1.0 - hats.right_share);
-          heat_W(row, at + hats.left + 1) += usual_W * hats.right_share;
-        }
+        const HatsAt hats = hats_at(family.knots, value);
+        heat_W(row, at + hats.left) += usual_W * (1.0 - hats.right_share);
+        heat_W(row, at + hats.left + 1) += usual_W * hats.right_share;
       }
       at += size;
     }
@@ -338,16 +313,47 @@ class Scanner {
     const std::vector<Eigen::VectorXd> multiplier = multipliers(climber.family.term);
     climb(climber, multiplier);
     const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(climber.family.term.driver)];
-    for (const auto& [low, high] : driver.inner) {
-      Climber inner = climber;
-      inner.family.knots = knots_between(low, high, driver.kind);
-      const std::vector<Family> own{inner.family};
-      inner.scored = gained(own, responses(own, multiplier), inner.place);
-      if (inner.scored.gain_nats > climber.scored.gain_nats) {
-        climb(inner, multiplier);
-        climber = std::move(inner);
+    for (const Driver::Range& range : driver.inner) {
+      take_better_knots(climber, {range}, 0.0, multiplier);
+    }
+  }
+
+  /// Knots where something happens: a thermostat or a resonance is narrower than a seventh of all that the driver does.
+  void zoom(Climber& climber) {
+    const std::vector<Eigen::VectorXd> multiplier = multipliers(climber.family.term);
+    for (int half = 0; half < kHalvings && climber.scored.gain_nats > kWorthZooming_nats; ++half) {
+      const double low = climber.family.knots.front();
+      const double high = climber.family.knots.back();
+      const double quarter = 0.25 * (high - low);
+      const std::vector<Driver::Range> halves{{low, high - 2.0 * quarter}, {low + quarter, high - quarter}, {low + 2.0 * quarter, high}};
+      if (!take_better_knots(climber, halves, kWorthKnots_nats, multiplier)) {
+        return;
       }
     }
+  }
+
+  /// True where knots over one of the ranges explain more than a given gain.
+  bool take_better_knots(Climber& climber, const std::vector<Driver::Range>& ranges, double by_nats,
+                         const std::vector<Eigen::VectorXd>& multiplier) {
+    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(climber.family.term.driver)];
+    std::optional<Climber> best;
+    double least_nats = climber.scored.gain_nats + by_nats;
+    for (const Driver::Range& range : ranges) {
+      Climber other = climber;
+      other.family.knots = knots_between(range, driver.kind);
+      const std::vector<Family> own{other.family};
+      other.scored = gained(own, responses(own, multiplier), other.place);
+      if (other.scored.gain_nats > least_nats) {
+        least_nats = other.scored.gain_nats;
+        best = std::move(other);
+      }
+    }
+    if (!best) {
+      return false;
+    }
+    climb(*best, multiplier);
+    climber = std::move(*best);
+    return true;
   }
 
   void climb(Climber& climber, const std::vector<Eigen::VectorXd>& multiplier) {
@@ -393,9 +399,8 @@ class Scanner {
     for (std::size_t r = 0; r < multiplier.size(); ++r) {
       for (Eigen::Index k = 0; k < multiplier[r].size(); ++k) {
         const double value = driver.values[r][k];
-        if (driver.kind == DriverKind::run ? value > 0.5 : !std::isnan(value)) {
-          const double curve = driver.kind == DriverKind::run ? scored.curve[0] : scored.curve.dot(hats(family.knots, value));
-          magnitude_W.push_back(std::abs(curve * multiplier[r][k]));
+        if (!std::isnan(value)) {
+          magnitude_W.push_back(std::abs(value_at(family.knots, scored.curve, value) * multiplier[r][k]));
         }
       }
     }
@@ -472,29 +477,6 @@ Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const
     along[k] = fitted.state_C(node, k) - other_C;
   }
   return along;
-}
-
-Eigen::MatrixXd curve_precision(Eigen::Index knots) {
-  Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(knots, knots) * (knots > 1 ? 0.1 : 1.0);
-  for (Eigen::Index i = 0; i + 1 < knots; ++i) {
-    precision(i, i) += 2.0;
-    precision(i + 1, i + 1) += 2.0;
-    precision(i, i + 1) -= 2.0;
-    precision(i + 1, i) -= 2.0;
-  }
-  return precision;
-}
-
-Eigen::VectorXd hats(const std::vector<double>& knots, double value) {
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(knots.size()));
-  if (knots.size() == 1) {
-    all[0] = 1.0;
-    return all;
-  }
-  const HatsAt two = hats_at(knots, value);
-  all[two.left] = 1.0 - two.right_share;
-  all[two.left + 1] = two.right_share;
-  return all;
 }
 
 }  // namespace heatsoak

@@ -33,7 +33,7 @@ struct ScanResult {
   ScanTerm term;
   double usual = 1.0;          ///< size of curves that the prior takes for usual, in the curve's unit
   double gain_nats = 0.0;      ///< evidence above the base's, both at their best unknown heat
-  std::vector<double> knots;   ///< of the driver, in its unit; one for a run
+  std::vector<double> knots;   ///< of the driver, in its unit
   Eigen::VectorXd curve;       ///< g at the knots, in unit_of(multiplier)
   Eigen::MatrixXd covariance;  ///< of the curve
   double mean_W = 0.0;         ///< of the heat's magnitude over the time it acts
@@ -54,11 +54,5 @@ std::vector<ScanResult> scan_drivers(const ScanInput& input, EvidenceTable& tabl
 
 /// The multiplier along a run's intervals, from the fitted temperatures at their beginnings.
 Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run);
-
-/// Precision of a curve before anything is measured, in units of its usual size: 0.1 · I + 2 · DᵀD; of a single number 1.
-Eigen::MatrixXd curve_precision(Eigen::Index knots);
-
-/// Values of the hat functions at `value`, clamped to the outer knots.
-Eigen::VectorXd hats(const std::vector<double>& knots, double value);
 
 }  // namespace heatsoak

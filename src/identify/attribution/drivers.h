@@ -11,12 +11,12 @@
 
 namespace heatsoak {
 
-/// What a driver is to the rest of the tool: what every operating point has, what only logs have, or which log it is.
-enum class DriverKind { operating_point, node_temperature, log_only, run };
+/// What a driver is to the rest of the tool: what every operating point has, a temperature, or what only logs have.
+enum class DriverKind { operating_point, node_temperature, log_only };
 
 struct Driver {
-  std::string name;  ///< "speed", "stator_excess", "time", "thrust_N", "run4"
-  std::string unit;  ///< UDUNITS text, "" for pure numbers and for runs
+  std::string name;  ///< "speed", "stator_excess", "time", "thrust_N"
+  std::string unit;  ///< UDUNITS text, "" for pure numbers
   DriverKind kind = DriverKind::operating_point;
   std::vector<Eigen::VectorXd> values;  ///< per run one per interval, in the driver's unit; NaN: not known there
   double low = 0.0;                     ///< 1 % of the time is below
@@ -25,11 +25,10 @@ struct Driver {
     double low = 0.0;
     double high = 0.0;
   };
-  std::vector<Range> inner;                      ///< where it is in the middle 80 % and 50 % of the time: a curve may need its knots there
-  std::map<std::string, std::string> condition;  ///< of kind run: what the runs have in common that others lack
-  std::string choice;                            ///< what the effect `tabulated` calls it; empty where it cannot follow it
-  std::string watched;                           ///< node that a temperature is of
-  std::string reference;                         ///< node that it is above
+  std::vector<Range> inner;  ///< where it is in the middle 80 % and 50 % of the time: a curve may need its knots there
+  std::string choice;        ///< what the effect `tabulated` calls it; empty where it cannot follow it
+  std::string watched;       ///< node that a temperature is of
+  std::string reference;     ///< node that it is above
 };
 
 /// Seconds since a run's begin.

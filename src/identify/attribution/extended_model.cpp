@@ -7,9 +7,6 @@
 namespace heatsoak {
 namespace {
 
-constexpr double kLeastHeatShare = -0.9;
-constexpr double kMostHeatShare = 3.0;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using RowStride = Eigen::InnerStride<Eigen::Dynamic>;
@@ -51,8 +48,8 @@ Eigen::VectorXd ExtendedModel::theta() const {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     all[model.free_count() + static_cast<Eigen::Index>(i)] = sensors[i].value / sensors[i].type->typical_size;
   }
-  for (std::size_t i = 0; i < heat_shares.size(); ++i) {
-    all[first_heat_share() + static_cast<Eigen::Index>(i)] = heat_shares[i].deviation_share / kUsualDeviation_share;
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    all[first_deviation() + static_cast<Eigen::Index>(i)] = deviations[i].deviation_share / deviations[i].type->usual;
   }
   return all;
 }
@@ -62,8 +59,8 @@ void ExtendedModel::set_theta(const Eigen::VectorXd& theta) {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     sensors[i].value = sensors[i].type->typical_size * theta[model.free_count() + static_cast<Eigen::Index>(i)];
   }
-  for (std::size_t i = 0; i < heat_shares.size(); ++i) {
-    heat_shares[i].deviation_share = kUsualDeviation_share * theta[first_heat_share() + static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    deviations[i].deviation_share = deviations[i].type->usual * theta[first_deviation() + static_cast<Eigen::Index>(i)];
   }
 }
 
@@ -76,9 +73,9 @@ Prior ExtendedModel::prior() const {
     const double sd_share = sensors[i].spread_sd / sensors[i].type->typical_size;
     all.precision(inner + static_cast<Eigen::Index>(i), inner + static_cast<Eigen::Index>(i)) = 1.0 / (sd_share * sd_share);
   }
-  for (std::size_t i = 0; i < heat_shares.size(); ++i) {
-    const Eigen::Index own = first_heat_share() + static_cast<Eigen::Index>(i);
-    all.precision(own, own) = std::pow(kUsualDeviation_share / heat_shares[i].spread_sd_share, 2);
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    const Eigen::Index own = first_deviation() + static_cast<Eigen::Index>(i);
+    all.precision(own, own) = std::pow(deviations[i].type->usual / deviations[i].spread_sd, 2);
   }
   return all;
 }
@@ -88,8 +85,9 @@ double ExtendedModel::low(Eigen::Index coordinate) const {
     const FreeParameter& free = model.free[static_cast<std::size_t>(coordinate)];
     return free.by_log && free.low <= 0.0 ? -kInfinity : model.theta_of(coordinate, free.low);
   }
-  if (coordinate >= first_heat_share()) {
-    return kLeastHeatShare / kUsualDeviation_share;
+  if (coordinate >= first_deviation()) {
+    const RunDeviationType& type = *deviations[static_cast<std::size_t>(coordinate - first_deviation())].type;
+    return type.size.range.low / type.usual;
   }
   const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
   return term.type->size.range.low / term.type->typical_size;
@@ -99,8 +97,9 @@ double ExtendedModel::high(Eigen::Index coordinate) const {
   if (coordinate < model.free_count()) {
     return model.theta_of(coordinate, model.free[static_cast<std::size_t>(coordinate)].high);
   }
-  if (coordinate >= first_heat_share()) {
-    return kMostHeatShare / kUsualDeviation_share;
+  if (coordinate >= first_deviation()) {
+    const RunDeviationType& type = *deviations[static_cast<std::size_t>(coordinate - first_deviation())].type;
+    return type.size.range.high / type.usual;
   }
   const SensorTerm& term = sensors[static_cast<std::size_t>(coordinate - model.free_count())];
   return term.type->size.range.high / term.type->typical_size;
@@ -113,10 +112,10 @@ std::vector<double> ExtendedModel::values_in(const MeasuredRun& run) const {
       values[static_cast<std::size_t>(term.place)] = term.off_value;
     }
   }
-  for (const HeatShareTerm& term : heat_shares) {
-    if (has_condition(run, term.condition)) {
-      for (const int place : heat_input_parameters(model.network)) {
-        values[static_cast<std::size_t>(place)] *= 1.0 + term.deviation_share;
+  for (const RunDeviation& each : deviations) {
+    if (has_condition(run, each.condition)) {
+      for (const int place : each.type->places_in(model.network)) {
+        values[static_cast<std::size_t>(place)] *= 1.0 + each.deviation_share;
       }
     }
   }
@@ -127,11 +126,12 @@ namespace {
 
 /// How the parameter at `place` in a run moves with the model's own.
 double factor_in(const ExtendedModel& model, int place, const MeasuredRun& run) {
-  const std::vector<int> inputs = heat_input_parameters(model.model.network);
   double factor = 1.0;
-  for (const HeatShareTerm& term : model.heat_shares) {
-    const bool is_input = std::ranges::find(inputs, place) != inputs.end();
-    factor *= is_input && has_condition(run, term.condition) ? 1.0 + term.deviation_share : 1.0;
+  for (const RunDeviation& each : model.deviations) {
+    if (has_condition(run, each.condition)) {
+      const std::vector<int> places = each.type->places_in(model.model.network);
+      factor *= std::ranges::find(places, place) != places.end() ? 1.0 + each.deviation_share : 1.0;
+    }
   }
   for (const ConditionalTerm& term : model.conditional) {
     factor *= term.place == place && !has_condition(run, term.condition) ? 0.0 : 1.0;
@@ -149,19 +149,24 @@ LinearisedRun linearise(const ExtendedModel& model, std::span<const double> star
   for (const FreeParameter& free : model.model.free) {
     wanted.push_back(free.place);
   }
-  const std::vector<int> inputs = model.heat_shares.empty() ? std::vector<int>{} : heat_input_parameters(network);
-  wanted.insert(wanted.end(), inputs.begin(), inputs.end());
+  std::vector<Eigen::Index> deviates;  // of each wanted parameter beyond the model's own: by which deviation
+  for (std::size_t i = 0; i < model.deviations.size(); ++i) {
+    if (has_condition(run, model.deviations[i].condition)) {
+      const std::vector<int> places = model.deviations[i].type->places_in(network);
+      wanted.insert(wanted.end(), places.begin(), places.end());
+      deviates.resize(deviates.size() + places.size(), static_cast<Eigen::Index>(i));
+    }
+  }
   const std::vector<double> values = model.values_in(run);
   LinearisedRun out = linearise(network, values, wanted, model.model.flux_nodes, start, run);
   Columns by_theta(out.by_parameter.rows(), model.free_count());
   by_theta.rightCols(model.free_count() - model.model.free_count()).setZero();
-  for (std::size_t i = 0; i < model.heat_shares.size(); ++i) {
-    const double whole_share = 1.0 + model.heat_shares[i].deviation_share;
-    for (std::size_t input = 0; has_condition(run, model.heat_shares[i].condition) && input < inputs.size(); ++input) {
-      by_theta.col(model.first_heat_share() + static_cast<Eigen::Index>(i)) +=
-          kUsualDeviation_share * values[static_cast<std::size_t>(inputs[input])] / whole_share *
-          out.by_parameter.col(model.model.free_count() + static_cast<Eigen::Index>(input));
-    }
+  for (std::size_t i = 0; i < deviates.size(); ++i) {
+    const RunDeviation& each = model.deviations[static_cast<std::size_t>(deviates[i])];
+    const auto own = static_cast<std::size_t>(model.model.free_count()) + i;
+    by_theta.col(model.first_deviation() + deviates[i]) += each.type->usual * values[static_cast<std::size_t>(wanted[own])] /
+                                                           (1.0 + each.deviation_share) *
+                                                           out.by_parameter.col(static_cast<Eigen::Index>(own));
   }
   out.by_parameter.conservativeResize(Eigen::NoChange, model.model.free_count());
   by_theta.leftCols(model.model.free_count()) = heatsoak::by_theta(model.model, model.model.theta(), out.by_parameter);

@@ -24,25 +24,18 @@ struct SensorTerm {
   double spread_sd = 1.0;  ///< known before, around 0, in the same unit
 };
 
-/// In runs of a condition the heat that goes in deviates from what their logs say.
-struct HeatShareTerm {
-  Condition condition;
-  double deviation_share = 0.0;  ///< 0.1: a tenth more heat than the log says
-  double spread_sd_share = 0.2;  ///< known before, around 0
-};
-
-/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes, then the deviations of heat in units of the
-/// usual one.
+/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes, then the runs' deviations in units of the
+/// usual ones.
 struct ExtendedModel {
   Model model;
   std::vector<ConditionalTerm> conditional;
   std::vector<SensorTerm> sensors;
-  std::vector<HeatShareTerm> heat_shares;
+  std::vector<RunDeviation> deviations;
 
   [[nodiscard]] Eigen::Index free_count() const {
-    return model.free_count() + static_cast<Eigen::Index>(sensors.size() + heat_shares.size());
+    return model.free_count() + static_cast<Eigen::Index>(sensors.size() + deviations.size());
   }
-  [[nodiscard]] Eigen::Index first_heat_share() const { return model.free_count() + static_cast<Eigen::Index>(sensors.size()); }
+  [[nodiscard]] Eigen::Index first_deviation() const { return model.free_count() + static_cast<Eigen::Index>(sensors.size()); }
   [[nodiscard]] Eigen::VectorXd theta() const;
   void set_theta(const Eigen::VectorXd& theta);
   /// Prior of all coordinates; the mean is absolute.

@@ -25,8 +25,8 @@ class EffectTeller {
       tell_sensor(*term.candidate->sensor_type, effect);
       return effect;
     }
-    if (term.candidate && term.candidate->is_heat_share()) {
-      tell_heat_share(*term.candidate, effect);
+    if (term.candidate && term.candidate->deviation_type) {
+      tell_deviation(*term.candidate, effect);
       return effect;
     }
     const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
@@ -42,7 +42,7 @@ class EffectTeller {
     if (term.curve) {
       effect.node = term.curve->term.node;
       effect.drivers.push_back(selection_.drivers[static_cast<std::size_t>(term.curve->term.driver)].name);
-      effect.is_from_catalogue = !effect.condition.empty();
+      effect.is_from_catalogue = false;
     }
     tell_parameters(in_place, effect);
     const HeatOfEffect heat = heat_of(
@@ -73,25 +73,29 @@ class EffectTeller {
     }
   }
 
-  void tell_heat_share(const Candidate& candidate, FoundEffect& effect) const {
-    const auto& terms = after().model.heat_shares;
-    const auto place = std::ranges::find(terms, candidate.condition, &HeatShareTerm::condition) - terms.begin();
-    const Eigen::Index own = after().model.first_heat_share() + place;
+  void tell_deviation(const Candidate& candidate, FoundEffect& effect) const {
+    const RunDeviationType& type = *candidate.deviation_type;
+    const auto& terms = after().model.deviations;
+    const auto place =
+        std::ranges::find_if(terms, [&](const RunDeviation& each) { return each.is_same(&type, candidate.condition); }) - terms.begin();
+    const Eigen::Index own = after().model.first_deviation() + place;
     const double value = terms[static_cast<std::size_t>(place)].deviation_share;
-    const double sd = kUsualDeviation_share * std::sqrt(after().covariance(own, own));
-    effect.id = "heat_share";
-    effect.node = "winding";
+    const double sd = type.usual * std::sqrt(after().covariance(own, own));
+    effect.id = type.name;
+    effect.node = type.node;
     effect.condition = candidate.condition;
-    effect.description =
-        "More or less heat goes in than the log says: another phase carries the current, or the driver takes another share.";
-    effect.parameters.push_back(
-        {std::string(candidate.size_spec().key), "", value, std::max(value - kInterval_sd * sd, -1.0), value + kInterval_sd * sd});
+    effect.description = type.summary;
+    effect.look_alike = type.look_alike;
+    FittedParameter size{std::string(type.size.key), std::string(type.size.unit), value,
+                         std::max(value - kInterval_sd * sd, std::max(-1.0, type.size.range.low)), value + kInterval_sd * sd};
+    drop_interval_at_bound(own, size);
+    effect.parameters.push_back(std::move(size));
     effect.p_value = p_of(value, sd);
+    const Network& network = after().model.model.network;
     const HeatOfEffect heat = heat_of(
-        after(), runs_, [](const EffectInPlace& in_place) { return is_heat_input(*in_place.type); }, candidate.condition);
-    const double share = std::abs(value) / std::max(0.01, 1.0 + value);
-    effect.mean_W = share * heat.mean_W;
-    effect.peak_W = share * heat.peak_W;
+        after(), runs_, [&](const EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);
+    effect.mean_W = type.missing_ratio(value) * heat.mean_W;
+    effect.peak_W = type.missing_ratio(value) * heat.peak_W;
   }
 
   static double p_of(double value, double sd) {

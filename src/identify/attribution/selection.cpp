@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "base/parallel.h"
 #include "identify/attribution/backward_check.h"
 #include "identify/attribution/effect_sets.h"
+#include "identify/attribution/ladder.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
@@ -28,6 +28,8 @@ constexpr double kMostWorse_ratio = 1.1;
 constexpr double kMostMoved_ratio = 1.5;
 
 constexpr int kMostCurvesTried = 3;
+/// Of the evidence that the scan has for a curve, what its refit has to reach within what physics allows.
+constexpr double kKeptPromise_ratio = 0.5;
 
 class Selector {
  public:
@@ -122,7 +124,7 @@ class Selector {
     }
     Round round;
     round.evidence_nats = base.evidence_nats;
-    round.ladder = judge(candidates, table, base);
+    round.ladder = judge(candidates, table, base, rules_.refitted + 2);
     if (input_.scans_drivers) {
       round.scan = scan(table, base);
     }
@@ -138,8 +140,7 @@ class Selector {
         {&out_.after.model.model, &input_.runs, &out_.after.fitted, &drivers, std::max(0.05, out_.mean_heat_W)}, table, base, 8);
     std::vector<int> place;
     for (Driver& driver : drivers) {
-      const auto known =
-          std::ranges::find_if(out_.drivers, [&](const Driver& d) { return d.name == driver.name && d.condition == driver.condition; });
+      const auto known = std::ranges::find(out_.drivers, driver.name, &Driver::name);
       place.push_back(static_cast<int>(known - out_.drivers.begin()));
       if (known == out_.drivers.end()) {
         out_.drivers.push_back(std::move(driver));
@@ -169,42 +170,6 @@ class Selector {
     }
     const auto judged = static_cast<double>(std::max<std::size_t>(1, best_nats.size()));
     out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / judged;
-  }
-
-  /// The best few candidates with their unknown heat re-maximised.
-  [[nodiscard]] std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table,
-                                                   const SetScore& base) const {
-    const std::vector<double> gain_nats = table.single_gains_nats(base);
-    std::vector<int> order(candidates.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order,
-                             [&](int a, int b) { return gain_nats[static_cast<std::size_t>(a)] > gain_nats[static_cast<std::size_t>(b)]; });
-    std::vector<JudgedCandidate> ladder;
-    for (const int j : order) {
-      if (static_cast<int>(ladder.size()) >= rules_.refitted + 2 || gain_nats[static_cast<std::size_t>(j)] <= 0.0) {
-        break;
-      }
-      const std::vector<int> set{j};
-      const SetScore best = table.best(set, base.place);
-      JudgedCandidate judged;
-      judged.candidate = candidates[static_cast<std::size_t>(j)];
-      judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
-      judged.visibility_ratio = table.visibility_ratio(base.candidates, base.place, j);
-      judged.size_share = best.coefficient[table.free_count()];
-      judged.place = best.place;
-      judged.step = best.coefficient.head(table.free_count());
-      const std::vector<double> left_out = table.left_out_gains_nats(base, best);
-      const std::vector<SizeInRun> sizes = table.size_by_run(best, j);
-      for (std::size_t r = 0; r < left_out.size(); ++r) {
-        const bool acts = sizes[r].sd_share > 0.0;
-        judged.left_out_gain_nats += left_out[r];
-        judged.runs_acting += acts ? 1 : 0;
-        judged.runs_gained += acts && left_out[r] > 0.0 ? 1 : 0;
-      }
-      ladder.push_back(std::move(judged));
-    }
-    std::ranges::stable_sort(ladder, [](const JudgedCandidate& a, const JudgedCandidate& b) { return a.gain_nats > b.gain_nats; });
-    return ladder;
   }
 
   /// A judged candidate after its refit in the equations.
@@ -246,7 +211,7 @@ class Selector {
   bool take_best(Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
     double least_nats = rules_.least_gain_nats;
     for (const AcceptedTerm& term : out_.terms) {
-      least_nats = std::max(least_nats, term.curve ? rules_.beside_curve_share * term.gain_nats : 0.0);
+      least_nats = std::max(least_nats, (term.curve ? rules_.beside_curve_share : rules_.beside_law_share) * term.gain_nats);
     }
     std::vector<Tried> tried = try_ladder(round, least_nats);
     const EffectSets sets(round.ladder, candidates, table, base, rules_);
@@ -263,17 +228,20 @@ class Selector {
       if (!is_speed_open_ && take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
         return true;
       }
-      const ScanResult& front = round.scan.front();
+      // A signal that did not hold in the equations and is no better than the clock: it may well be the clock.
+      const auto clock = std::ranges::find_if(round.scan, [&](const ScanResult& each) {
+        return driver_name(each) == kTimeDriver && each.gain_nats > best_scan_nats - rules_.ambiguous_within_nats;
+      });
+      const ScanResult& front = clock != round.scan.end() ? *clock : round.scan.front();
       // What is left over the signal that a curve follows already is the shape between its knots.
       if (std::ranges::any_of(out_.terms, [&](const AcceptedTerm& term) {
             return term.curve && term.curve->term.driver == front.term.driver && term.curve->term.node == front.term.node;
           })) {
         return false;
       }
-      const std::string& driver = out_.drivers[static_cast<std::size_t>(front.term.driver)].name;
       out_.open_curve = front;
       // Heat that goes by the clock, or of which all laws together explain less than half, is none of theirs.
-      if (driver == kTimeDriver || front.gain_nats > 2.0 * std::max(best_nats, catalogue_nats)) {
+      if (driver_name(front) == kTimeDriver || front.gain_nats > 2.0 * std::max(best_nats, catalogue_nats)) {
         return false;
       }
     }
@@ -290,7 +258,7 @@ class Selector {
   /// Refits of those that may be named, best first; tells which may not.
   std::vector<Tried> try_ladder(Round& round, double least_nats) {
     std::vector<Tried> tried;
-    const double worth_nats = round.ladder.empty() ? 0.0 : std::max(0.5 * least_nats, 0.8 * round.ladder.front().gain_nats - 20.0);
+    double worth_nats = 0.5 * least_nats;
     for (JudgedCandidate& each : round.ladder) {
       // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
       const bool is_variant = std::ranges::any_of(
@@ -314,6 +282,7 @@ class Selector {
         }
         continue;
       }
+      worth_nats = std::max(worth_nats, 0.8 * each.gain_nats - 20.0);
       RefitResult fit = try_term(each, 0.5 * each.gain_nats);
       each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
       tried.push_back({&each, std::move(fit), each.gain_nats});
@@ -328,8 +297,10 @@ class Selector {
     term.candidate = tried.front().judged->candidate;
     term.gain_nats = tried.front().gain_nats;
     term.visibility_ratio = tried.front().judged->visibility_ratio;
+    // No law is exact: with much evidence the runner-up may be the right one by more than chance allows.
+    const double within_nats = std::max(rules_.ambiguous_within_nats, rules_.beside_law_share * term.gain_nats);
     for (const Tried& each : tried) {
-      if (each.judged->candidate.id != term.candidate->id && each.gain_nats > term.gain_nats - rules_.ambiguous_within_nats &&
+      if (each.judged->candidate.id != term.candidate->id && each.gain_nats > term.gain_nats - within_nats &&
           std::ranges::find(term.confusable_with, each.judged->candidate.id) == term.confusable_with.end()) {
         term.confusable_with.push_back(each.judged->candidate.id);
         term.experiments.emplace_back(each.judged->candidate.experiment());
@@ -366,10 +337,10 @@ class Selector {
     Eigen::VectorXd theta = model.theta();
     const Eigen::Index inner = out_.after.model.model.free_count();
     const auto sensors = static_cast<Eigen::Index>(out_.after.model.sensors.size());
-    const auto heat_shares = static_cast<Eigen::Index>(out_.after.model.heat_shares.size());
+    const auto deviations = static_cast<Eigen::Index>(out_.after.model.deviations.size());
     theta.head(inner) += step.head(inner);
     theta.segment(model.model.free_count(), sensors) += step.segment(inner, sensors);
-    theta.segment(model.first_heat_share(), heat_shares) += step.tail(heat_shares);
+    theta.segment(model.first_deviation(), deviations) += step.tail(deviations);
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
       theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
     }
@@ -431,12 +402,22 @@ class Selector {
     return with_K > most_ratio * before_K && with_K > before_K + kMatters_K;
   }
 
+  [[nodiscard]] const std::string& driver_name(const ScanResult& curve) const {
+    return out_.drivers[static_cast<std::size_t>(curve.term.driver)].name;
+  }
+
   /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.
   bool take_curve(const Round& round, double least_nats) {
     int tries = 0;
+    const ScanResult& front = round.scan.front();
+    const double rival_nats = front.gain_nats - std::max(rules_.ambiguous_within_nats, rules_.beside_curve_share * front.gain_nats);
     for (const ScanResult& each : round.scan) {
       if (each.gain_nats < least_nats || tries == kMostCurvesTried) {
         break;
+      }
+      // What is far behind another signal only looks like it.
+      if (each.term.driver != front.term.driver && each.gain_nats < rival_nats) {
+        continue;
       }
       const std::optional<ExtendedModel> with =
           with_curve(out_.after.model, each, out_.drivers[static_cast<std::size_t>(each.term.driver)]);
@@ -454,12 +435,12 @@ class Selector {
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < least_nats || leads_away(fit.model, kMostWorse_ratio)) {
+      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) || leads_away(fit.model, kMostWorse_ratio)) {
         continue;
       }
       term.effect_name = std::string(fit.model.model.network.effects().back().name);
       for (const ScanResult& other : round.scan) {
-        const std::string& name = out_.drivers[static_cast<std::size_t>(other.term.driver)].name;
+        const std::string& name = driver_name(other);
         // The same driver may rule another node or another law: that is no other driver.
         if (other.term.driver != each.term.driver && other.gain_nats > each.gain_nats - rules_.ambiguous_within_nats &&
             std::ranges::find(term.confusable_with, name) == term.confusable_with.end()) {

@@ -8,6 +8,7 @@
 
 #include "identify/attribution/changed_figures.h"
 #include "identify/attribution/driver_scan.h"
+#include "identify/attribution/ladder.h"
 #include "identify/attribution/refit.h"
 
 namespace heatsoak {
@@ -26,25 +27,13 @@ struct SelectionRules {
   double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue, and
   double outside_beyond_share = 0.2;  ///< of its own evidence: laws are never exact, and much data sees the least difference of shape
   double beside_curve_share = 0.05;   ///< of a curve's evidence: less than that beside it is what seven knots leave of its shape
+  double beside_law_share = 0.03;     ///< the same of all effects' evidence: no law is exact either
   double least_visibility_ratio = 0.02;
   double unmistakable_nats = 20.0;  ///< over the model without it and doubt in all figures: then it stays though little of it is visible
   double least_heat_share = 0.005;  ///< of the heat that the model knows: an effect of less on average, and of less than
   double least_peak_share = 0.02;   ///< that at its peak, is not named
   int refitted = 6;
   int most_terms = 4;
-};
-
-/// One effect that explains something, as it was judged in its round.
-struct JudgedCandidate {
-  Candidate candidate;
-  double gain_nats = 0.0;
-  double visibility_ratio = 0.0;
-  double left_out_gain_nats = 0.0;  ///< on runs left out of the fit, all together
-  int runs_gained = 0;              ///< of the runs in which it acts at all
-  int runs_acting = 0;
-  double size_share = 0.0;  ///< in typical sizes
-  FluxGrid::Place place;    ///< of the unknown heat that is most probable beside it
-  Eigen::VectorXd step;     ///< that the model's coordinates make with it
 };
 
 /// A round of the selection: what was in question and what came of it.

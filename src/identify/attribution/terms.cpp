@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "identify/attribution/curve.h"
+
 namespace heatsoak {
 namespace {
 
@@ -11,10 +13,10 @@ namespace {
 constexpr double kSizeSpread_share = 2.0;
 /// Of a shape parameter's logarithm before anything is measured.
 constexpr double kShapeSpread = 0.3;
+/// Of the ends of a curve over a temperature, in gaps between its knots.
+constexpr double kKnotSpread = 0.5;
 /// The same where the effect brings a body: anything may be screwed to a motor.
 constexpr double kBodySpread = 1.0;
-/// A conductance that is not there, as a resistance.
-constexpr double kNoContact_K_per_W = 1e9;
 
 std::string named(std::string_view name, std::string usual) { return name.empty() ? std::move(usual) : std::string(name); }
 
@@ -40,28 +42,6 @@ const EffectInPlace& add(Model& model, const std::string& name, const EffectType
 void set_free_around_zero(Model& model, int place, double scale, const Range& range, double spread) {
   model.set_free({.place = place, .by_log = false, .scale = scale, .low = range.low, .high = range.high}, spread);
   model.prior.mean[model.free_count() - 1] = 0.0;
-}
-
-/// A contact to `cold` in certain runs only.
-ExtendedModel with_contact(ExtendedModel model, const ScanResult& curve, const Driver& driver, std::string_view name) {
-  const std::string cold = curve.term.other.empty() ? std::string(Network::kAmbient) : curve.term.other;
-  const double resistance_K_per_W = 1.0 / std::max(curve.curve[0], 1e-6);
-  const EffectInPlace& effect = add(model.model, named(name, fmt::format("contact_{}_{}", curve.term.node, cold)),
-                                    *find_effect("conduction"), {curve.term.node, cold}, {resistance_K_per_W});
-  const int place = effect.parameter_index.front();
-  model.conditional.push_back({effect.name, place, kNoContact_K_per_W, driver.condition});
-  model.model.set_free({.place = place, .by_log = true, .scale = 1.0, .low = 1e-3, .high = kNoContact_K_per_W}, 3.0);
-  return model;
-}
-
-ExtendedModel with_source(ExtendedModel model, const ScanResult& curve, const Driver& driver, std::string_view name) {
-  const EffectType& type = *find_effect("constant_heat");
-  const EffectInPlace& effect =
-      add(model.model, named(name, fmt::format("heat_{}", curve.term.node)), type, {curve.term.node}, {curve.curve[0]});
-  const int place = effect.parameter_index.front();
-  model.conditional.push_back({effect.name, place, 0.0, driver.condition});
-  set_free_around_zero(model.model, place, curve.usual, type.parameters.front().range, 1.0);
-  return model;
 }
 
 std::optional<double> choice_value(const ParameterSpec& spec, std::string_view name) {
@@ -106,6 +86,16 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   ExtendedModel out = model;
   const EffectInPlace effect = add(out.model, named(name, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name)), type,
                                    {curve.term.node, cold, watched, reference}, parameters);
+  const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
+  for (const std::size_t end : {2U, 3U}) {
+    // The scan saw temperatures as they were measured, noise and a sensor's error and all: the curve may stand a little beside.
+    if (driver.kind == DriverKind::node_temperature) {
+      const double knot = parameters[end];
+      out.model.set_free(
+          {.place = effect.parameter_index[end], .by_log = false, .scale = gap, .low = knot - 2.0 * gap, .high = knot + 2.0 * gap},
+          kKnotSpread);
+    }
+  }
   for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
     set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
   }
@@ -121,8 +111,9 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
     out.sensors.push_back({candidate.sensor_type, size_share * candidate.typical_size(), kSizeSpread_share * candidate.typical_size()});
     return out;
   }
-  if (candidate.is_heat_share()) {
-    out.heat_shares.push_back({candidate.condition, size_share * candidate.typical_size(), kSizeSpread_share * candidate.typical_size()});
+  if (candidate.deviation_type) {
+    out.deviations.push_back({candidate.deviation_type, candidate.condition, size_share * candidate.typical_size(),
+                              kSizeSpread_share * candidate.typical_size()});
     return out;
   }
   std::vector<double> parameters = candidate.parameters;
@@ -160,13 +151,6 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
 }
 
 std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
-  if (driver.kind == DriverKind::run) {
-    // In certain runs only: more contact or more heat there, never less than nothing.
-    if (curve.curve[0] <= 0.0 || curve.term.multiplier == Multiplier::copper) {
-      return std::nullopt;
-    }
-    return curve.term.multiplier == Multiplier::source ? with_source(model, curve, driver, name) : with_contact(model, curve, driver, name);
-  }
   return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
 }
 
@@ -183,9 +167,10 @@ ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
     const auto found = std::ranges::find(other.sensors, term.type, &SensorTerm::type);
     term.value = found != other.sensors.end() ? found->value : term.value;
   }
-  for (HeatShareTerm& term : model.heat_shares) {
-    const auto found = std::ranges::find(other.heat_shares, term.condition, &HeatShareTerm::condition);
-    term.deviation_share = found != other.heat_shares.end() ? found->deviation_share : term.deviation_share;
+  for (RunDeviation& each : model.deviations) {
+    const auto found =
+        std::ranges::find_if(other.deviations, [&](const RunDeviation& of_other) { return of_other.is_same(each.type, each.condition); });
+    each.deviation_share = found != other.deviations.end() ? found->deviation_share : each.deviation_share;
   }
   return model;
 }

@@ -1,0 +1,28 @@
+// Candidates in the order of what the runs say for them, by the linear evidence alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "identify/attribution/candidates.h"
+#include "identify/attribution/evidence_table.h"
+
+namespace heatsoak {
+
+/// One effect that explains something, as it was judged in its round.
+struct JudgedCandidate {
+  Candidate candidate;
+  double gain_nats = 0.0;
+  double visibility_ratio = 0.0;
+  double left_out_gain_nats = 0.0;  ///< on runs left out of the fit, all together
+  int runs_gained = 0;              ///< of the runs in which it acts at all
+  int runs_acting = 0;
+  double size_share = 0.0;  ///< in typical sizes
+  FluxGrid::Place place;    ///< of the unknown heat that is most probable beside it
+  Eigen::VectorXd step;     ///< that the model's coordinates make with it
+};
+
+/// The best few candidates with their unknown heat re-maximised, best first.
+std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base, int most);
+
+}  // namespace heatsoak
