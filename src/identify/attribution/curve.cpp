@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace heatsoak {
-namespace {
-
-constexpr int kKnots = 7;
-
-}  // namespace
-
 std::vector<double> knots_from(const Driver::Range& range) {
   std::vector<double> knots(kKnots);
   for (int i = 0; i < kKnots; ++i) {

@@ -8,6 +8,7 @@
 
 namespace heatsoak {
 
+inline constexpr int kKnots = 7;
 std::vector<double> knots_from(const Driver::Range& range);
 /// Where a driver (no temperature) changes its sign one of them is 0: forwards and backwards, driving and braking differ.
 std::vector<double> knots_between(Driver::Range range, DriverKind kind);

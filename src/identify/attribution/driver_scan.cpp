@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <optional>
 
 #include "base/parallel.h"
@@ -12,6 +13,8 @@
 namespace heatsoak {
 namespace {
 
+/// All hats of a driver and what rounds them up to what is whitened at once.
+using HatColumns = Eigen::Matrix<double, Eigen::Dynamic, kKnots + 1, Eigen::RowMajor>;
 /// So many of the best curves may draw their knots together, by half and half again, where that explains more.
 constexpr std::size_t kZoomed = 3;
 constexpr int kHalvings = 3;
@@ -20,11 +23,11 @@ constexpr double kWorthKnots_nats = 5.0;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
-/// How the sensors answer to heats held over the intervals: `heat_W` (intervals × c) into the node with place `flux`, out of `other`.
-Columns response(const LinearisedRun& run, const Columns& heat_W, int flux, int other) {
-  Columns shown = Columns::Zero(run.residual_K.size(), heat_W.cols());
-  Columns state = Columns::Zero(run.states, heat_W.cols());
-  Columns next = state;
+/// How the sensors answer to heats held over the intervals: `heat_W` (intervals × hats) into the node with place `flux`, out of `other`.
+HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
+  HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
+  HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
+  HatColumns next = state;
   for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
     const double* const transition = run.transition.data() + k * run.states * run.states;
     const double* const injection = run.injection.data() + k * run.states * run.fluxes;
@@ -49,31 +52,21 @@ int flux_of(const Model& model, std::string_view node) {
   return found == model.flux_nodes.end() ? -1 : static_cast<int>(found - model.flux_nodes.begin());
 }
 
-/// What all terms at one node before one multiplier share: their columns stand side by side.
-struct Batch {
-  ScanTerm term;
-  std::vector<int> drivers;
-};
-
-std::vector<Batch> batches_of(const ScanInput& input) {
-  const Network& network = input.model->network;
-  std::vector<int> all(input.drivers->size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i] = static_cast<int>(i);
-  }
-  std::vector<Batch> batches;
-  for (const int node : input.model->flux_nodes) {
-    const std::string name(network.node_name(node));
-    batches.push_back({{name, "", Multiplier::source, 0}, all});
-    batches.push_back({{name, "", Multiplier::excess, 0}, all});
+/// All terms that the scan tries, for any driver.
+std::vector<ScanTerm> terms_of(const Model& model) {
+  std::vector<ScanTerm> terms;
+  for (const int node : model.flux_nodes) {
+    const std::string name(model.network.node_name(node));
+    terms.push_back({name, "", Multiplier::source, 0});
+    terms.push_back({name, "", Multiplier::excess, 0});
     if (name == "winding") {
-      batches.push_back({{name, "", Multiplier::copper, 0}, all});
+      terms.push_back({name, "", Multiplier::copper, 0});
     }
   }
-  if (flux_of(*input.model, "winding") >= 0 && flux_of(*input.model, "stator") >= 0) {
-    batches.push_back({{"winding", "stator", Multiplier::difference, 0}, all});
+  if (flux_of(model, "winding") >= 0 && flux_of(model, "stator") >= 0) {
+    terms.push_back({"winding", "stator", Multiplier::difference, 0});
   }
-  return batches;
+  return terms;
 }
 
 struct Family {
@@ -83,7 +76,7 @@ struct Family {
 };
 
 struct Scored {
-  double gain_nats = 0.0;  ///< at one place of the unknown heat
+  double gain_nats = 0.0;
   Eigen::VectorXd curve;
   Eigen::MatrixXd covariance;
 };
@@ -104,7 +97,7 @@ struct SharedRun {
 
 class Scanner {
  public:
-  Scanner(const ScanInput& input, EvidenceTable& table, const SetScore& base) : input_(input), table_(table), base_(base) {
+  Scanner(const ScanInput& input, const EvidenceTable& table, const SetScore& base) : input_(input), table_(table), base_(base) {
     for (Eigen::Index i = 0; i < table_.free_count(); ++i) {
       inner_.push_back(i);
     }
@@ -118,29 +111,25 @@ class Scanner {
       return {};
     }
     std::vector<Climber> climbers;
-    for (const Batch& batch : batches_of(input_)) {
-      const std::vector<Eigen::VectorXd> multiplier = multipliers(batch.term);
-      std::vector<Family> families;
-      for (const int driver : batch.drivers) {
-        families.push_back(family(batch.term, driver, multiplier));
+    for (const ScanTerm& term : terms_of(*input_.model)) {
+      const std::vector<Eigen::VectorXd> multiplier = multipliers(term);
+      const std::size_t first = climbers.size();
+      for (std::size_t driver = 0; driver < input_.drivers->size(); ++driver) {
+        climbers.push_back({family(term, static_cast<int>(driver), multiplier), {}, base_.place});
       }
-      std::vector<Scored> scored = score(families, responses(families, multiplier), base_.place);
-      for (std::size_t f = 0; f < families.size(); ++f) {
-        climbers.push_back({std::move(families[f]), std::move(scored[f]), base_.place});
-      }
+      in_parallel(climbers.size() - first, 0, [&](std::size_t i) {
+        Climber& climber = climbers[first + i];
+        climber.scored = score(climber.family, responses(climber.family, multiplier), climber.place);
+      });
     }
     const auto keep_best = [&climbers](int count) {
       std::ranges::stable_sort(climbers, [](const Climber& a, const Climber& b) { return a.scored.gain_nats > b.scored.gain_nats; });
       climbers.resize(std::min<std::size_t>(climbers.size(), static_cast<std::size_t>(count)));
     };
     keep_best(2 * most);
-    for (Climber& each : climbers) {
-      climb(each);
-    }
+    in_parallel(climbers.size(), 0, [&](std::size_t i) { climb(climbers[i]); });
     keep_best(most);
-    for (std::size_t i = 0; i < std::min<std::size_t>(kZoomed, climbers.size()); ++i) {
-      zoom(climbers[i]);
-    }
+    in_parallel(std::min(kZoomed, climbers.size()), 0, [&](std::size_t i) { zoom(climbers[i]); });
     keep_best(most);
     std::vector<ScanResult> results;
     for (const Climber& each : climbers) {
@@ -170,33 +159,24 @@ class Scanner {
     return {term, knots_over((*input_.drivers)[static_cast<std::size_t>(driver)]), kUsual_share * input_.mean_heat_W / std::max(1e-9, rms)};
   }
 
-  /// Heat of every hat of every family along a run, in units of the families' usual sizes.
-  [[nodiscard]] Columns heats_W(const std::vector<Family>& families, const Eigen::VectorXd& multiplier, std::size_t r) const {
-    Eigen::Index width = 0;
-    for (const Family& family : families) {
-      width += static_cast<Eigen::Index>(family.knots.size());
-    }
-    const double sign = is_taken_out(families.front().term.multiplier) ? -1.0 : 1.0;
+  /// Heat of every hat along a run, in units of the family's usual size.
+  [[nodiscard]] HatColumns heats_W(const Family& family, const Eigen::VectorXd& multiplier, std::size_t r) const {
+    const double sign = is_taken_out(family.term.multiplier) ? -1.0 : 1.0;
     const DesignRun& design = table_.runs()[r];
-    Columns heat_W = Columns::Zero(design.run.samples() - 1, width);
-    Eigen::Index at = 0;
-    for (const Family& family : families) {
-      const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
-      const auto size = static_cast<Eigen::Index>(family.knots.size());
-      for (Eigen::Index k = 0; k < multiplier.size(); ++k) {
-        const double value = driver.values[r][k];
-        const Eigen::Index row = design.interval_of[static_cast<std::size_t>(k)];
-        if (row < 0 || std::isnan(value)) {
-          continue;
-        }
-        const double share =
-            (*input_.fitted)[r].duration_s[static_cast<std::size_t>(k)] / design.run.duration_s[static_cast<std::size_t>(row)];
-        const double usual_W = sign * share * family.usual * multiplier[k];
-        const HatsAt hats = hats_at(family.knots, value);
-        heat_W(row, at + hats.left) += usual_W * (1.0 - hats.right_share);
-        heat_W(row, at + hats.left + 1) += usual_W * hats.right_share;
+    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
+    for (Eigen::Index k = 0; k < multiplier.size(); ++k) {
+      const double value = driver.values[r][k];
+      const Eigen::Index row = design.interval_of[static_cast<std::size_t>(k)];
+      if (row < 0 || std::isnan(value)) {
+        continue;
       }
-      at += size;
+      const double share =
+          (*input_.fitted)[r].duration_s[static_cast<std::size_t>(k)] / design.run.duration_s[static_cast<std::size_t>(row)];
+      const double usual_W = sign * share * family.usual * multiplier[k];
+      const HatsAt hats = hats_at(family.knots, value);
+      heat_W(row, hats.left) += usual_W * (1.0 - hats.right_share);
+      heat_W(row, hats.left + 1) += usual_W * hats.right_share;
     }
     return heat_W;
   }
@@ -204,17 +184,18 @@ class Scanner {
   static bool is_taken_out(Multiplier multiplier) { return multiplier == Multiplier::excess || multiplier == Multiplier::difference; }
 
   /// Per run, how the sensors answer to every hat.
-  [[nodiscard]] std::vector<Columns> responses(const std::vector<Family>& families, const std::vector<Eigen::VectorXd>& multiplier) const {
-    const ScanTerm& term = families.front().term;
-    const int into = flux_of(*input_.model, term.node);
-    const int other = term.other.empty() ? -1 : flux_of(*input_.model, term.other);
-    std::vector<Columns> shown(multiplier.size());
-    in_parallel(shown.size(), 0,
-                [&](std::size_t r) { shown[r] = response(table_.runs()[r].run, heats_W(families, multiplier[r], r), into, other); });
+  [[nodiscard]] std::vector<HatColumns> responses(const Family& family, const std::vector<Eigen::VectorXd>& multiplier) const {
+    const int into = flux_of(*input_.model, family.term.node);
+    const int other = family.term.other.empty() ? -1 : flux_of(*input_.model, family.term.other);
+    std::vector<HatColumns> shown;
+    for (std::size_t r = 0; r < multiplier.size(); ++r) {
+      shown.push_back(response(table_.runs()[r].run, heats_W(family, multiplier[r], r), into, other));
+    }
     return shown;
   }
 
   const std::vector<SharedRun>& shared_at(const FluxGrid::Place& place) {
+    const std::lock_guard lock(mutex_);
     const auto found = shared_.find(place);
     if (found != shared_.end()) {
       return found->second;
@@ -242,56 +223,40 @@ class Scanner {
     return shared_.emplace(place, std::move(shared)).first->second;
   }
 
-  /// Gains over the base at the same place.
-  std::vector<Scored> score(const std::vector<Family>& families, std::vector<Columns> shown, const FluxGrid::Place& place) {
+  /// Its gain over the base at the base's own best place.
+  Scored score(const Family& family, const std::vector<HatColumns>& shown, const FluxGrid::Place& place) {
     const std::vector<SharedRun>& shared = shared_at(place);
-    std::vector<std::vector<RunEvidence>> evidence(shown.size());
-    in_parallel(shown.size(), 0, [&](std::size_t r) { evidence[r] = evidence_of(table_.runs()[r], shared[r], shown[r], families); });
-    std::vector<Scored> scored(families.size());
-    const double base_nats = table_.score(base_.candidates, place).evidence_nats - table_.grid().log_prior_nats(place);
-    for (std::size_t f = 0; f < families.size(); ++f) {
-      std::vector<RunEvidence> of_family;
-      for (const std::vector<RunEvidence>& of_run : evidence) {
-        of_family.push_back(of_run[f]);
-      }
-      scored[f] = solve(of_family, families[f]);
-      scored[f].gain_nats -= base_nats;
+    std::vector<RunEvidence> evidence;
+    for (std::size_t r = 0; r < shown.size(); ++r) {
+      evidence.push_back(evidence_of(table_.runs()[r], shared[r], shown[r], static_cast<Eigen::Index>(family.knots.size())));
     }
+    Scored scored = solve(evidence, family);
+    scored.gain_nats += table_.grid().log_prior_nats(place) - base_.evidence_nats;
     return scored;
   }
 
-  /// One per family, of [inner, hats, residual]. All families share the whitening and what does not concern their hats; a wide
-  /// QR would spend its time on products of families with each other, so triangles come from normal matrices here.
-  static std::vector<RunEvidence> evidence_of(const DesignRun& design, const SharedRun& common, Columns& shown,
-                                              const std::vector<Family>& families) {
+  /// Of [inner, hats, residual]. All families share the whitening and what does not concern their hats; a QR would spend its time on
+  /// that, so triangles come from normal matrices here.
+  static RunEvidence evidence_of(const DesignRun& design, const SharedRun& common, HatColumns shown, Eigen::Index size) {
     common.whitening.apply(shown);
+    const auto hats = shown.leftCols(size);
     const Eigen::Index starts = design.run.states;
     const Eigen::Index shared = common.columns.cols();
-    const Eigen::MatrixXd across = common.columns.transpose() * shown;
-    std::vector<RunEvidence> evidence;
-    Eigen::Index at = 0;
-    for (const Family& family : families) {
-      const auto size = static_cast<Eigen::Index>(family.knots.size());
-      const auto hats = shown.middleCols(at, size);
-      const Eigen::Index before = shared - 1;
-      Eigen::MatrixXd normal(shared + size, shared + size);
-      normal.topLeftCorner(before, before) = common.products.topLeftCorner(before, before);
-      normal.block(0, before, before, size) = across.block(0, at, before, size);
-      normal.block(before, before, size, size) = hats.transpose() * hats;
-      normal.block(0, before + size, before, 1) = common.products.block(0, before, before, 1);
-      normal.block(before, before + size, size, 1) = across.block(before, at, 1, size).transpose();
-      normal(before + size, before + size) = common.products(before, before);
-      // A hat that no sample reaches has an empty column.
-      normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
-      const Eigen::MatrixXd triangle = normal.selfadjointView<Eigen::Upper>().llt().matrixU();
-      const Eigen::Index rest = shared - starts + size;
-      const double start_logs =
-          triangle.topLeftCorner(starts, starts).diagonal().array().log().sum() + design.start.sd_K.array().log().sum();
-      evidence.push_back(
-          {triangle.bottomRightCorner(rest, rest), common.whitening.log_determinant() + 2.0 * start_logs, common.whitening.count()});
-      at += size;
-    }
-    return evidence;
+    const Eigen::Index before = shared - 1;
+    const Eigen::MatrixXd across = common.columns.transpose() * hats;
+    Eigen::MatrixXd normal(shared + size, shared + size);
+    normal.topLeftCorner(before, before) = common.products.topLeftCorner(before, before);
+    normal.block(0, before, before, size) = across.topRows(before);
+    normal.block(before, before, size, size) = hats.transpose() * hats;
+    normal.block(0, before + size, before, 1) = common.products.block(0, before, before, 1);
+    normal.block(before, before + size, size, 1) = across.bottomRows(1).transpose();
+    normal(before + size, before + size) = common.products(before, before);
+    // A hat that no sample reaches has an empty column.
+    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
+    const Eigen::MatrixXd triangle = normal.selfadjointView<Eigen::Upper>().llt().matrixU();
+    const Eigen::Index rest = shared - starts + size;
+    const double start_logs = triangle.topLeftCorner(starts, starts).diagonal().array().log().sum() + design.start.sd_K.array().log().sum();
+    return {triangle.bottomRightCorner(rest, rest), common.whitening.log_determinant() + 2.0 * start_logs, common.whitening.count()};
   }
 
   [[nodiscard]] Scored solve(const std::vector<RunEvidence>& evidence, const Family& family) const {
@@ -341,8 +306,7 @@ class Scanner {
     for (const Driver::Range& range : ranges) {
       Climber other = climber;
       other.family.knots = knots_between(range, driver.kind);
-      const std::vector<Family> own{other.family};
-      other.scored = gained(own, responses(own, multiplier), other.place);
+      other.scored = score(other.family, responses(other.family, multiplier), other.place);
       if (other.scored.gain_nats > least_nats) {
         least_nats = other.scored.gain_nats;
         best = std::move(other);
@@ -357,8 +321,7 @@ class Scanner {
   }
 
   void climb(Climber& climber, const std::vector<Eigen::VectorXd>& multiplier) {
-    const std::vector<Family> own{climber.family};
-    const std::vector<Columns> shown = responses(own, multiplier);
+    const std::vector<HatColumns> shown = responses(climber.family, multiplier);
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t axis = 0; axis < climber.place.size(); ++axis) {
@@ -370,7 +333,7 @@ class Scanner {
           if (place[axis] < 0 || place[axis] >= count) {
             continue;
           }
-          Scored scored = gained(own, shown, place);
+          Scored scored = score(climber.family, shown, place);
           if (scored.gain_nats > climber.scored.gain_nats + 1e-6) {
             climber.scored = std::move(scored);
             climber.place = std::move(place);
@@ -380,13 +343,6 @@ class Scanner {
         }
       }
     }
-  }
-
-  /// Its gain over the base at the base's own best place.
-  Scored gained(const std::vector<Family>& own, const std::vector<Columns>& shown, const FluxGrid::Place& place) {
-    Scored scored = score(own, shown, place).front();
-    scored.gain_nats += table_.score(base_.candidates, place).evidence_nats - base_.evidence_nats;
-    return scored;
   }
 
   [[nodiscard]] ScanResult result(const Climber& climber) const {
@@ -416,8 +372,9 @@ class Scanner {
   }
 
   const ScanInput& input_;
-  EvidenceTable& table_;
+  const EvidenceTable& table_;
   const SetScore& base_;
+  std::mutex mutex_;
   std::vector<Eigen::Index> inner_;  ///< columns of the table that the base fits
   std::map<FluxGrid::Place, std::vector<SharedRun>> shared_;
 };
