@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "base/parallel.h"
 #include "identify/attribution/advisor.h"
 #include "identify/attribution/coverage.h"
 #include "identify/attribution/curve.h"
@@ -79,11 +81,11 @@ class Teller {
 
   /// Smoothed unknown heat of every run: fluxes × samples.
   [[nodiscard]] std::vector<FluxEstimate> smoothed(const RefitResult& fit) const {
-    std::vector<FluxEstimate> all;
+    std::vector<FluxEstimate> all(fit.fitted.size());
     const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {}, {});
-    for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
-      all.push_back(Whitening(fit.fitted[r], flux_at(fit), designs[r].noise).smoothed_flux(fit.fitted[r].residual_K));
-    }
+    in_parallel(all.size(), 0, [&](std::size_t r) {
+      all[r] = Whitening(fit.fitted[r], flux_at(fit), designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
+    });
     return all;
   }
 
@@ -159,10 +161,11 @@ class Teller {
         add_inputs(input_.train[r], inputs[signal]);
       }
     }
-    std::vector<InnovationTests> tests;
-    for (const auto& [signal, all] : innovations) {
-      tests.push_back(test_innovations(signal, all, inputs[signal]));
-    }
+    std::vector<InnovationTests> tests(innovations.size());
+    in_parallel(tests.size(), 0, [&](std::size_t i) {
+      const auto& [signal, all] = *std::next(innovations.begin(), static_cast<std::ptrdiff_t>(i));
+      tests[i] = test_innovations(signal, all, inputs.at(signal));
+    });
     return tests;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "identify/attribution/open_loop.h"
 
 namespace heatsoak {
@@ -73,15 +74,16 @@ Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, 
 Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
   Errors errors;
   std::map<std::string, double> counts;
-  for (const MeasuredRun& run : runs) {
-    const Eigen::MatrixXd predicted_C = open_loop_C(model, run, before_them);
+  std::vector<Eigen::MatrixXd> off_K(runs.size());
+  in_parallel(runs.size(), 0, [&](std::size_t r) { off_K[r] = runs[r].measured_C - open_loop_C(model, runs[r], before_them); });
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const MeasuredRun& run = runs[r];
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
       ErrorOfSignal& error = errors[run.sensors[sensor].signal];
-      for (Eigen::Index k = 0; k < run.samples(); ++k) {
-        const double off_K = run.measured_C(k, static_cast<Eigen::Index>(sensor)) - predicted_C(k, static_cast<Eigen::Index>(sensor));
-        if (!std::isnan(off_K)) {
-          error.rmse_K += off_K * off_K;
-          error.max_abs_K = std::max(error.max_abs_K, std::abs(off_K));
+      for (const double each_K : off_K[r].col(static_cast<Eigen::Index>(sensor))) {
+        if (!std::isnan(each_K)) {
+          error.rmse_K += each_K * each_K;
+          error.max_abs_K = std::max(error.max_abs_K, std::abs(each_K));
           counts[run.sensors[sensor].signal] += 1.0;
         }
       }

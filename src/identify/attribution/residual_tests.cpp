@@ -61,21 +61,27 @@ double periodogram(const Eigen::VectorXd& z, double count) {
   const Eigen::Index frequencies = std::min<Eigen::Index>(n / 2, 400);
   std::vector<double> cumulated;
   double total = 0.0;
-  for (Eigen::Index f = 1; f <= frequencies; ++f) {
-    // Evenly spread over all frequencies; a rotating phasor instead of a sine for each sample.
-    const double angle = std::numbers::pi * static_cast<double>(f) / static_cast<double>(frequencies + 1);
-    const double c = std::cos(angle), s = std::sin(angle);
-    double re = 0.0, im = 0.0, phase_re = 1.0, phase_im = 0.0;
+  // Evenly spread over all frequencies, eight at a time; a rotating phasor instead of a sine for each sample.
+  using Eight = Eigen::Array<double, 8, 1>;
+  for (Eigen::Index first = 1; first <= frequencies; first += Eight::SizeAtCompileTime) {
+    Eight c, s;
+    for (Eigen::Index i = 0; i < c.size(); ++i) {
+      const double angle = std::numbers::pi * static_cast<double>(first + i) / static_cast<double>(frequencies + 1);
+      c[i] = std::cos(angle), s[i] = std::sin(angle);
+    }
+    Eight re = Eight::Zero(), im = Eight::Zero(), phase_re = Eight::Ones(), phase_im = Eight::Zero();
     for (const double value : z) {
       if (!std::isnan(value)) {
         re += value * phase_re, im += value * phase_im;
       }
-      const double next = phase_re * c - phase_im * s;
+      const Eight next = phase_re * c - phase_im * s;
       phase_im = phase_re * s + phase_im * c;
       phase_re = next;
     }
-    total += re * re + im * im;
-    cumulated.push_back(total);
+    for (Eigen::Index i = 0; i < c.size() && first + i <= frequencies; ++i) {
+      total += re[i] * re[i] + im[i] * im[i];
+      cumulated.push_back(total);
+    }
   }
   double distance = 0.0;
   for (std::size_t i = 0; i < cumulated.size(); ++i) {
