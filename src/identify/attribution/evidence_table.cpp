@@ -66,8 +66,9 @@ FluxGrid flux_grid(double mean_heat_W, double longest_s) {
 EvidenceTable::EvidenceTable(std::vector<DesignRun> runs, FluxGrid grid, ThetaPrior prior, std::vector<CandidateColumn> candidates)
     : runs_(std::move(runs)), grid_(std::move(grid)), prior_(std::move(prior)), candidates_(std::move(candidates)) {}
 
-const EvidenceTable::Reduced& EvidenceTable::at(const FluxGrid::Place& place) {
-  const auto found = reduced_.find(place);
+const EvidenceTable::Reduced& EvidenceTable::at(const FluxGrid::Place& place, bool has_candidates) {
+  has_candidates = has_candidates && !candidates_.empty();
+  const auto found = reduced_.find({place, has_candidates});
   if (found != reduced_.end()) {
     return found->second;
   }
@@ -77,15 +78,15 @@ const EvidenceTable::Reduced& EvidenceTable::at(const FluxGrid::Place& place) {
   in_parallel(runs_.size(), 0, [&](std::size_t i) {
     const DesignRun& design = runs_[i];
     const Whitening whitening(design.run, flux, design.noise);
-    reduced.run[i] = candidates_.empty() ? run_evidence(design.run, design.columns, whitening, design.start)
-                                         : run_evidence_of_many(design.run, design.columns, free_count(), whitening, design.start);
+    reduced.run[i] = has_candidates ? run_evidence_of_many(design.run, design.columns, free_count(), whitening, design.start)
+                                    : run_evidence(design.run, design.columns.leftCols(free_count()), whitening, design.start);
   });
   reduced.all.triangle = stacked(reduced.run);
   for (const RunEvidence& run : reduced.run) {
     reduced.all.log_determinant += run.log_determinant;
     reduced.all.count += run.count;
   }
-  return reduced_.emplace(place, std::move(reduced)).first->second;
+  return reduced_.emplace(std::pair(place, has_candidates), std::move(reduced)).first->second;
 }
 
 std::vector<Eigen::Index> EvidenceTable::columns_of(std::span<const int> set) const {
@@ -121,7 +122,7 @@ ThetaPrior EvidenceTable::prior_of(std::span<const int> set) const {
 }
 
 double EvidenceTable::misfit_now(const FluxGrid::Place& place) {
-  return at(place).all.triangle.rightCols<1>().squaredNorm() + prior_.mean.dot(prior_.precision * prior_.mean);
+  return at(place, false).all.triangle.rightCols<1>().squaredNorm() + prior_.mean.dot(prior_.precision * prior_.mean);
 }
 
 LinearFit EvidenceTable::fit(std::span<const RunEvidence> runs, std::span<const int> set) const {
@@ -130,7 +131,7 @@ LinearFit EvidenceTable::fit(std::span<const RunEvidence> runs, std::span<const 
 }
 
 SetScore EvidenceTable::score(std::span<const int> set, const FluxGrid::Place& place) {
-  const RunEvidence chosen = selected(at(place).all, set);
+  const RunEvidence chosen = selected(at(place, !set.empty()).all, set);
   const LinearFit fitted = fit({&chosen, 1}, set);
   SetScore out;
   out.candidates.assign(set.begin(), set.end());

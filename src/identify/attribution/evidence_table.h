@@ -111,7 +111,6 @@ class EvidenceTable {
   /// Triangle of [θ, candidates, residual] of all runs.
   [[nodiscard]] const RunEvidence& all_runs(const FluxGrid::Place& place) { return at(place).all; }
   [[nodiscard]] Eigen::Index free_count() const { return prior_.mean.size(); }
-  [[nodiscard]] int places_visited() const { return static_cast<int>(reduced_.size()); }
 
  private:
   /// Triangles of [θ, candidates, residual], run by run and of all.
@@ -119,7 +118,8 @@ class EvidenceTable {
     std::vector<RunEvidence> run;
     RunEvidence all;
   };
-  const Reduced& at(const FluxGrid::Place& place);
+  /// Where nobody asks about a candidate, without their columns: they are what takes the time.
+  const Reduced& at(const FluxGrid::Place& place, bool has_candidates = true);
   /// Of [θ, the set's members].
   [[nodiscard]] std::vector<Eigen::Index> columns_of(std::span<const int> set) const;
   [[nodiscard]] LinearFit fit(std::span<const RunEvidence> runs, std::span<const int> set) const;
@@ -131,7 +131,7 @@ class EvidenceTable {
   FluxGrid grid_;
   ThetaPrior prior_;
   std::vector<CandidateColumn> candidates_;
-  std::map<FluxGrid::Place, Reduced> reduced_;
+  std::map<std::pair<FluxGrid::Place, bool>, Reduced> reduced_;
 };
 
 }  // namespace heatsoak
