@@ -18,16 +18,15 @@ Eigen::MatrixXd triangle_of(Eigen::MatrixXd&& tall) {
 }
 
 /// Whitened [start, columns, residual] with the prior of the start temperatures as rows on top.
-Eigen::MatrixXd whitened(const LinearisedRun& run, const Columns& columns, const Whitening& whitening, const StartPrior& start) {
+Columns whitened(const LinearisedRun& run, const Eigen::Ref<const Columns>& columns, const Whitening& whitening, const StartPrior& start) {
   const Eigen::Index x = run.states;
   const Eigen::Index count = columns.cols();
-  Columns all(columns.rows(), x + count + 1);
-  all << run.by_start, columns, run.residual_K;
-  whitening.apply(all);
-  Eigen::MatrixXd tall = Eigen::MatrixXd::Zero(x + all.rows(), all.cols());
+  Columns tall(x + columns.rows(), x + count + 1);
+  tall.topRows(x).setZero();
   tall.topLeftCorner(x, x).diagonal() = start.sd_K.cwiseInverse();
   tall.topRightCorner(x, 1) = start.mean_K.cwiseQuotient(start.sd_K);
-  tall.bottomRows(all.rows()) = all;
+  tall.bottomRows(columns.rows()) << run.by_start, columns, run.residual_K;
+  whitening.apply(tall.bottomRows(columns.rows()));
   return tall;
 }
 
@@ -35,7 +34,8 @@ double log_of_diagonal(const Eigen::MatrixXd& triangle) { return triangle.diagon
 
 }  // namespace
 
-RunEvidence run_evidence(const LinearisedRun& run, const Columns& columns, const Whitening& whitening, const StartPrior& start) {
+RunEvidence run_evidence(const LinearisedRun& run, const Eigen::Ref<const Columns>& columns, const Whitening& whitening,
+                         const StartPrior& start) {
   const Eigen::Index x = run.states;
   const Eigen::Index rest = columns.cols() + 1;
   const Eigen::MatrixXd triangle = triangle_of(whitened(run, columns, whitening, start));
@@ -49,7 +49,7 @@ RunEvidence run_evidence_of_many(const LinearisedRun& run, const Columns& column
   const Eigen::Index x = run.states;
   const Eigen::Index first = x + inner;
   const Eigen::Index rest = columns.cols() - inner + 1;
-  Eigen::MatrixXd tall = whitened(run, columns, whitening, start);
+  Columns tall = whitened(run, columns, whitening, start);
   if (tall.rows() < first + rest) {
     return run_evidence(run, columns, whitening, start);
   }
@@ -105,18 +105,30 @@ LinearFit linear_fit(std::span<const RunEvidence> runs, const Eigen::VectorXd& p
   all.bottomLeftCorner(count, count) = root.asDiagonal() * prior.eigenvectors().transpose();
   all.bottomRightCorner(count, 1) = all.bottomLeftCorner(count, count) * prior_mean;
   const Eigen::MatrixXd triangle = triangle_of(std::move(all));
-  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(triangle.topLeftCorner(count, count), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double smallest = 1.0 / std::sqrt(kUnknownVariance);
-  const Eigen::VectorXd singular = svd.singularValues().cwiseMax(smallest);
-  const Eigen::VectorXd right = svd.matrixU().transpose() * triangle.topRightCorner(count, 1);
-  fit.coefficients = svd.matrixV() * (svd.singularValues().array() > smallest).select(right.cwiseQuotient(singular), 0.0).matrix();
-  fit.covariance = svd.matrixV() * singular.cwiseAbs2().cwiseInverse().asDiagonal() * svd.matrixV().transpose();
+  double log_root = 0.0;
+  const Eigen::MatrixXd inverse =
+      triangle.topLeftCorner(count, count).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(count, count));
+  // Its norm bounds the smallest singular value: mostly every direction is known, and nobody has to ask which.
+  if (inverse.squaredNorm() < kUnknownVariance) {
+    fit.coefficients = inverse * triangle.topRightCorner(count, 1);
+    fit.covariance = inverse * inverse.transpose();
+    log_root = log_of_diagonal(triangle.topLeftCorner(count, count));
+  } else {
+    const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(triangle.topLeftCorner(count, count),
+                                                                           Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::VectorXd singular = svd.singularValues().cwiseMax(smallest);
+    const Eigen::VectorXd right = svd.matrixU().transpose() * triangle.topRightCorner(count, 1);
+    fit.coefficients = svd.matrixV() * (svd.singularValues().array() > smallest).select(right.cwiseQuotient(singular), 0.0).matrix();
+    fit.covariance = svd.matrixV() * singular.cwiseAbs2().cwiseInverse().asDiagonal() * svd.matrixV().transpose();
+    log_root = singular.array().log().sum();
+  }
   fit.misfit = triangle(count, count) * triangle(count, count);
   double log_prior = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     log_prior += root[i] > smallest ? 2.0 * std::log(root[i]) : 0.0;
   }
-  fit.log_evidence = -0.5 * (fit.misfit + log_determinant + 2.0 * singular.array().log().sum() - log_prior);
+  fit.log_evidence = -0.5 * (fit.misfit + log_determinant + 2.0 * log_root - log_prior);
   return fit;
 }
 

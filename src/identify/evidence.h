@@ -26,7 +26,8 @@ struct StartPrior {
 };
 
 /// `columns` (n·s × c) are not changed.
-RunEvidence run_evidence(const LinearisedRun& run, const Columns& columns, const Whitening& whitening, const StartPrior& start);
+RunEvidence run_evidence(const LinearisedRun& run, const Eigen::Ref<const Columns>& columns, const Whitening& whitening,
+                         const StartPrior& start);
 
 /// The same for many columns of which only the first `inner` are fitted together: what those leave of the others is multiplied out
 /// instead of decomposed, several times as fast. Others that go together but for 1e-6 of them are not told apart.
