@@ -62,9 +62,10 @@ class BackwardCheck {
     return false;
   }
 
-  [[nodiscard]] double gain_of_all_nats() const {
+  template <class Counts>
+  [[nodiscard]] double gain_nats(const Counts& counts) const {
     return std::accumulate(out_.terms.begin(), out_.terms.end(), 0.0,
-                           [](double sum, const AcceptedTerm& term) { return sum + term.gain_nats; });
+                           [&](double sum, const AcceptedTerm& term) { return sum + (counts(term) ? term.gain_nats : 0.0); });
   }
 
   /// What nobody would miss: every law is a little wrong, and perfect data see that.
@@ -86,9 +87,12 @@ class BackwardCheck {
     if (!term.candidate) {
       return {};
     }
-    const double all_nats = gain_of_all_nats();
-    if (term.loss_without_nats < rules_.beside_law_share * all_nats) {
-      return fmt::format("beside effects with {:.0f} nats together", all_nats);
+    const double beside_nats = gain_nats([&](const AcceptedTerm& other) {
+      return other.candidate && other.candidate->type && term.candidate->type &&
+             other.candidate->nodes.front() == term.candidate->nodes.front();
+    });
+    if (term.loss_without_nats < rules_.beside_law_share * beside_nats) {
+      return fmt::format("of {:.0f} nats that explain the same node", beside_nats);
     }
     const HeatOfEffect heat = heat_of(
         out_.after, input_.runs, [&](const EffectInPlace& each) { return each.name == term.effect_name; }, term.candidate->condition);
@@ -130,7 +134,8 @@ class BackwardCheck {
     for (std::size_t i = 0; i < out_.terms.size(); ++i) {
       const AcceptedTerm& curve = out_.terms[i];
       const double ahead_nats = curve.loss_without_nats - out_.terms[law].loss_without_nats;
-      if (!curve.curve || ahead_nats > std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * gain_of_all_nats())) {
+      if (!curve.curve || ahead_nats > std::max(rules_.outside_beyond_nats,
+                                                rules_.outside_beyond_share * gain_nats([](const AcceptedTerm&) { return true; }))) {
         continue;
       }
       const std::vector<bool> stays = all_but(i);

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -106,6 +107,16 @@ class Scanner {
     }
   }
 
+  void zoom(std::vector<ScanResult>& results) {
+    in_parallel(std::min(kZoomed, results.size()), 0, [&](std::size_t i) {
+      ScanResult& each = results[i];
+      Climber climber{{each.term, each.knots, each.usual}, {each.gain_nats, each.curve, each.covariance}, each.place};
+      zoom(climber);
+      each = result(climber);
+    });
+    std::ranges::stable_sort(results, std::greater(), &ScanResult::gain_nats);
+  }
+
   std::vector<ScanResult> run(int most) {
     if (input_.drivers->empty()) {
       return {};
@@ -128,8 +139,6 @@ class Scanner {
     };
     keep_best(2 * most);
     in_parallel(climbers.size(), 0, [&](std::size_t i) { climb(climbers[i]); });
-    keep_best(most);
-    in_parallel(std::min(kZoomed, climbers.size()), 0, [&](std::size_t i) { zoom(climbers[i]); });
     keep_best(most);
     std::vector<ScanResult> results;
     for (const Climber& each : climbers) {
@@ -380,6 +389,10 @@ class Scanner {
 };
 
 }  // namespace
+
+void zoom_in(const ScanInput& input, EvidenceTable& table, const SetScore& base, std::vector<ScanResult>& results) {
+  Scanner(input, table, base).zoom(results);
+}
 
 std::vector<ScanResult> scan_drivers(const ScanInput& input, EvidenceTable& table, const SetScore& base, int most) {
   return Scanner(input, table, base).run(most);

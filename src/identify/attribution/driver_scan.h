@@ -52,6 +52,9 @@ struct ScanInput {
 /// Best first; at most `most`. The table's base is what the curves are added to.
 std::vector<ScanResult> scan_drivers(const ScanInput& input, EvidenceTable& table, const SetScore& base, int most);
 
+/// Draws the knots of the best few together where something happens between them, and sorts anew.
+void zoom_in(const ScanInput& input, EvidenceTable& table, const SetScore& base, std::vector<ScanResult>& results);
+
 /// The multiplier along a run's intervals, from the fitted temperatures at their beginnings.
 Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run);
 

@@ -1,6 +1,7 @@
 #include "identify/attribution/effect_sets.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 namespace heatsoak {
@@ -62,7 +63,7 @@ std::vector<SetScore> EffectSets::one_larger(const std::vector<SetScore>& smalle
   return all;
 }
 
-std::vector<SetScore> EffectSets::best(std::size_t most) const {
+std::vector<SetScore> EffectSets::best(std::size_t most, double least_worth_nats) const {
   constexpr std::size_t kKept = 6;
   constexpr std::size_t kRefitted = 4;
   const std::vector<int> pool = visible();
@@ -76,9 +77,11 @@ std::vector<SetScore> EffectSets::best(std::size_t most) const {
       all.insert(all.end(), smaller.begin(), smaller.end());
     }
   }
-  std::ranges::stable_sort(all, [&](const SetScore& a, const SetScore& b) {
-    return worth_nats(a.evidence_nats, a.candidates.size(), rules_) > worth_nats(b.evidence_nats, b.candidates.size(), rules_);
-  });
+  const auto worth = [&](const SetScore& set) {
+    return worth_nats(set.evidence_nats - base_.evidence_nats, set.candidates.size(), rules_);
+  };
+  std::erase_if(all, [&](const SetScore& set) { return worth(set) < least_worth_nats; });
+  std::ranges::stable_sort(all, std::greater(), worth);
   all.resize(std::min(all.size(), kRefitted));
   return all;
 }

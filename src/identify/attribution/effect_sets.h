@@ -16,8 +16,8 @@ class EffectSets {
   /// Evidence that effects of the catalogue reach together, one after the other, at the present fit.
   [[nodiscard]] double catalogue_gain_nats() const;
   /// Of effects that gain something by themselves and can be seen: sets of two to `most`, which grow one by one from the best smaller ones;
-  /// the few best, every term of which is worth the least gain.
-  [[nodiscard]] std::vector<SetScore> best(std::size_t most) const;
+  /// the few that are worth most, and no less than `least_worth_nats`.
+  [[nodiscard]] std::vector<SetScore> best(std::size_t most, double least_worth_nats) const;
   /// Adds to `term`, which is number `own` of a chosen set, what could stand in its place.
   void tell_rivals(const std::vector<int>& chosen, std::size_t own, AcceptedTerm& term) const;
 

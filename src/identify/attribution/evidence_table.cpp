@@ -66,6 +66,24 @@ FluxGrid flux_grid(double mean_heat_W, double longest_s) {
 EvidenceTable::EvidenceTable(std::vector<DesignRun> runs, FluxGrid grid, ThetaPrior prior, std::vector<CandidateColumn> candidates)
     : runs_(std::move(runs)), grid_(std::move(grid)), prior_(std::move(prior)), candidates_(std::move(candidates)) {}
 
+EvidenceTable EvidenceTable::only(std::span<const int> few) && {
+  const std::vector<Eigen::Index> columns = columns_of(few);
+  for (DesignRun& run : runs_) {
+    run.columns = Columns(run.columns(Eigen::all, columns));
+  }
+  std::vector<CandidateColumn> rules;
+  std::ranges::transform(few, std::back_inserter(rules), [&](int j) { return candidates_[static_cast<std::size_t>(j)]; });
+  EvidenceTable narrow(std::move(runs_), std::move(grid_), prior_, std::move(rules));
+  for (auto& [key, reduced] : reduced_) {
+    if (key.second) {
+      reduced.all = selected(reduced.all, few);
+      std::ranges::transform(reduced.run, reduced.run.begin(), [&](const RunEvidence& run) { return selected(run, few); });
+    }
+    narrow.reduced_.emplace(std::pair(key.first, key.second && !few.empty()), std::move(reduced));
+  }
+  return narrow;
+}
+
 const EvidenceTable::Reduced& EvidenceTable::at(const FluxGrid::Place& place, bool has_candidates) {
   has_candidates = has_candidates && !candidates_.empty();
   const auto found = reduced_.find({place, has_candidates});
@@ -227,7 +245,7 @@ std::vector<FluxGrid::Place> places_of_less(const FluxGrid::Place& base) {
 double EvidenceTable::best_nats_with(const ThetaPrior& prior, const SetScore& base) {
   double best_nats = -std::numeric_limits<double>::infinity();
   for (const FluxGrid::Place& place : places_of_less(base.place)) {
-    const RunEvidence chosen = selected(at(place).all, {});
+    const RunEvidence chosen = selected(at(place, false).all, {});
     best_nats = std::max(best_nats, linear_fit({&chosen, 1}, prior.mean, prior.precision).log_evidence + grid_.log_prior_nats(place));
   }
   return best_nats;
@@ -313,6 +331,8 @@ std::vector<SizeInRun> EvidenceTable::size_by_run(const SetScore& set, int candi
   const std::vector<Eigen::Index> columns = columns_of(set.candidates);
   const auto place = std::ranges::find(set.candidates, candidate) - set.candidates.begin();
   const Eigen::Index own = free_count() + place;
+  constexpr double kSilent_ratio = 1e-12;  // rounding is no response
+  const double silence = kSilent_ratio * reduced.all.triangle.col(columns[static_cast<std::size_t>(own)]).squaredNorm();
   std::vector<SizeInRun> sizes;
   for (const RunEvidence& run : reduced.run) {
     Eigen::VectorXd others = set.coefficient;
@@ -320,7 +340,7 @@ std::vector<SizeInRun> EvidenceTable::size_by_run(const SetScore& set, int candi
     const Eigen::VectorXd column = run.triangle.col(columns[static_cast<std::size_t>(own)]);
     const Eigen::VectorXd left = run.triangle.rightCols<1>() - run.triangle(Eigen::all, columns) * others;
     const double power = column.squaredNorm();
-    sizes.push_back({power > 0.0 ? column.dot(left) / power : 0.0, power > 0.0 ? 1.0 / std::sqrt(power) : 0.0});
+    sizes.push_back(power > silence ? SizeInRun{column.dot(left) / power, 1.0 / std::sqrt(power)} : SizeInRun{});
   }
   return sizes;
 }

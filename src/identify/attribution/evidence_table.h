@@ -79,6 +79,9 @@ class EvidenceTable {
  public:
   EvidenceTable(std::vector<DesignRun> runs, FluxGrid grid, ThetaPrior prior, std::vector<CandidateColumn> candidates);
 
+  /// The same with a few of the candidates, in that order: what a place costs grows with their number.
+  [[nodiscard]] EvidenceTable only(std::span<const int> few) &&;
+
   /// The set at one place.
   [[nodiscard]] SetScore score(std::span<const int> set, const FluxGrid::Place& place);
   /// The set at its best place: from `start` step by step as long as the evidence grows.

@@ -1,21 +1,43 @@
 #include "identify/attribution/ladder.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <numeric>
 
 namespace heatsoak {
 
-std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base, int most) {
-  const std::vector<double> gain_nats = table.single_gains_nats(base);
-  std::vector<int> order(candidates.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order,
-                           [&](int a, int b) { return gain_nats[static_cast<std::size_t>(a)] > gain_nats[static_cast<std::size_t>(b)]; });
-  std::vector<JudgedCandidate> ladder;
-  for (const int j : order) {
-    if (static_cast<int>(ladder.size()) >= most || gain_nats[static_cast<std::size_t>(j)] <= 0.0) {
-      break;
+Sight sight_of(const std::vector<Candidate>& candidates, const std::vector<double>& gain_nats, double least_nats) {
+  std::map<std::string, double> best_nats;
+  for (std::size_t j = 0; j < candidates.size(); ++j) {
+    if (candidates[j].type && candidates[j].condition.empty()) {
+      double& best = best_nats[std::string(candidates[j].type->name)];
+      best = std::max(best, gain_nats[j]);
     }
+  }
+  Sight sight;
+  for (const auto& [name, nats] : best_nats) {
+    if (!(nats >= least_nats)) {
+      sight.unseen.push_back(name);
+    }
+  }
+  const auto judged = static_cast<double>(std::max<std::size_t>(1, best_nats.size()));
+  sight.seen_share = 1.0 - static_cast<double>(sight.unseen.size()) / judged;
+  return sight;
+}
+
+std::vector<int> most_promising(const std::vector<double>& gain_nats, std::size_t most) {
+  std::vector<int> order(gain_nats.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater(), [&](int j) { return gain_nats[static_cast<std::size_t>(j)]; });
+  std::erase_if(order, [&](int j) { return gain_nats[static_cast<std::size_t>(j)] <= 0.0; });
+  order.resize(std::min(order.size(), most));
+  return order;
+}
+
+std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
+  std::vector<JudgedCandidate> ladder;
+  for (int j = 0; j < static_cast<int>(candidates.size()); ++j) {
     const std::vector<int> set{j};
     const SetScore best = table.best(set, base.place);
     JudgedCandidate judged;

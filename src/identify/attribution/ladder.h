@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "identify/attribution/candidates.h"
@@ -22,7 +23,18 @@ struct JudgedCandidate {
   Eigen::VectorXd step;     ///< that the model's coordinates make with it
 };
 
-/// The best few candidates with their unknown heat re-maximised, best first.
-std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base, int most);
+/// What the runs could show.
+struct Sight {
+  std::vector<std::string> unseen;  ///< effects that would not show at their typical size in any of their forms
+  double seen_share = 1.0;          ///< of the effects
+};
+/// `gain_nats`: of each candidate at its typical size.
+Sight sight_of(const std::vector<Candidate>& candidates, const std::vector<double>& gain_nats, double least_nats);
+
+/// Places of those that gain something, best first, at most `most`.
+std::vector<int> most_promising(const std::vector<double>& gain_nats, std::size_t most);
+
+/// The candidates of a table with their unknown heat re-maximised, best first.
+std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base);
 
 }  // namespace heatsoak

@@ -282,6 +282,17 @@ RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std
   return Fitter(std::move(model), runs, std::move(start_C), options).run();
 }
 
+void set_wander(SensorNoise& noise, const MeasuredRun& run, const SensorErrors& errors) {
+  noise.wander_K.clear();
+  for (const Sensor& sensor : run.sensors) {
+    if (!errors.wander_K.empty()) {
+      const auto found = errors.wander_K.find(sensor.signal);
+      noise.wander_K.push_back(found == errors.wander_K.end() ? 0.0 : found->second);
+    }
+  }
+  noise.wander_time_scale_s = errors.wander_time_scale_s;
+}
+
 std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
                               const SensorErrors& errors, const std::vector<int>& merged, const std::vector<Columns>& extra) {
   std::vector<DesignRun> all(runs.size());
@@ -294,12 +305,8 @@ std::vector<DesignRun> design(const Network& network, const std::vector<Linearis
     one.interval_of = averaging.interval_of();
     for (const Sensor& sensor : runs[r].sensors) {
       one.noise.noise_K.push_back(sensor.noise_K);
-      if (!errors.wander_K.empty()) {
-        const auto found = errors.wander_K.find(sensor.signal);
-        one.noise.wander_K.push_back(found == errors.wander_K.end() ? 0.0 : found->second);
-      }
     }
-    one.noise.wander_time_scale_s = errors.wander_time_scale_s;
+    set_wander(one.noise, runs[r], errors);
     const RunStart start = start_of(network, runs[r]);
     one.start = {start.prior_C - fitted[r].state_C.col(0), start.prior_sd_K};
     const Eigen::Index inner = fitted[r].by_parameter.cols();

@@ -34,6 +34,9 @@ struct RefitOptions {
 RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                   const RefitOptions& options);
 
+/// The slow errors of a run's sensors.
+void set_wander(SensorNoise& noise, const MeasuredRun& run, const SensorErrors& errors);
+
 /// The runs as the table takes them, with `extra` columns beside those of the model's coordinates. `merged` is empty where no samples are
 /// averaged.
 std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,

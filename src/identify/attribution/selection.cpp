@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 
 #include "base/parallel.h"
 #include "identify/attribution/backward_check.h"
@@ -57,7 +57,7 @@ class Selector {
     }
     out_.errors = options_.errors;
     check_backwards(out_, input_, rules_, options_);
-    while (!out_.refused.empty() && doubt_once_more()) {
+    while ((!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
     }
     look_more_finely();
     out_.own = out_.before;
@@ -110,21 +110,27 @@ class Selector {
   bool one_round() {
     const CandidateList list = candidates_for(out_.after.model, input_.runs);
     out_.not_judged = list.not_judged;
-    const std::vector<Candidate>& candidates = list.candidates;
     std::vector<Columns> columns(input_.runs.size());
-    in_parallel(input_.runs.size(), 0,
-                [&](std::size_t r) { columns[r] = candidate_columns(candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]); });
-    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, columns),
-                        options_.grid, prior_here(out_.after.model), column_rules(candidates));
-    const SetScore base = table.best({}, out_.after.place);
+    in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
+      columns[r] = candidate_columns(list.candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]);
+    });
+    EvidenceTable of_all(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, columns),
+                         options_.grid, prior_here(out_.after.model), column_rules(list.candidates));
+    const SetScore base = of_all.best({}, out_.after.place);
     out_.after.evidence_nats = std::max(out_.after.evidence_nats, base.evidence_nats);
     out_.after.place = base.place;
     if (out_.rounds.empty()) {
-      tell_unseen(candidates, table.typical_gains_nats(base));
+      const Sight sight = sight_of(list.candidates, of_all.typical_gains_nats(base), rules_.least_gain_nats);
+      out_.unseen = sight.unseen;
+      out_.seen_share = sight.seen_share;
     }
+    const std::vector<int> few = most_promising(of_all.single_gains_nats(base), static_cast<std::size_t>(rules_.refitted) + 2);
+    std::vector<Candidate> candidates;
+    std::ranges::transform(few, std::back_inserter(candidates), [&](int j) { return list.candidates[static_cast<std::size_t>(j)]; });
+    EvidenceTable table = std::move(of_all).only(few);
     Round round;
     round.evidence_nats = base.evidence_nats;
-    round.ladder = judge(candidates, table, base, rules_.refitted + 2);
+    round.ladder = judge(candidates, table, base);
     if (input_.scans_drivers) {
       round.scan = scan(table, base);
     }
@@ -133,11 +139,14 @@ class Selector {
     return taken;
   }
 
+  [[nodiscard]] ScanInput scan_input(const std::vector<Driver>& drivers) const {
+    return {&out_.after.model.model, &input_.runs, &out_.after.fitted, &drivers, std::max(0.05, out_.mean_heat_W)};
+  }
+
   /// Its results name drivers by their places in the list of all rounds: what one round looks at, another may not have.
   std::vector<ScanResult> scan(EvidenceTable& table, const SetScore& base) {
     std::vector<Driver> drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs, input_.free);
-    std::vector<ScanResult> results = scan_drivers(
-        {&out_.after.model.model, &input_.runs, &out_.after.fitted, &drivers, std::max(0.05, out_.mean_heat_W)}, table, base, 8);
+    std::vector<ScanResult> results = scan_drivers(scan_input(drivers), table, base, 8);
     std::vector<int> place;
     for (Driver& driver : drivers) {
       const auto known = std::ranges::find(out_.drivers, driver.name, &Driver::name);
@@ -154,32 +163,14 @@ class Selector {
     return results;
   }
 
-  /// An effect would be seen if one of its forms would.
-  void tell_unseen(const std::vector<Candidate>& candidates, const std::vector<double>& gain_nats) {
-    std::map<std::string, double> best_nats;
-    for (std::size_t j = 0; j < candidates.size(); ++j) {
-      if (candidates[j].type && candidates[j].condition.empty()) {
-        double& best = best_nats[std::string(candidates[j].type->name)];
-        best = std::max(best, gain_nats[j]);
-      }
-    }
-    for (const auto& [name, nats] : best_nats) {
-      if (!(nats >= rules_.least_gain_nats)) {
-        out_.unseen.push_back(name);
-      }
-    }
-    const auto judged = static_cast<double>(std::max<std::size_t>(1, best_nats.size()));
-    out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / judged;
-  }
-
   /// A judged candidate after its refit in the equations.
   struct Tried {
-    const JudgedCandidate* judged;
+    const JudgedCandidate* judged = nullptr;
     RefitResult fit;
-    double gain_nats;
+    double gain_nats = 0.0;
   };
 
-  /// Where an effect may not be named, a figure of the file may still have changed.
+  /// Where an effect may not be named, or no model can follow it, a figure of the file may still have changed.
   bool doubt_once_more() {
     EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, {}),
                         options_.grid, prior_here(out_.after.model), {});
@@ -211,13 +202,16 @@ class Selector {
   bool take_best(Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
     double least_nats = rules_.least_gain_nats;
     for (const AcceptedTerm& term : out_.terms) {
-      least_nats = std::max(least_nats, (term.curve ? rules_.beside_curve_share : rules_.beside_law_share) * term.gain_nats);
+      least_nats = std::max(least_nats, term.curve ? rules_.beside_curve_share * term.gain_nats : 0.0);
     }
     std::vector<Tried> tried = try_ladder(round, least_nats);
     const EffectSets sets(round.ladder, candidates, table, base, rules_);
     out_.open_curve.reset();
-    const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
     const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
+    if (!round.scan.empty() && round.scan.front().gain_nats > best_nats) {
+      zoom_in(scan_input(out_.drivers), table, base, round.scan);
+    }
+    const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
     const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
     if (take_doubt(table, base, std::max(best_nats, best_scan_nats - beyond_nats))) {
       return true;
@@ -257,38 +251,51 @@ class Selector {
 
   /// Refits of those that may be named, best first; tells which may not.
   std::vector<Tried> try_ladder(Round& round, double least_nats) {
-    std::vector<Tried> tried;
     double worth_nats = 0.5 * least_nats;
+    std::vector<JudgedCandidate*> worthy;
+    std::vector<JudgedCandidate*> variants;
     for (JudgedCandidate& each : round.ladder) {
-      // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
-      const bool is_variant = std::ranges::any_of(
-          tried, [&](const Tried& t) { return t.judged->candidate.id == each.candidate.id && t.gain_nats >= each.gain_nats; });
-      if (static_cast<int>(tried.size()) >= rules_.refitted || each.gain_nats < worth_nats || is_variant) {
-        continue;
-      }
-      if (is_speed_open_ && each.candidate.type && each.candidate.nodes.front() == "stator") {
-        if (each.gain_nats >= least_nats) {
-          out_.refuse(each.candidate.id, each.gain_nats, "the loss at the speed that not every log has could be it");
-        }
-        continue;
-      }
-      const bool fails_elsewhere = each.runs_acting > 1 && each.left_out_gain_nats <= 0.0;
-      if (each.visibility_ratio < rules_.least_visibility_ratio || fails_elsewhere) {
-        if (each.gain_nats >= least_nats) {
-          out_.refuse(each.candidate.id, each.gain_nats,
-                      each.visibility_ratio < rules_.least_visibility_ratio
-                          ? fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * each.visibility_ratio)
-                          : std::string("runs left out of the fit get no better"));
-        }
+      if (each.gain_nats < worth_nats || !may_be_named(each, least_nats)) {
         continue;
       }
       worth_nats = std::max(worth_nats, 0.8 * each.gain_nats - 20.0);
-      RefitResult fit = try_term(each, 0.5 * each.gain_nats);
-      each.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      tried.push_back({&each, std::move(fit), each.gain_nats});
+      const bool is_variant = std::ranges::any_of(worthy, [&](const JudgedCandidate* w) { return w->candidate.id == each.candidate.id; });
+      (is_variant ? variants : worthy).push_back(&each);
+    }
+    worthy.resize(std::min(worthy.size(), static_cast<std::size_t>(rules_.refitted)));
+    std::vector<Tried> tried(worthy.size());
+    in_parallel(worthy.size(), 0, [&](std::size_t i) { tried[i] = try_out(*worthy[i]); });
+    for (JudgedCandidate* const each : variants) {
+      // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
+      const auto own = std::ranges::find_if(tried, [&](const Tried& t) { return t.judged->candidate.id == each->candidate.id; });
+      if (own != tried.end() && each->gain_nats > own->gain_nats) {
+        tried.push_back(try_out(*each));
+      }
     }
     std::ranges::stable_sort(tried, [](const Tried& a, const Tried& b) { return a.gain_nats > b.gain_nats; });
     return tried;
+  }
+
+  Tried try_out(JudgedCandidate& judged) const {
+    RefitResult fit = try_term(judged, 0.5 * judged.gain_nats);
+    judged.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
+    return {&judged, std::move(fit), judged.gain_nats};
+  }
+
+  /// Tells where it may not though it explains something.
+  bool may_be_named(const JudgedCandidate& judged, double least_nats) {
+    std::string why_not;
+    if (is_speed_open_ && judged.candidate.type && judged.candidate.nodes.front() == "stator") {
+      why_not = "the loss at the speed that not every log has could be it";
+    } else if (judged.visibility_ratio < rules_.least_visibility_ratio) {
+      why_not = fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * judged.visibility_ratio);
+    } else if (judged.runs_acting > 1 && judged.left_out_gain_nats <= 0.0) {
+      why_not = "runs left out of the fit get no better";
+    }
+    if (!why_not.empty() && judged.gain_nats >= least_nats) {
+      out_.refuse(judged.candidate.id, judged.gain_nats, why_not);
+    }
+    return why_not.empty();
   }
 
   /// The best one, and beside it what could stand in its place.
@@ -348,6 +355,16 @@ class Selector {
     return refit(std::move(model), input_.runs, out_.after.start_C, options);
   }
 
+  RefitResult try_set(const SetScore& set, const std::vector<Candidate>& candidates, Eigen::Index inner) const {
+    std::vector<Candidate> added;
+    std::vector<double> size_share;
+    for (std::size_t i = 0; i < set.candidates.size(); ++i) {
+      added.push_back(candidates[static_cast<std::size_t>(set.candidates[i])]);
+      size_share.push_back(set.coefficient[inner + static_cast<Eigen::Index>(i)]);
+    }
+    return try_terms(added, size_share, set.coefficient.head(inner), set.place);
+  }
+
   /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
   bool take_set(const EffectSets& sets, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
                 double best_single_nats) {
@@ -355,24 +372,21 @@ class Selector {
     if (is_speed_open_ || *std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W) {
       return false;
     }
-    std::optional<RefitResult> best;
-    std::vector<int> chosen;
     double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1, rules_));
+    // Where no single effect holds up in the equations the linear evidence is no judge.
+    const double least_worth_nats = best_single_nats > 0.0 ? best_worth_nats : std::numeric_limits<double>::lowest();
     const auto most = static_cast<std::size_t>(rules_.most_terms) - out_.terms.size();
-    for (const SetScore& set : sets.best(most)) {
-      const Eigen::Index own = table.free_count();
-      std::vector<Candidate> added;
-      std::vector<double> size_share;
-      for (std::size_t i = 0; i < set.candidates.size(); ++i) {
-        added.push_back(candidates[static_cast<std::size_t>(set.candidates[i])]);
-        size_share.push_back(set.coefficient[own + static_cast<Eigen::Index>(i)]);
-      }
-      RefitResult fit = try_terms(added, size_share, set.coefficient.head(own), set.place);
-      const double set_worth_nats = worth_nats(fit.evidence_nats - out_.after.evidence_nats, added.size(), rules_);
+    const std::vector<SetScore> best_sets = sets.best(most, least_worth_nats);
+    std::vector<RefitResult> fits(best_sets.size());
+    in_parallel(fits.size(), 0, [&](std::size_t i) { fits[i] = try_set(best_sets[i], candidates, table.free_count()); });
+    RefitResult* best = nullptr;
+    std::vector<int> chosen;
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+      const double set_worth_nats = worth_nats(fits[i].evidence_nats - out_.after.evidence_nats, best_sets[i].candidates.size(), rules_);
       if (set_worth_nats > best_worth_nats) {
         best_worth_nats = set_worth_nats;
-        best = std::move(fit);
-        chosen = set.candidates;
+        best = &fits[i];
+        chosen = best_sets[i].candidates;
       }
     }
     if (!best) {

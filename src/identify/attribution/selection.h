@@ -27,7 +27,7 @@ struct SelectionRules {
   double outside_beyond_nats = 10.0;  ///< that a curve over a driver must be ahead of all effects of the catalogue, and
   double outside_beyond_share = 0.2;  ///< of its own evidence: laws are never exact, and much data sees the least difference of shape
   double beside_curve_share = 0.05;   ///< of a curve's evidence: less than that beside it is what seven knots leave of its shape
-  double beside_law_share = 0.03;     ///< the same of all effects' evidence: no law is exact either
+  double beside_law_share = 0.03;     ///< the same of laws at one node: none is exact, and what it leaves looks like another
   double least_visibility_ratio = 0.02;
   double unmistakable_nats = 20.0;  ///< over the model without it and doubt in all figures: then it stays though little of it is visible
   double least_heat_share = 0.005;  ///< of the heat that the model knows: an effect of less on average, and of less than

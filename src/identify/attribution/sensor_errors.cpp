@@ -1,9 +1,11 @@
 #include "identify/attribution/sensor_errors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.h"
 #include "identify/attribution/refit.h"
 
 namespace heatsoak {
@@ -17,12 +19,17 @@ constexpr double kClearly_nats = 10.0;
 /// The evidence of the model at the fit, at the unknown heat that is best then.
 class Trial {
  public:
-  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
+  /// `designs` as the runs are with faultless sensors.
+  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<DesignRun>& designs,
         FluxGrid::Place begin)
-      : fit_(fit), runs_(runs), grid_(grid), merged_(merged), place_(std::move(begin)) {}
+      : fit_(fit), runs_(runs), grid_(grid), designs_(designs), place_(std::move(begin)) {}
 
   double evidence_nats(const SensorErrors& errors) {
-    EvidenceTable table(design(fit_.model.model.network, fit_.fitted, runs_, errors, merged_, {}), grid_, prior_here(fit_.model), {});
+    std::vector<DesignRun> designs = designs_;
+    for (std::size_t r = 0; r < designs.size(); ++r) {
+      set_wander(designs[r].noise, runs_[r], errors);
+    }
+    EvidenceTable table(std::move(designs), grid_, prior_here(fit_.model), {});
     const SetScore best = table.best({}, place_, Search::rough);
     last_ = best.place;
     return best.evidence_nats;
@@ -34,7 +41,7 @@ class Trial {
   const RefitResult& fit_;
   const std::vector<MeasuredRun>& runs_;
   const FluxGrid& grid_;
-  const std::vector<int>& merged_;
+  const std::vector<DesignRun>& designs_;
   FluxGrid::Place place_, last_;
 };
 
@@ -107,28 +114,28 @@ SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>&
   if (known.wander_K.empty() && *std::ranges::max_element(flux.rms_W) <= tolerable_W) {
     return known;
   }
+  const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, runs, known, merged, {});
   const double without_nats =
-      known.wander_K.empty() ? Trial(fit, runs, grid, merged, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
+      known.wander_K.empty() ? Trial(fit, runs, grid, designs, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
   // Little unknown heat beside it to begin with: much of it has taken the place of what is looked for.
   FluxGrid::Place little = fit.place;
   std::ranges::fill(little.begin(), little.end() - 1, std::min(3, static_cast<int>(grid.rms_W.size()) - 1));
-  SensorErrors best = known;
-  double best_nats = without_nats + kClearly_nats;
-  for (const double noises : {2.0, 10.0}) {
-    SensorErrors wandering = known;
+  constexpr std::array kBegin_noises{2.0, 10.0};
+  std::array<SensorErrors, kBegin_noises.size()> wandering;
+  std::array<double, kBegin_noises.size()> nats{};
+  in_parallel(kBegin_noises.size(), 0, [&](std::size_t i) {
+    wandering[i] = known;
     for (const MeasuredRun& run : runs) {
       for (const Sensor& sensor : run.sensors) {
-        double& wander_K = wandering.wander_K[sensor.signal];
-        wander_K = known.wander_K.empty() ? std::max(wander_K, noises * sensor.noise_K) : wander_K;
+        double& wander_K = wandering[i].wander_K[sensor.signal];
+        wander_K = known.wander_K.empty() ? std::max(wander_K, kBegin_noises[i] * sensor.noise_K) : wander_K;
       }
     }
-    Trial trial(fit, runs, grid, merged, little);
-    if (const double nats = climb(trial, wandering); nats > best_nats) {
-      best_nats = nats;
-      best = wandering;
-    }
-  }
-  return best;
+    Trial trial(fit, runs, grid, designs, little);
+    nats[i] = climb(trial, wandering[i]);
+  });
+  const auto best = std::ranges::max_element(nats);
+  return *best > without_nats + kClearly_nats ? wandering[static_cast<std::size_t>(best - nats.begin())] : known;
 }
 
 }  // namespace heatsoak
