@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "drive_rows.h"
@@ -101,6 +102,67 @@ TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
   EXPECT_GT(found.changed.front().high, true_K_per_W);
   EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) / 3.0);
   EXPECT_THAT(found.description, testing::HasSubstr("Does not hold here: stator_ambient.thermal_resistance"));
+}
+
+/// A cover in one of four runs keeps three tenths of the heat in that the air took away: the resistance is 1 / 0.7 of what it was. Unseen
+/// runs have no cover.
+TEST(Examination, WorseCoolingInOneRunIsToldAsThatAndStaysThere) {
+  Case one = sealed({}, 61);
+  Runs runs = record(one);
+  one.missing.heat.push_back([air_K_per_W = runs.make.iron_to_air_K_per_W](const Moment& now, PerPart& heat_W) {
+    heat_W[yoke] += 0.3 * (now.iron_C - now.in.ambient_C) / air_K_per_W;
+  });
+  runs.training[1] = record(one).training[1];
+  const Diagnosis found = diagnose(question(one, runs), {});
+  ASSERT_EQ(found.effects.size(), 1U) << found.description;
+  const FoundEffect& effect = found.effects.front();
+  EXPECT_EQ(effect.id, "hindered_cooling") << found.description;
+  EXPECT_EQ(effect.condition, (Condition{{"run", "run2"}}));
+  EXPECT_NEAR(effect.parameters.front().value, 1.0 / 0.7 - 1.0, 0.06) << found.description;
+  EXPECT_LT(rms_K(found.after_train), 0.5 * rms_K(found.before_train)) << found.description;
+  EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) + 0.02) << found.description;
+}
+
+/// Half as wide as a seventh of what the stator does: knots over all of that would not see where the fan begins.
+TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
+  const auto fan = std::ranges::find(outsiders(), "a fan that starts at 45 °C of the stator", &Outsider::name);
+  const Answer answer = examine(sealed(fan->make(1.0), 40003));
+  ASSERT_TRUE(names_outsider(answer, *fan)) << account(answer);
+  const Unexplained& heat = answer.diagnosis.unexplained.front();
+  EXPECT_LT(heat.knots.back() - heat.knots.front(), 12.0) << "K, of some 30";
+  EXPECT_GT(heat.knots.back(), 45.0);
+  EXPECT_LT(heat.knots.front(), 46.0);
+  EXPECT_LT(answer.after_K, 0.25 * answer.before_K) << account(answer);
+}
+
+/// What few candidates say of the runs does not hang on who was asked beside them.
+TEST(Examination, TableOfAFewSaysWhatTheTableOfAllDoes) {
+  const Case one = sealed(subject("iron_loss_eddy").make(0.8), 12);
+  const DiagnosisInput input = question(one, record(one));
+  const std::vector<Candidate> candidates = candidates_for(input.model, input.train).candidates;
+  std::vector<LinearisedRun> fitted;
+  std::vector<Columns> columns;
+  for (const MeasuredRun& run : input.train) {
+    fitted.push_back(linearise(input.model, measured_start_C(input.model.model.network, run), run));
+    columns.push_back(candidate_columns(candidates, input.model, fitted.back(), run));
+  }
+  const auto table = [&] {
+    return EvidenceTable(design(input.model.model.network, fitted, input.train, {}, {}, columns), flux_grid(4.0, 900.0),
+                         prior_here(input.model), std::vector<CandidateColumn>(candidates.size(), {true, 2.0}));
+  };
+  EvidenceTable all = table();
+  const FluxGrid::Place start{4, 4, 2};
+  const std::vector<int> few{static_cast<int>(candidates.size()) - 1, 3, 0};
+  EvidenceTable visited = table();
+  (void)visited.score(few, start);
+  for (EvidenceTable& narrow : std::array{table().only(few), std::move(visited).only(few)}) {
+    for (int j = 0; j < 3; ++j) {
+      const SetScore alone = all.best(std::array{few[static_cast<std::size_t>(j)]}, start), same = narrow.best(std::array{j}, start);
+      EXPECT_EQ(alone.place, same.place);
+      EXPECT_NEAR(alone.evidence_nats, same.evidence_nats, 1e-9 * std::abs(alone.evidence_nats));
+      EXPECT_NEAR(alone.coefficient.tail(1)[0], same.coefficient.tail(1)[0], 1e-6);
+    }
+  }
 }
 
 TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {

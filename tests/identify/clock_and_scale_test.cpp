@@ -28,7 +28,8 @@ TEST(Screening, CoarseSensorAtRestKeepsItsNeighbouringSteps) {
 }
 
 TEST(Screening, SingleWildCurrentIsLeftOutByLine) {
-  const Read result = read_text(changed({}, [](int row, std::vector<double>& cells) { cells[current] = row == 700 ? 1e9 : cells[current]; }));
+  const Read result =
+      read_text(changed({}, [](int row, std::vector<double>& cells) { cells[current] = row == 700 ? 1e9 : cells[current]; }));
   EXPECT_THAT(lines_of(result.report.find("current_A", LeftOutReason::outlier)), ElementsAre(702));
   EXPECT_TRUE(std::isnan(result.recording.find("current_A")->values[700]));
   EXPECT_THAT(result.quality.suspicions, IsEmpty());
@@ -76,6 +77,26 @@ TEST(ClockOffsets, WindingAloneIsNotJudged) {
   EXPECT_EQ(late_answer(offset, 1.0), "");
   offset.delay_s = -0.25;
   EXPECT_EQ(early_answer(offset, 1.0), "") << "less than a sample tells";
+}
+
+/// A motor that turns for minutes without load: the iron heats the winding, which is never the hottest and follows no current.
+TEST(ClockOffsets, WindingThatFollowsTheIronIsNotJudged) {
+  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A\n";
+  double winding_C = 22.0;
+  double stator_C = 22.0;
+  for (int row = 0; row < 1800; ++row) {
+    const double current_A = (row / 120) % 2 == 0 ? 0.0 : 0.23;
+    text += fmt::format("{},{:.1f},{:.1f},22.0,{}\n", row, winding_C, stator_C, current_A);
+    const double flow_W = (winding_C - stator_C) / 4.0;
+    winding_C += (0.6 * current_A * current_A - flow_W) / 7.0;
+    stator_C += ((row / 120) % 4 == 1 ? 6.0 : 0.5) / 50.0 + (flow_W - (stator_C - 22.0) / 3.5) / 50.0;
+  }
+  const Read result = read_text(text);
+  EXPECT_THAT(result.quality.suspicions, IsEmpty());
+  for (const ClockOffset& offset : result.quality.clock_offsets) {
+    EXPECT_EQ(offset.explains_flow, offset.temperature == "stator_C");
+  }
+  EXPECT_TRUE(std::ranges::any_of(read_text(unsteady(0.0).csv()).quality.clock_offsets, &ClockOffset::explains_flow));
 }
 
 /// After heat of so long, seen from `from_s` on; motor and air each in its scale.

@@ -138,24 +138,27 @@ class DelayScan {
     return all > 0.0 ? lost / all : 0.0;
   }
 
-  /// Where the heat goes that the temperature gives away is known, and it gives some away: what never gets hotter than all beside it
-  /// follows them, whatever the current does.
+  /// Where the heat goes that the temperature gives away is known, and it gives some away while it is heated: what is then no hotter than
+  /// all beside it follows them, whatever the current does.
   [[nodiscard]] bool explains_flow(double noise_K) const {
-    constexpr double kClearly = 10.0;
+    constexpr double kClearly = 5.0;
+    if (columns_.size() < 2) {
+      return false;
+    }
+    std::vector<double> heats;
+    std::ranges::copy_if(heat_, std::back_inserter(heats), [](double heat) { return heat > 0.0; });
+    const double usual_heat = median_of(heats);
     std::vector<double> above_K;
-    for (std::size_t row = 0; row < time_s_.size() && columns_.size() > 1; ++row) {
+    for (std::size_t row = 0; row < time_s_.size(); ++row) {
       double highest_C = columns_[1][row];
       for (std::size_t other = 2; other < columns_.size(); ++other) {
         highest_C = std::max(highest_C, columns_[other][row]);
       }
-      if (const double here_K = columns_[0][row] - highest_C; !std::isnan(here_K)) {
+      if (const double here_K = columns_[0][row] - highest_C; heat_[row] >= usual_heat && !std::isnan(here_K)) {
         above_K.push_back(here_K);
       }
     }
-    constexpr std::size_t kSeldom = 20;  // a twentieth of the time is enough
-    const auto seldom = above_K.begin() + static_cast<std::ptrdiff_t>(above_K.size() / kSeldom);
-    std::ranges::nth_element(above_K, seldom, std::ranges::greater());
-    return seldom != above_K.end() && *seldom > kClearly * noise_K;
+    return !above_K.empty() && median_of(std::move(above_K)) > kClearly * noise_K;
   }
 
   /// Windows of a length in which the temperature moves well beyond its noise, spread evenly.

@@ -51,7 +51,7 @@ struct ClockOffset {
   std::optional<double> delay_s;     ///< positive: the temperature comes late; nothing where it cannot be told
   double delay_uncertainty_s = 0.0;  ///< standard error, by leaving out one eighth of the log after the other
   std::string why_not;               ///< where it cannot be told
-  bool explains_flow = false;        ///< what the first temperature gives away is known: at times it is hotter than all beside it
+  bool explains_flow = false;        ///< what the first temperature gives away is known, and heat makes it hotter than all beside it
 };
 
 /// What a log is good for, or what it lacks.
