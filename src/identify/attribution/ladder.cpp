@@ -32,6 +32,7 @@ std::vector<int> most_promising(const std::vector<double>& gain_nats, std::size_
   std::ranges::stable_sort(order, std::greater(), [&](int j) { return gain_nats[static_cast<std::size_t>(j)]; });
   std::erase_if(order, [&](int j) { return gain_nats[static_cast<std::size_t>(j)] <= 0.0; });
   order.resize(std::min(order.size(), most));
+  std::ranges::sort(order);
   return order;
 }
 

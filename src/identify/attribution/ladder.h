@@ -31,7 +31,7 @@ struct Sight {
 /// `gain_nats`: of each candidate at its typical size.
 Sight sight_of(const std::vector<Candidate>& candidates, const std::vector<double>& gain_nats, double least_nats);
 
-/// Places of those that gain something, best first, at most `most`.
+/// Places of those that gain most and something, at most `most`, in their own order.
 std::vector<int> most_promising(const std::vector<double>& gain_nats, std::size_t most);
 
 /// The candidates of a table with their unknown heat re-maximised, best first.
