@@ -53,12 +53,21 @@ class Session {
   std::vector<std::unique_ptr<StreamedFile>> streams_;
 };
 
+/// An effect that a verb's answers may name and that is none of the network's.
+struct Topic {
+  std::string id;
+  std::string summary;
+  std::string text;  ///< for people
+  std::function<nlohmann::ordered_json()> json;
+};
+
 struct Command {
   std::string_view name;  ///< the file's name without a trailing "_command"; set by all_commands()
   std::string_view summary;
   std::string_view example;  ///< a command line that can be pasted
   /// Declares the options on `app` and returns what runs once they are parsed.
   std::function<std::function<ExitCode()>(CLI::App& app, Session& session)> declare;
+  std::function<std::vector<Topic>()> topics{};  ///< for `list` and `describe`
 };
 std::vector<Command> all_commands();
 

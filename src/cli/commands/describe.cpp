@@ -314,6 +314,14 @@ Description describe(const std::string& name, const DataFolders& folders) {
   for (const ShapeType& shape : all_shapes()) {
     known.emplace_back(shape.name);
   }
+  for (const Command& command : all_commands()) {
+    for (const Topic& topic : command.topics ? command.topics() : std::vector<Topic>{}) {
+      if (topic.id == name) {
+        return {topic.text, topic.json()};
+      }
+      known.push_back(topic.id);
+    }
+  }
   const auto has = [&](const std::filesystem::path& folder) {
     const std::vector<std::string> ids = ids_in(folder);
     known.insert(known.end(), ids.begin(), ids.end());

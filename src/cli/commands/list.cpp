@@ -51,6 +51,11 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
       const std::size_t end = effect.summary.find(". ");
       result.push_back({std::string(effect.name), std::string(effect.summary.substr(0, end == std::string_view::npos ? end : end + 1))});
     }
+    for (const Command& command : all_commands()) {
+      for (const Topic& topic : command.topics ? command.topics() : std::vector<Topic>{}) {
+        result.push_back({topic.id, topic.summary});
+      }
+    }
   } else {
     for (const ShapeType& shape : all_shapes()) {
       result.push_back({std::string(shape.name), fmt::format("duty: {}", shape.summary)});

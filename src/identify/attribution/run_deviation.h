@@ -23,6 +23,7 @@ struct RunDeviationType {
   double usual = 0.1;  ///< of d
   std::string_view node;
   std::string_view summary;
+  std::string_view equation;
   std::string_view family;
   std::string_view look_alike;
   std::string_view experiment;

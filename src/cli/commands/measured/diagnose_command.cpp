@@ -10,6 +10,7 @@
 #include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/measured/diagnosis_answer.h"
+#include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "identify/admission.h"
@@ -128,7 +129,9 @@ Command diagnose_command() {
         session.add_data_option(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
-      }};
+      },
+      .topics = effect_topics,
+  };
 }
 
 }  // namespace heatsoak::commands
