@@ -123,6 +123,24 @@ TEST(Examination, WorseCoolingInOneRunIsToldAsThatAndStaysThere) {
   EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) + 0.02) << found.description;
 }
 
+/// A winding that has come loose in one run: a fifth less crosses to the iron, so that the contact has 1 / 0.8 of its resistance.
+TEST(Examination, LooseWindingInOneRunIsAnotherContactThere) {
+  Case one = sealed({}, 62);
+  Runs runs = record(one);
+  one.missing.heat.push_back([contact_K_per_W = runs.make.copper_to_iron_K_per_W](const Moment& now, PerPart& heat_W) {
+    const double kept_back_W = 0.2 * (now.copper_C - now.iron_C) / contact_K_per_W;
+    heat_W[slot] += kept_back_W;
+    heat_W[tooth] -= kept_back_W;
+  });
+  runs.training[1] = record(one).training[1];
+  const Diagnosis found = diagnose(question(one, runs), {});
+  ASSERT_EQ(found.effects.size(), 1U) << found.description;
+  EXPECT_EQ(found.effects.front().id, "changed_contact") << found.description;
+  EXPECT_EQ(found.effects.front().condition, (Condition{{"run", "run2"}}));
+  EXPECT_NEAR(found.effects.front().parameters.front().value, 0.25, 0.05) << found.description;
+  EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) + 0.02) << found.description;
+}
+
 /// Half as wide as a seventh of what the stator does: knots over all of that would not see where the fan begins.
 TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
   const auto fan = std::ranges::find(outsiders(), "a fan that starts at 45 °C of the stator", &Outsider::name);

@@ -70,11 +70,19 @@ TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
 
 /// Without another temperature the heat that the winding gives away passes for an offset.
 TEST(ClockOffsets, WindingAloneIsNotJudged) {
-  ClockOffset offset{.temperature = "winding_C", .heat_input = "current_A", .delay_s = -3.0, .delay_uncertainty_s = 0.1, .why_not = {}};
+  ClockOffset offset{.temperature = "winding_C",
+                     .heat_input = "current_A",
+                     .delay_s = -3.0,
+                     .delay_uncertainty_s = 0.1,
+                     .misfit_ratio = 50.0,
+                     .why_not = {}};
   EXPECT_EQ(early_answer(offset, 1.0), "");
   offset.explains_flow = true;
   EXPECT_NE(early_answer(offset, 1.0), "");
   EXPECT_EQ(late_answer(offset, 1.0), "");
+  offset.misfit_ratio = 2.0;
+  EXPECT_EQ(early_answer(offset, 1.0), "") << "little better than no delay: another heat makes that";
+  offset.misfit_ratio = 50.0;
   offset.delay_s = -0.25;
   EXPECT_EQ(early_answer(offset, 1.0), "") << "less than a sample tells";
 }

@@ -96,8 +96,17 @@ class BackwardCheck {
     }
     const HeatOfEffect heat = heat_of(
         out_.after, input_.runs, [&](const EffectInPlace& each) { return each.name == term.effect_name; }, term.candidate->condition);
-    const bool is_little =
-        heat.mean_W < rules_.least_heat_share * out_.mean_heat_W && heat.peak_W < rules_.least_peak_share * out_.mean_heat_W;
+    const bool is_of_some_runs = !term.candidate->condition.empty();
+    const bool is_little = is_of_some_runs ? heat.mean_W < rules_.least_deviation_share * out_.mean_heat_W
+                                           : heat.mean_W < rules_.least_heat_share * out_.mean_heat_W &&
+                                                 heat.peak_W < rules_.least_peak_share * out_.mean_heat_W;
+    if (const RunDeviationType* const type = term.candidate->deviation_type) {
+      const auto& terms = out_.after.model.deviations;
+      const auto own = std::ranges::find_if(terms, [&](const RunDeviation& d) { return d.is_same(type, term.candidate->condition); });
+      return std::abs(own->deviation_share) < rules_.least_deviation_share
+                 ? fmt::format("it is {:.1f} % only", 100.0 * own->deviation_share)
+                 : std::string();
+    }
     return term.candidate->type && is_little
                ? fmt::format("it is {} W of {} W only", significant(heat.mean_W, 1), significant(out_.mean_heat_W, 2))
                : std::string();

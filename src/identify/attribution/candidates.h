@@ -24,6 +24,7 @@ struct Candidate {
   int variant = 0;
   Condition condition;  ///< where it acts; empty: everywhere
 
+  [[nodiscard]] bool is_rare() const { return deviation_type && deviation_type->is_rare; }
   [[nodiscard]] int size_parameter() const;
   [[nodiscard]] double typical_size() const { return parameters[static_cast<std::size_t>(size_parameter())]; }
   [[nodiscard]] const ParameterSpec& size_spec() const;

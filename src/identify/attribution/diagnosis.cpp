@@ -288,8 +288,17 @@ class Teller {
     out_.unexplained.push_back(std::move(heat));
   }
 
+  /// Half as much heat as its own is left at its node, and no measured signal explains it.
+  [[nodiscard]] bool is_outweighed(const FoundEffect& effect) const {
+    constexpr double kOutweighs_share = 0.5;
+    return effect.has_heat && std::ranges::any_of(out_.unexplained, [&](const Unexplained& heat) {
+             const bool follows_nothing = heat.drivers.empty() || heat.drivers.front() == kTimeDriver;
+             return follows_nothing && !heat.is_in_model && heat.node == effect.node && heat.rms_W > kOutweighs_share * effect.mean_W;
+           });
+  }
+
   [[nodiscard]] DiagnosisVerdict verdict() const {
-    if (std::ranges::any_of(out_.effects, &FoundEffect::is_from_catalogue)) {
+    if (std::ranges::any_of(out_.effects, [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect); })) {
       return DiagnosisVerdict::effect_found;
     }
     if (!out_.unexplained.empty()) {

@@ -92,7 +92,7 @@ std::vector<int> EffectSets::visible() const {
     // Shapes are free in a refit: one variant stands for all.
     const bool is_variant =
         std::ranges::any_of(pool, [&](int j) { return candidates_[static_cast<std::size_t>(j)].id == each.candidate.id; });
-    if (each.visibility_ratio >= rules_.least_visibility_ratio && !is_variant) {
+    if (each.visibility_ratio >= rules_.least_visibility_ratio && !is_variant && !each.candidate.is_rare()) {
       pool.push_back(place_of(each.candidate));
     }
   }

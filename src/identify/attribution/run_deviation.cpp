@@ -10,6 +10,11 @@ bool turns_input_into_heat(const Network& /*network*/, const EffectInPlace& effe
   return effect.type->name == "copper_loss" || effect.type->name == "input_power_loss";
 }
 
+bool is_contact(const Network& network, const EffectInPlace& effect) {
+  return effect.type->name == "conduction" &&
+         std::ranges::none_of(effect.node_index, [&](int node) { return network.node_name(node) == Network::kAmbient; });
+}
+
 bool is_resistance_to_ambient(const Network& network, const EffectInPlace& effect) {
   return effect.type->name == "conduction" &&
          std::ranges::any_of(effect.node_index, [&](int node) { return network.node_name(node) == Network::kAmbient; });
@@ -42,6 +47,19 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .experiment = "the same load twice, with the mount and the cover as they were and as they should be",
        .concerns = is_resistance_to_ambient,
        .missing_ratio = [](double d_share) { return d_share; }},
+      {.name = "changed_contact",
+       .size = {"resistance_change", "", Range::between(-0.9, 20.0), "of the resistance between winding and stator, as a share of it"},
+       .usual = 0.2,
+       .is_rare = true,
+       .node = "winding",
+       .summary =
+           "Heat crosses from the winding to the stator worse or better than the model says: a winding that has come loose, or was glued.",
+       .equation = "R_contact = (1 + resistance_change) · R_contact of the other runs",
+       .family = "contact between winding and stator",
+       .look_alike = "contact_ageing, contact_temperature_dependence where that run was another time or temperature.",
+       .experiment = "the same locked-rotor run once more, from equal temperatures",
+       .concerns = is_contact,
+       .missing_ratio = [](double d_share) { return std::abs(d_share); }},
   };
   return all;
 }

@@ -19,8 +19,9 @@ bool has_condition(const MeasuredRun& run, const Condition& condition);
 /// Parameters of the network that are worth 1 + d times as much under a condition.
 struct RunDeviationType {
   std::string_view name;
-  ParameterSpec size;  ///< d
-  double usual = 0.1;  ///< of d
+  ParameterSpec size;    ///< d
+  double usual = 0.1;    ///< of d
+  bool is_rare = false;  ///< named for unmistakable evidence of its own only
   std::string_view node;
   std::string_view summary;
   std::string_view equation;

@@ -289,6 +289,8 @@ class Selector {
       why_not = "the loss at the speed that not every log has could be it";
     } else if (judged.visibility_ratio < rules_.least_visibility_ratio) {
       why_not = fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * judged.visibility_ratio);
+    } else if (judged.candidate.is_rare() && judged.gain_nats < rules_.unmistakable_nats) {
+      why_not = "that is rare and needs clearer evidence";
     } else if (judged.runs_acting > 1 && judged.left_out_gain_nats <= 0.0) {
       why_not = "runs left out of the fit get no better";
     }

@@ -32,6 +32,7 @@ struct SelectionRules {
   double unmistakable_nats = 20.0;  ///< over the model without it and doubt in all figures: then it stays though little of it is visible
   double least_heat_share = 0.005;  ///< of the heat that the model knows: an effect of less on average, and of less than
   double least_peak_share = 0.02;   ///< that at its peak, is not named
+  double least_deviation_share = 0.03;  ///< that some runs are said to have of heat or of a resistance
   int refitted = 6;
   int most_terms = 4;
 };

@@ -320,17 +320,20 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   }
   offset.delay_s = *delay_s;
   offset.delay_uncertainty_s = standard_error_s;
+  offset.misfit_ratio = scan.errors(std::array{0.0}).front()[kParts] / scan.errors(std::array{*delay_s}).front()[kParts];
   return offset;
 }
 
-/// Beyond chance and what means over rows can make. Only the winding answers at once, and only to its current (power does work, too);
-/// without another temperature beside it the heat that it gives away passes for an offset.
+/// Beyond chance and what means over rows, or heat that nobody knows of, can make. Only the winding answers at once, and only to its
+/// current (power does work, too); without another temperature beside it the heat that it gives away passes for an offset.
 bool is_sure(const ClockOffset& offset, double period_s) {
   constexpr double kStandardErrors = 3.0;
+  // Of squares: logs in time of motors that something else heats, too, come to 2; a shift by one row to 11 and more.
+  constexpr double kMuchBetter_ratio = 5.0;
   constexpr double kLeast_s = 0.3;
   constexpr double kLeast_rows = 0.2;
   constexpr std::array<std::string_view, 2> kDirect{"current_A", "current_q_A"};
-  return offset.delay_s && offset.explains_flow && offset.temperature == "winding_C" &&
+  return offset.delay_s && offset.explains_flow && offset.misfit_ratio > kMuchBetter_ratio && offset.temperature == "winding_C" &&
          std::ranges::find(kDirect, offset.heat_input) != kDirect.end() &&
          std::abs(*offset.delay_s) > std::max({kStandardErrors * offset.delay_uncertainty_s, kLeast_s, kLeast_rows * period_s});
 }

@@ -50,6 +50,7 @@ struct ClockOffset {
   std::string heat_input;
   std::optional<double> delay_s;     ///< positive: the temperature comes late; nothing where it cannot be told
   double delay_uncertainty_s = 0.0;  ///< standard error, by leaving out one eighth of the log after the other
+  double misfit_ratio = 1.0;         ///< squared errors without any delay over those with it
   std::string why_not;               ///< where it cannot be told
   bool explains_flow = false;        ///< what the first temperature gives away is known, and heat makes it hotter than all beside it
 };
