@@ -10,14 +10,13 @@ bool turns_input_into_heat(const Network& /*network*/, const EffectInPlace& effe
   return effect.type->name == "copper_loss" || effect.type->name == "input_power_loss";
 }
 
-bool is_contact(const Network& network, const EffectInPlace& effect) {
-  return effect.type->name == "conduction" &&
-         std::ranges::none_of(effect.node_index, [&](int node) { return network.node_name(node) == Network::kAmbient; });
-}
-
 bool is_resistance_to_ambient(const Network& network, const EffectInPlace& effect) {
   return effect.type->name == "conduction" &&
          std::ranges::any_of(effect.node_index, [&](int node) { return network.node_name(node) == Network::kAmbient; });
+}
+
+bool is_contact(const Network& network, const EffectInPlace& effect) {
+  return effect.type->name == "conduction" && !is_resistance_to_ambient(network, effect);
 }
 
 }  // namespace
