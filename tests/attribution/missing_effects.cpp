@@ -267,6 +267,15 @@ const std::vector<Outsider> kOutsiders{
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.15 * s * smooth_step((m.in.vehicle_speed_m_per_s - 1.2) / 0.1)); });
      }},
+    {"heat with the current that fades with speed",
+     "stator",
+     {"speed", "velocity", "modulation", "current_speed_squared"},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         into_iron(q, 2.5 * s * std::abs(m.in.current_A) / 8.0 * std::exp(-std::pow(std::abs(m.in.speed_rad_per_s) / 175.0, 2)));
+       });
+     },
+     "current"},
     {"winding that lifts off the iron when it is hot",
      "winding",
      {"winding_temperature", "winding_excess", "winding_above_stator"},

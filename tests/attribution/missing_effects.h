@@ -32,6 +32,7 @@ struct Outsider {
   std::string_view node;
   std::vector<std::string_view> drivers;  ///< any of these is right: on these runs they are near copies of each other
   Missing (*make)(double size);
+  std::string_view times = "";  ///< signal that it goes with besides
 };
 const std::vector<Outsider>& outsiders();
 

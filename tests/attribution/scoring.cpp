@@ -46,7 +46,8 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
   const Selection& selection = answer.diagnosis.selection;
   const auto is_right = [&](const ScanResult& curve) {
     const std::string& driver = selection.drivers[static_cast<std::size_t>(curve.term.driver)].name;
-    return curve.term.node == outsider.node && std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
+    return curve.term.node == outsider.node && second_signal(curve.term.multiplier) == outsider.times &&
+           std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
   };
   // What is said first is the answer; what else remains may follow.
   const bool leads = selection.terms.empty() ? selection.open_curve && is_right(*selection.open_curve)

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/diagnostic.h"
 
@@ -128,6 +130,52 @@ TEST(MeasuredRun, a_speed_is_unlogged_in_the_rows_that_lack_it_and_where_somethi
   how.least_current_A = 6.5;
   const MeasuredRun standing = measured_runs(log, how).runs.at(0);
   EXPECT_EQ(standing.at[5].unlogged_speed_share, 0.0);
+}
+
+/// A drive that turns round within a row of its log: means with a sign fall short of the distance that bearings and iron feel.
+TEST(MeasuredRun, a_row_in_which_the_motor_turns_round_has_more_speed_than_its_mean) {
+  constexpr int kFine = 1000;
+  constexpr double kSteepest_rad_per_s2 = 700.0;
+  std::vector<LogRow> rows;
+  std::vector<double> mean_rad_per_s;
+  double speed_rad_per_s = 0.0, truth_rad = 0.0, truth_rad2_per_s = 0.0, short_of_it_rad = 0.0, short_of_it_rad2_per_s = 0.0;
+  for (int row = 0; row < 600; ++row) {
+    double turned_rad = 0.0;
+    for (int k = 0; k < kFine; ++k) {
+      // Periods without a common measure with the row, and halts.
+      const double time_s = row + k / static_cast<double>(kFine);
+      const double wanted_rad_per_s =
+          std::fmod(time_s, 17.3) > 15.0 ? 0.0 : 300.0 * std::sin(0.37 * time_s) * (std::sin(0.83 * time_s) > 0.0 ? 1.0 : -1.0);
+      const double step_rad_per_s = kSteepest_rad_per_s2 / kFine;
+      speed_rad_per_s += std::clamp(wanted_rad_per_s - speed_rad_per_s, -step_rad_per_s, step_rad_per_s);
+      turned_rad += speed_rad_per_s / kFine;
+      truth_rad += std::abs(speed_rad_per_s) / kFine;
+      truth_rad2_per_s += speed_rad_per_s * speed_rad_per_s / kFine;
+    }
+    rows.push_back({static_cast<double>(row), 2.0});
+    mean_rad_per_s.push_back(turned_rad);
+    short_of_it_rad += std::abs(turned_rad);
+    short_of_it_rad2_per_s += turned_rad * turned_rad;
+  }
+  Recording log = recording_of(rows);
+  log.channels.push_back({*quantity_named("speed_rad_per_s"), mean_rad_per_s});
+  const MeasuredRun run =
+      measured_runs(log, {.longest_step_s = 2.0, .needed = {Signal::current, Signal::speed}, .ambient_C = 25.0}).runs.front();
+  double seen_rad = 0.0, seen_rad2_per_s = 0.0, turned_rad = 0.0;
+  for (std::size_t k = 0; k < run.at.size(); ++k) {
+    const double duration_s = run.time_s[k + 1] - run.time_s[k];
+    seen_rad += duration_s * run.at[k].speed_mean_rad_per_s;
+    seen_rad2_per_s += duration_s * run.at[k].speed_rms_rad_per_s * run.at[k].speed_rms_rad_per_s;
+    turned_rad += duration_s * run.at[k].velocity_rad_per_s;
+    EXPECT_LE(std::abs(run.at[k].velocity_rad_per_s), run.at[k].speed_mean_rad_per_s + 1e-9);
+    EXPECT_LE(run.at[k].speed_mean_rad_per_s, run.at[k].speed_rms_rad_per_s + 1e-9);
+  }
+  EXPECT_LT(short_of_it_rad, 0.95 * truth_rad) << "an easy case shows nothing";
+  EXPECT_NEAR(seen_rad, truth_rad, 0.5 * (truth_rad - short_of_it_rad)) << short_of_it_rad;
+  // How far it went on the other side is lost more than that it did.
+  EXPECT_GT(seen_rad2_per_s - short_of_it_rad2_per_s, (truth_rad2_per_s - short_of_it_rad2_per_s) / 3.0);
+  EXPECT_LT(seen_rad2_per_s, truth_rad2_per_s);
+  EXPECT_NEAR(turned_rad, std::accumulate(mean_rad_per_s.begin(), mean_rad_per_s.end() - 1, 0.0), 1e-6);
 }
 
 TEST(MeasuredRun, current_stands_for_a_torque_that_nobody_logged) {

@@ -77,11 +77,23 @@ Json unexplained_json(const Unexplained& heat) {
             {"time_scale_s", rounded(heat.time_scale_s, 1)},
             {"nats", rounded(heat.gain_nats, 2)},
             {"in_model", heat.is_in_model}};
+  if (!heat.times.empty()) {
+    json["drivers"].push_back(heat.times);
+    json["times"] = heat.times;
+  }
   if (!heat.knots.empty()) {
     json["curve"] = {
         {"driver", heat.knots}, {"driver_unit", heat.driver_unit}, {"value", heat.curve}, {"sd", heat.curve_sd}, {"unit", heat.curve_unit}};
   }
   return json;
+}
+
+Json words_of(const std::vector<Refusal>& refused) {
+  Json words = Json::array();
+  for (const Refusal& each : refused) {
+    words.push_back(each.words);
+  }
+  return words;
 }
 
 Json ladder_json(const Selection& selection) {
@@ -147,7 +159,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
                                        {"after", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, input.train))}});
   }
   json["ladder"] = ladder_json(diagnosis.selection);
-  json["refused"] = diagnosis.selection.refused;
+  json["refused"] = words_of(diagnosis.selection.refused);
   json["would_not_show"] = diagnosis.selection.unseen;
   json["not_judged"] = diagnosis.selection.not_judged;
   json["unknown_heat_rms_W"] = {{"before", diagnosis.flux_rms_before_W}, {"after", diagnosis.flux_rms_after_W}};

@@ -211,7 +211,7 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     remarks.push_back(
         fmt::format("at their usual size these would not show in these runs: {}", fmt::join(diagnosis.selection.unseen, ", ")));
   }
-  remarks.insert(remarks.end(), diagnosis.selection.refused.begin(), diagnosis.selection.refused.end());
+  std::ranges::transform(diagnosis.selection.refused, std::back_inserter(remarks), &Refusal::words);
   remarks.insert(remarks.end(), diagnosis.selection.not_judged.begin(), diagnosis.selection.not_judged.end());
   text += "<h2>What was not judged, and what is taken for granted</h2><ul>";
   for (const std::string& remark : remarks) {

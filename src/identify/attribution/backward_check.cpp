@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "base/quantity.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 
 namespace heatsoak {
 namespace {
+
+/// What a law has to be ahead of another to take its place.
+constexpr double kSwap_nats = 1.0;
 
 /// Names of nodes that a term reaches or watches besides those it brings itself.
 std::vector<std::string> nodes_of(const AcceptedTerm& term, const std::vector<Driver>& drivers) {
@@ -33,7 +37,7 @@ class BackwardCheck {
       : out_(selection), input_(input), rules_(rules), options_(std::move(options)) {}
 
   void run() {
-    while (drops_superfluous() || drops_invisible() || drops_negligible()) {
+    while (drops_superfluous() || drops_invisible() || drops_negligible() || swaps_for_rival()) {
       has_dropped_ = true;
     }
   }
@@ -73,7 +77,7 @@ class BackwardCheck {
     for (std::size_t i = 0; i < out_.terms.size(); ++i) {
       const AcceptedTerm& term = out_.terms[i];
       if (const std::string why = why_negligible(term); !why.empty()) {
-        out_.refuse(term.candidate->id, term.loss_without_nats, why);
+        out_.refuse(term.candidate->id, term.loss_without_nats, why, true);
         const std::vector<bool> stays = all_but(i);
         keep(stays, refit_with(stays));
         return true;
@@ -167,6 +171,69 @@ class BackwardCheck {
     options.place = out_.after.place;
     const RefitResult without = refit(std::move(doubted), input_.runs, out_.before.start_C, options);
     return out_.after.evidence_nats - without.evidence_nats >= rules_.unmistakable_nats;
+  }
+
+  /// Of several terms the first was chosen while the others were not there: a law of its family may go better with them, or as well.
+  bool swaps_for_rival() {
+    for (std::size_t i = 0; i < out_.terms.size() && out_.terms.size() > 1; ++i) {
+      const std::vector<bool> stays = all_but(i);
+      if (!out_.terms[i].candidate || std::ranges::count(stays, false) > 1) {
+        continue;
+      }
+      const ExtendedModel without = model_with(stays);
+      const std::vector<Candidate> rivals = rivals_of(*out_.terms[i].candidate, without);
+      std::vector<RefitResult> fits(rivals.size());
+      RefitOptions options = options_;
+      options.place = out_.after.place;
+      in_parallel(rivals.size(), 0, [&](std::size_t j) {
+        fits[j] = refit(with_candidate(without, rivals[j], 1.0), input_.runs, out_.before.start_C, options);
+      });
+      std::size_t best = rivals.size();
+      double best_nats = out_.after.evidence_nats + kSwap_nats;
+      for (std::size_t j = 0; j < rivals.size(); ++j) {
+        tell_rival(out_.terms[i], rivals[j], fits[j].evidence_nats - out_.after.evidence_nats);
+        if (fits[j].evidence_nats > best_nats) {
+          best_nats = fits[j].evidence_nats;
+          best = j;
+        }
+      }
+      if (best < rivals.size()) {
+        swap(i, rivals[best], std::move(fits[best]));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Laws of one family at the same nodes.
+  [[nodiscard]] std::vector<Candidate> rivals_of(const Candidate& candidate, const ExtendedModel& without) const {
+    std::vector<Candidate> rivals = candidates_for(without, input_.runs).candidates;
+    std::erase_if(rivals, [&](const Candidate& other) {
+      return !other.type || other.type == candidate.type || candidate.family().empty() || other.family() != candidate.family() ||
+             other.nodes != candidate.nodes || other.condition != candidate.condition;
+    });
+    return rivals;
+  }
+
+  void tell_rival(AcceptedTerm& term, const Candidate& rival, double ahead_nats) const {
+    const double within_nats = std::max(rules_.ambiguous_within_nats, rules_.beside_law_share * term.gain_nats);
+    if (ahead_nats > -within_nats && std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
+      term.confusable_with.push_back(rival.id);
+      term.experiments.emplace_back(rival.experiment());
+    }
+  }
+
+  void swap(std::size_t own, const Candidate& rival, RefitResult fit) {
+    AcceptedTerm& term = out_.terms[own];
+    term.candidate = rival;
+    term.effect_name = std::string(fit.model.model.network.effects().back().name);
+    term.gain_nats += fit.evidence_nats - out_.after.evidence_nats;
+    term.confusable_with.clear();
+    term.experiments.clear();
+    out_.after = std::move(fit);
+    // The model lists effects in the order in which they came.
+    std::ranges::rotate(out_.terms.begin() + static_cast<std::ptrdiff_t>(own), out_.terms.begin() + static_cast<std::ptrdiff_t>(own) + 1,
+                        out_.terms.end());
   }
 
   /// Of the whitened response to the term's size from nothing, in the shape that was found, what all else leaves of it: 1 − R².

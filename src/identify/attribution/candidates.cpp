@@ -297,6 +297,13 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
 
 }  // namespace
 
+bool Candidate::is_rare() const {
+  if (deviation_type) {
+    return deviation_type->is_rare;
+  }
+  return type && condition.empty() && nodes.size() == 1 && nodes.front() != type->nodes.front().default_node;
+}
+
 int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter : 0; }
 
 const ParameterSpec& Candidate::size_spec() const {

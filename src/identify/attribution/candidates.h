@@ -24,7 +24,8 @@ struct Candidate {
   int variant = 0;
   Condition condition;  ///< where it acts; empty: everywhere
 
-  [[nodiscard]] bool is_rare() const { return deviation_type && deviation_type->is_rare; }
+  /// Named for unmistakable evidence only: what few runs have, and laws at another node than their usual one.
+  [[nodiscard]] bool is_rare() const;
   [[nodiscard]] int size_parameter() const;
   [[nodiscard]] double typical_size() const { return parameters[static_cast<std::size_t>(size_parameter())]; }
   [[nodiscard]] const ParameterSpec& size_spec() const;

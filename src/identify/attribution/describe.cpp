@@ -105,7 +105,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            "effect is missing that acts like such a change, these runs cannot tell; no name is given, and the figures are those of these "
            "runs.";
   }
-  return diagnosis.selection.refused.empty()
+  return !diagnosis.selection.leaves_doubt()
              ? fmt::format(
                    "These runs cannot tell whether something is missing: at their usual size only {:.0f} % of the effects of the "
                    "catalogue would show in them.",
@@ -139,7 +139,8 @@ std::string unexplained_in_words(const Unexplained& heat) {
   const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == kTimeDriver;
   const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);
   return (goes_by_clock ? fmt::format("Unexplained: heat {} that no measured signal explains; it goes by the time since a run began", where)
-                        : fmt::format("Unnamed: heat {} that follows {}", where, fmt::join(heat.drivers, " or "))) +
+                        : fmt::format("Unnamed: heat {} that follows {}{}", where,
+                                      heat.times.empty() ? "" : heat.times + " times a curve over ", fmt::join(heat.drivers, " or "))) +
          fmt::format(", {} W on average, up to {} W.", significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
          (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
          (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
@@ -170,8 +171,8 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
                                 is_held_out ? "runs the fit never saw" : "the training runs") +
                 doubts_in_words(diagnosis));
   all.insert(all.end(), diagnosis.beyond_training.begin(), diagnosis.beyond_training.end());
-  for (const std::string& refused : diagnosis.selection.refused) {
-    all.push_back(fmt::format("Not named: {}.", refused));
+  for (const Refusal& refused : diagnosis.selection.refused) {
+    all.push_back(fmt::format("Not named: {}.", refused.words));
   }
   if (!diagnosis.experiments.empty()) {
     const Experiment& next = diagnosis.experiments.front();

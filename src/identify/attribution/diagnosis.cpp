@@ -232,7 +232,7 @@ class Teller {
 
   /// A law that the base could stand for gets no name, but the signal that its heat goes with is known. Null where nothing was refused.
   [[nodiscard]] const ScanResult* driver_of_what_was_refused(const std::string& node) const {
-    if (out_.selection.refused.empty() || out_.selection.rounds.empty()) {
+    if (!out_.selection.leaves_doubt() || out_.selection.rounds.empty()) {
       return nullptr;
     }
     // The round whose model is the one that is left.
@@ -273,6 +273,7 @@ class Teller {
     heat.node = curve.term.node;
     heat.drivers = {driver.name};
     heat.drivers.insert(heat.drivers.end(), others.begin(), others.end());
+    heat.times = second_signal(curve.term.multiplier);
     heat.mean_W = curve.mean_W;
     heat.peak_W = curve.peak_W;
     heat.rms_W = curve.mean_W;
@@ -307,7 +308,7 @@ class Teller {
     const bool is_same_mounting = std::ranges::none_of(
         out_.changed, [](const ChangedFigure& figure) { return std::abs(std::log(figure.value / figure.before)) > kOtherMounting; });
     const bool would_show = out_.selection.seen_share >= kLeastSeen_share;
-    return out_.selection.refused.empty() && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
+    return !out_.selection.leaves_doubt() && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
                                                                             : DiagnosisVerdict::not_identifiable;
   }
 

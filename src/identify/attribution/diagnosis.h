@@ -24,6 +24,7 @@ struct DiagnosisInput {
 struct Unexplained {
   std::string node;
   std::vector<std::string> drivers;  ///< empty: no measured signal explains it
+  std::string times;                 ///< signal that multiplies what goes with the driver; empty: none
   double mean_W = 0.0;
   double peak_W = 0.0;
   double rms_W = 0.0;

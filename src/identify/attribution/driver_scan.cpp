@@ -21,6 +21,9 @@ constexpr std::size_t kZoomed = 3;
 constexpr int kHalvings = 3;
 constexpr double kWorthZooming_nats = 10.0;
 constexpr double kWorthKnots_nats = 5.0;
+/// What two signals have to be ahead of one.
+constexpr double kSecondSignal_nats = 20.0;
+constexpr double kSecondSignal_share = 0.5;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
@@ -47,34 +50,17 @@ HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux
   return shown;
 }
 
-int flux_of(const Model& model, std::string_view node) {
-  const int place = model.network.find_node(node);
-  const auto found = std::ranges::find(model.flux_nodes, place);
-  return found == model.flux_nodes.end() ? -1 : static_cast<int>(found - model.flux_nodes.begin());
-}
-
-/// All terms that the scan tries, for any driver.
-std::vector<ScanTerm> terms_of(const Model& model) {
-  std::vector<ScanTerm> terms;
-  for (const int node : model.flux_nodes) {
-    const std::string name(model.network.node_name(node));
-    terms.push_back({name, "", Multiplier::source, 0});
-    terms.push_back({name, "", Multiplier::excess, 0});
-    if (name == "winding") {
-      terms.push_back({name, "", Multiplier::copper, 0});
-    }
-  }
-  if (flux_of(model, "winding") >= 0 && flux_of(model, "stator") >= 0) {
-    terms.push_back({"winding", "stator", Multiplier::difference, 0});
-  }
-  return terms;
-}
-
 struct Family {
   ScanTerm term;
   std::vector<double> knots;
   double usual = 1.0;
 };
+
+/// Losses go with two signals of the operation; what goes with a temperature besides is cooling.
+bool goes_with(const Driver& driver, Multiplier multiplier) {
+  const std::string_view second = second_signal(multiplier);
+  return second.empty() || (driver.kind == DriverKind::operating_point && driver.name != second);
+}
 
 struct Scored {
   double gain_nats = 0.0;
@@ -121,12 +107,32 @@ class Scanner {
     if (input_.drivers->empty()) {
       return {};
     }
+    std::vector<ScanResult> results = best_of(terms_of_one_signal(*input_.model), most);
+    if (results.front().gain_nats > kWorthZooming_nats) {
+      const double one_nats = results.front().gain_nats;
+      const double least_nats = one_nats + std::max(kSecondSignal_nats, kSecondSignal_share * one_nats);
+      for (ScanResult& each : best_of(terms_of_two_signals(*input_.model, *input_.runs), most)) {
+        if (each.gain_nats > least_nats) {
+          results.push_back(std::move(each));
+        }
+      }
+      std::ranges::stable_sort(results, std::greater(), &ScanResult::gain_nats);
+      results.resize(std::min(results.size(), static_cast<std::size_t>(most)));
+    }
+    return results;
+  }
+
+ private:
+  /// Every driver for each of the terms; at most `most` come back.
+  std::vector<ScanResult> best_of(const std::vector<ScanTerm>& terms, int most) {
     std::vector<Climber> climbers;
-    for (const ScanTerm& term : terms_of(*input_.model)) {
+    for (const ScanTerm& term : terms) {
       const std::vector<Eigen::VectorXd> multiplier = multipliers(term);
       const std::size_t first = climbers.size();
       for (std::size_t driver = 0; driver < input_.drivers->size(); ++driver) {
-        climbers.push_back({family(term, static_cast<int>(driver), multiplier), {}, base_.place});
+        if (goes_with((*input_.drivers)[driver], term.multiplier)) {
+          climbers.push_back({family(term, static_cast<int>(driver), multiplier), {}, base_.place});
+        }
       }
       in_parallel(climbers.size() - first, 0, [&](std::size_t i) {
         Climber& climber = climbers[first + i];
@@ -147,7 +153,6 @@ class Scanner {
     return results;
   }
 
- private:
   [[nodiscard]] std::vector<Eigen::VectorXd> multipliers(const ScanTerm& term) const {
     std::vector<Eigen::VectorXd> along;
     for (std::size_t r = 0; r < input_.runs->size(); ++r) {
@@ -396,57 +401,6 @@ void zoom_in(const ScanInput& input, EvidenceTable& table, const SetScore& base,
 
 std::vector<ScanResult> scan_drivers(const ScanInput& input, EvidenceTable& table, const SetScore& base, int most) {
   return Scanner(input, table, base).run(most);
-}
-
-std::string_view unit_of(Multiplier multiplier) {
-  switch (multiplier) {
-    case Multiplier::source:
-      return "W";
-    case Multiplier::excess:
-    case Multiplier::difference:
-      return "W/K";
-    case Multiplier::copper:
-      return "";
-  }
-  return "";
-}
-
-std::string_view to_string(Multiplier multiplier) {
-  switch (multiplier) {
-    case Multiplier::source:
-      return "heat";
-    case Multiplier::excess:
-      return "excess over ambient";
-    case Multiplier::copper:
-      return "copper loss";
-    case Multiplier::difference:
-      return "difference to the other node";
-  }
-  return "";
-}
-
-Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run) {
-  const int node = model.network.find_node(term.node);
-  Eigen::VectorXd along = Eigen::VectorXd::Ones(run.samples() - 1);
-  if (term.multiplier == Multiplier::copper) {
-    std::vector<double> heat_W(model.network.effects().size() * static_cast<std::size_t>(model.network.node_count()));
-    for (Eigen::Index k = 0; k < along.size(); ++k) {
-      const std::span<const double> state_C(fitted.state_C.col(k).data(), static_cast<std::size_t>(fitted.states));
-      model.network.balance_W(run.at[static_cast<std::size_t>(k)], model.values, state_C, heat_W);
-      along[k] = 0.0;
-      for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
-        const bool is_copper = model.network.effects()[e].type->name == "copper_loss";
-        along[k] += is_copper ? heat_W[e * static_cast<std::size_t>(model.network.node_count()) + static_cast<std::size_t>(node)] : 0.0;
-      }
-    }
-    return along;
-  }
-  const int other = term.other.empty() ? -1 : model.network.find_node(term.other);
-  for (Eigen::Index k = 0; k < along.size() && term.multiplier != Multiplier::source; ++k) {
-    const double other_C = other >= 0 ? fitted.state_C(other, k) : run.at[static_cast<std::size_t>(k)].ambient_C;
-    along[k] = fitted.state_C(node, k) - other_C;
-  }
-  return along;
 }
 
 }  // namespace heatsoak

@@ -3,31 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
 #include "identify/attribution/drivers.h"
 #include "identify/attribution/evidence_table.h"
+#include "identify/attribution/scan_term.h"
 
 namespace heatsoak {
-
-/// What the curve stands before.
-enum class Multiplier {
-  source,      ///< 1: g in W
-  excess,      ///< T_node − T_ambient: g in W/K, positive takes heat out of the node
-  copper,      ///< the copper loss: g is a share of it
-  difference,  ///< T_node − T_other: g in W/K, positive carries heat from the node to the other
-};
-std::string_view unit_of(Multiplier multiplier);
-std::string_view to_string(Multiplier multiplier);
-
-/// One family of curves.
-struct ScanTerm {
-  std::string node;
-  std::string other;  ///< of `difference`; else empty
-  Multiplier multiplier = Multiplier::source;
-  int driver = 0;  ///< place in the list of drivers
-};
 
 struct ScanResult {
   ScanTerm term;
@@ -49,13 +31,11 @@ struct ScanInput {
   double mean_heat_W = 1.0;  ///< sets the scale that the prior expects
 };
 
-/// Best first; at most `most`. The table's base is what the curves are added to.
+/// Best first; at most `most`. The table's base is what the curves are added to. Heat that goes with two signals is among them only where
+/// no single one explains nearly as much.
 std::vector<ScanResult> scan_drivers(const ScanInput& input, EvidenceTable& table, const SetScore& base, int most);
 
 /// Draws the knots of the best few together where something happens between them, and sorts anew.
 void zoom_in(const ScanInput& input, EvidenceTable& table, const SetScore& base, std::vector<ScanResult>& results);
-
-/// The multiplier along a run's intervals, from the fitted temperatures at their beginnings.
-Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run);
 
 }  // namespace heatsoak

@@ -244,9 +244,12 @@ std::vector<FluxGrid::Place> places_of_less(const FluxGrid::Place& base) {
 
 double EvidenceTable::best_nats_with(const ThetaPrior& prior, const SetScore& base) {
   double best_nats = -std::numeric_limits<double>::infinity();
+  ThetaPrior all = prior_of(base.candidates);
+  all.mean.head(free_count()) = prior.mean;
+  all.precision.topLeftCorner(free_count(), free_count()) = prior.precision;
   for (const FluxGrid::Place& place : places_of_less(base.place)) {
-    const RunEvidence chosen = selected(at(place, false).all, {});
-    best_nats = std::max(best_nats, linear_fit({&chosen, 1}, prior.mean, prior.precision).log_evidence + grid_.log_prior_nats(place));
+    const RunEvidence chosen = selected(at(place, !base.candidates.empty()).all, base.candidates);
+    best_nats = std::max(best_nats, linear_fit({&chosen, 1}, all.mean, all.precision).log_evidence + grid_.log_prior_nats(place));
   }
   return best_nats;
 }

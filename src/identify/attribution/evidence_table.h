@@ -91,7 +91,7 @@ class EvidenceTable {
   /// unknown heat; 0 where the sign is wrong.
   [[nodiscard]] std::vector<double> single_gains_nats(const SetScore& base);
 
-  /// Evidence of the base with another prior of θ, best over the same places.
+  /// Evidence of the base with its candidates and another prior of θ, best over the same places.
   [[nodiscard]] double best_nats_with(const ThetaPrior& prior, const SetScore& base);
 
   /// Predictive gain of `set` over `base` on each run with all that is fitted on the other runs.

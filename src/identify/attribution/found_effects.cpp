@@ -42,6 +42,9 @@ class EffectTeller {
     if (term.curve) {
       effect.node = term.curve->term.node;
       effect.drivers.push_back(selection_.drivers[static_cast<std::size_t>(term.curve->term.driver)].name);
+      if (const std::string_view second = second_signal(term.curve->term.multiplier); !second.empty()) {
+        effect.drivers.emplace_back(second);
+      }
       effect.is_from_catalogue = false;
     }
     tell_parameters(in_place, effect);

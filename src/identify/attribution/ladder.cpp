@@ -43,6 +43,7 @@ std::vector<JudgedCandidate> judge(const std::vector<Candidate>& candidates, Evi
     const SetScore best = table.best(set, base.place);
     JudgedCandidate judged;
     judged.candidate = candidates[static_cast<std::size_t>(j)];
+    judged.column = j;
     judged.gain_nats = best.is_allowed ? best.evidence_nats - base.evidence_nats : 0.0;
     judged.visibility_ratio = table.visibility_ratio(base.candidates, base.place, j);
     judged.size_share = best.coefficient[table.free_count()];

@@ -13,6 +13,7 @@ namespace heatsoak {
 /// One effect that explains something, as it was judged in its round.
 struct JudgedCandidate {
   Candidate candidate;
+  int column = 0;  ///< of the round's table
   double gain_nats = 0.0;
   double visibility_ratio = 0.0;
   double left_out_gain_nats = 0.0;  ///< on runs left out of the fit, all together

@@ -13,6 +13,7 @@
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
+#include "identify/attribution/trials.h"
 #include "identify/averaged_run.h"
 #include "identify/calibration/unlogged_speed.h"
 
@@ -27,7 +28,7 @@ constexpr double kMuchUnknown_share = 0.05;
 constexpr double kMostWorse_ratio = 1.1;
 constexpr double kMostMoved_ratio = 1.5;
 
-constexpr int kMostCurvesTried = 3;
+constexpr std::size_t kMostCurvesTried = 3;
 /// Of the evidence that the scan has for a curve, what its refit has to reach within what physics allows.
 constexpr double kKeptPromise_ratio = 0.5;
 
@@ -163,6 +164,8 @@ class Selector {
     return results;
   }
 
+  [[nodiscard]] Trials trials() const { return {input_, out_, options_, first_place_}; }
+
   /// A judged candidate after its refit in the equations.
   struct Tried {
     const JudgedCandidate* judged = nullptr;
@@ -199,6 +202,43 @@ class Selector {
     return true;
   }
 
+  /// A file that was calibrated with a model that lacked the law has figures that are wrong because of it, and sure of them: the law and
+  /// the figure's doubt together may explain what neither does.
+  bool take_law_beside_doubt(std::vector<Tried>& tried, EvidenceTable& table, const SetScore& base, double least_nats) {
+    const Tried* law = nullptr;
+    std::optional<ChangedFigure> figure;
+    double best_nats = base.evidence_nats + least_nats;
+    for (std::size_t i = 0; i < std::min(tried.size(), kMostCurvesTried); ++i) {
+      const SetScore score = table.best(std::vector<int>{tried[i].judged->column}, tried[i].judged->place);
+      const auto doubtful = most_contradicted(out_.after.model, table, score, rules_.least_gain_nats);
+      if (doubtful && score.evidence_nats + doubtful->gain_nats > best_nats) {
+        best_nats = score.evidence_nats + doubtful->gain_nats;
+        law = &tried[i];
+        figure = doubtful;
+      }
+    }
+    if (!law) {
+      return false;
+    }
+    ExtendedModel doubted = law->fit.model;
+    doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
+    RefitOptions options = options_;
+    options.place = law->fit.place;
+    RefitResult fit = refit(std::move(doubted), input_.runs, law->fit.start_C, options);
+    figure->gain_nats = fit.evidence_nats - law->fit.evidence_nats;
+    if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats ||
+        leads_away(fit.model, kMostWorse_ratio)) {
+      return false;
+    }
+    Tried chosen{law->judged, std::move(fit), law->gain_nats + figure->gain_nats};
+    std::vector<Tried> front;
+    front.push_back(std::move(chosen));
+    take_front(front);
+    out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
+    out_.changed.push_back(std::move(*figure));
+    return true;
+  }
+
   bool take_best(Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
     double least_nats = rules_.least_gain_nats;
     for (const AcceptedTerm& term : out_.terms) {
@@ -217,6 +257,9 @@ class Selector {
       return true;
     }
     const bool is_ahead = best_scan_nats >= least_nats && best_scan_nats > best_nats + beyond_nats;
+    if (is_ahead && take_law_beside_doubt(tried, table, base, best_scan_nats - beyond_nats)) {
+      return true;
+    }
     const double catalogue_nats = is_ahead ? sets.catalogue_gain_nats() : 0.0;
     if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
       if (!is_speed_open_ && take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
@@ -277,7 +320,7 @@ class Selector {
   }
 
   Tried try_out(JudgedCandidate& judged) const {
-    RefitResult fit = try_term(judged, 0.5 * judged.gain_nats);
+    RefitResult fit = trials().of_term(judged, 0.5 * judged.gain_nats);
     judged.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
     return {&judged, std::move(fit), judged.gain_nats};
   }
@@ -285,17 +328,20 @@ class Selector {
   /// Tells where it may not though it explains something.
   bool may_be_named(const JudgedCandidate& judged, double least_nats) {
     std::string why_not;
+    bool is_negligible = false;
     if (is_speed_open_ && judged.candidate.type && judged.candidate.nodes.front() == "stator") {
       why_not = "the loss at the speed that not every log has could be it";
     } else if (judged.visibility_ratio < rules_.least_visibility_ratio) {
       why_not = fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * judged.visibility_ratio);
     } else if (judged.candidate.is_rare() && judged.gain_nats < rules_.unmistakable_nats) {
       why_not = "that is rare and needs clearer evidence";
+      is_negligible =
+          judged.candidate.deviation_type && std::abs(judged.size_share) * judged.candidate.typical_size() < rules_.least_deviation_share;
     } else if (judged.runs_acting > 1 && judged.left_out_gain_nats <= 0.0) {
       why_not = "runs left out of the fit get no better";
     }
     if (!why_not.empty() && judged.gain_nats >= least_nats) {
-      out_.refuse(judged.candidate.id, judged.gain_nats, why_not);
+      out_.refuse(judged.candidate.id, judged.gain_nats, why_not, is_negligible);
     }
     return why_not.empty();
   }
@@ -320,53 +366,6 @@ class Selector {
     out_.terms.push_back(std::move(term));
   }
 
-  /// From where the linear fit has arrived already. A model that lacks something may have been fitted to where nothing is linear any more:
-  /// where the promise is not kept, or the model has strayed, once more from what was known beforehand.
-  RefitResult try_term(const JudgedCandidate& judged, double promised_nats) const {
-    RefitResult fit = try_terms({judged.candidate}, {judged.size_share}, judged.step, judged.place);
-    if (fit.evidence_nats > out_.after.evidence_nats + promised_nats && !has_strayed(out_.after.model, input_.model)) {
-      return fit;
-    }
-    RefitOptions options = options_;
-    options.place = first_place_;
-    const double sign = judged.size_share < 0.0 ? -1.0 : 1.0;
-    RefitResult afresh = refit(with_candidate(with_values_of(out_.after.model, input_.model), judged.candidate, sign), input_.runs,
-                               out_.before.start_C, options);
-    return afresh.evidence_nats > fit.evidence_nats ? std::move(afresh) : std::move(fit);
-  }
-
-  RefitResult try_terms(const std::vector<Candidate>& added, const std::vector<double>& size_share, const Eigen::VectorXd& step,
-                        const FluxGrid::Place& place) const {
-    RefitOptions options = options_;
-    options.place = place;
-    ExtendedModel model = out_.after.model;
-    for (std::size_t i = 0; i < added.size(); ++i) {
-      model = with_candidate(model, added[i], size_share[i]);
-    }
-    Eigen::VectorXd theta = model.theta();
-    const Eigen::Index inner = out_.after.model.model.free_count();
-    const auto sensors = static_cast<Eigen::Index>(out_.after.model.sensors.size());
-    const auto deviations = static_cast<Eigen::Index>(out_.after.model.deviations.size());
-    theta.head(inner) += step.head(inner);
-    theta.segment(model.model.free_count(), sensors) += step.segment(inner, sensors);
-    theta.segment(model.first_deviation(), deviations) += step.tail(deviations);
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
-    }
-    model.set_theta(theta);
-    return refit(std::move(model), input_.runs, out_.after.start_C, options);
-  }
-
-  RefitResult try_set(const SetScore& set, const std::vector<Candidate>& candidates, Eigen::Index inner) const {
-    std::vector<Candidate> added;
-    std::vector<double> size_share;
-    for (std::size_t i = 0; i < set.candidates.size(); ++i) {
-      added.push_back(candidates[static_cast<std::size_t>(set.candidates[i])]);
-      size_share.push_back(set.coefficient[inner + static_cast<Eigen::Index>(i)]);
-    }
-    return try_terms(added, size_share, set.coefficient.head(inner), set.place);
-  }
-
   /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
   bool take_set(const EffectSets& sets, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
                 double best_single_nats) {
@@ -380,7 +379,7 @@ class Selector {
     const auto most = static_cast<std::size_t>(rules_.most_terms) - out_.terms.size();
     const std::vector<SetScore> best_sets = sets.best(most, least_worth_nats);
     std::vector<RefitResult> fits(best_sets.size());
-    in_parallel(fits.size(), 0, [&](std::size_t i) { fits[i] = try_set(best_sets[i], candidates, table.free_count()); });
+    in_parallel(fits.size(), 0, [&](std::size_t i) { fits[i] = trials().of_set(best_sets[i], candidates); });
     RefitResult* best = nullptr;
     std::vector<int> chosen;
     for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -424,7 +423,7 @@ class Selector {
 
   /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.
   bool take_curve(const Round& round, double least_nats) {
-    int tries = 0;
+    std::size_t tries = 0;
     const ScanResult& front = round.scan.front();
     const double rival_nats = front.gain_nats - std::max(rules_.ambiguous_within_nats, rules_.beside_curve_share * front.gain_nats);
     for (const ScanResult& each : round.scan) {
@@ -481,12 +480,14 @@ class Selector {
 }  // namespace
 
 void Selection::forget_refusal(const std::string& id) {
-  std::erase_if(refused, [&](const std::string& known) { return known.starts_with(id + ":"); });
+  std::erase_if(refused, [&](const Refusal& known) { return known.id == id; });
 }
 
-void Selection::refuse(const std::string& id, double gain_nats, std::string_view why) {
+bool Selection::leaves_doubt() const { return !std::ranges::all_of(refused, &Refusal::is_negligible); }
+
+void Selection::refuse(const std::string& id, double gain_nats, std::string_view why, bool is_negligible) {
   forget_refusal(id);
-  refused.push_back(fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why));
+  refused.push_back({id, fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why), is_negligible});
 }
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }

@@ -57,6 +57,13 @@ struct AcceptedTerm {
   std::vector<std::string> experiments;      ///< that would tell them apart
 };
 
+/// What explains something and still gets no name.
+struct Refusal {
+  std::string id;
+  std::string words;           ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
+  bool is_negligible = false;  ///< so little of it that nothing is missing without it
+};
+
 struct Selection {
   RefitResult before;
   RefitResult after;
@@ -73,11 +80,13 @@ struct Selection {
   SensorErrors errors;
   std::vector<std::string> unseen;   ///< effects that at their typical size would not show in these runs
   double seen_share = 1.0;           ///< of the effects that were judged
-  std::vector<std::string> refused;  ///< "radiation: 12 nats, but the base parameters absorb all but 0.1 % of it"
+  std::vector<Refusal> refused;
 
   void forget_refusal(const std::string& id);
   /// Takes the place of what was said of it before.
-  void refuse(const std::string& id, double gain_nats, std::string_view why);
+  void refuse(const std::string& id, double gain_nats, std::string_view why, bool is_negligible = false);
+  /// Something may be missing that cannot be named.
+  [[nodiscard]] bool leaves_doubt() const;
 };
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);

@@ -55,6 +55,10 @@ std::string_view form_of(Multiplier multiplier) {
       return "heat";
     case Multiplier::copper:
       return "per_copper_loss";
+    case Multiplier::current:
+      return "per_current";
+    case Multiplier::speed:
+      return "per_speed";
     case Multiplier::excess:
     case Multiplier::difference:
       return "per_difference";

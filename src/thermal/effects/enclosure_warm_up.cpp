@@ -34,7 +34,8 @@ EffectType enclosure_warm_up() {
                      {"heat_capacity", "J/K", Range::positive(), "of enclosed air and shell"}},
       .typical = "0.05 to 0.2 W/K, r = 5, h = 10 K/W: the air rises 5 to 20 K within some ten minutes",
       .look_alike =
-          "third_node is the same without the others' heat; a drift of the ambient sensor. A sensor in the enclosed air tells, or lifting "
+          "third_node is the same without the others' heat; heat that goes with I² and reaches the stator late, through a driver or a "
+          "connection of its own mass, has this equation; a drift of the ambient sensor. A sensor in the enclosed air tells, or lifting "
           "the cover.",
       // others: 0.1 W/K · 10 K/W · 8 W = 8 W; from the stator 0.1 · (60 − 35) = 2.5 W; to ambient 0.1 · 5 · (35 − 25) = 5 W
       .example = {.parameters = {0.1, 5.0, 10.0, 300.0},

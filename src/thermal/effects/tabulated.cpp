@@ -43,11 +43,13 @@ constexpr std::array kDrivers{
     Choice{"neighbour_difference", "K", "of the next motor above the node 'watched'"},
 };
 
-enum Form { heat_into, per_copper_loss, per_difference };
+enum Form { heat_into, per_copper_loss, per_difference, per_current, per_speed };
 constexpr std::array kForms{
     Choice{"heat", "W", "the curve is the heat into 'hot'"},
     Choice{"per_copper_loss", "", "the curve times the copper loss is the heat into 'hot'"},
     Choice{"per_difference", "W/K", "the curve is a conductance from 'hot' to 'cold'"},
+    Choice{"per_current", "W/A", "the curve times the current (rms) is the heat into 'hot'"},
+    Choice{"per_speed", "W s/rad", "the curve times the mean of |ω| is the heat into 'hot'"},
 };
 
 template <class S>
@@ -103,6 +105,12 @@ struct Tabulated {
       case per_copper_loss:
         heat.source(hot, curve * x.at.copper_loss_W);
         break;
+      case per_current:
+        heat.source(hot, curve * x.at.current_rms_A);
+        break;
+      case per_speed:
+        heat.source(hot, curve * x.at.speed_mean_rad_per_s);
+        break;
       default:
         heat.flow(hot, cold, curve * (x.temperature_C(hot) - x.temperature_C(cold)));
     }
@@ -128,7 +136,8 @@ EffectType tabulated() {
   return {
       .name = {},
       .summary = "A measured curve over one signal, for an effect that has no law yet. Outside its knots the curve stays at its ends.",
-      .equation = "P = g(d), g(d)·P_copper or g(d)·(T_hot − T_cold); g ≥ 0 is straight between seven knots and constant outside",
+      .equation =
+          "P = g(d), g(d)·P_copper, g(d)·I, g(d)·|ω| or g(d)·(T_hot − T_cold); g ≥ 0 is straight between seven knots and constant outside",
       .reference = "linear interpolation; a curve that is nowhere negative can only make heat, or move it downhill",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}, {"watched", "stator"}, {"reference", "ambient"}},
       .parameters = parameters(),
