@@ -107,7 +107,7 @@ class Scanner {
     if (input_.drivers->empty()) {
       return {};
     }
-    std::vector<ScanResult> results = best_of(terms_of_one_signal(*input_.model), most);
+    std::vector<ScanResult> results = best_of(terms_of_one_signal(*input_.model, *input_.runs), most);
     if (results.front().gain_nats > kWorthZooming_nats) {
       const double one_nats = results.front().gain_nats;
       const double least_nats = one_nats + std::max(kSecondSignal_nats, kSecondSignal_share * one_nats);

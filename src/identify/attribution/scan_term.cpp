@@ -10,7 +10,7 @@ int flux_of(const Model& model, std::string_view node) {
   return found == model.flux_nodes.end() ? -1 : static_cast<int>(found - model.flux_nodes.begin());
 }
 
-std::vector<ScanTerm> terms_of_one_signal(const Model& model) {
+std::vector<ScanTerm> terms_of_one_signal(const Model& model, const std::vector<MeasuredRun>& runs) {
   std::vector<ScanTerm> terms;
   for (const int node : model.flux_nodes) {
     const std::string name(model.network.node_name(node));
@@ -20,7 +20,10 @@ std::vector<ScanTerm> terms_of_one_signal(const Model& model) {
       terms.push_back({name, "", Multiplier::copper, 0});
     }
   }
-  if (flux_of(model, "winding") >= 0 && flux_of(model, "stator") >= 0) {
+  const auto is_seen = [&](std::string_view node) {
+    return flux_of(model, node) >= 0 && std::ranges::any_of(runs, [&](const MeasuredRun& run) { return run.sensor_at(node) >= 0; });
+  };
+  if (is_seen("winding") && is_seen("stator")) {
     terms.push_back({"winding", "stator", Multiplier::difference, 0});
   }
   return terms;

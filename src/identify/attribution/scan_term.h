@@ -33,8 +33,9 @@ struct ScanTerm {
   int driver = 0;  ///< place in the list of drivers
 };
 
-/// All that the scan tries for any driver alone.
-std::vector<ScanTerm> terms_of_one_signal(const Model& model);
+/// All that the scan tries for any driver alone. What crosses to a node is tried only where a sensor is at both of its ends: of one that
+/// nobody sees a curve over what the other shows can make anything.
+std::vector<ScanTerm> terms_of_one_signal(const Model& model, const std::vector<MeasuredRun>& runs);
 /// Losses that go with the current as with something else, or with the speed.
 std::vector<ScanTerm> terms_of_two_signals(const Model& model, const std::vector<MeasuredRun>& runs);
 /// Place among the nodes that unknown heat may reach; -1: none.

@@ -30,8 +30,8 @@ struct SelectionRules {
   double beside_law_share = 0.03;     ///< the same of laws at one node: none is exact, and what it leaves looks like another
   double least_visibility_ratio = 0.02;
   double unmistakable_nats = 20.0;  ///< over the model without it and doubt in all figures: then it stays though little of it is visible
-  double least_heat_share = 0.005;  ///< of the heat that the model knows: an effect of less on average, and of less than
-  double least_peak_share = 0.02;   ///< that at its peak, is not named
+  double least_heat_share = 0.01;   ///< of the heat that the model knows: an effect of less on average, and of less than
+  double least_peak_share = 0.04;   ///< that at its peak, is not named
   double least_deviation_share = 0.03;  ///< that some runs are said to have of heat or of a resistance
   int refitted = 6;
   int most_terms = 4;
@@ -78,8 +78,8 @@ struct Selection {
   std::optional<ScanResult> open_curve;  ///< that nothing in the network can follow, or physics forbids as it stands
   FluxGrid grid;
   SensorErrors errors;
-  std::vector<std::string> unseen;   ///< effects that at their typical size would not show in these runs
-  double seen_share = 1.0;           ///< of the effects that were judged
+  std::vector<std::string> unseen;  ///< effects that at their typical size would not show in these runs
+  double seen_share = 1.0;          ///< of the effects that were judged
   std::vector<Refusal> refused;
 
   void forget_refusal(const std::string& id);
