@@ -179,11 +179,14 @@ void faster_than_the_motor(const Motor& motor, const Recording& recording, std::
   }
 }
 
-/// Real sensors lag, and a fit goes on with them: it is only said.
-void late_answers(const Recording& recording, const DataQuality& quality, Admission& admission) {
+/// Real sensors lag, and a fit goes on with them: it is only said, where the motor's file does not state it.
+void late_answers(const Motor& motor, const Recording& recording, const DataQuality& quality, Admission& admission) {
   for (const ClockOffset& offset : quality.clock_offsets) {
     const std::string late = late_answer(offset, quality.sampling.usual_period_s);
-    if (late.empty()) {
+    const bool is_stated = std::ranges::any_of(faults_of(motor, offset.temperature), [](const SensorFault& fault) {
+      return fault.type->law.after != nullptr && fault.size > 0.0;
+    });
+    if (late.empty() || is_stated) {
       continue;
     }
     admission.notes.push_back(fmt::format("{}: {}", recording.name, late));
@@ -212,7 +215,7 @@ Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span
     for (const std::string& each : quality.suspicions) {
       notes.push_back(fmt::format("{}: {}", recording.name, each));
     }
-    late_answers(recording, quality, admission);
+    late_answers(motor, recording, quality, admission);
     std::vector<std::string> spoiling = quality.spoiling;
     if (spoiling.empty()) {
       beyond_the_motor(motor, recording, spoiling);

@@ -90,7 +90,7 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
       for (const Sensor& sensor : runs[r].sensors) {
         const double shown_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
         double& node_C = state_C[static_cast<std::size_t>(network.find_node(sensor.node))];
-        node_C = std::isnan(shown_C) ? node_C : shown_C;
+        node_C = std::isnan(shown_C) ? node_C : true_at_rest_C(sensor.faults, shown_C);
       }
       network.balance_W(runs[r].at[k], model.values, state_C, heat_W);
       double away_W = 0.0;

@@ -19,6 +19,7 @@ class Recorder {
     const Eigen::Index samples = run.samples();
     const Eigen::Index rows = samples * out.sensors();
     out.state_C.resize(out.states, samples);
+    out.shown_C.resize(samples, out.sensors());
     out.residual_K.resize(rows);
     out.by_start.resize(rows, out.states);
     out.by_parameter.resize(rows, wanted);
@@ -31,6 +32,7 @@ class Recorder {
     for (Eigen::Index sensor = 0; sensor < out_.sensors(); ++sensor) {
       const Eigen::Index row = sample * out_.sensors() + sensor;
       const int node = out_.sensor_node[static_cast<std::size_t>(sensor)];
+      out_.shown_C(sample, sensor) = out_.state_C(node, sample);
       out_.residual_K[row] = run_.measured_C(sample, sensor) - out_.state_C(node, sample);
       out_.by_start.row(row) = by_start_.row(node);
       out_.by_parameter.row(row) = by_parameter_.row(node);
@@ -61,6 +63,20 @@ class Recorder {
 
 }  // namespace
 
+void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out) {
+  const SensorLaw& law = fault.type->law;
+  law.apply(run.time_s, fault.size, false, out.shown_C.col(sensor));
+  const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
+  out.residual_K(rows) = run.measured_C.col(sensor) - out.shown_C.col(sensor);
+  for (Columns* const columns : {&out.by_start, &out.by_parameter}) {
+    for (Eigen::Index column = 0; column < columns->cols(); ++column) {
+      Eigen::VectorXd change = (*columns)(rows, column);
+      law.apply(run.time_s, fault.size, true, change);
+      (*columns)(rows, column) = change;
+    }
+  }
+}
+
 LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
   LinearisedRun out;
@@ -90,6 +106,11 @@ LinearisedRun linearise(const Network& network, std::span<const double> paramete
       out.doubts.push_back({k, others_C * others_C.transpose()});
     }
     recorder.note(k + 1);
+  }
+  for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
+    for (const SensorFault& fault : run.sensors[static_cast<std::size_t>(sensor)].faults) {
+      add_fault(fault, sensor, run, out);
+    }
   }
   return out;
 }

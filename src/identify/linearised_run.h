@@ -25,7 +25,8 @@ struct LinearisedRun {
   Eigen::Index fluxes = 0;
   std::vector<int> sensor_node;    ///< of each sensor
   Eigen::MatrixXd state_C;         ///< x × n
-  Eigen::VectorXd residual_K;      ///< n·s: measured − predicted; NaN where nothing was measured
+  Eigen::MatrixXd shown_C;         ///< n × s: what the sensors should have shown
+  Eigen::VectorXd residual_K;      ///< n·s: measured − shown_C; NaN where nothing was measured
   Columns by_start;                ///< n·s × x: of the prediction, by the temperatures at the start
   Columns by_parameter;            ///< n·s × w, per unit of the parameter
   std::vector<double> transition;  ///< per interval x × x, row by row: d state(k+1) / d state(k)
@@ -37,8 +38,11 @@ struct LinearisedRun {
   [[nodiscard]] Eigen::Index sensors() const { return static_cast<Eigen::Index>(sensor_node.size()); }
 };
 
-/// `parameters` as the network lists them; `wanted` and `flux_nodes` are places in its lists. Throws Failure (numerics_failed) where
-/// the temperatures run away. Allocates for the whole run, not per sample.
+/// One fault more of a sensor, upon what `out` foretells of it and how that moves.
+void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out);
+
+/// The sensors have the faults that the run states for them. `parameters` as the network lists them; `wanted` and `flux_nodes` are places
+/// in its lists. Throws Failure (numerics_failed) where the temperatures run away. Allocates for the whole run, not per sample.
 LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run);
 

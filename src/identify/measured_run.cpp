@@ -74,7 +74,9 @@ class Builder {
       if (has_values(channel) && !is_taken && is_stuck(*channel)) {
         all_.notes.push_back(fmt::format("{}: {} shows the same value throughout and is taken as no sensor", recording.name, place.key));
       } else if (has_values(channel) && !is_taken) {
-        sensors_.push_back({std::string(place.key), std::string(place.node)});
+        Sensor& sensor = sensors_.emplace_back(Sensor{std::string(place.key), std::string(place.node)});
+        std::ranges::copy_if(options.faults, std::back_inserter(sensor.faults),
+                             [&](const SensorFault& fault) { return fault.type->signal == place.key; });
         sensor_values_.push_back(&channel->values);
       }
     }

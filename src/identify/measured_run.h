@@ -9,15 +9,17 @@
 #include <vector>
 
 #include "identify/measurement/recording.h"
+#include "motor/sensor_effect.h"
 #include "thermal/network.h"
 
 namespace heatsoak {
 
 struct Sensor {
-  std::string signal;    ///< key of the recording, "winding_C"
-  std::string node;      ///< of the network
-  double noise_K = 0.0;  ///< standard deviation of one sample, model-free, the share of the quantisation included
-  double step_K = 0.0;   ///< resolution; 0 where none is seen
+  std::string signal;                    ///< key of the recording, "winding_C"
+  std::string node;                      ///< of the network
+  double noise_K = 0.0;                  ///< standard deviation of one sample, model-free, the share of the quantisation included
+  double step_K = 0.0;                   ///< resolution; 0 where none is seen
+  std::vector<SensorFault> faults = {};  ///< that are stated for it
 };
 
 /// Rows that nobody logged, while the inputs changed: over `interval` they may as well have been `other`, or as far on the other side.
@@ -56,9 +58,10 @@ struct MeasuredRunOptions {
   /// Heat inputs that the model reacts to; where one of them is not known for longer than ten seconds and three usual steps the run is
   /// split.
   std::vector<Signal> needed;
-  double least_current_A = 0.0;     ///< less turns no motor: a log that never has more is one of a motor that stands
-  ShaftTorque torque = {};          ///< where the recording has none but current and speed
-  double ambient_C = kNotStated_C;  ///< where the recording has neither coolant nor ambient; NaN: it must have one
+  double least_current_A = 0.0;          ///< less turns no motor: a log that never has more is one of a motor that stands
+  ShaftTorque torque = {};               ///< where the recording has none but current and speed
+  std::vector<SensorFault> faults = {};  ///< of the sensors, as they are stated
+  double ambient_C = kNotStated_C;       ///< where the recording has neither coolant nor ambient; NaN: it must have one
   static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -22,9 +22,10 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
     const auto shown_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
     const auto first = std::ranges::find_if(shown_C, [](double value_C) { return !std::isnan(value_C); });
     if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != shown_C.end()) {
-      start.state_C[node] = *first;
-      sum_C += *first;
-      farthest_K = std::max(farthest_K, std::abs(*first - ambient_C));
+      const double true_C = true_at_rest_C(run.sensors[sensor].faults, *first);
+      start.state_C[node] = true_C;
+      sum_C += true_C;
+      farthest_K = std::max(farthest_K, std::abs(true_C - ambient_C));
       ++seen;
     }
   }
@@ -95,12 +96,7 @@ Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> para
     return linearise(network, parameters, none, none, start_C, part);
   };
   const Eigen::VectorXd start_C = decided_start_C(network, start_of(network, run), run, along);
-  const LinearisedRun free_run = along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run);
-  Eigen::MatrixXd shown_C(run.samples(), free_run.sensors());
-  for (Eigen::Index sensor = 0; sensor < free_run.sensors(); ++sensor) {
-    shown_C.col(sensor) = free_run.state_C.row(free_run.sensor_node[static_cast<std::size_t>(sensor)]).transpose();
-  }
-  return shown_C;
+  return along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run).shown_C;
 }
 
 std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {

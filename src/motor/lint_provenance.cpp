@@ -27,6 +27,9 @@ void for_each_figure(const Motor& motor, const Visit& visit) {
       }
     }
   }
+  for (const MotorSensor& sensor : motor.sensors) {
+    visit(fmt::format("{}.{}", sensor.name, sensor.type->size.key), sensor.size);
+  }
 }
 
 }  // namespace

@@ -159,6 +159,9 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
       check(fmt::format("effects.{}.{}", effect.name, effect.type->parameters[i].key), effect.parameters[i]);
     }
   }
+  for (const MotorSensor& sensor : motor.sensors) {
+    check(fmt::format("effects.{}.{}", sensor.name, sensor.type->size.key), sensor.size);
+  }
 }
 
 /// In the order in which they are drawn.
@@ -206,7 +209,22 @@ Figure* find_figure(Motor& motor, std::string_view key) {
       }
     }
   }
+  for (MotorSensor& sensor : motor.sensors) {
+    if (key == fmt::format("effects.{}.{}", sensor.name, sensor.type->size.key)) {
+      return &sensor.size;
+    }
+  }
   return nullptr;
+}
+
+std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal) {
+  std::vector<SensorFault> faults;
+  for (const MotorSensor& sensor : motor.sensors) {
+    if (sensor.type->signal == signal) {
+      faults.push_back({sensor.type, sensor.size.value});
+    }
+  }
+  return faults;
 }
 
 void refresh_values(Motor& motor) {
@@ -250,7 +268,7 @@ Motor read_motor(const std::filesystem::path& path) {
   }
   motor.nominal.temperature_coefficient_per_K = kCopper_per_K;
   read_figures(top, motor, resistance_factor, torque_factor);
-  motor.effects = read_effects(top);
+  read_effects(top, motor);
   if (std::optional<Reader> table = top.table("fit", Need::optional)) {
     motor.fit = read_fit(*table, figure_keys(motor));
   }

@@ -14,6 +14,7 @@
 #include "base/random.h"
 #include "input/reader.h"
 #include "motor/fit_table.h"
+#include "motor/sensor_effect.h"
 #include "thermal/effect.h"
 
 namespace heatsoak {
@@ -80,6 +81,13 @@ struct MotorEffect {
   std::map<std::string, std::string> condition = {};
 };
 
+/// A fault that the file states for a sensor at the motor: it moves what is shown, not the temperature.
+struct MotorSensor {
+  std::string name;
+  const SensorEffectType* type = nullptr;
+  Figure size;
+};
+
 struct Motor {
   std::string id;  ///< the file's stem
   std::filesystem::path file;
@@ -93,6 +101,7 @@ struct Motor {
   bool stall_includes_saturation = false;
   std::map<std::string_view, Figure> figures;  ///< by key, in this program's conventions
   std::vector<MotorEffect> effects;
+  std::vector<MotorSensor> sensors;
   std::optional<MotorFit> fit;  ///< where a calibration wrote the file
   MotorValues nominal;
 };
@@ -105,7 +114,10 @@ Figure* find_figure(Motor& motor, std::string_view key);
 /// Sets `nominal` by the figures, after some of them were changed.
 void refresh_values(Motor& motor);
 
-/// One draw of every declared tolerance and range; figures of a fit hang together as the fit says.
+/// What the file states for the sensor of a signal, "winding_C".
+std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal);
+
+/// One draw of every declared tolerance and range of what makes temperatures; figures of a fit hang together as the fit says.
 struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order

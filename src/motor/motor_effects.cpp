@@ -23,15 +23,23 @@ bool brings_node(const EffectType& type) {
 struct Entry {
   std::string name;
   Reader reader;
-  const EffectType* type;
+  const EffectType* type;          ///< null where it is one of a sensor
+  const SensorEffectType* sensor;  ///< null where it is one of the network
 };
 
-/// The tables whose name and type are good.
-std::vector<Entry> entries_of(Reader& table) {
+std::vector<std::string> known_types() {
   std::vector<std::string> known;
   for (const EffectType& type : all_effects()) {
     known.emplace_back(type.name);
   }
+  for (const SensorEffectType& type : all_sensor_effects()) {
+    known.emplace_back(type.name);
+  }
+  return known;
+}
+
+/// The tables whose name and type are good.
+std::vector<Entry> entries_of(Reader& table) {
   std::vector<Entry> entries;
   for (auto& [name, reader] : table.named_tables()) {
     if (std::ranges::find(kDatasheetEffects, name) != kDatasheetEffects.end()) {
@@ -40,21 +48,22 @@ std::vector<Entry> entries_of(Reader& table) {
     }
     const std::string type_name = reader.text("type", Need::optional).value_or(name);
     const EffectType* type = find_effect(type_name);
-    if (!type) {
-      table.problem(
-          name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name, did_you_mean(type_name, known)));
+    const SensorEffectType* sensor = find_sensor_effect(type_name);
+    if (!type && !sensor) {
+      table.problem(name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name,
+                                      did_you_mean(type_name, known_types())));
       continue;
     }
     if (!is_word(name)) {
       table.problem(name, "is no name for an effect; expected small letters, digits and underscores");
       continue;
     }
-    if (brings_node(*type) && std::ranges::find(kNodes, name) != kNodes.end()) {
+    if (type && brings_node(*type) && std::ranges::find(kNodes, name) != kNodes.end()) {
       table.problem(name, fmt::format("is the name of a node, and {} brings one of its own; give it another name and say type = \"{}\"",
                                       type_name, type_name));
       continue;
     }
-    entries.push_back({name, std::move(reader), type});
+    entries.push_back({name, std::move(reader), type, sensor});
   }
   return entries;
 }
@@ -123,12 +132,19 @@ std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& tabl
 
 }  // namespace
 
-std::vector<MotorEffect> read_effects(Reader& top) {
+void read_effects(Reader& top, Motor& motor) {
   std::optional<Reader> table = top.table("effects", Need::optional);
   if (!table) {
-    return {};
+    return;
   }
   std::vector<Entry> entries = entries_of(*table);
+  for (Entry& entry : entries) {
+    if (entry.sensor) {
+      motor.sensors.push_back({entry.name, entry.sensor, entry.reader.figure(entry.sensor->size, Need::required).value_or(Figure{})});
+      entry.reader.finish();
+    }
+  }
+  std::erase_if(entries, [](const Entry& entry) { return entry.sensor != nullptr; });
   std::vector<std::string> known(kNodes.begin(), kNodes.end());
   for (const Entry& entry : entries) {
     if (brings_node(*entry.type)) {
@@ -156,7 +172,7 @@ std::vector<MotorEffect> read_effects(Reader& top) {
     effects.push_back(std::move(effect));
   }
   table->finish();
-  return sound ? in_order(std::move(effects), *table) : effects;
+  motor.effects = sound ? in_order(std::move(effects), *table) : std::move(effects);
 }
 
 }  // namespace heatsoak

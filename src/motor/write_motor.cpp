@@ -49,7 +49,8 @@ std::string figure_text(const Figure& figure, const std::string& unit) {
     }
     text += ids.size() == 1 ? fmt::format(", source = {}", ids.front()) : fmt::format(", source = [{}]", fmt::join(ids, ", "));
   }
-  if (figure.spread) {
+  // A share of nothing is nothing.
+  if (figure.spread && (figure.spread->kind == Spread::Kind::range || unit == "degC" || figure.value != 0.0)) {
     const Spread& spread = *figure.spread;
     const double half = 0.5 * (spread.high - spread.low);
     if (spread.kind == Spread::Kind::range) {
@@ -66,11 +67,12 @@ std::string figure_text(const Figure& figure, const std::string& unit) {
   return text + " }";
 }
 
+std::string head_of_effect(const std::string& name, std::string_view type) {
+  return fmt::format("\n[effects.{}]\n{}", name, name != type ? fmt::format("type = {}\n", toml_text(type)) : "");
+}
+
 std::string effect_text(const MotorEffect& effect) {
-  std::string text = fmt::format("\n[effects.{}]\n", effect.name);
-  if (effect.name != effect.type->name) {
-    text += fmt::format("type = {}\n", toml_text(effect.type->name));
-  }
+  std::string text = head_of_effect(effect.name, effect.type->name);
   for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
     // A node of the effect's own is named after it.
     if (effect.type->nodes[role].own_capacity < 0) {
@@ -125,6 +127,10 @@ std::string to_toml(const Motor& motor) {
   }
   for (const MotorEffect& effect : motor.effects) {
     text += effect_text(effect);
+  }
+  for (const MotorSensor& sensor : motor.sensors) {
+    text += fmt::format("{}{} = {}\n", head_of_effect(sensor.name, sensor.type->name), sensor.type->size.key,
+                        figure_text(sensor.size, std::string(sensor.type->size.unit)));
   }
   return motor.fit ? text + to_toml(*motor.fit) : text;
 }

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "motor/datasheet_network.h"
 
@@ -38,6 +40,40 @@ DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin&
   return point;
 }
 
+/// The sensors of a motor with faults, while it warms.
+class FaultySensors {
+ public:
+  FaultySensors(const Motor& motor, double start_C) {
+    for (const auto& [node, name] : {std::pair(winding, "winding"), std::pair(stator, "stator")}) {
+      if (std::vector<SensorFault> faults = faults_of(motor, fmt::format("{}_C", name)); !faults.empty()) {
+        names.emplace_back(name);
+        nodes_.push_back(static_cast<std::size_t>(node));
+        readings_.emplace_back(std::move(faults), start_C);
+      }
+    }
+  }
+
+  void advance(const TransientMoment& moment) {
+    for (std::size_t i = 0; i < readings_.size(); ++i) {
+      readings_[i].advance(moment.time_s - time_s_, moment.state_C[nodes_[i]]);
+    }
+    time_s_ = moment.time_s;
+  }
+
+  [[nodiscard]] std::vector<double> shown_C() const {
+    std::vector<double> all_C;
+    std::ranges::transform(readings_, std::back_inserter(all_C), &Reading::shown_C);
+    return all_C;
+  }
+
+  std::vector<std::string> names;
+
+ private:
+  std::vector<std::size_t> nodes_;
+  std::vector<Reading> readings_;
+  double time_s_ = 0.0;
+};
+
 std::vector<BookedHeat> balance(const Network& network, const TransientResult& result) {
   std::vector<BookedHeat> booked;
   const auto nodes = static_cast<std::size_t>(network.node_count());
@@ -68,7 +104,10 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
   for (int node = states::first_own; node < network.state_count(); ++node) {
     trace.own_nodes.emplace_back(network.node_name(node));
   }
+  FaultySensors sensors(motor, demand.ambient_C);
+  trace.shown_at = sensors.names;
   const auto add_row = [&](const TransientMoment& moment) {
+    sensors.advance(moment);
     if (!moment.begins_interval && moment.time_s < end_s) {
       return;
     }
@@ -83,6 +122,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
                  .torque_Nm = point.motor_torque_Nm,
                  .motor_V = terminal_voltage_V(sample.values, point, moment.state_C[winding])};
     row.power_in_W = row.motor_V * row.current_A;
+    row.shown_C = sensors.shown_C();
     row.own_C.assign(moment.state_C.begin() + states::first_own, moment.state_C.end());
     trace.rows.push_back(row);
   };
@@ -101,11 +141,16 @@ std::string to_csv(const Trace& trace) {
   for (const std::string& node : trace.own_nodes) {
     fmt::format_to(out, "{}_C,", node);
   }
+  for (const std::string& node : trace.shown_at) {
+    fmt::format_to(out, "{}_shown_C,", node);
+  }
   text += "current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W\n";
   for (const TraceRow& row : trace.rows) {
     fmt::format_to(out, "{:.10g},{:.4f},{:.4f},{:.2f},", row.time_s, row.winding_C, row.stator_C, row.ambient_C);
-    for (const double own_C : row.own_C) {
-      fmt::format_to(out, "{:.4f},", own_C);
+    for (const std::vector<double>* const more_C : {&row.own_C, &row.shown_C}) {
+      for (const double each_C : *more_C) {
+        fmt::format_to(out, "{:.4f},", each_C);
+      }
     }
     fmt::format_to(out, "{:.6g},{:.6g},{:.6g},{:.5g},{:.6g}\n", row.current_A, row.speed_rad_per_s, row.torque_Nm, row.motor_V,
                    row.power_in_W);

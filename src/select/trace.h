@@ -14,12 +14,13 @@ struct TraceRow {
   double winding_C = 0.0;
   double stator_C = 0.0;
   double ambient_C = 0.0;
-  double current_A = 0.0;          ///< equivalent DC current, signed like the torque
-  double speed_rad_per_s = 0.0;    ///< of the motor
-  double torque_Nm = 0.0;          ///< at the motor's shaft
-  double motor_V = 0.0;            ///< at the terminals, at this winding temperature
-  double power_in_W = 0.0;         ///< into the terminals
-  std::vector<double> own_C = {};  ///< of the nodes that effects brought, as own_nodes names them
+  double current_A = 0.0;            ///< equivalent DC current, signed like the torque
+  double speed_rad_per_s = 0.0;      ///< of the motor
+  double torque_Nm = 0.0;            ///< at the motor's shaft
+  double motor_V = 0.0;              ///< at the terminals, at this winding temperature
+  double power_in_W = 0.0;           ///< into the terminals
+  std::vector<double> own_C = {};    ///< of the nodes that effects brought, as own_nodes names them
+  std::vector<double> shown_C = {};  ///< by the sensors for which the motor's file states a fault, as shown_at names their nodes
 };
 
 /// Heat that one effect brought into one node, as the mean over the run.
@@ -32,6 +33,7 @@ struct BookedHeat {
 struct Trace {
   std::vector<TraceRow> rows;
   std::vector<std::string> own_nodes;
+  std::vector<std::string> shown_at;
   std::vector<BookedHeat> balance;
   double stored_W = 0.0;  ///< mean rate at which the nodes took heat up
 };
@@ -39,7 +41,8 @@ struct Trace {
 /// Rows stand at every change of the inputs and at most `every_s` apart.
 Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, const Motor& motor, double every_s);
 
-/// The canonical log format: one header row, names end in units. Nodes of effects stand behind the ambient.
+/// The canonical log format: one header row, names end in units. Nodes of effects stand behind the ambient, then what sensors with
+/// faults show.
 std::string to_csv(const Trace& trace);
 
 }  // namespace heatsoak

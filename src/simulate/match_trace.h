@@ -1,8 +1,10 @@
 // A closed-loop match as rows: what stands in the CSV and in the picture.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "simulate/drive_script.h"
 
@@ -20,6 +22,8 @@ struct MatchRow {
   PerWheel winding_C{};
   PerWheel winding_peak_C{};  ///< the highest from time_s to the next row, for pictures: a duel heats for less than a row
   PerWheel stator_C{};
+  PerWheel winding_shown_C{};  ///< by a sensor with the faults that are stated for it
+  PerWheel stator_shown_C{};
   PerWheel current_A{};
   PerWheel motor_V{};
   PerWheel speed_rad_per_s{};  ///< of the motors
@@ -33,10 +37,17 @@ struct MatchRow {
   double tracking_error_m = 0.0;
 };
 
+/// The faults that the motor's file states for its sensors.
+struct MatchSensors {
+  std::vector<SensorFault> winding;
+  std::vector<SensorFault> stator;
+};
+MatchSensors sensors_of(const Motor& motor);
+
 /// Gives `row` a row every `every_s`, of a run that begins at time 0 with everything at ambient temperature.
 class MatchRows {
  public:
-  MatchRows(double every_s, double ambient_C, std::function<void(const MatchRow&)> row);
+  MatchRows(double every_s, double ambient_C, const MatchSensors& sensors, std::function<void(const MatchRow&)> row);
 
   void take(const LoopMoment& moment);
   /// The last row, which may be shorter than the others.
@@ -46,6 +57,8 @@ class MatchRows {
   void start(double time_s, const SimulatedRobot& robot, const Pose& plan, Phase phase, bool duel);
 
   double every_s_;
+  std::array<Reading, kMostWheels> winding_;
+  std::array<Reading, kMostWheels> stator_;
   std::function<void(const MatchRow&)> row_;
   MatchRow open_;
   PerWheel current_squared_A2_{};  ///< sums over the periods of the open row, as are its means
@@ -53,8 +66,9 @@ class MatchRows {
   bool begun_ = false;
 };
 
-std::string csv_header(int wheel_count);
+/// What sensors show has a column where they have faults.
+std::string csv_header(int wheel_count, const MatchSensors& sensors);
 /// One line, with its end.
-void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C);
+void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchSensors& sensors);
 
 }  // namespace heatsoak

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "motor/datasheet_network.h"
+#include "motor/write_motor.h"
 
 namespace heatsoak {
 namespace {
@@ -155,6 +156,57 @@ last_knot = { value = "6000 rpm", origin = "measured", source = "sheet" }
   EXPECT_NEAR(motor.effects[0].parameters[3].value, 200.0 * std::numbers::pi, 1e-9);
   EXPECT_NEAR(motor.effects[0].parameters[6].value, 0.3, 1e-12);
   EXPECT_EQ(data_quality(motor), "datasheet");
+}
+
+const std::string kSensors = R"([effects.sensor_lag_stator]
+time_constant = { value = "0.2 min", origin = "estimated", derivation = "glued on", range = ["6 s", "20 s"] }
+[effects.second_probe]
+type = "sensor_offset_winding"
+offset = { value = "-1.5 K", origin = "measured", source = "sheet", range = ["-2 K", "0.5 K"] }
+)";
+
+// What a sensor shows heats nothing: the motor's own temperatures, and what they rest on, are those of the file without it.
+TEST(MotorSensors, move_no_temperature_of_the_motor) {
+  const Motor bare = motor_with("between_terminals", "per_dc_ampere");
+  Motor motor = motor_with("between_terminals", "per_dc_ampere", kSensors);
+  EXPECT_TRUE(motor.effects.empty());
+  const std::vector<SensorFault> at_stator = faults_of(motor, "stator_C");
+  ASSERT_EQ(at_stator.size(), 1U);
+  EXPECT_EQ(at_stator.front().type->name, "sensor_lag_stator");
+  EXPECT_NEAR(at_stator.front().size, 12.0, 1e-9);
+  ASSERT_NE(find_figure(motor, "effects.second_probe.offset"), nullptr);
+  EXPECT_EQ(find_figure(motor, "effects.second_probe.offset")->value, -1.5);
+  EXPECT_EQ(datasheet_network(motor, nominal_sample(motor)).values(), datasheet_network(bare, nominal_sample(bare)).values());
+  Random one(1, 1);
+  Random other(1, 1);
+  EXPECT_EQ(draw_sample(motor, one).values.terminal_resistance_ohm, draw_sample(bare, other).values.terminal_resistance_ohm);
+  EXPECT_EQ(data_quality(motor), "datasheet");
+}
+
+TEST(MotorSensors, are_written_as_they_were_read) {
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere", kSensors);
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / ("written_" + std::to_string(getpid()) + ".toml");
+  std::ofstream(path) << to_toml(motor);
+  const Motor again = read_motor(path);
+  std::filesystem::remove(path);
+  ASSERT_EQ(again.sensors.size(), motor.sensors.size());
+  for (std::size_t i = 0; i < motor.sensors.size(); ++i) {
+    EXPECT_EQ(again.sensors[i].name, motor.sensors[i].name);
+    EXPECT_EQ(again.sensors[i].type, motor.sensors[i].type);
+    EXPECT_EQ(again.sensors[i].size.value, motor.sensors[i].size.value);
+    EXPECT_EQ(again.sensors[i].size.origin, motor.sensors[i].size.origin);
+    ASSERT_TRUE(again.sensors[i].size.spread);
+    EXPECT_NEAR(again.sensors[i].size.spread->low, motor.sensors[i].size.spread->low, 1e-9);
+    EXPECT_NEAR(again.sensors[i].size.spread->high, motor.sensors[i].size.spread->high, 1e-9);
+  }
+  EXPECT_EQ(to_toml(again), to_toml(motor));
+}
+
+TEST(MotorSensors, sources_that_they_name_must_be_there) {
+  EXPECT_THROW(motor_with("between_terminals", "per_dc_ampere", R"([effects.sensor_offset_stator]
+offset = { value = "1 K", origin = "measured", source = "nobody" }
+)"),
+               Failure);
 }
 
 TEST(DataQuality, is_that_of_the_worst_thermal_figure) {

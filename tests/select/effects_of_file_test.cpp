@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -47,6 +48,20 @@ std::string estimated(const std::string& key, const std::string& value) {
 const std::string kChassisAndSkin = "\n[effects.chassis]\ntype = \"third_node\"\n" + estimated("conductance", "0.4 W/K") +
                                     estimated("leak_ratio", "0.5") + estimated("heat_capacity", "60 J/K") +
                                     "\n[effects.skin]\ntype = \"ac_copper_loss\"\n" + estimated("share", "0.3");
+
+/// Three bodies in a row that only conduct, the last one a probe that keeps nothing for itself: closed form by the eigenvalues.
+struct ClosedForm {
+  Eigen::Matrix3d slope_per_s;
+  Eigen::Vector3d drive_K_per_s;
+  [[nodiscard]] Eigen::Vector3d rise_K(double time_s) const {
+    const Eigen::EigenSolver<Eigen::Matrix3d> solver(slope_per_s);
+    const Eigen::Vector3cd decay = (solver.eigenvalues() * time_s).array().exp() - 1.0;
+    const Eigen::Matrix3cd V = solver.eigenvectors();
+    const Eigen::Vector3cd rise =
+        V * (decay.cwiseQuotient(solver.eigenvalues()).asDiagonal() * (V.inverse() * drive_K_per_s.cast<std::complex<double>>()));
+    return rise.real();
+  }
+};
 
 class EffectsOfAFile : public testing::Test {
  protected:
@@ -177,6 +192,40 @@ TEST_F(EffectsOfAFile, a_condition_that_no_effect_has_is_an_error_that_says_what
     EXPECT_EQ(failure.code(), ExitCode::bad_input);
     EXPECT_NE(std::string(failure.what()).find("cooling=fan"), std::string::npos) << failure.what();
   }
+}
+
+// A glued-on probe follows the stator with its time constant; the temperatures themselves, and the verdict, know nothing of it.
+TEST_F(EffectsOfAFile, a_late_sensor_shows_the_response_of_first_order) {
+  Motor motor = MotorFile("\n[effects.sensor_lag_stator]\n" + estimated("time_constant", "20 s") +
+                          "\n[effects.cold_probe]\ntype = \"sensor_offset_stator\"\n" + estimated("offset", "-2 K"))
+                    .read();
+  Motor bare = MotorFile("").read();
+  EXPECT_EQ(evaluation(motor, 20).stator_peak_C.p95, evaluation(bare, 20).stator_peak_C.p95);
+  motor.nominal.temperature_coefficient_per_K = bare.nominal.temperature_coefficient_per_K = 0.0;
+  give(duty_, {{200.0, 0.14, 0.0, 0.0}});
+  const Trace shown = trace(motor);
+  EXPECT_EQ(shown.shown_at, (std::vector<std::string>{"stator"}));
+  const MotorValues& values = motor.nominal;
+  const double winding_per_s = 1.0 / values.thermal_time_constant_winding_s;
+  const double stator_J_per_K = values.thermal_time_constant_stator_s / values.thermal_resistance_stator_ambient_K_per_W;
+  const double across_per_s = 1.0 / (values.thermal_resistance_winding_stator_K_per_W * stator_J_per_K);
+  const double out_per_s = 1.0 / values.thermal_time_constant_stator_s;
+  const double winding_J_per_K = values.thermal_time_constant_winding_s / values.thermal_resistance_winding_stator_K_per_W;
+  ClosedForm closed;
+  closed.slope_per_s << -winding_per_s, winding_per_s, 0.0, across_per_s, -across_per_s - out_per_s, 0.0, 0.0, 1.0 / 20.0, -1.0 / 20.0;
+  closed.drive_K_per_s << booked_W(shown, "copper_loss", "winding") / winding_J_per_K, 0.0, 0.0;
+  double most_behind_K = 0.0;
+  for (const TraceRow& row : shown.rows) {
+    const Eigen::Vector3d rise_K = closed.rise_K(row.time_s);
+    EXPECT_NEAR(row.stator_C, row.ambient_C + rise_K[1], 2e-3) << row.time_s;
+    ASSERT_EQ(row.shown_C.size(), 1U);
+    EXPECT_NEAR(row.shown_C[0], row.ambient_C - 2.0 + rise_K[2], 5e-3) << row.time_s;
+    most_behind_K = std::max(most_behind_K, rise_K[1] - rise_K[2]);
+  }
+  EXPECT_GT(most_behind_K, 1.0);
+  const std::string csv = to_csv(shown);
+  EXPECT_EQ(csv.rfind("time_s,winding_C,stator_C,ambient_C,stator_shown_C,current_A,", 0), 0U);
+  EXPECT_EQ(to_csv(trace(bare)).find("shown"), std::string::npos);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <sstream>
 
 #include "robot/inverse_dynamics.h"
 #include "simulate/match_run.h"
@@ -59,8 +60,9 @@ Driven drive(const Robot& robot, const Motor& motor, const std::vector<Scheduled
   const int wheels = simulated.wheel_count();
   Driven driven;
   DriveScorer scorer;
-  MatchRows rows(0.1, kAmbient_C, [&](const MatchRow& row) { append_csv(driven.csv, row, wheels, kAmbient_C); });
-  MatchRows coarse_rows(2.0, kAmbient_C, [&](const MatchRow& row) {
+  const MatchSensors sensors = sensors_of(motor);
+  MatchRows rows(0.1, kAmbient_C, sensors, [&](const MatchRow& row) { append_csv(driven.csv, row, wheels, kAmbient_C, sensors); });
+  MatchRows coarse_rows(2.0, kAmbient_C, {}, [&](const MatchRow& row) {
     driven.peak_of_rows_C = std::max(driven.peak_of_rows_C, *std::ranges::max_element(row.winding_peak_C));
   });
   const MotorValues& values = motor.nominal;
@@ -98,6 +100,41 @@ TEST(ClosedLoop, what_the_battery_gives_is_heat_and_motion) {
       }
     }
   }
+}
+
+/// The cell of the last row of a table.
+double last_cell(const std::string& header, const std::string& rows, const std::string& column) {
+  std::istringstream names(header), cells(rows.substr(rows.rfind('\n', rows.size() - 2) + 1));
+  for (std::string name, cell; std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
+    if (name == column) {
+      return std::stod(cell);
+    }
+  }
+  ADD_FAILURE() << "no column " << column;
+  return 0.0;
+}
+
+// Each period by itself and not row by row: a row of a tenth of a second is long for a quick winding.
+TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
+  Motor motor = ecx_32();
+  const std::string bare = csv_header(4, sensors_of(motor));
+  EXPECT_EQ(bare.find("shown"), std::string::npos);
+  Figure lag;
+  lag.value = 1.5;
+  motor.sensors.push_back({"late", find_sensor_effect("sensor_lag_winding"), lag});
+  std::vector<double> shown_C{25.0};  // after each period
+  std::vector<double> true_C{25.0};
+  const Driven driven = drive(twente(), motor, lively(), kLively_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
+    true_C.push_back(moment.robot->winding_C(2));
+    const double mean_C = 0.5 * (true_C.back() + true_C[true_C.size() - 2]);
+    shown_C.push_back(shown_C.back() + SimulatedRobot::kPeriod_s / 1.5 * (mean_C - shown_C.back()));
+  });
+  const std::string header = csv_header(4, sensors_of(motor));
+  EXPECT_EQ(header.find("stator_shown"), std::string::npos);
+  const auto period = static_cast<std::size_t>(std::lround(last_cell(header, driven.csv, "time_s") / SimulatedRobot::kPeriod_s));
+  EXPECT_NEAR(last_cell(header, driven.csv, "winding_3_C"), true_C.at(period), 1e-4);
+  EXPECT_NEAR(last_cell(header, driven.csv, "winding_shown_3_C"), shown_C.at(period), 2e-3);
+  EXPECT_GT(std::abs(true_C.at(period) - shown_C.at(period)), 0.05);
 }
 
 // The losses of the plant arrive in the thermal network: stored there or gone into the air.

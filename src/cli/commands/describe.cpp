@@ -8,6 +8,7 @@
 
 #include "base/quantity.h"
 #include "cli/command.h"
+#include "cli/effect_topic.h"
 #include "cli/file_kind.h"
 #include "duty/duty.h"
 #include "duty/match/match_duty.h"
@@ -207,7 +208,7 @@ std::string_view to_string(Signal signal) {
 /// Ready to paste, with the typical size.
 std::string motor_file_lines(const EffectType& effect) {
   const std::vector<double>& values = effect.candidacy.variants.empty() ? effect.example.parameters : effect.candidacy.variants.front();
-  std::string text = fmt::format("[effects.my_{}]\ntype = \"{}\"\n", effect.name, effect.name);
+  std::string text = effect_table(effect.name);
   for (const NodeRole& role : effect.nodes) {
     text += role.own_capacity < 0 ? fmt::format("{} = \"{}\"\n", role.role, role.default_node) : "";
   }
@@ -217,8 +218,7 @@ std::string motor_file_lines(const EffectType& effect) {
     if (!spec.choices.empty()) {
       text += fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(values[i])].name);
     } else {
-      text += fmt::format("{} = {{ value = \"{}{}{}\", origin = \"estimated\", derivation = \"typical size\" }}\n", spec.key,
-                          significant(values[i], 6), unit.empty() ? "" : " ", unit);
+      text += typical_figure(spec.key, values[i], unit);
     }
   }
   return text;
@@ -314,13 +314,11 @@ Description describe(const std::string& name, const DataFolders& folders) {
   for (const ShapeType& shape : all_shapes()) {
     known.emplace_back(shape.name);
   }
-  for (const Command& command : all_commands()) {
-    for (const Topic& topic : command.topics ? command.topics() : std::vector<Topic>{}) {
-      if (topic.id == name) {
-        return {topic.text, topic.json()};
-      }
-      known.push_back(topic.id);
+  for (const Topic& topic : all_topics()) {
+    if (topic.id == name) {
+      return {topic.text, topic.json()};
     }
+    known.push_back(topic.id);
   }
   const auto has = [&](const std::filesystem::path& folder) {
     const std::vector<std::string> ids = ids_in(folder);

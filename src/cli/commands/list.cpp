@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/effect_topic.h"
 #include "duty/duty.h"
 #include "duty/log_type.h"
 #include "motor/motor.h"
@@ -51,10 +52,8 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
       const std::size_t end = effect.summary.find(". ");
       result.push_back({std::string(effect.name), std::string(effect.summary.substr(0, end == std::string_view::npos ? end : end + 1))});
     }
-    for (const Command& command : all_commands()) {
-      for (const Topic& topic : command.topics ? command.topics() : std::vector<Topic>{}) {
-        result.push_back({topic.id, topic.summary});
-      }
+    for (const Topic& topic : all_topics()) {
+      result.push_back({topic.id, topic.summary});
     }
   } else {
     for (const ShapeType& shape : all_shapes()) {

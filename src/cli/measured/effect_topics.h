@@ -1,4 +1,4 @@
-// What only measurements can have: errors of sensors, and what a run may deviate in.
+// What single runs of a measurement may deviate in.
 #pragma once
 
 #include <vector>

@@ -48,8 +48,10 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
   constexpr double kHarmless_K = 10.0;
   most.measured_C = most.ambient_C + kHarmless_K;
   for (const MeasuredRun& run : runs) {
-    for (const double each_C : run.measured_C.reshaped()) {
-      most.measured_C = std::fmax(most.measured_C, each_C);
+    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+      for (const double shown_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
+        most.measured_C = std::fmax(most.measured_C, true_at_rest_C(run.sensors[sensor].faults, shown_C));
+      }
     }
   }
   return most;

@@ -295,6 +295,20 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
   }
 }
 
+/// How the nodes move becomes how the sensors do with the faults that are stated for them.
+void show(const MeasuredRun& run, Columns& columns) {
+  const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
+  for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
+    const auto rows = Eigen::seq(sensor, columns.rows() - 1, sensors);
+    const std::vector<SensorFault>& faults = run.sensors[static_cast<std::size_t>(sensor)].faults;
+    for (Eigen::Index column = 0; column < (faults.empty() ? 0 : columns.cols()); ++column) {
+      Eigen::VectorXd change = columns(rows, column);
+      apply(faults, run.time_s, true, change);
+      columns(rows, column) = change;
+    }
+  }
+}
+
 }  // namespace
 
 bool Candidate::is_rare() const {
@@ -363,13 +377,15 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
   }
   Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
   add_network_columns(extended, parameters, fitted, run, columns);
+  show(run, columns);
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
     if (!candidate.sensor_type) {
       continue;
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
-    const Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
+    Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
+    apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, true_C);
     // The change at the typical size, not the slope at none: a lag is far from linear in its size.
     Eigen::VectorXd shown_C = true_C;
     candidate.sensor_type->law.apply(run.time_s, candidate.typical_size(), false, shown_C);

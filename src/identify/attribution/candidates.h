@@ -7,7 +7,7 @@
 #include "identify/attribution/run_deviation.h"
 #include "identify/linearised_run.h"
 #include "identify/model.h"
-#include "identify/sensor_effect.h"
+#include "motor/sensor_effect.h"
 
 namespace heatsoak {
 

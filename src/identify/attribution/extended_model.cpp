@@ -9,37 +9,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-using RowStride = Eigen::InnerStride<Eigen::Dynamic>;
-
-/// One sensor's rows of a column.
-template <class Column>
-Eigen::VectorXd rows_of(const Column& column, Eigen::Index sensor, Eigen::Index sensors) {
-  return column(Eigen::seq(sensor, column.size() - 1, sensors));
-}
-
-/// The fault upon prediction and derivatives; returns its own derivative per typical size.
-Eigen::VectorXd apply(const SensorTerm& term, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out) {
-  const Eigen::Index sensors = out.sensors();
-  const Eigen::VectorXd true_C = run.measured_C.col(sensor) - rows_of(out.residual_K, sensor, sensors);
-  // Where nothing was measured the prediction is not kept in the residual: take it from the node.
-  Eigen::VectorXd shown_C = out.state_C.row(out.sensor_node[static_cast<std::size_t>(sensor)]);
-  for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
-    shown_C[k] = std::isnan(true_C[k]) ? shown_C[k] : true_C[k];
-  }
-  Eigen::VectorXd by_size = term.type->typical_size * term.type->law.by_size(run.time_s, term.value, shown_C);
-  term.type->law.apply(run.time_s, term.value, false, shown_C);
-  const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, sensors);
-  out.residual_K(rows) = run.measured_C.col(sensor) - shown_C;
-  for (Columns* const columns : {&out.by_start, &out.by_parameter}) {
-    for (Eigen::Index column = 0; column < columns->cols(); ++column) {
-      Eigen::VectorXd change = (*columns)(rows, column);
-      term.type->law.apply(run.time_s, term.value, true, change);
-      (*columns)(rows, column) = change;
-    }
-  }
-  return by_size;
-}
-
 }  // namespace
 
 Eigen::VectorXd ExtendedModel::theta() const {
@@ -177,9 +146,11 @@ LinearisedRun linearise(const ExtendedModel& model, std::span<const double> star
   for (std::size_t i = 0; i < model.sensors.size(); ++i) {
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
       if (run.sensors[static_cast<std::size_t>(sensor)].signal == model.sensors[i].type->signal) {
-        const Eigen::VectorXd by_size = apply(model.sensors[i], sensor, run, out);
+        const SensorFault fault{model.sensors[i].type, model.sensors[i].value};
+        const Eigen::VectorXd by_size = fault.type->law.by_size(run.time_s, fault.size, out.shown_C.col(sensor));
+        add_fault(fault, sensor, run, out);
         const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
-        out.by_parameter(rows, model.model.free_count() + static_cast<Eigen::Index>(i)) = by_size;
+        out.by_parameter(rows, model.model.free_count() + static_cast<Eigen::Index>(i)) = fault.type->typical_size * by_size;
       }
     }
   }

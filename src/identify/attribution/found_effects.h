@@ -20,7 +20,7 @@ struct FittedParameter {
 
 struct FoundEffect {
   std::string id;    ///< of the catalogue; "tabulated" and the like for curves
-  std::string name;  ///< of the instance in the model file; empty for faults of sensors
+  std::string name;  ///< of the instance in the model file; empty for faults of sensors and deviations of runs
   std::string node;
   std::string description;  ///< one line in words
   std::vector<FittedParameter> parameters;

@@ -64,6 +64,29 @@ Figure measured(double value, double low, double high, const Range& range) {
   return figure;
 }
 
+MotorSensor motor_sensor(const SensorEffectType& type, const FittedParameter& size) {
+  MotorSensor sensor{std::string(type.name), &type, measured(size.value, size.low, size.high, type.size.range)};
+  // An offset or a gain may have either sign.
+  if (size.low < size.value && size.value < size.high) {
+    sensor.size.spread =
+        Spread{Spread::Kind::range, std::max(size.low, type.size.range.low), std::min(size.high, type.size.range.high), false};
+  }
+  return sensor;
+}
+
+/// Adds the sensor's fault under a name that no effect of the motor has.
+void add_sensor(Motor& motor, const MotorSensor& sensor) {
+  const auto is_used = [&](const std::string& name) {
+    return std::ranges::find(motor.effects, name, &MotorEffect::name) != motor.effects.end() ||
+           std::ranges::find(motor.sensors, name, &MotorSensor::name) != motor.sensors.end();
+  };
+  MotorSensor added = sensor;
+  for (int number = 2; is_used(added.name); ++number) {
+    added.name = fmt::format("{}_{}", sensor.name, number);
+  }
+  motor.sensors.push_back(std::move(added));
+}
+
 MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
   const Network& network = fit.model.model.network;
   const auto in_place = std::ranges::find(network.effects(), found.name, &EffectInPlace::name);
@@ -185,6 +208,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.model.model = std::move(built.model);
   out.figures = std::move(built.figures);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
+  std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));
   for (const MotorEffect& effect : motor.effects) {
     const int size = effect.type->candidacy.size_parameter;
     if (!effect.condition.empty() && size >= 0) {
@@ -212,15 +236,22 @@ Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnos
     }
   }
   result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names, ", "));
+  std::vector<MotorSensor> sensors = std::move(result.sensors);
+  result.sensors.clear();
   for (const FoundEffect& effect : diagnosis.effects) {
     if (!effect.name.empty()) {
       result.effects.push_back(motor_effect(effect, diagnosis.selection.after));
+    } else if (const SensorEffectType* type = find_sensor_effect(effect.id); type && !effect.parameters.empty()) {
+      sensors.push_back(motor_sensor(*type, effect.parameters.front()));
     } else if (!effect.parameters.empty()) {
       const FittedParameter& size = effect.parameters.front();
       result.notes.push_back(fmt::format(
           "{} at the {}{}: {} {:.3g} {}; found in measurements, no property of the motor", effect.id, effect.node,
           effect.condition.empty() ? "" : fmt::format(" in {}", effect.condition.begin()->second), size.name, size.value, size.unit));
     }
+  }
+  for (const MotorSensor& sensor : sensors) {
+    add_sensor(result, sensor);
   }
   refresh_values(result);
   return result;

@@ -23,7 +23,7 @@ struct ModelOfLogs {
 /// recording has count as 0. Throws Failure (bad_input) where the recordings have no heat input that the motor's effects turn into heat.
 ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings);
 
-/// The motor with the diagnosis' figures and its effects: what `to_toml` writes is again a motor file. Faults of sensors and deviations of
+/// The motor with the diagnosis' figures and its effects, those of sensors too: what `to_toml` writes is again a motor file. Deviations of
 /// a run's heat are no properties of a motor: they become notes.
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 

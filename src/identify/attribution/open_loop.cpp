@@ -17,18 +17,15 @@ std::string recording_of(const MeasuredRun& run) {
   return found == run.conditions.end() ? run.name : found->second;
 }
 
-/// The temperature that a sensor shows as `shown_C` when nothing has changed for long: readings are linear in it.
-double true_C(const ExtendedModel& model, const std::string& signal, double shown_C) {
-  const std::vector<double> now_s{0.0};
-  Eigen::VectorXd cold = Eigen::VectorXd::Constant(1, 0.0);
-  Eigen::VectorXd warm = Eigen::VectorXd::Constant(1, 1.0);
+/// The stated faults of a sensor and those that the model has beyond.
+std::vector<SensorFault> all_faults(const ExtendedModel& model, const Sensor& sensor) {
+  std::vector<SensorFault> faults = sensor.faults;
   for (const SensorTerm& term : model.sensors) {
-    if (term.type->signal == signal) {
-      term.type->law.apply(now_s, term.value, false, cold);
-      term.type->law.apply(now_s, term.value, false, warm);
+    if (term.type->signal == sensor.signal) {
+      faults.push_back({term.type, term.value});
     }
   }
-  return (shown_C - cold[0]) / (warm[0] - cold[0]);
+  return faults;
 }
 
 std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
@@ -44,7 +41,7 @@ std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, 
   RunStart start = start_of(network, run);
   for (const Sensor& sensor : run.sensors) {
     double& node_C = start.state_C[network.find_node(sensor.node)];
-    node_C = true_C(model, sensor.signal, node_C);
+    node_C = true_at_rest_C(all_faults(model, sensor), shown_at_rest_C(sensor.faults, node_C));
   }
   start.prior_C = start.state_C;
   const Eigen::VectorXd decided_C = decided_start_C(
@@ -59,16 +56,7 @@ Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, 
   ExtendedModel settled = model;
   settled.model.free.clear();
   settled.model.flux_nodes.clear();
-  const LinearisedRun path = linearise(settled, start_C(model, run, before_it), run);
-  Eigen::MatrixXd predicted_C(run.samples(), static_cast<Eigen::Index>(run.sensors.size()));
-  for (Eigen::Index k = 0; k < run.samples(); ++k) {
-    for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
-      const double residual_K = path.residual_K[k * path.sensors() + sensor];
-      const int node = path.sensor_node[static_cast<std::size_t>(sensor)];
-      predicted_C(k, sensor) = std::isnan(residual_K) ? path.state_C(node, k) : run.measured_C(k, sensor) - residual_K;
-    }
-  }
-  return predicted_C;
+  return linearise(settled, start_C(model, run, before_it), run).shown_C;
 }
 
 Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {

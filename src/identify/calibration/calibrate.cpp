@@ -71,6 +71,7 @@ class Calibrating {
     all_.motor_model = motor_model(motor, heat_input_for(recordings_), std::ranges::all_of(recordings_, has_speed));
     const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
+    std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.notes));
     MeasuredRunOptions how = how_to_read(motor);
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;

@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "base/diagnostic.h"
+#include "base/quantity.h"
 #include "identify/calibration/loss_at_stator.h"
 #include "identify/calibration/unlogged_speed.h"
+#include "identify/log_rows.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
@@ -263,6 +265,9 @@ MeasuredRunOptions how_to_read(const Motor& motor) {
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
   how.torque = {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
   how.least_current_A = least_driving_current_A(motor);
+  for (const MotorSensor& sensor : motor.sensors) {
+    how.faults.push_back({sensor.type, sensor.size.value});
+  }
   return how;
 }
 
@@ -290,6 +295,19 @@ HeatInput heat_input_for(std::span<const Recording> recordings) {
     }
   }
   throw Failure(ExitCode::bad_input, "the logs do not tell how much heat goes in", std::move(lacking));
+}
+
+std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings) {
+  std::vector<std::string> held;
+  for (const MotorSensor& sensor : motor.sensors) {
+    const SensorEffectType& type = *sensor.type;
+    const bool is_shown = std::ranges::any_of(recordings, [&](const Recording& each) { return has_values(each.find(type.signal)); });
+    const std::string size = fmt::format("{}{}{}", significant(sensor.size.value, 3), type.size.unit.empty() ? "" : " ", type.size.unit);
+    held.push_back(is_shown ? fmt::format("effects.{}.{} is held at {}: an error of the sensor is no property of the motor", sensor.name,
+                                          type.size.key, size)
+                            : fmt::format("no log has the {} that effects.{} speaks of: it counts for nothing", type.signal, sensor.name));
+  }
+  return held;
 }
 
 MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed) { return ModelBuilder(motor, heat, with_speed).build(); }

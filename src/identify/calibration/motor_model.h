@@ -47,8 +47,11 @@ struct MotorModel {
 
 /// How logs of the motor are read, but for what its model needs of them and the air. Rows are merged up to a tenth of the winding's time
 /// constant, no finer: what real windings do within less no network of two bodies follows. Where a log has no torque, torque constant and
-/// no-load current tell it.
+/// no-load current tell it. Sensors have the faults that the file states.
 MeasuredRunOptions how_to_read(const Motor& motor);
+
+/// What is said of the file's faults of sensors, in sentences: they are taken as stated.
+std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);
 
 /// What all of the recordings can drive: the copper loss where each has a current, else the input power. Throws Failure
 /// (bad_input) where they have neither.

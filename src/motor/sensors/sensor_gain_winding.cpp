@@ -1,4 +1,4 @@
-#include "identify/sensor_effect.h"
+#include "motor/sensor_effect.h"
 
 namespace heatsoak::sensors {
 

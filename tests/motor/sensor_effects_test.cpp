@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "identify/sensor_effect.h"
+#include "motor/sensor_effect.h"
 
 namespace heatsoak {
 namespace {
@@ -77,6 +77,39 @@ std::vector<std::string_view> all_names() {
 
 INSTANTIATE_TEST_SUITE_P(All, SensorEffects, testing::ValuesIn(all_names()),
                          [](const auto& instance) { return std::string(instance.param); });
+
+/// Several faults of one sensor: one after the other, asked at once or as time goes on.
+TEST(SensorReading, GoesAsTheWholeSeriesDoes) {
+  const std::vector<SensorFault> faults{{find_sensor_effect("sensor_lag_winding"), 6.0},
+                                        {find_sensor_effect("sensor_gain_winding"), 0.04},
+                                        {find_sensor_effect("sensor_offset_winding"), -2.0}};
+  const std::vector<double> time_s = seconds();
+  const Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t); });
+  Eigen::VectorXd shown_C = true_C;
+  apply(faults, time_s, false, shown_C);
+  Reading reading(faults, true_C[0]);
+  EXPECT_DOUBLE_EQ(reading.shown_C(), true_C[0] + 0.04 * (true_C[0] - 25.0) - 2.0);
+  for (Eigen::Index k = 1; k < true_C.size(); ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    reading.advance(time_s[place] - time_s[place - 1], true_C[k]);
+    EXPECT_NEAR(reading.shown_C(), shown_C[k], 1e-12);
+  }
+  EXPECT_GT((shown_C - true_C).cwiseAbs().maxCoeff(), 3.0);
+  // No time, no answer: a step of the temperature is not shown yet.
+  const double before_C = reading.shown_C();
+  reading.advance(0.0, true_C[true_C.size() - 1]);
+  EXPECT_DOUBLE_EQ(reading.shown_C(), before_C);
+}
+
+TEST(SensorReading, AtRestTellsTheTemperature) {
+  const std::vector<SensorFault> faults{{find_sensor_effect("sensor_gain_winding"), 0.1},
+                                        {find_sensor_effect("sensor_offset_winding"), 3.0},
+                                        {find_sensor_effect("sensor_lag_winding"), 40.0}};
+  // 25 + 1.1·50 + 3 = 83 °C
+  EXPECT_NEAR(shown_at_rest_C(faults, 75.0), 83.0, 1e-12);
+  EXPECT_NEAR(true_at_rest_C(faults, 83.0), 75.0, 1e-12);
+  EXPECT_EQ(true_at_rest_C({}, 83.0), 83.0);
+}
 
 /// The lag's reading against a fine Euler integration of its differential equation.
 TEST(SensorLag, FollowsItsDifferentialEquation) {

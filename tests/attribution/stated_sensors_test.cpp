@@ -1,0 +1,171 @@
+// A fault of a sensor that the motor's file states is part of the base model: nothing is missing, and what is found goes into a file that
+// states it.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "examination.h"
+#include "identify/attribution/model_file.h"
+#include "identify/attribution/terms.h"
+#include "motor/write_motor.h"
+
+namespace heatsoak::truth {
+namespace {
+
+Case with_late_stator() {
+  Case one;
+  one.missing = std::ranges::find(subjects(), "sensor_lag_stator", &Subject::name)->make(1.0);
+  one.seed = 11;
+  return one;
+}
+constexpr double kLag_s = 10.0;
+
+void state(std::vector<MeasuredRun>& runs, const std::vector<heatsoak::SensorFault>& faults) {
+  for (MeasuredRun& run : runs) {
+    run.sensors[static_cast<std::size_t>(run.sensor_at("stator"))].faults = faults;
+  }
+}
+
+TEST(StatedSensors, AreNotMissing) {
+  const Case one = with_late_stator();
+  const Runs runs = record(one);
+  DiagnosisInput input = question(one, runs);
+  const Diagnosis found = diagnose(input, {});
+  ASSERT_EQ(found.effects.size(), 1U) << found.description;
+  EXPECT_EQ(found.effects.front().id, "sensor_lag_stator");
+  for (std::vector<MeasuredRun>* const some : {&input.train, &input.holdout}) {
+    state(*some, {{find_sensor_effect("sensor_lag_stator"), kLag_s}});
+  }
+  const Diagnosis stated = diagnose(input, {});
+  EXPECT_EQ(stated.verdict, DiagnosisVerdict::nothing_missing) << stated.description;
+  EXPECT_THAT(stated.effects, testing::IsEmpty()) << stated.description;
+  for (const auto& [signal, error] : found.after_holdout) {
+    EXPECT_NEAR(stated.after_holdout.at(signal).rmse_K, error.rmse_K, 0.05) << signal;
+  }
+}
+
+// What a file states may be wrong as well: the rest is found on top of it.
+TEST(StatedSensors, LeaveRoomForWhatTheyDoNotTell) {
+  const Case one = with_late_stator();
+  DiagnosisInput input = question(one, record(one));
+  for (std::vector<MeasuredRun>* const some : {&input.train, &input.holdout}) {
+    state(*some, {{find_sensor_effect("sensor_offset_stator"), 3.0}});
+  }
+  const Diagnosis found = diagnose(input, {});
+  const auto effect = [&](std::string_view id) { return std::ranges::find(found.effects, id, &FoundEffect::id); };
+  ASSERT_NE(effect("sensor_lag_stator"), found.effects.end()) << found.description;
+  EXPECT_NEAR(effect("sensor_lag_stator")->parameters.front().value, kLag_s, 2.0);
+  ASSERT_NE(effect("sensor_offset_stator"), found.effects.end()) << found.description;
+  EXPECT_NEAR(effect("sensor_offset_stator")->parameters.front().value, -3.0, 1.0);
+}
+
+/// What candidates would do to sensors with stated faults, against the model with a little of each of them.
+TEST(StatedSensors, CandidatesAreSeenThroughThem) {
+  const Case one = with_late_stator();
+  DiagnosisInput input = question(one, record(one));
+  state(input.train, {{find_sensor_effect("sensor_lag_stator"), 40.0}});
+  const MeasuredRun& run = input.train.front();
+  const LinearisedRun here = linearise(input.model, std::vector<double>{30.0, 28.0}, run);
+  const std::vector<Candidate> all = candidates_for(input.model, input.train).candidates;
+  for (const char* const id : {"iron_loss_eddy", "speed_dependent_convection", "sensor_offset_stator"}) {
+    const auto candidate = std::ranges::find(all, id, &Candidate::id);
+    ASSERT_NE(candidate, all.end()) << id;
+    const Columns column = candidate_columns({*candidate}, input.model, here, run);
+    constexpr double kLittle_share = 1e-3;
+    const LinearisedRun with = linearise(with_candidate(input.model, *candidate, kLittle_share), std::vector<double>{30.0, 28.0}, run);
+    const Eigen::MatrixXd expected = (with.shown_C - here.shown_C) / kLittle_share;
+    const Eigen::Index sensor = run.sensor_at("stator");
+    double worst = 0.0;
+    for (Eigen::Index k = 0; k < run.samples(); ++k) {
+      worst = std::max(worst, std::abs(column(k * run.measured_C.cols() + sensor, 0) - expected(k, sensor)));
+    }
+    EXPECT_LT(worst, 0.02 * expected.col(sensor).cwiseAbs().maxCoeff()) << id;
+  }
+}
+
+/// The motor of the examination as a sheet would have it.
+Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
+         "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
+  const auto figure = [&](const char* key, double value, const char* unit) {
+    out << fmt::format("{} = {{ value = \"{:.6g} {}\", origin = \"datasheet\", source = \"s\" }}\n", key, value, unit);
+  };
+  figure("nominal_voltage", 24.0, "V");
+  figure("terminal_resistance", make.resistance_25C_ohm, "ohm");
+  figure("torque_constant", 0.034, "N m/A");
+  figure("no_load_current", 0.0, "A");
+  figure("temperature_coefficient", make.copper_per_K, "1/K");
+  figure("winding_limit", 155.0, "degC");
+  figure("thermal_resistance_winding_stator", 1.15 * make.copper_to_iron_K_per_W, "K/W");
+  figure("thermal_resistance_stator_ambient", 0.9 * make.iron_to_air_K_per_W, "K/W");
+  figure("thermal_time_constant_winding", make.copper_to_iron_K_per_W * make.copper_capacity_J_per_K, "s");
+  figure("thermal_time_constant_stator", make.iron_to_air_K_per_W * make.iron_capacity_J_per_K, "s");
+  out.close();
+  return read_motor(file);
+}
+
+struct Diagnosed {
+  ModelOfLogs model;
+  Diagnosis diagnosis;
+};
+
+Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& logs) {
+  Diagnosed out{model_of_logs(motor, logs), {}};
+  DiagnosisInput input;
+  input.model = out.model.model;
+  for (const Recording& log : logs) {
+    for (MeasuredRun& run : measured_runs(log, out.model.how).runs) {
+      input.free.push_back(free_signals(log, run));
+      input.train.push_back(std::move(run));
+    }
+  }
+  out.diagnosis = diagnose(input, {});
+  return out;
+}
+
+TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
+  const Case one = with_late_stator();
+  const Runs runs = record(one);
+  std::vector<Recording> logs;
+  for (const TrueRun& run : runs.training) {
+    logs.push_back(run.log);
+  }
+  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("stated_sensors_{}.toml", getpid());
+  const Motor motor = sheet_of(runs.make, file);
+  const Diagnosed first = diagnosed(motor, logs);
+  ASSERT_EQ(first.diagnosis.verdict, DiagnosisVerdict::effect_found) << first.diagnosis.description;
+  Motor extended = extended_motor(motor, first.model, first.diagnosis);
+  std::ofstream(file) << to_toml(extended);
+  const Motor again = read_motor(file);
+  std::filesystem::remove(file);
+  ASSERT_EQ(again.sensors.size(), 1U) << first.diagnosis.description;
+  const MotorSensor& sensor = again.sensors.front();
+  EXPECT_EQ(sensor.name, "sensor_lag_stator");
+  EXPECT_NEAR(sensor.size.value, kLag_s, 2.0);
+  EXPECT_EQ(sensor.size.origin, Origin::measured);
+  ASSERT_TRUE(sensor.size.spread);
+  EXPECT_LT(sensor.size.spread->low, kLag_s);
+  EXPECT_GT(sensor.size.spread->high, kLag_s);
+  EXPECT_TRUE(again.notes.empty());
+
+  const Diagnosed second = diagnosed(again, logs);
+  EXPECT_EQ(second.diagnosis.verdict, DiagnosisVerdict::nothing_missing) << second.diagnosis.description;
+  EXPECT_THAT(second.model.notes, testing::Contains(testing::HasSubstr("effects.sensor_lag_stator.time_constant is held")));
+
+  // What the file has already keeps its name.
+  Motor named = motor;
+  named.sensors.push_back({"sensor_lag_stator", find_sensor_effect("sensor_offset_winding"), {}});
+  const Motor both = extended_motor(named, first.model, first.diagnosis);
+  ASSERT_EQ(both.sensors.size(), 2U);
+  EXPECT_EQ(both.sensors[0].type->name, "sensor_offset_winding");
+  EXPECT_EQ(both.sensors[0].name, "sensor_lag_stator");
+  EXPECT_EQ(both.sensors[1].name, "sensor_lag_stator_2");
+}
+
+}  // namespace
+}  // namespace heatsoak::truth
