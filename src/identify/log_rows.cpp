@@ -62,12 +62,6 @@ std::vector<double> bridged(const std::vector<double>* values, const std::vector
   }
   return all;
 }
-/// Of |ω| where ω goes straight from one value to the other.
-double mean_magnitude(double from, double to) {
-  return from * to < 0.0 ? (from * from + to * to) / (2.0 * (std::abs(from) + std::abs(to))) : 0.5 * std::abs(from + to);
-}
-double mean_square(double from, double to) { return (from * from + from * to + to * to) / 3.0; }
-
 /// 0 where there is no such channel: what the model needs is checked beforehand.
 double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
 
@@ -101,8 +95,8 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   const double speed_rad_per_s = of(speed_rad_per_s_, row);
   OperatingPoint<double> at;
   at.current_rms_A = std::abs(of(current_A_, row));
+  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
   at.velocity_rad_per_s = speed_rad_per_s;
-  set_speed(row, at);
   if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
     at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
   }
@@ -117,26 +111,6 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
   at.age_h = of(age_h_, row);
   return at;
-}
-
-void LogRows::set_speed(std::size_t row, OperatingPoint<double>& at) const {
-  const double mean = at.velocity_rad_per_s;
-  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(mean);
-  if (!speed_rad_per_s_ || row == 0 || row + 1 >= speed_rad_per_s_->size()) {
-    return;
-  }
-  const double before = (*speed_rad_per_s_)[row - 1], behind = (*speed_rad_per_s_)[row + 1];
-  const auto [least, most] = std::minmax({before, mean, behind});
-  if (!(least < 0.0 && most > 0.0)) {
-    return;
-  }
-  // Straight through a middle that gives the row its mean. How near its ends are to the neighbours' means: of ramps shorter than a row
-  // with random pauses between them, for which 0.85 has no bias.
-  constexpr double kTowardsNeighbour_share = 0.85;
-  const double from = std::lerp(mean, before, kTowardsNeighbour_share), to = std::lerp(mean, behind, kTowardsNeighbour_share);
-  const double middle = std::clamp(2.0 * mean - 0.5 * (from + to), least, most);
-  at.speed_mean_rad_per_s = std::max(std::abs(mean), 0.5 * (mean_magnitude(from, middle) + mean_magnitude(middle, to)));
-  at.speed_rms_rad_per_s = std::max(at.speed_mean_rad_per_s, std::sqrt(0.5 * (mean_square(from, middle) + mean_square(middle, to))));
 }
 
 bool LogRows::is_known(std::size_t row) const {

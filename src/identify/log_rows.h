@@ -32,8 +32,6 @@ class LogRows {
  private:
   /// Only a current and a speed that both have signs tell braking from driving.
   [[nodiscard]] double power_of_current_W(double current_A, double speed_rad_per_s) const;
-  /// Sets mean and rms of |ω|, which are more than the mean's magnitude in a row where the motor turns round.
-  void set_speed(std::size_t row, OperatingPoint<double>& at) const;
 
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
       *neighbour_C_, *age_h_;

@@ -145,9 +145,10 @@ DiagnosisInput question(const Case& sealed, const Runs& runs) {
 
 Answer examine(const Case& sealed) {
   const Runs runs = record(sealed);
-  const DiagnosisInput input = question(sealed, runs);
+  DiagnosisInput input = question(sealed, runs);
   const auto begin = std::chrono::steady_clock::now();
   Answer answer;
+  settle_turning_rows(input);
   answer.diagnosis = diagnose(input, {});
   answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const Selection& selection = answer.diagnosis.selection;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/diagnostic.h"
+#include "identify/turning_rows.h"
 
 namespace heatsoak {
 namespace {
@@ -159,8 +160,10 @@ TEST(MeasuredRun, a_row_in_which_the_motor_turns_round_has_more_speed_than_its_m
   }
   Recording log = recording_of(rows);
   log.channels.push_back({*quantity_named("speed_rad_per_s"), mean_rad_per_s});
-  const MeasuredRun run =
+  const MeasuredRun held =
       measured_runs(log, {.longest_step_s = 2.0, .needed = {Signal::current, Signal::speed}, .ambient_C = 25.0}).runs.front();
+  EXPECT_TRUE(may_turn_within_rows(held));
+  const MeasuredRun run = turning_within_rows(held);
   double seen_rad = 0.0, seen_rad2_per_s = 0.0, turned_rad = 0.0;
   for (std::size_t k = 0; k < run.at.size(); ++k) {
     const double duration_s = run.time_s[k + 1] - run.time_s[k];

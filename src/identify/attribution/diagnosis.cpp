@@ -11,9 +11,11 @@
 #include "identify/attribution/advisor.h"
 #include "identify/attribution/coverage.h"
 #include "identify/attribution/curve.h"
+#include "identify/attribution/first_fit.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/interval.h"
+#include "identify/turning_rows.h"
 
 namespace heatsoak {
 namespace {
@@ -330,6 +332,20 @@ std::string_view to_string(DiagnosisVerdict verdict) {
       return "not_identifiable";
   }
   return "?";
+}
+
+std::string settle_turning_rows(DiagnosisInput& input) {
+  if (std::ranges::none_of(input.train, may_turn_within_rows)) {
+    return {};
+  }
+  std::vector<MeasuredRun> turning;
+  std::ranges::transform(input.train, std::back_inserter(turning), turning_within_rows);
+  if (first_fit(input.model, turning).fit.evidence_nats <= first_fit(input.model, input.train).fit.evidence_nats) {
+    return {};
+  }
+  input.train = std::move(turning);
+  std::ranges::transform(input.holdout, input.holdout.begin(), turning_within_rows);
+  return std::string(kTurningRowsTold);
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {

@@ -79,6 +79,10 @@ struct Diagnosis {
   Selection selection;
 };
 
+/// Takes the runs for ones whose motor turns round within rows of the log where that is more probable than that its speed was held over
+/// them; says so in a sentence, or nothing.
+std::string settle_turning_rows(DiagnosisInput& input);
+
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
 
 /// Of everything else in the diagnosis, for Diagnosis::words.

@@ -9,12 +9,11 @@
 #include "base/parallel.h"
 #include "identify/attribution/backward_check.h"
 #include "identify/attribution/effect_sets.h"
+#include "identify/attribution/first_fit.h"
 #include "identify/attribution/ladder.h"
-#include "identify/attribution/mean_heat.h"
 #include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
 #include "identify/attribution/trials.h"
-#include "identify/averaged_run.h"
 #include "identify/calibration/unlogged_speed.h"
 
 namespace heatsoak {
@@ -38,17 +37,11 @@ class Selector {
       : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
 
   Selection run() {
-    out_.mean_heat_W = mean_heat_W(input_.model.model, input_.runs);
-    options_.grid = flux_grid(std::max(0.05, out_.mean_heat_W), longest_s(input_.runs) / 2.0);
-    options_.place.assign(input_.model.model.flux_nodes.size(), 3);
-    options_.place.push_back(static_cast<int>(options_.grid.time_scale_s.size()) / 2);
-    first_place_ = options_.place;
-    std::vector<std::vector<double>> start_C;
-    for (const MeasuredRun& run : input_.runs) {
-      start_C.push_back(measured_start_C(input_.model.model.network, run));
-      options_.merged.push_back(mergeable_samples(linearise(input_.model, start_C.back(), run)));
-    }
-    out_.before = refit(input_.model, input_.runs, start_C, options_);
+    FirstFit first = first_fit(input_.model, input_.runs);
+    out_.mean_heat_W = first.mean_heat_W;
+    options_ = std::move(first.options);
+    first_place_ = std::move(first.place);
+    out_.before = std::move(first.fit);
     look_at_sensors(out_.before);
     out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
     out_.after = out_.before;

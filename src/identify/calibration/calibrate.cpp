@@ -16,6 +16,7 @@
 #include "identify/interval.h"
 #include "identify/measurement/fingerprint.h"
 #include "identify/measurement/quality.h"
+#include "identify/turning_rows.h"
 #include "thermal/copper.h"
 
 namespace heatsoak {
@@ -87,6 +88,7 @@ class Calibrating {
                       significant(most_loss_W, 2)));
     }
     all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
+    settle_turning_rows();
     all_.fit_error = errors(all_.motor_model, all_.fit.theta, all_.runs);
     refuse_where_nothing_is_explained();
     warn();
@@ -122,6 +124,27 @@ class Calibrating {
     Eigen::VectorXd theta = opened.model.theta();
     theta.head(all_.fit.theta.size()) = all_.fit.theta;
     return errors(opened, theta, all_.holdout);
+  }
+
+  /// Where the motor may have turned round within rows: once more from there with the speed that it then had.
+  void settle_turning_rows() {
+    if (std::ranges::none_of(all_.runs, may_turn_within_rows)) {
+      return;
+    }
+    std::vector<MeasuredRun> turning;
+    std::ranges::transform(all_.runs, std::back_inserter(turning), turning_within_rows);
+    Model near = all_.motor_model.model;
+    near.values = near.values_at(all_.fit.theta);
+    FitOptions options = options_.fit;
+    options.starts = 0;
+    Fit other = fit(near, turning, options);
+    if (other.log_evidence <= all_.fit.log_evidence) {
+      return;
+    }
+    all_.fit = std::move(other);
+    all_.runs = std::move(turning);
+    std::ranges::transform(all_.holdout, all_.holdout.begin(), turning_within_rows);
+    all_.notes.emplace_back(kTurningRowsTold);
   }
 
   /// What the fit says about itself.

@@ -90,6 +90,9 @@ ExitCode run(const Options& options, Session& session) {
   input.model = model.model;
   input.train = runs_of(train, how, &input.free, notes);
   input.holdout = runs_of(holdout, how, nullptr, notes);
+  if (std::string told = settle_turning_rows(input); !told.empty()) {
+    notes.push_back(std::move(told));
+  }
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   refuse_where_nothing_follows(diagnosis, input);
   diagnosis.notes = notes;
