@@ -102,6 +102,10 @@ struct EffectType {
   Laws laws;
   std::vector<Signal> needs = {};
   Candidacy candidacy = {};
+  /// Where it hangs on a choice: what one with these parameters needs of `needs`; null: all.
+  std::vector<Signal> (*needs_of)(std::span<const double> parameters) = nullptr;
+
+  [[nodiscard]] std::vector<Signal> needed_with(std::span<const double> values) const { return needs_of ? needs_of(values) : needs; }
 };
 
 /// All effects, sorted by name. The list lives as long as the program.

@@ -170,6 +170,49 @@ TEST_F(Tabulated, is_heat_a_share_of_the_copper_loss_or_a_conductance) {
   const std::vector<double> moved_W = heat(parameters("speed", "per_difference", 100.0, 700.0), at);
   EXPECT_NEAR(moved_W[0], -4.0 * 20.0, 1e-12);
   EXPECT_NEAR(moved_W[1], 4.0 * 20.0, 1e-12);
+  at.current_rms_A = 3.0;
+  EXPECT_NEAR(heat(parameters("speed", "per_current", 100.0, 700.0), at)[0], 4.0 * 3.0, 1e-12);
+  at.bus_V = 200.0;
+  EXPECT_NEAR(heat(parameters("bus_voltage", "per_speed", 100.0, 700.0), at)[0], 4.0 * 200.0, 1e-12);
+}
+
+/// What a curve says that it needs of a log is what its heat hangs on, and nothing else.
+TEST_F(Tabulated, needs_the_signals_that_it_hangs_on) {
+  using At = OperatingPoint<double>;
+  const std::vector<std::pair<Signal, void (*)(At&)>> changes{
+      {Signal::current, [](At& at) { at.current_rms_A = 4.7, at.copper_loss_W = 9.0; }},
+      {Signal::speed,
+       [](At& at) {
+         at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = 4.7, at.velocity_rad_per_s = -4.7, at.acceleration_rad_per_s2 = 4.7;
+       }},
+      {Signal::shaft_power, [](At& at) { at.shaft_power_W = 4.7; }},
+      {Signal::input_power, [](At& at) { at.input_power_W = 4.7; }},
+      {Signal::modulation, [](At& at) { at.modulation_ratio = 4.7; }},
+      {Signal::bus_voltage, [](At& at) { at.bus_V = 4.7; }},
+      {Signal::vehicle_speed, [](At& at) { at.vehicle_speed_m_per_s = 4.7; }},
+      {Signal::neighbour_temperature, [](At& at) { at.neighbour_C = 64.7; }},
+      {Signal::age, [](At& at) { at.age_h = 4.7; }}};
+  At before;
+  before.current_rms_A = before.copper_loss_W = before.speed_mean_rad_per_s = before.speed_rms_rad_per_s = 2.2;
+  before.velocity_rad_per_s = before.acceleration_rad_per_s2 = before.shaft_power_W = before.input_power_W = 2.2;
+  before.modulation_ratio = before.bus_V = before.vehicle_speed_m_per_s = before.age_h = 2.2;
+  before.neighbour_share = 1.0, before.neighbour_C = 62.2;
+  for (const Choice& signal : type().parameters[driver].choices) {
+    for (const Choice& shape : type().parameters[form].choices) {
+      std::vector<double> curve = parameters(signal.name, shape.name, -50.0, 60.0);
+      for (std::size_t knot = 0; knot < kCurve.size(); ++knot) {
+        curve[value + knot] = 1.0 + static_cast<double>(knot);
+      }
+      const std::vector<Signal> needed = type().needed_with(curve);
+      for (const auto& [one, change] : changes) {
+        At at = before;
+        change(at);
+        const bool is_needed = std::ranges::find(needed, one) != needed.end();
+        EXPECT_EQ(heat(curve, at) != heat(curve, before), is_needed)
+            << signal.name << " " << shape.name << " signal " << static_cast<int>(one);
+      }
+    }
+  }
 }
 
 TEST_F(Tabulated, looks_at_the_signal_that_was_chosen) {

@@ -22,10 +22,19 @@ bool has_signal(const Recording& recording, Signal signal, const ShaftTorque& to
   return std::ranges::find(signals, signal) != signals.end();
 }
 
+std::vector<Signal> signals_of(const EffectInPlace& effect, const Model& model) {
+  std::vector<double> values;
+  for (const int place : effect.parameter_index) {
+    values.push_back(model.values[static_cast<std::size_t>(place)]);
+  }
+  return effect.type->needed_with(values);
+}
+
 void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recording>& recordings) {
   std::set<Signal> wanted;
   for (const EffectInPlace& effect : out.model.model.network.effects()) {
-    wanted.insert(effect.type->needs.begin(), effect.type->needs.end());
+    const std::vector<Signal> needed = signals_of(effect, out.model.model);
+    wanted.insert(needed.begin(), needed.end());
   }
   bool has_heat = false;
   for (const Signal signal : wanted) {
@@ -42,7 +51,7 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
         fmt::format("no log has a heat input that {} turns into heat: current_A, or power_in_W with an effect input_power_loss", motor.id));
   }
   for (const EffectInPlace& effect : out.model.model.network.effects()) {
-    for (const Signal signal : effect.type->needs) {
+    for (const Signal signal : signals_of(effect, out.model.model)) {
       if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
         out.notes.push_back(fmt::format("no log has what {} needs: it counts as 0", effect.name));
         break;

@@ -117,6 +117,58 @@ struct Tabulated {
   }
 };
 
+std::vector<Signal> needs_of(std::span<const double> values) {
+  std::vector<Signal> needed;
+  switch (static_cast<int>(values[driver])) {
+    case speed:
+    case velocity:
+    case acceleration:
+      needed = {Signal::speed};
+      break;
+    case current:
+      needed = {Signal::current};
+      break;
+    case current_speed_squared:
+      needed = {Signal::current, Signal::speed};
+      break;
+    case shaft_power:
+      needed = {Signal::shaft_power};
+      break;
+    case input_power:
+      needed = {Signal::input_power};
+      break;
+    case modulation:
+      needed = {Signal::modulation};
+      break;
+    case bus_voltage:
+      needed = {Signal::bus_voltage};
+      break;
+    case vehicle_speed:
+      needed = {Signal::vehicle_speed};
+      break;
+    case age:
+      needed = {Signal::age};
+      break;
+    case neighbour_difference:
+      needed = {Signal::neighbour_temperature};
+      break;
+    default:
+      break;
+  }
+  switch (static_cast<int>(values[form])) {
+    case per_copper_loss:
+    case per_current:
+      needed.push_back(Signal::current);
+      break;
+    case per_speed:
+      needed.push_back(Signal::speed);
+      break;
+    default:
+      break;
+  }
+  return needed;
+}
+
 std::vector<ParameterSpec> parameters() {
   std::vector<ParameterSpec> specs{
       ParameterSpec::choice("driver", kDrivers, "the signal that the curve is drawn over"),
@@ -156,6 +208,7 @@ EffectType tabulated() {
                     .variants = {{speed, heat_into, 0.0, 600.0, 0.0, 0.2, 0.5, 1.0, 1.5, 2.0, 2.5}},
                     .family = {},
                     .experiment = {}},
+      .needs_of = needs_of,
   };
 }
 
