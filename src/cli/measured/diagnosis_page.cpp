@@ -68,9 +68,10 @@ std::string effect_table(const Diagnosis& diagnosis) {
       const bool is_fitted = parameter.low < parameter.high;
       text += row({is_first ? effect.id : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
                    fmt::format("{:.4g} {}", parameter.value, parameter.unit),
-                   is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high) : "not fitted",
+                   is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high)
+                             : (parameter.is_at_bound ? "at its bound" : "not fitted"),
                    is_first ? heat_in_words(effect) : "", is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "",
-                   is_first ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
+                   is_first && effect.is_from_catalogue ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
                    is_first ? fmt::format("{}", fmt::join(effect.confusable_with, ", ")) : ""});
       is_first = false;
     }
@@ -163,7 +164,8 @@ std::string_view heading_of(DiagnosisVerdict verdict) {
 
 constexpr std::string_view kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1080px;margin:2em auto;padding:0 1em;color:#222}"
-    "table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border:1px solid #ccc;padding:3px 8px;text-align:left}"
+    "table{border-collapse:collapse;margin:1em 0;font-size:13px;display:block;max-width:100%;overflow-x:auto}td,th{border:1px solid "
+    "#ccc;padding:3px 8px;text-align:left}"
     "th{background:#f2f2f2}figure{margin:1em "
     "0}svg{max-width:100%;height:auto}div.words{font-size:17px;background:#f7f7f2;padding:1em;border-left:4px solid "
     "#c8102e}";

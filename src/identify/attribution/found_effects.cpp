@@ -109,6 +109,9 @@ class EffectTeller {
     constexpr double kThere = 1e-6;
     const ExtendedModel& model = after().model;
     const double theta = model.theta()[coordinate];
+    if (theta < model.low(coordinate) + kThere && model.low(coordinate) == 0.0) {
+      parameter.value = 0.0;
+    }
     if (theta < model.low(coordinate) + kThere || theta > model.high(coordinate) - kThere) {
       parameter.is_at_bound = true;
       parameter.low = parameter.high = parameter.value;
