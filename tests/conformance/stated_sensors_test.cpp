@@ -1,4 +1,4 @@
-// Errors of sensors in a motor file: what `describe` prints of them is ready to paste, and every verb takes it.
+// Errors of sensors and curves in a motor file: what `describe` prints of them is ready to paste, and every verb takes it.
 #include <gtest/gtest.h>
 
 #include "program_run.h"
@@ -50,6 +50,13 @@ TEST_P(SensorLines, add_what_is_shown_to_a_simulation) {
   EXPECT_EQ(header.find(",stator_shown_C,") != std::string::npos, !is_winding) << header;
 }
 
+TEST_P(SensorLines, are_told_with_their_size) {
+  const ProgramRun told = run({"describe", motor_.string(), "--json", "-"});
+  ASSERT_EQ(told.json().at("sensors").size(), 1U) << told.out;
+  EXPECT_EQ(told.json().at("sensors").at(0).at("type"), GetParam());
+  EXPECT_NE(told.err.find(GetParam()), std::string::npos) << told.err;
+}
+
 TEST_P(SensorLines, are_held_in_a_calibration) {
   RunOptions here;
   here.folder = folder_.path();
@@ -58,6 +65,24 @@ TEST_P(SensorLines, are_held_in_a_calibration) {
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_NE((done.out + done.err).find("effects.my_" + GetParam()), std::string::npos) << done.out << done.err;
   EXPECT_NE(content_of(folder_.path() / "fitted.toml").find("[effects.my_" + GetParam() + "]"), std::string::npos);
+}
+
+/// A curve over the speed needs no neighbour, and is reckoned with where a prediction has a speed.
+TEST(CurveLines, act_in_an_evaluation_and_it_says_nothing_else) {
+  const std::string text = run({"describe", "tabulated"}).out;
+  const std::size_t mark = text.find("\nat the end of a motor file");
+  ASSERT_NE(mark, std::string::npos) << text;
+  const TemporaryFolder folder;
+  const fs::path motor = folder.path() / "motor.toml";
+  write(motor, content_of(kSource / "motor_db" / (std::string(kMotor) + ".toml")) + "\n" + text.substr(text.find('\n', mark + 1) + 1));
+  const auto evaluated = [](const std::string& name) {
+    return run({"evaluate", "--motors", name, "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "0",
+                "--json", "-"});
+  };
+  const ProgramRun with = evaluated(motor.string());
+  EXPECT_EQ((with.out + with.err).find("not reckoned with"), std::string::npos) << with.err;
+  const auto peak_C = [](const ProgramRun& run) { return run.json().at("motors").at(0).at("stator_peak_C").at("nominal").get<double>(); };
+  EXPECT_GT(peak_C(with), peak_C(evaluated(kMotor)) + 0.1) << "its heat is there";
 }
 
 INSTANTIATE_TEST_SUITE_P(catalogue, SensorLines, testing::ValuesIn([] {

@@ -91,6 +91,15 @@ Description describe_motor(const Motor& motor) {
     result.json["network"].push_back(
         {{"name", each.name}, {"value", each.choices.empty() ? Json(each.value) : Json(value)}, {"unit", each.unit}});
   }
+  result.text += motor.sensors.empty() ? "" : "\nsensors: errors that they have\n";
+  for (const MotorSensor& sensor : motor.sensors) {
+    result.text += fmt::format("  {} ({})\n", sensor.name, sensor.type->name) +
+                   figure_text(sensor.type->size.key, sensor.type->size.unit, sensor.size);
+    Json json = figure_json(sensor.type->size.key, sensor.type->size.unit, sensor.size);
+    json["name"] = sensor.name;
+    json["type"] = sensor.type->name;
+    result.json["sensors"].push_back(std::move(json));
+  }
   result.text += "\nsources\n";
   for (const auto& [id, what] : motor.sources) {
     result.text += fmt::format("  {}: {}\n", id, what);

@@ -147,7 +147,10 @@ std::string silent_effects(const std::vector<Motor>& motors) {
   std::string text;
   for (const Motor& motor : motors) {
     for (const MotorEffect& effect : motor.effects) {
-      const auto needs = [&](Signal signal) { return std::ranges::find(effect.type->needs, signal) != effect.type->needs.end(); };
+      std::vector<double> values;
+      std::ranges::transform(effect.parameters, std::back_inserter(values), &Figure::value);
+      const std::vector<Signal> needed = effect.type->needed_with(values);
+      const auto needs = [&](Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
       const bool needs_neighbour = needs(Signal::neighbour_temperature);
       if (needs_neighbour || needs(Signal::age)) {
         text += fmt::format("{}: {} is not reckoned with: a duty says nothing of {}\n", motor.id, effect.name,

@@ -38,7 +38,8 @@ Json effect_json(const FoundEffect& effect) {
     parameters.push_back({{"name", parameter.name},
                           {"value", parameter.value},
                           {"unit", parameter.unit},
-                          {"ci95", is_fitted ? Json::array({parameter.low, parameter.high}) : Json()}});
+                          {"ci95", {parameter.low, parameter.high}},
+                          {"fitted", is_fitted}});
   }
   return {{"id", effect.id},
           {"name", effect.name},

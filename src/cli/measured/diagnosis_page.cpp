@@ -54,6 +54,11 @@ std::string heat_in_words(const FoundEffect& effect) {
   return effect.has_heat ? fmt::format("{} / {} W", significant(effect.mean_W, 2), significant(effect.peak_W, 2)) : "none";
 }
 
+/// A curve by what it goes with.
+std::string named(const FoundEffect& effect) {
+  return effect.is_from_catalogue ? effect.id : fmt::format("{} over {}", effect.id, fmt::join(effect.drivers, " times "));
+}
+
 std::string effect_table(const Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence",
                                       "visibility", "look-alikes here"},
@@ -66,7 +71,7 @@ std::string effect_table(const Diagnosis& diagnosis) {
     bool is_first = true;
     for (const FittedParameter& parameter : effect.parameters) {
       const bool is_fitted = parameter.low < parameter.high;
-      text += row({is_first ? effect.id : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
+      text += row({is_first ? named(effect) : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
                    fmt::format("{:.4g} {}", parameter.value, parameter.unit),
                    is_fitted ? fmt::format("{:.3g} … {:.3g}", parameter.low, parameter.high)
                              : (parameter.is_at_bound ? "at its bound" : "not fitted"),

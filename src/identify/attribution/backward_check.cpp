@@ -217,9 +217,8 @@ class BackwardCheck {
 
   void tell_rival(AcceptedTerm& term, const Candidate& rival, double ahead_nats) const {
     const double within_nats = std::max(rules_.ambiguous_within_nats, rules_.beside_law_share * term.gain_nats);
-    if (ahead_nats > -within_nats && std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
-      term.confusable_with.push_back(rival.id);
-      term.experiments.emplace_back(rival.experiment());
+    if (ahead_nats > -within_nats) {
+      term.add_rival(rival);
     }
   }
 

@@ -84,9 +84,11 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
 std::string verdict_in_words(const Diagnosis& diagnosis) {
   switch (diagnosis.verdict) {
     case DiagnosisVerdict::effect_found:
-      return std::ranges::any_of(diagnosis.effects, &FoundEffect::has_heat)
-                 ? "The runs show heat that the model does not have, and it follows a known law."
-                 : "The sensors show what is not so, and it follows a known law.";
+      if (std::ranges::any_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.has_heat && effect.is_from_catalogue; })) {
+        return "The runs show heat that the model does not have, and it follows a known law.";
+      }
+      return std::string("The sensors show what is not so, and it follows a known law") +
+             (diagnosis.unexplained.empty() ? "." : "; besides, there is heat that no law of the catalogue explains.");
     case DiagnosisVerdict::nothing_missing:
       return diagnosis.changed.empty()
                  ? "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "

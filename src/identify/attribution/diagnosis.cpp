@@ -291,12 +291,14 @@ class Teller {
     out_.unexplained.push_back(std::move(heat));
   }
 
-  /// Half as much heat as its own is left at its node, and no measured signal explains it.
+  /// Half as much heat as its own is left at its node, and no measured signal explains it. Constant heat may be no more than the mean of
+  /// heat that comes and goes by the clock: there a quarter is enough.
   [[nodiscard]] bool is_outweighed(const FoundEffect& effect) const {
-    constexpr double kOutweighs_share = 0.5;
     return effect.has_heat && std::ranges::any_of(out_.unexplained, [&](const Unexplained& heat) {
-             const bool follows_nothing = heat.drivers.empty() || heat.drivers.front() == kTimeDriver;
-             return follows_nothing && !heat.is_in_model && heat.node == effect.node && heat.rms_W > kOutweighs_share * effect.mean_W;
+             const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;
+             const double outweighs_share = goes_by_clock && effect.id == "constant_heat" ? 0.25 : 0.5;
+             return (heat.drivers.empty() || goes_by_clock) && !heat.is_in_model && heat.node == effect.node &&
+                    heat.rms_W > outweighs_share * effect.mean_W;
            });
   }
 

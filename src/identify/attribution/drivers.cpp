@@ -179,6 +179,10 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
   const std::string ambient(Network::kAmbient);
   for (int node = 0; node < model.network.state_count(); ++node) {
     const std::string name(model.network.node_name(node));
+    const bool is_seen = std::ranges::any_of(runs, [&](const MeasuredRun& run) { return run.sensor_at(name) >= 0; });
+    if (!is_seen && name != "winding" && name != "stator") {
+      continue;  // a body that the model supposes is no signal
+    }
     Driver absolute = driver_of(name + "_temperature", "degC", DriverKind::node_temperature);
     absolute.choice = "temperature";
     absolute.watched = name;

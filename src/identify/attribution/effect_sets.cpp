@@ -111,8 +111,7 @@ void EffectSets::tell_rivals(const std::vector<int>& chosen, std::size_t own, Ac
     }
     const SetScore with = table_.best(set, base_.place);
     if (with.is_allowed && with.evidence_nats > chosen_nats - rules_.ambiguous_within_nats) {
-      term.confusable_with.push_back(rival.id);
-      term.experiments.emplace_back(rival.experiment());
+      term.add_rival(rival);
     }
   }
 }

@@ -26,6 +26,14 @@ Sight sight_of(const std::vector<Candidate>& candidates, const std::vector<doubl
   return sight;
 }
 
+std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) {
+  std::vector<CandidateColumn> rules;
+  for (const Candidate& each : candidates) {
+    rules.push_back({each.size_spec().range.low < 0.0, 2.0});
+  }
+  return rules;
+}
+
 std::vector<int> most_promising(const std::vector<double>& gain_nats, std::size_t most) {
   std::vector<int> order(gain_nats.size());
   std::iota(order.begin(), order.end(), 0);

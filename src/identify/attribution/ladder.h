@@ -32,6 +32,9 @@ struct Sight {
 /// `gain_nats`: of each candidate at its typical size.
 Sight sight_of(const std::vector<Candidate>& candidates, const std::vector<double>& gain_nats, double least_nats);
 
+/// The candidates as least squares see them.
+std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates);
+
 /// Places of those that gain most and something, at most `most`, in their own order.
 std::vector<int> most_promising(const std::vector<double>& gain_nats, std::size_t most);
 

@@ -28,6 +28,10 @@ constexpr double kMostWorse_ratio = 1.1;
 constexpr double kMostMoved_ratio = 1.5;
 
 constexpr std::size_t kMostCurvesTried = 3;
+/// A curve that nothing in the network can follow has so many times the evidence of all laws before none of them is named for it.
+constexpr double kOutweighed_ratio = 1.6;
+/// Laws that the base could stand for are look-alikes of one that is named where they are no further behind it.
+constexpr double kHiddenBeside_share = 0.1;
 /// Of the evidence that the scan has for a curve, what its refit has to reach within what physics allows.
 constexpr double kKeptPromise_ratio = 0.5;
 
@@ -92,14 +96,6 @@ class Selector {
     }
   }
 
-  [[nodiscard]] static std::vector<CandidateColumn> column_rules(const std::vector<Candidate>& candidates) {
-    std::vector<CandidateColumn> rules;
-    for (const Candidate& each : candidates) {
-      rules.push_back({each.size_spec().range.low < 0.0, 2.0});
-    }
-    return rules;
-  }
-
   /// True where a term was taken in.
   bool one_round() {
     const CandidateList list = candidates_for(out_.after.model, input_.runs);
@@ -157,6 +153,12 @@ class Selector {
     return results;
   }
 
+  [[nodiscard]] RefitOptions options_at(const FluxGrid::Place& place) const {
+    RefitOptions options = options_;
+    options.place = place;
+    return options;
+  }
+
   [[nodiscard]] Trials trials() const { return {input_, out_, options_, first_place_}; }
 
   /// A judged candidate after its refit in the equations.
@@ -182,9 +184,7 @@ class Selector {
     }
     ExtendedModel doubted = out_.after.model;
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
-    RefitOptions options = options_;
-    options.place = base.place;
-    RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options);
+    RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options_at(base.place));
     figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
     if (figure->gain_nats < least_nats || leads_away(fit.model, kMostWorse_ratio)) {
       return false;
@@ -215,18 +215,17 @@ class Selector {
     }
     ExtendedModel doubted = law->fit.model;
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
-    RefitOptions options = options_;
-    options.place = law->fit.place;
-    RefitResult fit = refit(std::move(doubted), input_.runs, law->fit.start_C, options);
+    RefitResult fit = refit(std::move(doubted), input_.runs, law->fit.start_C, options_at(law->fit.place));
     figure->gain_nats = fit.evidence_nats - law->fit.evidence_nats;
     if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats ||
         leads_away(fit.model, kMostWorse_ratio)) {
       return false;
     }
-    Tried chosen{law->judged, std::move(fit), law->gain_nats + figure->gain_nats};
     std::vector<Tried> front;
-    front.push_back(std::move(chosen));
-    take_front(front);
+    front.push_back({law->judged, std::move(fit), law->gain_nats + figure->gain_nats});
+    if (!take_front(front)) {
+      return false;
+    }
     out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
     out_.changed.push_back(std::move(*figure));
     return true;
@@ -270,8 +269,8 @@ class Selector {
         return false;
       }
       out_.open_curve = front;
-      // Heat that goes by the clock, or of which all laws together explain less than half, is none of theirs.
-      if (driver_name(front) == kTimeDriver || front.gain_nats > 2.0 * std::max(best_nats, catalogue_nats)) {
+      // Heat that goes by the clock, or of which all laws together explain much less, is none of theirs.
+      if (driver_name(front) == kTimeDriver || front.gain_nats > kOutweighed_ratio * std::max(best_nats, catalogue_nats)) {
         return false;
       }
     }
@@ -281,13 +280,18 @@ class Selector {
     if (best_nats < least_nats) {
       return false;
     }
-    take_front(tried);
-    return true;
+    // What explains more and may not be named is the better explanation still; a runner-up gets no name in its place.
+    if (!hidden_.empty() &&
+        hidden_.front().gain_nats > best_nats + std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_nats)) {
+      return take_doubt(table, base, 0.0);
+    }
+    return take_front(tried);
   }
 
   /// Refits of those that may be named, best first; tells which may not.
   std::vector<Tried> try_ladder(Round& round, double least_nats) {
     double worth_nats = 0.5 * least_nats;
+    hidden_.clear();
     std::vector<JudgedCandidate*> worthy;
     std::vector<JudgedCandidate*> variants;
     for (JudgedCandidate& each : round.ladder) {
@@ -333,14 +337,25 @@ class Selector {
     } else if (judged.runs_acting > 1 && judged.left_out_gain_nats <= 0.0) {
       why_not = "runs left out of the fit get no better";
     }
+    if (judged.visibility_ratio < rules_.least_visibility_ratio) {
+      hidden_.push_back(judged);
+    }
     if (!why_not.empty() && judged.gain_nats >= least_nats) {
       out_.refuse(judged.candidate.id, judged.gain_nats, why_not, is_negligible);
     }
     return why_not.empty();
   }
 
-  /// The best one, and beside it what could stand in its place.
-  void take_front(std::vector<Tried>& tried) {
+  /// The best one that follows the runs, and beside it what could stand in its place.
+  bool take_front(std::vector<Tried>& tried) {
+    // Errors of sensors have no heat that later effects could put right.
+    while (!tried.empty() && tried.front().judged->candidate.sensor_type && leads_away(tried.front().fit.model, kMostWorse_ratio)) {
+      out_.refuse(tried.front().judged->candidate.id, tried.front().gain_nats, "the model that has it follows the runs worse");
+      tried.erase(tried.begin());
+    }
+    if (tried.empty() || tried.front().gain_nats < rules_.least_gain_nats) {
+      return false;
+    }
     AcceptedTerm term;
     term.candidate = tried.front().judged->candidate;
     term.gain_nats = tried.front().gain_nats;
@@ -348,15 +363,20 @@ class Selector {
     // No law is exact: with much evidence the runner-up may be the right one by more than chance allows.
     const double within_nats = std::max(rules_.ambiguous_within_nats, rules_.beside_law_share * term.gain_nats);
     for (const Tried& each : tried) {
-      if (each.judged->candidate.id != term.candidate->id && each.gain_nats > term.gain_nats - within_nats &&
-          std::ranges::find(term.confusable_with, each.judged->candidate.id) == term.confusable_with.end()) {
-        term.confusable_with.push_back(each.judged->candidate.id);
-        term.experiments.emplace_back(each.judged->candidate.experiment());
+      if (each.gain_nats > term.gain_nats - within_nats) {
+        term.add_rival(each.judged->candidate);
+      }
+    }
+    const double hidden_within_nats = std::max(rules_.ambiguous_within_nats, kHiddenBeside_share * term.gain_nats);
+    for (const JudgedCandidate& hidden : hidden_) {
+      if (hidden.gain_nats > term.gain_nats - hidden_within_nats) {
+        term.add_rival(hidden.candidate);
       }
     }
     term.effect_name = term.candidate->type ? std::string(tried.front().fit.model.model.network.effects().back().name) : std::string();
     out_.after = std::move(tried.front().fit);
     out_.terms.push_back(std::move(term));
+    return true;
   }
 
   /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
@@ -433,12 +453,9 @@ class Selector {
         continue;
       }
       ++tries;
-      RefitOptions options = options_;
-      options.place = each.place;
-      RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options);
+      RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options_at(each.place));
       if (fit.evidence_nats < out_.after.evidence_nats + least_nats) {
-        options.place = first_place_;
-        fit = refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options);
+        fit = refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options_at(first_place_));
       }
       AcceptedTerm term;
       term.curve = each;
@@ -467,21 +484,11 @@ class Selector {
   bool is_speed_open_;  ///< heat at the stator then may well be the loss at the speed that nobody logged
   RefitOptions options_;
   FluxGrid::Place first_place_;
+  std::vector<JudgedCandidate> hidden_;  ///< of this round, best first: what the base parameters could stand for
   Selection out_;
 };
 
 }  // namespace
-
-void Selection::forget_refusal(const std::string& id) {
-  std::erase_if(refused, [&](const Refusal& known) { return known.id == id; });
-}
-
-bool Selection::leaves_doubt() const { return !std::ranges::all_of(refused, &Refusal::is_negligible); }
-
-void Selection::refuse(const std::string& id, double gain_nats, std::string_view why, bool is_negligible) {
-  forget_refusal(id);
-  refused.push_back({id, fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why), is_negligible});
-}
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
 

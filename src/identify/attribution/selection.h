@@ -55,6 +55,9 @@ struct AcceptedTerm {
   bool is_of_set = false;                    ///< taken in together with others, none of them without the rest
   std::vector<std::string> confusable_with;  ///< ids within the ambiguity
   std::vector<std::string> experiments;      ///< that would tell them apart
+
+  /// What could stand in the place of an effect of the catalogue, told once.
+  void add_rival(const Candidate& other);
 };
 
 /// What explains something and still gets no name.

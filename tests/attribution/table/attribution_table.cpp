@@ -1,6 +1,6 @@
 // How the diagnosis does on motors of which everything is known: one table.
-//   heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [hard N] [effect NAME SIZE SEED]; NAME also of an outsider,
-//   whose size is 1
+//   heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [hard N] [interval N]
+//     [effect NAME SIZE SEED]; NAME also of an outsider, whose size is 1
 // One line per case, wrong ones marked with X, with what the tool weighed; then the table.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -121,6 +121,21 @@ void examine_singles(Marks& marks, int number) {
       const auto seed = static_cast<std::uint64_t>(20000 + 100 * k) + s;
       Dice dice(seed);
       examine_single(marks, subjects()[s], size_of(dice), seed);
+    }
+  }
+}
+
+/// Effects whose size the tool's law has in common, on other motors than the rest of the table: only whether their intervals hold.
+void examine_intervals(Marks& marks, int number) {
+  for (int k = 0; k < number; ++k) {
+    for (std::size_t s = 0; s < subjects().size(); ++s) {
+      const Subject& subject = subjects()[s];
+      if (subject.true_value != 0.0) {
+        const auto seed = static_cast<std::uint64_t>(60000 + 100 * k) + s;
+        const Answer answer = examined(marks, sealed_case(subject.make(1.0), seed));
+        const std::string covered = cover(marks, answer, subject, 1.0);
+        say(fmt::format("{} x 1.00{}", subject.name, covered), seed, answer, covered.find("is not") == std::string::npos);
+      }
     }
   }
 }
@@ -259,6 +274,8 @@ int main(int argc, char** argv) {
       examine_outsiders(marks, number);
     } else if (what == "hard") {
       examine_hardships(marks, number);
+    } else if (what == "interval") {
+      examine_intervals(marks, number);
     } else if (what == "effect" && i + 3 < argc) {
       for (const Subject& subject : subjects()) {
         if (subject.name == argv[i + 1]) {
