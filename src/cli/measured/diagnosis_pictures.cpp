@@ -107,7 +107,7 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, con
       continue;
     }
     Chart chart{fmt::format("Curve found at the {}", heat.node),
-                "straight between seven knots; band: 95 %",
+                fmt::format("straight between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
                 heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
                 {}};
     ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};
