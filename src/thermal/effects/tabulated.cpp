@@ -117,55 +117,26 @@ struct Tabulated {
   }
 };
 
+/// In the order of the choices.
 std::vector<Signal> needs_of(std::span<const double> values) {
-  std::vector<Signal> needed;
-  switch (static_cast<int>(values[driver])) {
-    case speed:
-    case velocity:
-    case acceleration:
-      needed = {Signal::speed};
-      break;
-    case current:
-      needed = {Signal::current};
-      break;
-    case current_speed_squared:
-      needed = {Signal::current, Signal::speed};
-      break;
-    case shaft_power:
-      needed = {Signal::shaft_power};
-      break;
-    case input_power:
-      needed = {Signal::input_power};
-      break;
-    case modulation:
-      needed = {Signal::modulation};
-      break;
-    case bus_voltage:
-      needed = {Signal::bus_voltage};
-      break;
-    case vehicle_speed:
-      needed = {Signal::vehicle_speed};
-      break;
-    case age:
-      needed = {Signal::age};
-      break;
-    case neighbour_difference:
-      needed = {Signal::neighbour_temperature};
-      break;
-    default:
-      break;
-  }
-  switch (static_cast<int>(values[form])) {
-    case per_copper_loss:
-    case per_current:
-      needed.push_back(Signal::current);
-      break;
-    case per_speed:
-      needed.push_back(Signal::speed);
-      break;
-    default:
-      break;
-  }
+  static const std::array<std::vector<Signal>, kDrivers.size()> kOfDriver{{{Signal::speed},
+                                                                           {Signal::speed},
+                                                                           {Signal::speed},
+                                                                           {Signal::current},
+                                                                           {Signal::current, Signal::speed},
+                                                                           {Signal::shaft_power},
+                                                                           {Signal::input_power},
+                                                                           {Signal::modulation},
+                                                                           {Signal::bus_voltage},
+                                                                           {Signal::vehicle_speed},
+                                                                           {Signal::age},
+                                                                           {},
+                                                                           {},
+                                                                           {Signal::neighbour_temperature}}};
+  static const std::array<std::vector<Signal>, kForms.size()> kOfForm{{{}, {Signal::current}, {}, {Signal::current}, {Signal::speed}}};
+  std::vector<Signal> needed = kOfDriver[static_cast<std::size_t>(values[driver])];
+  const std::vector<Signal>& besides = kOfForm[static_cast<std::size_t>(values[form])];
+  needed.insert(needed.end(), besides.begin(), besides.end());
   return needed;
 }
 
