@@ -9,6 +9,7 @@
 #include "base/diagnostic.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "identify/free_run_fit.h"
 #include "identify/least_squares.h"
 
 namespace heatsoak {
@@ -109,7 +110,7 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
 class Fitting {
  public:
   Fitting(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options)
-      : model_(model), runs_(runs), options_(options), theta_(model.theta()) {
+      : model_(model), runs_(runs), options_(options), theta_(model.theta()), prior_(model.prior) {
     fit_.sensor_nodes = nodes_of(runs);
     fit_.noise_ratio.assign(fit_.sensor_nodes.size(), 1.0);
     double longest_s = 0.0;
@@ -155,6 +156,7 @@ class Fitting {
       }
       move();
     }
+    prefer_free_runs();
     conclude();
     return std::move(fit_);
   }
@@ -248,8 +250,7 @@ class Fitting {
     });
     std::vector<LinearFit> results;
     for (std::size_t i = 0; i < suppositions.size(); ++i) {
-      results.push_back(
-          linear_fit(std::span(all).subspan(i * runs_.size(), runs_.size()), model_.prior.mean - theta_, model_.prior.precision));
+      results.push_back(linear_fit(std::span(all).subspan(i * runs_.size(), runs_.size()), prior_.mean - theta_, prior_.precision));
     }
     return results;
   }
@@ -354,9 +355,61 @@ class Fitting {
     fit_.has_converged = fit_.iterations >= 2 && size < kSmall;
   }
 
+  /// A motor of more parts than the model misleads what follows the load at once, and slow unknown heat hides it. Where other figures
+  /// let the model follow the whole runs plainly better, and well, and by more than chance, those are the ones to foretell with.
+  void prefer_free_runs() {
+    if (!options_.with_flux || fit_.sensor_nodes.size() < model_.flux_nodes.size()) {
+      return;
+    }
+    const FreeRunFit found = fit_free_runs(model_, runs_, theta_, starts_, options_.threads);
+    constexpr double kPlainly_ratio = 1.5;
+    constexpr double kWell_share = 0.02;
+    const double most_K = kWell_share * *std::ranges::min_element(range_.wander_unit_K);
+    if (found.rmse_K > most_K || free_run_rmse_K(model_, runs_, theta_, starts_) < kPlainly_ratio * found.rmse_K) {
+      return;
+    }
+    // Of one truth both are estimates, which differ as their covariances allow (after Hausman 1978, the covariances added, for neither
+    // is the best one where the model is not right).
+    constexpr double kBeyondChance = 8.0;
+    const Eigen::VectorXd apart = found.theta - theta_;
+    const Eigen::MatrixXd allowed = found.covariance + fits({best_}).front().covariance;
+    if (apart.dot(allowed.ldlt().solve(apart)) < kBeyondChance * static_cast<double>(apart.size())) {
+      return;
+    }
+    fit_.free_run_error_K = found.rmse_K;
+    theta_ = found.theta;
+    starts_ = found.starts;
+    // Which of them is right for a run depends on what it asks for.
+    prior_ = {theta_, (found.covariance + 0.25 * apart * apart.transpose()).inverse()};
+    linearise_all();
+    best_ = {};
+    seek_supposition();
+    // No more unknown heat than moves free runs as far as they are off.
+    const double most_share = found.rmse_K / std::sqrt(mean_square_by_flux_K2());
+    for (double& rms_W : best_.flux.rms_W) {
+      rms_W *= std::min(1.0, most_share);
+    }
+  }
+
+  /// What the supposed heat does to free runs, mean over all samples.
+  [[nodiscard]] double mean_square_by_flux_K2() const {
+    double sum_K2 = 0.0;
+    double count = 0.0;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const LinearisedRun& run = linearised_[r];
+      constexpr double kUnit_K = 1.0;
+      const SensorNoise unseen{std::vector<double>(run.sensor_node.size(), kUnit_K), Eigen::VectorXd::Zero(run.residual_K.size())};
+      for (const double share : Whitening(run, best_.flux, unseen).innovations(run.residual_K).noise_share) {
+        sum_K2 += std::isnan(share) ? 0.0 : kUnit_K * kUnit_K * (1.0 / share - 1.0);
+        count += std::isnan(share) ? 0.0 : 1.0;
+      }
+    }
+    return sum_K2 / count;
+  }
+
   void conclude() {
     std::vector<WeightedSupposition> around{{best_, 1.0}};
-    if (options_.with_flux) {
+    if (options_.with_flux && fit_.free_run_error_K == 0.0) {
       around = suppositions_around([&](const auto& suppositions) { return evidences(suppositions); }, range_, best_);
     }
     std::vector<Supposition> suppositions;
@@ -373,6 +426,9 @@ class Fitting {
       const Eigen::VectorXd off = all[h].coefficients - mean;
       fit_.covariance += around[h].weight * (all[h].covariance + off * off.transpose());
       fit_.hypotheses.push_back({suppositions[h], around[h].weight, theta_ + all[h].coefficients, all[h].covariance});
+    }
+    if (fit_.free_run_error_K > 0.0) {
+      fit_.covariance = prior_.precision.inverse();
     }
     fit_.theta = theta_;
     fit_.flux = best_.flux;
@@ -393,6 +449,7 @@ class Fitting {
   const FitOptions& options_;
   Fit fit_;
   Eigen::VectorXd theta_;
+  Prior prior_;
   std::vector<RunStart> starts_;
   std::vector<int> wanted_;
   SuppositionRange range_;

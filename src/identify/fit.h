@@ -49,6 +49,7 @@ struct Fit {
   double log_evidence = 0.0;             ///< at the most probable flux
   int iterations = 0;
   bool has_converged = false;
+  double free_run_error_K = 0.0;  ///< above 0: θ is what follows the whole runs best, to this (rms); other figures do far worse
   /// R of the whitened [∂/∂θ, residual] of all runs without the prior, at θ: what the data alone say.
   Eigen::MatrixXd data_triangle;
 };

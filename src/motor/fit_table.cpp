@@ -76,6 +76,8 @@ MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
   }
   fit.latent_flux_time_scale_s =
       table.quantity({"latent_flux_time_scale", "s", Range::positive(), "over which it forgets"}, Need::optional).value_or(0.0);
+  fit.free_run_error_K =
+      table.quantity({"free_run_error", "K", Range::positive(), "of the free runs that decided the figures"}, Need::optional).value_or(0.0);
   table.finish();
   return fit;
 }
@@ -101,7 +103,8 @@ std::string to_toml(const MotorFit& fit) {
   for (std::size_t i = 0; i < std::min(kHeatedNodes.size(), fit.latent_flux_W.size()); ++i) {
     text += fmt::format("latent_flux_{} = \"{} W\"\n", kHeatedNodes[i], significant(fit.latent_flux_W[i], 2));
   }
-  return text + fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
+  text += fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
+  return text + (fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", significant(fit.free_run_error_K, 2)) : "");
 }
 
 void correlate(const MotorFit& fit, std::span<double> uniforms) {

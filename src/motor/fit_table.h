@@ -20,6 +20,9 @@ struct MotorFit {
   std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of one sample
   std::vector<double> latent_flux_W;                    ///< unknown heat of winding and stator: rms
   double latent_flux_time_scale_s = 0.0;
+  /// Above 0: whole runs decided the figures, and the model that runs free follows them to this (rms); what follows the load at once
+  /// asks for other figures, as in a motor of more parts than the model.
+  double free_run_error_K = 0.0;
 };
 
 /// Reads the table; `figures` are the keys that the file has. Problems go to the reader's diagnostics.

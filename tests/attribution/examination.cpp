@@ -54,6 +54,7 @@ void shuffle_speed(Recording& log, Dice& dice) {
 Runs record(const Case& sealed) {
   Dice dice(sealed.seed * 7919 + 17);
   Runs runs;
+  runs.make.metal_ratio = sealed.metal_ratio;
   for (double* const value : {&runs.make.copper_capacity_J_per_K, &runs.make.iron_capacity_J_per_K, &runs.make.copper_to_iron_K_per_W,
                               &runs.make.iron_to_air_K_per_W}) {
     *value *= dice.uniform(0.8, 1.25);

@@ -15,8 +15,9 @@ namespace heatsoak::truth {
 struct Case {
   Missing missing;
   Surprise surprise;
-  int rows = 1800;        ///< of each run, one second each
-  int training_runs = 4;  ///< of several the last is on the bench
+  int rows = 1800;           ///< of each run, one second each
+  int training_runs = 4;     ///< of several the last is on the bench
+  double metal_ratio = 1.0;  ///< of MotorMake
   bool has_winding_sensor = true;
   bool has_right_speed = true;  ///< otherwise the logs' speeds are those of other seconds, drawn by lot
   std::uint64_t seed = 1;

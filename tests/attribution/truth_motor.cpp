@@ -52,7 +52,7 @@ class Machine {
       heat[b] += flow_W;
     };
     for (const Bridge& b : kMetal) {
-      conduct(b.from, b.to, b.conductance_W_per_K);
+      conduct(b.from, b.to, make_.metal_ratio * b.conductance_W_per_K);
     }
     conduct(slot, tooth, 0.7 / make_.copper_to_iron_K_per_W);
     conduct(slot, yoke, 0.3 / make_.copper_to_iron_K_per_W);
@@ -98,7 +98,7 @@ class Machine {
       conductance_W_per_K[b] += each_W_per_K;
     };
     for (const Bridge& b : kMetal) {
-      add(b.from, b.to, b.conductance_W_per_K);
+      add(b.from, b.to, make_.metal_ratio * b.conductance_W_per_K);
     }
     add(slot, tooth, 1.0 / make_.copper_to_iron_K_per_W);
     add(slot, yoke, 1.0 / make_.copper_to_iron_K_per_W);

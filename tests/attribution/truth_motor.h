@@ -61,7 +61,8 @@ struct MotorMake {
   double iron_to_air_K_per_W = 5.5;
   double resistance_25C_ohm = 0.45;
   double copper_per_K = 0.0039;
-  int finer = 1;  ///< steps are shorter by this factor than the fastest part asks for
+  double metal_ratio = 1.0;  ///< of the conductances between parts of one kind: at less than a tenth two nodes no longer stand for all
+  int finer = 1;             ///< steps are shorter by this factor than the fastest part asks for
 };
 
 struct Surprise {

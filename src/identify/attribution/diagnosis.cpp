@@ -193,8 +193,17 @@ class Teller {
     add("input power", Signal::input_power, [](const Point& at) { return at.input_power_W; });
   }
 
+  /// Where whole runs decided the figures, unknown heat is also what follows the load at once; those runs tell how much is usual.
+  [[nodiscard]] bool follows_as_well_as_before() const {
+    return out_.selection.terms.empty() && input_.model.is_as_usual(rms_K(out_.after_train));
+  }
+
   /// Curves that were found, curves that could not be put into the network, and heat that no signal follows.
   void tell_unexplained() {
+    if (follows_as_well_as_before()) {
+      out_.selection.open_curve.reset();
+      return;
+    }
     for (const AcceptedTerm& term : out_.selection.terms) {
       if (term.curve) {
         add_curve(*term.curve, term.confusable_with);
@@ -303,6 +312,9 @@ class Teller {
   }
 
   [[nodiscard]] DiagnosisVerdict verdict() const {
+    if (follows_as_well_as_before()) {
+      return DiagnosisVerdict::nothing_missing;
+    }
     if (std::ranges::any_of(out_.effects, [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect); })) {
       return DiagnosisVerdict::effect_found;
     }

@@ -180,6 +180,11 @@ class Calibrating {
           "only the stator is sensed: heat that follows the current but reaches the stator directly (iron loss, driver, connections) would "
           "pass for a faster winding, beyond what the intervals say");
     }
+    if (fit.free_run_error_K > 0.0) {
+      all_.notes.emplace_back(
+          "the figures are those that follow the whole runs best: what follows the load within seconds asks for others, as in a motor of "
+          "more parts than a winding and a stator");
+    }
     if (!fit.has_converged) {
       all_.notes.emplace_back("the fit still moved a little when it was stopped: figures are good to some tenths of their intervals");
     }
@@ -306,7 +311,8 @@ class Calibrating {
       double below = kInterval_sd * sd;
       double above = kInterval_sd * sd;
       Eigen::Index only = 0;
-      if (sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 && each.exponents.cwiseAbs().sum() == 1.0) {
+      if (fit.free_run_error_K == 0.0 && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
+          each.exponents.cwiseAbs().sum() == 1.0) {
         const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only), options_.fit.threads);
         // The profile holds the flux; what the flux leaves open widens it as it widens the curvature.
         const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
@@ -438,6 +444,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   }
   fit.correlation = calibration.correlation;
   fit.latent_flux_W = calibration.fit.flux.rms_W;
+  fit.free_run_error_K = calibration.fit.free_run_error_K;
   fit.latent_flux_time_scale_s = calibration.fit.flux.time_scale_s;
   for (std::size_t i = 0; i < calibration.fit.sensor_nodes.size(); ++i) {
     const std::string& node = calibration.fit.sensor_nodes[i];
