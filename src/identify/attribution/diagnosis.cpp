@@ -300,14 +300,15 @@ class Teller {
     out_.unexplained.push_back(std::move(heat));
   }
 
-  /// Half as much heat as its own is left at its node, and no measured signal explains it. Constant heat may be no more than the mean of
-  /// heat that comes and goes by the clock: there a quarter is enough.
+  /// Half as much heat as its own is left at its node, and nothing that could be added explains it: a signal that does, though the network
+  /// cannot follow, must be half as sure as the effect. Constant heat may be no more than the mean of heat that comes and goes by the
+  /// clock: there a quarter is enough.
   [[nodiscard]] bool is_outweighed(const FoundEffect& effect) const {
     return effect.has_heat && std::ranges::any_of(out_.unexplained, [&](const Unexplained& heat) {
              const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;
              const double outweighs_share = goes_by_clock && effect.id == "constant_heat" ? 0.25 : 0.5;
-             return (heat.drivers.empty() || goes_by_clock) && !heat.is_in_model && heat.node == effect.node &&
-                    heat.rms_W > outweighs_share * effect.mean_W;
+             const bool is_sure = heat.drivers.empty() || goes_by_clock || heat.gain_nats > 0.5 * effect.gain_nats;
+             return is_sure && !heat.is_in_model && heat.node == effect.node && heat.rms_W > outweighs_share * effect.mean_W;
            });
   }
 
