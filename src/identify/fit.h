@@ -46,7 +46,7 @@ struct Fit {
   std::vector<RunStart> starts;          ///< per run
   std::vector<Eigen::VectorXd> weights;  ///< per run: of each sample, 1 unless it is an outlier
   double rejected_share = 0.0;           ///< of the samples
-  double log_evidence = 0.0;             ///< at the most probable flux
+  double log_evidence = 0.0;             ///< at the most probable flux and the figures that are most probable with it
   int iterations = 0;
   bool has_converged = false;
   double free_run_error_K = 0.0;  ///< above 0: θ is what follows the whole runs best, to this (rms); other figures do far worse

@@ -3,91 +3,86 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "identify/evidence.h"
 #include "identify/least_squares.h"
-#include "identify/linearised_run.h"
 
 namespace heatsoak {
 namespace {
 
-/// Errors of what two temperatures describe do not change within less.
-constexpr double kRow_s = 5.0;
-
-std::vector<MeasuredRun> merged(std::span<const MeasuredRun> runs) {
-  std::vector<MeasuredRun> all;
-  for (const MeasuredRun& run : runs) {
-    const double step_s = (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size());
-    constexpr int kLeastRows = 60;
-    const int rows = std::min(static_cast<int>(kRow_s / step_s), static_cast<int>(run.at.size()) / kLeastRows);
-    all.push_back(rows > 1 ? thinned(run, rows) : run);
+/// Per run, of all sensors together; 0 where nothing was measured.
+std::vector<Eigen::VectorXd> errors_K(std::span<const LinearisedRun> paths) {
+  std::vector<Eigen::VectorXd> all;
+  for (const LinearisedRun& path : paths) {
+    const Eigen::VectorXd known_K = path.residual_K.array().isNaN().select(0.0, path.residual_K);
+    all.emplace_back(known_K.reshaped(path.sensors(), path.samples()).colwise().sum().transpose());
   }
   return all;
 }
 
-LinearisedRun along(const Model& model, const MeasuredRun& run, const Eigen::VectorXd& theta, const RunStart& start) {
+double product_K2(std::span<const Eigen::VectorXd> errors, Eigen::Index apart) {
+  double sum_K2 = 0.0;
+  for (const Eigen::VectorXd& each : errors) {
+    const Eigen::Index rows = each.size() - apart;
+    sum_K2 += rows > 0 ? each.head(rows).dot(each.tail(rows)) : 0.0;
+  }
+  return sum_K2;
+}
+
+/// How many samples say no more than one that is independent. Each lag is a pass over the runs, as far as errors hang together.
+double samples_alike(std::span<const LinearisedRun> paths, double squares_K2) {
+  const std::vector<Eigen::VectorXd> errors = errors_K(paths);
+  Eigen::Index longest = 0;
+  for (const Eigen::VectorXd& each : errors) {
+    longest = std::max(longest, each.size());
+  }
+  double sum_K2 = -product_K2(errors, 0);
+  for (Eigen::Index lag = 0; lag < longest / 2; lag += 2) {
+    const double pair_K2 = product_K2(errors, lag) + product_K2(errors, lag + 1);
+    if (!(pair_K2 > 0.0)) {
+      break;
+    }
+    sum_K2 += 2.0 * pair_K2;
+  }
+  return std::max(1.0, sum_K2 / squares_K2);
+}
+
+LinearisedRun path_of(const Model& model, const Eigen::VectorXd& theta, const RunStart& start, const MeasuredRun& run) {
   std::vector<int> wanted;
   for (const FreeParameter& parameter : model.free) {
     wanted.push_back(parameter.place);
   }
-  return linearise(model.network, model.values_at(theta), wanted, {},
-                   {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
+  const Eigen::VectorXd& start_C = start.state_C;
+  return linearise(model.network, model.values_at(theta), wanted, {}, {start_C.data(), static_cast<std::size_t>(start_C.size())}, run);
 }
 
-struct Products {
-  double at_once_K2 = 0.0;
-  std::vector<double> later_K2;  ///< of errors 1, 2, … rows apart
-};
-
-void add_products(const LinearisedRun& run, Products& sums) {
-  const auto most = static_cast<std::size_t>(run.samples() / 2);
-  sums.later_K2.resize(std::max(sums.later_K2.size(), most), 0.0);
-  for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
-    const Eigen::VectorXd error_K = run.residual_K(Eigen::seq(sensor, run.residual_K.size() - 1, run.sensors()));
-    const Eigen::VectorXd known_K = error_K.array().isNaN().select(0.0, error_K);
-    sums.at_once_K2 += known_K.squaredNorm();
-    for (std::size_t lag = 1; lag <= most; ++lag) {
-      const auto rows = known_K.size() - static_cast<Eigen::Index>(lag);
-      sums.later_K2[lag - 1] += known_K.head(rows).dot(known_K.tail(rows));
-    }
-  }
-}
-
-/// How many samples say no more than one that is independent.
-double samples_alike(const Products& sums) {
-  double ratio = 1.0;
-  for (std::size_t lag = 0; lag + 1 < sums.later_K2.size(); lag += 2) {
-    const double pair_K2 = sums.later_K2[lag] + sums.later_K2[lag + 1];
-    if (!(pair_K2 > 0.0)) {
-      break;
-    }
-    ratio += 2.0 * pair_K2 / sums.at_once_K2;
-  }
-  return ratio;
+bool moves_to_best(const Model& model, std::span<const MeasuredRun> runs, int threads, Eigen::VectorXd& theta,
+                   std::vector<RunStart>& starts) {
+  constexpr double kUnit_K = 1.0;
+  return minimise({.model = &model, .runs = runs, .whitening = {}, .white_noise_K = kUnit_K, .threads = threads}, theta, starts)
+      .has_converged;
 }
 
 }  // namespace
 
-FreeRunFit fit_free_runs(const Model& model, std::span<const MeasuredRun> runs, Eigen::VectorXd theta, std::vector<RunStart> starts,
-                         int threads) {
-  const std::vector<MeasuredRun> rows = merged(runs);
-  constexpr double kUnit_K = 1.0;
-  minimise({.model = &model, .runs = rows, .whitening = {}, .white_noise_K = kUnit_K, .threads = threads}, theta, starts);
+std::optional<FreeRunFit> fit_free_runs(const Model& model, std::span<const MeasuredRun> runs, Eigen::VectorXd theta,
+                                        std::vector<RunStart> starts, int threads) {
+  if (!moves_to_best(model, runs, threads, theta, starts)) {
+    return std::nullopt;
+  }
   FreeRunFit found{std::move(theta), std::move(starts), {}, 0.0};
   std::vector<LinearisedRun> paths;
-  Products sums;
   double count = 0.0;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    paths.push_back(along(model, rows[r], found.theta, found.starts[r]));
-    add_products(paths.back(), sums);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    paths.push_back(path_of(model, found.theta, found.starts[r], runs[r]));
     count += static_cast<double>((!paths.back().residual_K.array().isNaN()).count());
   }
-  found.rmse_K = std::sqrt(sums.at_once_K2 / count);
-  const double noise_K = found.rmse_K * std::sqrt(samples_alike(sums));
+  found.rmse_K = free_run_rmse_K(paths);
+  const double noise_K = found.rmse_K * std::sqrt(samples_alike(paths, count * found.rmse_K * found.rmse_K));
   std::vector<RunEvidence> evidence;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const SensorNoise noise{std::vector<double>(rows[r].sensors.size(), noise_K), {}};
-    const Whitening white(paths[r], {{}, 1.0}, noise);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Whitening white(paths[r], {{}, 1.0}, {std::vector<double>(runs[r].sensors.size(), noise_K), {}});
     const RunStart& start = found.starts[r];
     evidence.push_back(run_evidence(paths[r], by_theta(model, found.theta, paths[r].by_parameter), white,
                                     {start.prior_C - start.state_C, start.prior_sd_K}));
@@ -96,13 +91,27 @@ FreeRunFit fit_free_runs(const Model& model, std::span<const MeasuredRun> runs, 
   return found;
 }
 
-double free_run_rmse_K(const Model& model, std::span<const MeasuredRun> runs, const Eigen::VectorXd& theta,
-                       const std::vector<RunStart>& starts) {
-  const std::vector<MeasuredRun> rows = merged(runs);
+double left_out_rmse_K(const Model& model, std::span<const MeasuredRun> runs, const FreeRunFit& found, int threads) {
+  std::vector<LinearisedRun> paths;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const auto out = static_cast<std::ptrdiff_t>(r);
+    std::vector<MeasuredRun> others(runs.begin(), runs.end());
+    std::vector<RunStart> starts = found.starts;
+    others.erase(others.begin() + out);
+    starts.erase(starts.begin() + out);
+    Eigen::VectorXd theta = found.theta;
+    if (others.empty() || !moves_to_best(model, others, threads, theta, starts)) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    paths.push_back(path_of(model, theta, found.starts[r], runs[r]));
+  }
+  return free_run_rmse_K(paths);
+}
+
+double free_run_rmse_K(std::span<const LinearisedRun> paths) {
   double sum_K2 = 0.0;
   double count = 0.0;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const LinearisedRun path = along(model, rows[r], theta, starts[r]);
+  for (const LinearisedRun& path : paths) {
     for (const double error_K : path.residual_K) {
       sum_K2 += std::isnan(error_K) ? 0.0 : error_K * error_K;
       count += std::isnan(error_K) ? 0.0 : 1.0;

@@ -77,7 +77,8 @@ MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
   fit.latent_flux_time_scale_s =
       table.quantity({"latent_flux_time_scale", "s", Range::positive(), "over which it forgets"}, Need::optional).value_or(0.0);
   fit.free_run_error_K =
-      table.quantity({"free_run_error", "K", Range::positive(), "of the free runs that decided the figures"}, Need::optional).value_or(0.0);
+      table.quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "of the free runs that decided the figures"}, Need::optional)
+          .value_or(0.0);
   table.finish();
   return fit;
 }

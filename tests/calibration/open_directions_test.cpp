@@ -325,13 +325,15 @@ TEST(Profile, IsTheCurvatureWhereThatHoldsAndLopsidedWhereItDoesNot) {
 TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
   const Folder folder;
   const Motor motor = Sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}.motor(folder);
-  const CaseResult result = calibrate_case({.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}, short_case());
+  CaseResult result = calibrate_case({.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}, short_case());
+  result.calibration.fit.free_run_error_K = 0.45;
   const Motor written = calibrated_motor(motor, result.calibration);
   const std::filesystem::path file = folder.path() / "model.toml";
   std::ofstream(file) << to_toml(written);
   const Motor read = read_motor(file);
   ASSERT_TRUE(read.fit);
   EXPECT_EQ(read.fit->figures, written.fit->figures);
+  EXPECT_EQ(read.fit->free_run_error_K, 0.45);
   EXPECT_LT((read.fit->correlation - written.fit->correlation).cwiseAbs().maxCoeff(), 1e-4);
   for (const auto& [key, each] : written.figures) {
     EXPECT_NEAR(read.figures.at(key).value, each.value, 1e-5 * std::abs(each.value)) << key;

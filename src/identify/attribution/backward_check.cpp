@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/quantity.h"
 #include "identify/attribution/mean_heat.h"
+#include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
 
 namespace heatsoak {
@@ -37,7 +38,7 @@ class BackwardCheck {
       : out_(selection), input_(input), rules_(rules), options_(std::move(options)) {}
 
   void run() {
-    while (drops_superfluous() || drops_invisible() || drops_negligible() || swaps_for_rival()) {
+    while (drops_superfluous() || drops_invisible() || drops_negligible() || drops_idle() || swaps_for_rival()) {
       has_dropped_ = true;
     }
   }
@@ -80,6 +81,23 @@ class BackwardCheck {
         out_.refuse(term.candidate->id, term.loss_without_nats, why, true);
         const std::vector<bool> stays = all_but(i);
         keep(stays, refit_with(stays));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Where whole runs decided the figures, what follows the load at once is known to be otherwise: that is no evidence alone.
+  bool drops_idle() {
+    for (std::size_t i = 0; input_.model.free_run_error_K > 0.0 && i < out_.terms.size(); ++i) {
+      const std::vector<bool> stays = all_but(i);
+      RefitResult without = refit_with(stays);
+      if (rms_K(open_loop_errors(out_.after.model, input_.runs, {})) >
+          kPlainlyBetter_share * rms_K(open_loop_errors(without.model, input_.runs, {}))) {
+        if (const AcceptedTerm& term = out_.terms[i]; term.candidate) {
+          out_.refuse(term.candidate->id, term.loss_without_nats, kHardlyBetterTold, true);
+        }
+        keep(stays, std::move(without));
         return true;
       }
     }

@@ -194,14 +194,11 @@ class Teller {
   }
 
   /// Where whole runs decided the figures, unknown heat is also what follows the load at once; those runs tell how much is usual.
-  [[nodiscard]] bool follows_as_well_as_before() const {
-    return out_.selection.terms.empty() && input_.model.is_as_usual(rms_K(out_.after_train));
-  }
+  [[nodiscard]] bool follows_as_usual() const { return out_.selection.is_held && input_.model.is_as_usual(rms_K(out_.before_train)); }
 
   /// Curves that were found, curves that could not be put into the network, and heat that no signal follows.
   void tell_unexplained() {
-    if (follows_as_well_as_before()) {
-      out_.selection.open_curve.reset();
+    if (follows_as_usual()) {
       return;
     }
     for (const AcceptedTerm& term : out_.selection.terms) {
@@ -302,19 +299,25 @@ class Teller {
 
   /// Half as much heat as its own is left at its node, and nothing that could be added explains it: a signal that does, though the network
   /// cannot follow, must be half as sure as the effect. Constant heat may be no more than the mean of heat that comes and goes by the
-  /// clock: there a quarter is enough.
+  /// clock: there a quarter is enough. A sensor's error has no heat: beside unexplained heat it must still let the runs be
+  /// followed plainly better.
   [[nodiscard]] bool is_outweighed(const FoundEffect& effect) const {
-    return effect.has_heat && std::ranges::any_of(out_.unexplained, [&](const Unexplained& heat) {
-             const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;
-             const double outweighs_share = goes_by_clock && effect.id == "constant_heat" ? 0.25 : 0.5;
-             const bool is_sure = heat.drivers.empty() || goes_by_clock || heat.gain_nats > 0.5 * effect.gain_nats;
-             return is_sure && !heat.is_in_model && heat.node == effect.node && heat.rms_W > outweighs_share * effect.mean_W;
-           });
+    constexpr double kLeftByHeat_share = 0.7;
+    if (!effect.has_heat) {
+      return std::ranges::any_of(out_.unexplained, [](const Unexplained& heat) { return !heat.is_in_model; }) &&
+             rms_K(out_.after_train) > kLeftByHeat_share * rms_K(out_.refitted_train);
+    }
+    return std::ranges::any_of(out_.unexplained, [&](const Unexplained& heat) {
+      const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;
+      const double outweighs_share = goes_by_clock && effect.id == "constant_heat" ? 0.25 : 0.5;
+      const bool is_sure = heat.drivers.empty() || goes_by_clock || heat.gain_nats > 0.5 * effect.gain_nats;
+      return is_sure && !heat.is_in_model && heat.node == effect.node && heat.rms_W > outweighs_share * effect.mean_W;
+    });
   }
 
   [[nodiscard]] DiagnosisVerdict verdict() const {
-    if (follows_as_well_as_before()) {
-      return DiagnosisVerdict::nothing_missing;
+    if (out_.selection.is_held) {
+      return follows_as_usual() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::unexplained;
     }
     if (std::ranges::any_of(out_.effects, [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect); })) {
       return DiagnosisVerdict::effect_found;

@@ -31,18 +31,14 @@ struct ExtendedModel {
   std::vector<ConditionalTerm> conditional;
   std::vector<SensorTerm> sensors;
   std::vector<RunDeviation> deviations;
-  /// Of MotorFit. Above 0 the figures are held, and what is added must let the model follow whole runs better.
-  double free_run_error_K = 0.0;
+  double free_run_error_K = 0.0;  ///< of MotorFit: above 0 what is added must let the model follow whole runs better
 
-  /// How much surer of its figures a model is taken that whole runs decided: what follows the load at once must not move them.
+  /// How much surer of its figures a model is taken to hold them.
   static constexpr double kHeld_ratio = 1e4;
   /// Other runs of the same motor are followed this much worse, nothing missing.
   static constexpr double kAsUsual_ratio = 1.5;
   [[nodiscard]] bool is_as_usual(double error_K) const { return error_K < kAsUsual_ratio * free_run_error_K; }
-  void hold_figures(double error_K) {
-    free_run_error_K = error_K;
-    model.prior.precision *= kHeld_ratio;
-  }
+  void hold_figures() { model.prior.precision *= kHeld_ratio; }
 
   [[nodiscard]] Eigen::Index free_count() const {
     return model.free_count() + static_cast<Eigen::Index>(sensors.size() + deviations.size());

@@ -125,8 +125,8 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   const RefitResult& fit = diagnosis.selection.after;
   const auto free = model.model.model.free_count();
   const Eigen::VectorXd moved = fit.model.model.theta().head(free) - model.model.model.theta();
-  const Eigen::MatrixXd covariance =
-      (model.model.free_run_error_K > 0.0 ? ExtendedModel::kHeld_ratio : 1.0) * fit.covariance.topLeftCorner(free, free);
+  const bool is_held = diagnosis.selection.is_held;
+  const Eigen::MatrixXd covariance = (is_held ? ExtendedModel::kHeld_ratio : 1.0) * fit.covariance.topLeftCorner(free, free);
   std::vector<const FittedFigure*> of_file;
   for (const FittedFigure& each : model.figures) {
     if (each.is_of_file) {
@@ -162,7 +162,7 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   const LatentFlux flux = diagnosis.selection.grid.at(fit.place);
   together.latent_flux_W = flux.rms_W;
   together.latent_flux_time_scale_s = flux.time_scale_s;
-  together.free_run_error_K = model.model.free_run_error_K;
+  together.free_run_error_K = is_held ? model.model.free_run_error_K : 0.0;
   std::map<std::string, double> noise_K;
   for (const MeasuredRun& run : diagnosis.runs) {
     for (const Sensor& sensor : run.sensors) {
@@ -217,9 +217,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
                     significant(most_loss_at_speed_W(motor), 2)));
   }
   out.model.model = std::move(built.model);
-  if (everywhere.fit && everywhere.fit->free_run_error_K > 0.0) {
-    out.model.hold_figures(everywhere.fit->free_run_error_K);
-  }
+  out.model.free_run_error_K = motor.fit ? motor.fit->free_run_error_K : 0.0;
   out.figures = std::move(built.figures);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));

@@ -10,8 +10,8 @@
 #include "identify/attribution/backward_check.h"
 #include "identify/attribution/effect_sets.h"
 #include "identify/attribution/first_fit.h"
-#include "identify/attribution/free_run_check.h"
 #include "identify/attribution/ladder.h"
+#include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
 #include "identify/attribution/trials.h"
 #include "identify/calibration/unlogged_speed.h"
@@ -55,7 +55,7 @@ class Selector {
     }
     out_.errors = options_.errors;
     check_backwards(out_, input_, rules_, options_);
-    while ((!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
+    while (input_.adds_terms && (!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
     }
     look_more_finely();
     out_.own = out_.before;
@@ -67,7 +67,7 @@ class Selector {
       options_.place = out_.after.place;
       options_.averages_flux = true;
       RefitResult averaged = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
-      if (heatsoak::leads_away(averaged.model, out_.after.model, input_.runs, kMostMoved_ratio)) {
+      if (leads_away(averaged.model, kMostMoved_ratio)) {
         out_.after.covariance = std::move(averaged.covariance);
       } else {
         out_.after = std::move(averaged);
@@ -124,7 +124,7 @@ class Selector {
     if (input_.scans_drivers) {
       round.scan = scan(table, base);
     }
-    const bool taken = take_best(round, candidates, table, base);
+    const bool taken = input_.adds_terms && take_best(round, candidates, table, base);
     out_.rounds.push_back(std::move(round));
     return taken;
   }
@@ -153,13 +153,14 @@ class Selector {
     return results;
   }
 
-  [[nodiscard]] Trials trials() const { return {input_, out_, options_, first_place_}; }
-
   [[nodiscard]] RefitOptions options_at(const FluxGrid::Place& place) const {
     RefitOptions options = options_;
     options.place = place;
     return options;
   }
+
+  [[nodiscard]] Trials trials() const { return {input_, out_, options_, first_place_}; }
+
   /// A judged candidate after its refit in the equations.
   struct Tried {
     const JudgedCandidate* judged = nullptr;
@@ -169,10 +170,9 @@ class Selector {
 
   /// Where an effect may not be named, or no model can follow it, a figure of the file may still have changed.
   bool doubt_once_more() {
-    const RefitResult& now = out_.after;
-    EvidenceTable table(design(now.model.model.network, now.fitted, input_.runs, options_.errors, options_.merged, {}), options_.grid,
-                        prior_here(now.model), {});
-    return take_doubt(table, table.best({}, now.place), 0.0);
+    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, {}),
+                        options_.grid, prior_here(out_.after.model), {});
+    return take_doubt(table, table.best({}, out_.after.place), 0.0);
   }
 
   /// Gives the figure that the runs contradict most its doubt back, where that explains them as well as anything else does.
@@ -186,7 +186,7 @@ class Selector {
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
     RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options_at(base.place));
     figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-    if (figure->gain_nats < least_nats || leads_away(fit.model)) {
+    if (figure->gain_nats < least_nats || leads_away(fit.model, kMostWorse_ratio)) {
       return false;
     }
     out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
@@ -217,7 +217,8 @@ class Selector {
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
     RefitResult fit = refit(std::move(doubted), input_.runs, law->fit.start_C, options_at(law->fit.place));
     figure->gain_nats = fit.evidence_nats - law->fit.evidence_nats;
-    if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats || leads_away(fit.model)) {
+    if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats ||
+        leads_away(fit.model, kMostWorse_ratio)) {
       return false;
     }
     std::vector<Tried> front;
@@ -347,7 +348,9 @@ class Selector {
 
   /// The best one that follows the runs, and beside it what could stand in its place.
   bool take_front(std::vector<Tried>& tried) {
-    while (!tried.empty() && is_no_better_in_free_runs(tried.front())) {
+    // Errors of sensors have no heat that later effects could put right.
+    while (!tried.empty() && tried.front().judged->candidate.sensor_type && leads_away(tried.front().fit.model, kMostWorse_ratio)) {
+      out_.refuse(tried.front().judged->candidate.id, tried.front().gain_nats, "the model that has it follows the runs worse");
       tried.erase(tried.begin());
     }
     if (tried.empty() || tried.front().gain_nats < rules_.least_gain_nats) {
@@ -376,17 +379,6 @@ class Selector {
     return true;
   }
 
-  bool is_no_better_in_free_runs(const Tried& each) {
-    const Candidate& candidate = each.judged->candidate;
-    const bool is_hardly = is_hardly_better(each.fit.model, out_.after.model, input_.runs);
-    // Errors of sensors have no heat that later effects could put right.
-    if (is_hardly || (candidate.sensor_type && leads_away(each.fit.model))) {
-      out_.refuse(candidate.id, each.gain_nats, is_hardly ? kHardlyBetterTold : "the model that has it follows the runs worse", is_hardly);
-      return true;
-    }
-    return false;
-  }
-
   /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
   bool take_set(const EffectSets& sets, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
                 double best_single_nats) {
@@ -411,7 +403,7 @@ class Selector {
         chosen = best_sets[i].candidates;
       }
     }
-    if (!best || is_hardly_better(best->model, out_.after.model, input_.runs)) {
+    if (!best) {
       return false;
     }
     auto name = best->model.model.network.effects().end() -
@@ -430,9 +422,12 @@ class Selector {
     return true;
   }
 
-  [[nodiscard]] bool leads_away(const ExtendedModel& model) const {
-    return heatsoak::leads_away(model, out_.after.model, input_.runs, kMostWorse_ratio) ||
-           is_hardly_better(model, out_.after.model, input_.runs);
+  /// What explains the unknown from second to second may still lead the model away over a whole run.
+  [[nodiscard]] bool leads_away(const ExtendedModel& model, double most_ratio) const {
+    constexpr double kMatters_K = 0.1;
+    const double before_K = rms_K(open_loop_errors(out_.after.model, input_.runs, {}));
+    const double with_K = rms_K(open_loop_errors(model, input_.runs, {}));
+    return with_K > most_ratio * before_K && with_K > before_K + kMatters_K;
   }
 
   [[nodiscard]] const std::string& driver_name(const ScanResult& curve) const {
@@ -465,7 +460,7 @@ class Selector {
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) || leads_away(fit.model)) {
+      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) || leads_away(fit.model, kMostWorse_ratio)) {
         continue;
       }
       term.effect_name = std::string(fit.model.model.network.effects().back().name);
@@ -495,6 +490,9 @@ class Selector {
 
 }  // namespace
 
-Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
+Selection select_effects(const SelectionInput& input, const SelectionRules& rules) {
+  const auto select = [&](const SelectionInput& from) { return Selector(from, rules).run(); };
+  return judged_by_whole_runs(input, select(input), select);
+}
 
 }  // namespace heatsoak

@@ -1,6 +1,7 @@
 // Which effects a model lacks: forward selection by evidence with a nonlinear refit of the best, backward check, driver scan.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,7 @@ struct SelectionInput {
   std::vector<MeasuredRun> runs;  ///< at least one
   std::vector<FreeSignals> free;  ///< per run, or empty
   bool scans_drivers = true;
+  bool adds_terms = true;  ///< false: what is in question is looked at and nothing taken in
 };
 
 /// Thresholds in nats. An effect is named where the evidence for it is e^7 ≈ 1100 : 1 against the model without it.
@@ -70,7 +72,8 @@ struct Refusal {
 struct Selection {
   RefitResult before;
   RefitResult after;
-  ExtendedModel base;  ///< the model as it was, with doubt where the runs contradict its file
+  bool is_held = false;  ///< whole runs had decided the figures, and with nothing that was found they are followed plainly better
+  ExtendedModel base;    ///< the model as it was, with doubt where the runs contradict its file
   std::vector<ChangedFigure> changed;
   RefitResult own;  ///< `before` once more with that doubt: the model's own figures, nothing added
   std::vector<AcceptedTerm> terms;
@@ -91,6 +94,15 @@ struct Selection {
   /// Something may be missing that cannot be named.
   [[nodiscard]] bool leaves_doubt() const;
 };
+
+/// Why, of a refusal where whole runs decided the figures.
+inline constexpr std::string_view kHardlyBetterTold =
+    "whole runs, which decided the figures of the model, are followed hardly better with it";
+/// Then what an effect leaves of the error of free runs is at most this share, or it is not named.
+inline constexpr double kPlainlyBetter_share = 0.85;
+/// `found`, unless whole runs decided the model's figures and are followed hardly better with it: then that model as it stands, with
+/// nothing added, and what was found among the refused.
+Selection judged_by_whole_runs(const SelectionInput& input, Selection found, const std::function<Selection(const SelectionInput&)>& select);
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "identify/attribution/open_loop.h"
 #include "identify/attribution/selection.h"
 
 namespace heatsoak {
@@ -22,6 +23,30 @@ bool Selection::leaves_doubt() const { return !std::ranges::all_of(refused, &Ref
 void Selection::refuse(const std::string& id, double gain_nats, std::string_view why, bool is_negligible) {
   forget_refusal(id);
   refused.push_back({id, fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why), is_negligible});
+}
+
+Selection judged_by_whole_runs(const SelectionInput& input, Selection found,
+                               const std::function<Selection(const SelectionInput&)>& select) {
+  if (input.model.free_run_error_K == 0.0) {
+    return found;
+  }
+  // What the model leaves in other runs of the same motor is no effect as a rule.
+  constexpr double kThanUsual_share = 0.7;
+  const double before_K = rms_K(open_loop_errors(input.model, input.runs, {}));
+  const double most_share = input.model.is_as_usual(before_K) ? kThanUsual_share : kPlainlyBetter_share;
+  if (rms_K(open_loop_errors(found.after.model, input.runs, {})) < most_share * before_K) {
+    return found;
+  }
+  SelectionInput held = input;
+  held.model.hold_figures();
+  held.adds_terms = false;
+  Selection none = select(held);
+  none.is_held = true;
+  for (const AcceptedTerm& term : found.terms) {
+    const std::string& what = term.candidate ? term.candidate->id : found.drivers[static_cast<std::size_t>(term.curve->term.driver)].name;
+    none.refuse(what, term.gain_nats, kHardlyBetterTold, true);
+  }
+  return none;
 }
 
 }  // namespace heatsoak

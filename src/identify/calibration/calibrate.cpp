@@ -183,7 +183,7 @@ class Calibrating {
     if (fit.free_run_error_K > 0.0) {
       all_.notes.emplace_back(
           "the figures are those that follow the whole runs best: what follows the load within seconds asks for others, as in a motor of "
-          "more parts than a winding and a stator");
+          "more parts than a winding and a stator, or where an effect is missing in all of these runs");
     }
     if (!fit.has_converged) {
       all_.notes.emplace_back("the fit still moved a little when it was stopped: figures are good to some tenths of their intervals");
