@@ -66,6 +66,8 @@ class Selector {
     if (!out_.terms.empty() || !out_.changed.empty()) {
       options_.place = out_.after.place;
       options_.averages_flux = true;
+      // What were slow errors of sensors to a model that lacked something are less now; none begin to be.
+      options_.errors = with_wander(out_.after, input_.runs, options_.grid, options_.merged, out_.mean_heat_W, options_.errors);
       RefitResult averaged = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
       if (leads_away(averaged.model, kMostMoved_ratio)) {
         out_.after.covariance = std::move(averaged.covariance);
