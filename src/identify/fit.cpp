@@ -387,21 +387,22 @@ class Fitting {
     if (!search || search->rmse_K > kWell_share * travel_K || now_K < kPlainly_ratio * search->rmse_K) {
       return;
     }
-    // Figures bend to what one run holds and others do not: they must do as well in runs that they have not seen.
-    if (const double unseen_K = left_out_rmse_K(model_, counted, *search, options_.threads); !(now_K > kPlainly_ratio * unseen_K)) {
-      return;
-    }
     const FreeRunFit& found = *search;
     // Of one truth both are estimates, which differ as their covariances allow (after Hausman 1978, the covariances added, for neither
     // is the best one where the model is not right).
     constexpr double kBeyondChance = 8.0;
     const Eigen::VectorXd apart = found.theta - theta_;
-    const Eigen::MatrixXd allowed = found.covariance + fits({best_}).front().covariance;
+    const LinearFit here = fits({best_}).front();
+    const Eigen::MatrixXd allowed = found.covariance + here.covariance;
     if (apart.dot(allowed.ldlt().solve(apart)) < kBeyondChance * static_cast<double>(apart.size())) {
       return;
     }
+    // Figures bend to what one run holds and others do not: they must do as well in runs that they have not seen.
+    if (const double unseen_K = left_out_rmse_K(model_, counted, found, options_.threads); !(now_K > kPlainly_ratio * unseen_K)) {
+      return;
+    }
     fit_.free_run_error_K = found.rmse_K;
-    fit_.log_evidence = fits({best_}).front().log_evidence;
+    fit_.log_evidence = here.log_evidence;
     theta_ = found.theta;
     starts_ = found.starts;
     // Which of them is right for a run depends on what it asks for.

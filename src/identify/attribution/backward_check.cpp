@@ -89,11 +89,14 @@ class BackwardCheck {
 
   /// Where whole runs decided the figures, what follows the load at once is known to be otherwise: that is no evidence alone.
   bool drops_idle() {
-    for (std::size_t i = 0; input_.model.free_run_error_K > 0.0 && i < out_.terms.size(); ++i) {
+    if (input_.model.free_run_error_K == 0.0) {
+      return false;
+    }
+    const double with_K = rms_K(open_loop_errors(out_.after.model, input_.runs, {}));
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
       const std::vector<bool> stays = all_but(i);
       RefitResult without = refit_with(stays);
-      if (rms_K(open_loop_errors(out_.after.model, input_.runs, {})) >
-          kPlainlyBetter_share * rms_K(open_loop_errors(without.model, input_.runs, {}))) {
+      if (with_K > kPlainlyBetter_share * rms_K(open_loop_errors(without.model, input_.runs, {}))) {
         if (const AcceptedTerm& term = out_.terms[i]; term.candidate) {
           out_.refuse(term.candidate->id, term.loss_without_nats, kHardlyBetterTold, true);
         }

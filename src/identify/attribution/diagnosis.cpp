@@ -302,8 +302,8 @@ class Teller {
   /// clock: there a quarter is enough. A sensor's error has no heat: beside unexplained heat it must still let the runs be
   /// followed plainly better.
   [[nodiscard]] bool is_outweighed(const FoundEffect& effect) const {
-    constexpr double kLeftByHeat_share = 0.7;
     if (!effect.has_heat) {
+      constexpr double kLeftByHeat_share = 0.7;
       return std::ranges::any_of(out_.unexplained, [](const Unexplained& heat) { return !heat.is_in_model; }) &&
              rms_K(out_.after_train) > kLeftByHeat_share * rms_K(out_.refitted_train);
     }
