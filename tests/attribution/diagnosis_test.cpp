@@ -96,6 +96,21 @@ TEST(Examination, HeatThatNoMeasuredSignalFollowsGetsNoName) {
   EXPECT_FALSE(names(answer.named, subject("iron_loss_eddy")) || names(answer.named, subject("iron_loss_hysteresis"))) << account(answer);
 }
 
+/// 0.7 W that wander in the copper, a motor next to it, a draught: whatever happens to go with them on these runs is not why.
+TEST(Examination, HeatThatNothingLoggedFollowsIsToldInWattsAndGetsNoName) {
+  for (const auto& [stranger, seed] : {std::pair{0, 70100}, std::pair{0, 70300}, std::pair{2, 70002}, std::pair{4, 70904}}) {
+    const Outsider& one = strangers()[static_cast<std::size_t>(stranger)];
+    const Answer answer = examine(sealed(one.make(1.0), static_cast<std::uint64_t>(seed)));
+    ASSERT_TRUE(leaves_unnamed(answer, one)) << one.name << account(answer);
+    const Unexplained& heat = answer.diagnosis.unexplained.front();
+    EXPECT_EQ(heat.node, one.node);
+    EXPECT_GT(heat.rms_W, 0.2) << account(answer);
+    EXPECT_LT(heat.rms_W, 1.2) << account(answer);
+    EXPECT_GT(heat.time_scale_s, 60.0) << account(answer);
+    EXPECT_THAT(answer.diagnosis.selection.after.model.model.network.effects(), testing::SizeIs(3)) << "nothing was added";
+  }
+}
+
 // A motor that was known to 2 % and then screwed to something else: 1.4 times the resistance to the air in its file.
 TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
   const Case one = sealed({}, 5);

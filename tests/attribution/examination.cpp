@@ -166,10 +166,14 @@ Answer examine(const Case& sealed) {
 double floor_K(Case sealed) {
   sealed.missing = {};
   const Runs runs = record(sealed);
-  DiagnosisInput input = question(sealed, runs);
+  DiagnosisInput given = question(sealed, runs);
+  SelectionInput input;
+  input.model = std::move(given.model);
+  input.runs = std::move(given.train);
+  input.scans_drivers = false;
   SelectionRules rules;
   rules.most_terms = 0;
-  return rms_error_K(select_effects({input.model, input.train, input.free, false}, rules).before.model, runs.unseen);
+  return rms_error_K(select_effects(input, rules).before.model, runs.unseen);
 }
 
 }  // namespace heatsoak::truth

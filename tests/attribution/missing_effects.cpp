@@ -282,6 +282,54 @@ const std::vector<Outsider> kOutsiders{
      [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, -0.3 * s * smooth_step((m.copper_C - 50.0) / 2.0)); }); }},
 };
 
+/// Between 0 and 1, another for every stretch of running time and every purpose.
+double drawn(const Moment& m, double stretch_s, std::uint64_t purpose, int later = 0) {
+  const auto stretch = static_cast<std::uint64_t>(m.age_h * 3600.0 / stretch_s) + static_cast<std::uint64_t>(later);
+  // The finaliser of splitmix64: asked at every step of the integration.
+  std::uint64_t bits = (stretch * 1000003 + purpose) * 0x9e3779b97f4a7c15U;
+  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9U;
+  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebU;
+  return static_cast<double>((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
+}
+/// Of mean 0 and rms 1, smooth, over the length of a stretch.
+double wandering(const Moment& m, double stretch_s, std::uint64_t purpose) {
+  const double share = std::fmod(m.age_h * 3600.0 / stretch_s, 1.0);
+  const double here = drawn(m, stretch_s, purpose), next = drawn(m, stretch_s, purpose, 1);
+  const double blend = share * share * (3.0 - 2.0 * share);
+  return 4.0 * (here + (next - here) * blend - 0.5);
+}
+
+Missing unlogged_neighbour(double size) {
+  Missing missing = heat([size](const Moment& m, PerPart& q) {
+    const double work_W = 12.0 * std::max(0.0, drawn(m, 300.0, 1) - 0.3);
+    const double across_W = 0.06 * size * (m.part_C[lump_b] - m.part_C[shield_front]);
+    q[shield_front] += across_W;
+    q[lump_b] += work_W - across_W - 0.15 * (m.part_C[lump_b] - m.in.ambient_C);
+  });
+  missing.lump_capacity_J_per_K[lump_b] = 60.0;
+  return missing;
+}
+
+const std::vector<Outsider> kStrangers{
+    {"a motor next to it that nobody logs", "stator", {}, unlogged_neighbour},
+    {"a lamp that somebody turns on and off",
+     "stator",
+     {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { q[sleeve] += drawn(m, 240.0, 2) < 0.4 ? 2.0 * s : 0.0; }); }},
+    {"a draught now and then",
+     "stator",
+     {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, drawn(m, 300.0, 3) < 0.35 ? 0.12 * s : 0.0); }); }},
+    {"0.7 W that wander at the stator",
+     "stator",
+     {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 0.7 * s * wandering(m, 240.0, 4)); }); }},
+    {"0.7 W that wander in the copper",
+     "winding",
+     {},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.7 * s * wandering(m, 240.0, 5)); }); }},
+};
+
 }  // namespace
 
 Missing together(Missing one, const Missing& other) {
@@ -299,5 +347,6 @@ Missing together(Missing one, const Missing& other) {
 
 const std::vector<Subject>& subjects() { return kSubjects; }
 const std::vector<Outsider>& outsiders() { return kOutsiders; }
+const std::vector<Outsider>& strangers() { return kStrangers; }
 
 }  // namespace heatsoak::truth

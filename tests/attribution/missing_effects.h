@@ -35,5 +35,7 @@ struct Outsider {
   std::string_view times = "";  ///< signal that it goes with besides
 };
 const std::vector<Outsider>& outsiders();
+/// Heat that comes and goes by nothing that is logged: no driver is right.
+const std::vector<Outsider>& strangers();
 
 }  // namespace heatsoak::truth

@@ -55,6 +55,17 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
   return leads && answer.diagnosis.verdict == DiagnosisVerdict::unexplained;
 }
 
+bool gives_a_name(const Answer& answer) {
+  const auto is_named = [](const Unexplained& heat) { return !heat.drivers.empty() && heat.drivers.front() != kTimeDriver; };
+  return std::ranges::any_of(answer.diagnosis.effects, &FoundEffect::is_from_catalogue) ||
+         std::ranges::any_of(answer.diagnosis.unexplained, is_named);
+}
+
+bool leaves_unnamed(const Answer& answer, const Outsider& stranger) {
+  return answer.diagnosis.verdict == DiagnosisVerdict::unexplained && !gives_a_name(answer) &&
+         std::ranges::find(answer.diagnosis.unexplained, stranger.node, &Unexplained::node) != answer.diagnosis.unexplained.end();
+}
+
 bool mentions(const Answer& answer, const Subject& subject) {
   return std::ranges::any_of(answer.diagnosis.selection.terms, [&](const AcceptedTerm& term) {
     return (term.candidate && is_name_of(term.candidate->id, subject)) || names(term.confusable_with, subject);
@@ -81,6 +92,9 @@ std::string account(const Answer& answer) {
     for (std::size_t i = 0; i < std::min<std::size_t>(3, round.scan.size()); ++i) {
       text += fmt::format(" {}:{:.1f}", curve_name(selection, round.scan[i]), round.scan[i].gain_nats);
     }
+  }
+  for (const Unexplained& heat : answer.diagnosis.unexplained) {
+    text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.drivers, "/"), heat.rms_W);
   }
   const LatentFlux flux = selection.grid.at(selection.after.place);
   return text +

@@ -22,6 +22,10 @@ bool names(const std::vector<std::string>& named, const Subject& subject);
 bool names_only(const std::vector<std::string>& named, const std::vector<const Subject*>& subjects);
 /// The verdict is "unexplained", first a curve at the right node over one of the right drivers, and no effect of the catalogue.
 bool names_outsider(const Answer& answer, const Outsider& outsider);
+/// An effect of the catalogue, or a signal other than the clock that heat is said to follow.
+bool gives_a_name(const Answer& answer);
+/// The verdict is "unexplained", with heat at the stranger's node, and nothing gets a name.
+bool leaves_unnamed(const Answer& answer, const Outsider& stranger);
 /// The subject is named, or stands among the look-alikes of what is named.
 bool mentions(const Answer& answer, const Subject& subject);
 /// Neither an effect nor a curve.

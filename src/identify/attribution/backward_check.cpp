@@ -41,6 +41,7 @@ class BackwardCheck {
     while (drops_superfluous() || drops_invisible() || drops_negligible() || drops_idle() || swaps_for_rival()) {
       has_dropped_ = true;
     }
+    drop_outweighed();
   }
 
  private:
@@ -85,6 +86,17 @@ class BackwardCheck {
       }
     }
     return false;
+  }
+
+  void drop_outweighed() {
+    const auto is_outweighed = [&](const AcceptedTerm& term) {
+      return std::ranges::find(input_.outweighed, term.what(out_.drivers)) != input_.outweighed.end();
+    };
+    for (auto term = out_.terms.begin(); (term = std::ranges::find_if(out_.terms, is_outweighed)) != out_.terms.end();) {
+      out_.refuse(term->what(out_.drivers), term->loss_without_nats, "more remains unexplained than it explains", true);
+      const std::vector<bool> stays = all_but(static_cast<std::size_t>(term - out_.terms.begin()));
+      keep(stays, refit_with(stays));
+    }
   }
 
   /// Where whole runs decided the figures, what follows the load at once is known to be otherwise: that is no evidence alone.

@@ -95,9 +95,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                    "smooth heat of the size that every model leaves."
                  : "No effect is missing that these runs show, but not all of the file's figures hold in them.";
     case DiagnosisVerdict::unexplained:
-      return std::ranges::any_of(diagnosis.effects, &FoundEffect::is_from_catalogue)
-                 ? "The runs show heat that the model does not have; what is named here explains a part of it only."
-                 : "The runs show heat that the model does not have, and no law of the catalogue explains it.";
+      return "The runs show heat that the model does not have, and no law of the catalogue explains it.";
     case DiagnosisVerdict::not_identifiable:
       break;
   }

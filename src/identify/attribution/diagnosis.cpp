@@ -29,6 +29,39 @@ constexpr double kOtherMounting = 0.1;
 /// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
 constexpr double kLeastSeen_share = 0.5;
 
+/// At its node as much heat is left as half of its own, or as the part of its own that nothing else could be, and nothing that could be
+/// added explains it: a signal that does, though the network cannot follow, must be half as sure as the effect. Constant heat may be no
+/// more than the mean of heat that comes and goes by the clock: there a quarter is enough. A sensor's error has no heat: beside
+/// unexplained heat it must still let the runs be followed plainly better.
+bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
+  if (!effect.is_from_catalogue) {
+    return told.flux_rms_after_W.contains(effect.node) && told.flux_rms_after_W.at(effect.node) > effect.mean_W;
+  }
+  if (!effect.has_heat) {
+    constexpr double kLeftByHeat_share = 0.7;
+    return std::ranges::any_of(told.unexplained, [](const Unexplained& heat) { return !heat.is_in_model; }) &&
+           rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train);
+  }
+  return std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) {
+    const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;
+    const double outweighs_share = goes_by_clock && effect.id == "constant_heat" ? 0.25 : 0.5;
+    const bool is_sure = heat.drivers.empty() || goes_by_clock || heat.gain_nats > 0.5 * effect.gain_nats;
+    return is_sure && !heat.is_in_model && heat.node == effect.node &&
+           heat.rms_W > std::min(outweighs_share, std::sqrt(effect.visibility_ratio)) * effect.mean_W;
+  });
+}
+
+/// What got a name though nothing of what was found is more than what remains.
+std::vector<std::string> outweighed_in(const Diagnosis& told) {
+  std::vector<std::string> outweighed;
+  for (std::size_t i = 0; told.verdict == DiagnosisVerdict::unexplained && i < told.effects.size(); ++i) {
+    if (is_outweighed(told.effects[i], told)) {
+      outweighed.push_back(told.selection.terms[i].what(told.selection.drivers));
+    }
+  }
+  return outweighed;
+}
+
 class Teller {
  public:
   Teller(const DiagnosisInput& input, Selection selection) : input_(input) { out_.selection = std::move(selection); }
@@ -247,8 +280,9 @@ class Teller {
     const Round& round =
         out_.selection.terms.empty() && out_.selection.changed.empty() ? out_.selection.rounds.front() : out_.selection.rounds.back();
     const std::vector<ScanResult>& scan = round.scan;
-    const auto found = std::ranges::find_if(
-        scan, [&](const ScanResult& each) { return each.term.node == node && each.gain_nats >= SelectionRules{}.least_gain_nats; });
+    const auto found = std::ranges::find_if(scan, [&](const ScanResult& each) {
+      return each.term.node == node && !each.leaves_heat && each.gain_nats >= SelectionRules{}.least_gain_nats;
+    });
     return found == scan.end() ? nullptr : &*found;
   }
 
@@ -297,29 +331,12 @@ class Teller {
     out_.unexplained.push_back(std::move(heat));
   }
 
-  /// Half as much heat as its own is left at its node, and nothing that could be added explains it: a signal that does, though the network
-  /// cannot follow, must be half as sure as the effect. Constant heat may be no more than the mean of heat that comes and goes by the
-  /// clock: there a quarter is enough. A sensor's error has no heat: beside unexplained heat it must still let the runs be
-  /// followed plainly better.
-  [[nodiscard]] bool is_outweighed(const FoundEffect& effect) const {
-    if (!effect.has_heat) {
-      constexpr double kLeftByHeat_share = 0.7;
-      return std::ranges::any_of(out_.unexplained, [](const Unexplained& heat) { return !heat.is_in_model; }) &&
-             rms_K(out_.after_train) > kLeftByHeat_share * rms_K(out_.refitted_train);
-    }
-    return std::ranges::any_of(out_.unexplained, [&](const Unexplained& heat) {
-      const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;
-      const double outweighs_share = goes_by_clock && effect.id == "constant_heat" ? 0.25 : 0.5;
-      const bool is_sure = heat.drivers.empty() || goes_by_clock || heat.gain_nats > 0.5 * effect.gain_nats;
-      return is_sure && !heat.is_in_model && heat.node == effect.node && heat.rms_W > outweighs_share * effect.mean_W;
-    });
-  }
-
   [[nodiscard]] DiagnosisVerdict verdict() const {
     if (out_.selection.is_held) {
       return follows_as_usual() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::unexplained;
     }
-    if (std::ranges::any_of(out_.effects, [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect); })) {
+    if (std::ranges::any_of(out_.effects,
+                            [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
       return DiagnosisVerdict::effect_found;
     }
     if (!out_.unexplained.empty()) {
@@ -367,7 +384,13 @@ std::string settle_turning_rows(DiagnosisInput& input) {
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
-  return Teller(input, select_effects({input.model, input.train, input.free, true}, rules)).tell();
+  SelectionInput asked;
+  asked.model = input.model;
+  asked.runs = input.train;
+  asked.free = input.free;
+  Diagnosis told = Teller(input, select_effects(asked, rules)).tell();
+  asked.outweighed = outweighed_in(told);
+  return asked.outweighed.empty() ? told : Teller(input, select_effects(asked, rules)).tell();
 }
 
 }  // namespace heatsoak

@@ -21,6 +21,7 @@ struct ScanResult {
   double mean_W = 0.0;         ///< of the heat's magnitude over the time it acts
   double peak_W = 0.0;         ///< 99 % of its magnitude
   FluxGrid::Place place;
+  bool leaves_heat = false;  ///< it hardly changes how much heat is unknown: not what that heat comes and goes by
 };
 
 struct ScanInput {

@@ -55,7 +55,7 @@ class Selector {
     }
     out_.errors = options_.errors;
     check_backwards(out_, input_, rules_, options_);
-    while (input_.adds_terms && (!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
+    while (input_.adds_terms && input_.outweighed.empty() && (!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
     }
     look_more_finely();
     out_.own = out_.before;
@@ -270,7 +270,7 @@ class Selector {
           })) {
         return false;
       }
-      out_.open_curve = front;
+      out_.open_curve = out_.is_known(front) ? std::optional(front) : std::nullopt;
       // Heat that goes by the clock, or of which all laws together explain much less, is none of theirs.
       if (driver_name(front) == kTimeDriver || front.gain_nats > kOutweighed_ratio * std::max(best_nats, catalogue_nats)) {
         return false;
@@ -446,7 +446,7 @@ class Selector {
         break;
       }
       // What is far behind another signal only looks like it.
-      if (each.term.driver != front.term.driver && each.gain_nats < rival_nats) {
+      if (!out_.is_known(each) || (each.term.driver != front.term.driver && each.gain_nats < rival_nats)) {
         continue;
       }
       const std::optional<ExtendedModel> with =

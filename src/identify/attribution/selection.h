@@ -19,7 +19,8 @@ struct SelectionInput {
   std::vector<MeasuredRun> runs;  ///< at least one
   std::vector<FreeSignals> free;  ///< per run, or empty
   bool scans_drivers = true;
-  bool adds_terms = true;  ///< false: what is in question is looked at and nothing taken in
+  bool adds_terms = true;               ///< false: what is in question is looked at and nothing taken in
+  std::vector<std::string> outweighed;  ///< AcceptedTerm::what of terms that are refused in the end: more remains than they explain
 };
 
 /// Thresholds in nats. An effect is named where the evidence for it is e^7 ≈ 1100 : 1 against the model without it.
@@ -58,6 +59,8 @@ struct AcceptedTerm {
   std::vector<std::string> confusable_with;  ///< ids within the ambiguity
   std::vector<std::string> experiments;      ///< that would tell them apart
 
+  /// Id of the effect, or the driver of the curve.
+  [[nodiscard]] const std::string& what(const std::vector<Driver>& all_drivers) const;
   /// What could stand in the place of an effect of the catalogue, told once.
   void add_rival(const Candidate& other);
 };
@@ -88,6 +91,8 @@ struct Selection {
   double seen_share = 1.0;          ///< of the effects that were judged
   std::vector<Refusal> refused;
 
+  /// Heat is known to follow the curve's signal. Beside a law that was found a curve is what that leaves of its shape, and need not be all.
+  [[nodiscard]] bool is_known(const ScanResult& curve) const;
   void forget_refusal(const std::string& id);
   /// Takes the place of what was said of it before.
   void refuse(const std::string& id, double gain_nats, std::string_view why, bool is_negligible = false);

@@ -7,11 +7,19 @@
 
 namespace heatsoak {
 
+const std::string& AcceptedTerm::what(const std::vector<Driver>& all_drivers) const {
+  return candidate ? candidate->id : all_drivers[static_cast<std::size_t>(curve->term.driver)].name;
+}
+
 void AcceptedTerm::add_rival(const Candidate& other) {
   if (other.id != candidate->id && std::ranges::find(confusable_with, other.id) == confusable_with.end()) {
     confusable_with.push_back(other.id);
     experiments.emplace_back(other.experiment());
   }
+}
+
+bool Selection::is_known(const ScanResult& curve) const {
+  return !curve.leaves_heat || !terms.empty() || drivers[static_cast<std::size_t>(curve.term.driver)].name == kTimeDriver;
 }
 
 void Selection::forget_refusal(const std::string& id) {
@@ -27,7 +35,7 @@ void Selection::refuse(const std::string& id, double gain_nats, std::string_view
 
 Selection judged_by_whole_runs(const SelectionInput& input, Selection found,
                                const std::function<Selection(const SelectionInput&)>& select) {
-  if (input.model.free_run_error_K == 0.0) {
+  if (input.model.free_run_error_K == 0.0 || !input.outweighed.empty()) {
     return found;
   }
   // What the model leaves in other runs of the same motor is no effect as a rule.
@@ -43,8 +51,7 @@ Selection judged_by_whole_runs(const SelectionInput& input, Selection found,
   Selection none = select(held);
   none.is_held = true;
   for (const AcceptedTerm& term : found.terms) {
-    const std::string& what = term.candidate ? term.candidate->id : found.drivers[static_cast<std::size_t>(term.curve->term.driver)].name;
-    none.refuse(what, term.gain_nats, kHardlyBetterTold, true);
+    none.refuse(term.what(found.drivers), term.gain_nats, kHardlyBetterTold, true);
   }
   return none;
 }
