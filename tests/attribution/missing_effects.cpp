@@ -310,7 +310,20 @@ Missing unlogged_neighbour(double size) {
   return missing;
 }
 
+/// On above 45 °C until 38 °C: a latch x' = x − x³ + d, thrown over where |d| passes 0.385, that a lump keeps as tens of kelvin.
+Missing thermostat_fan(double size) {
+  Missing missing = heat([size](const Moment& m, PerPart& q) {
+    const double x = (m.part_C[lump_b] - 25.0) / 10.0;
+    const double push = std::clamp(0.385 * (m.part_C[sleeve] - 41.5) / 3.5, -0.8, 0.8);
+    q[lump_b] += 10.0 * (x - x * x * x + push) / 3.0;
+    to_air(m, q, 0.15 * size * smooth_step(4.0 * x));
+  });
+  missing.lump_capacity_J_per_K[lump_b] = 1.0;
+  return missing;
+}
+
 const std::vector<Outsider> kStrangers{
+    {"a fan that starts at 45 °C and stops at 38 °C", "stator", {}, thermostat_fan},
     {"a motor next to it that nobody logs", "stator", {}, unlogged_neighbour},
     {"a lamp that somebody turns on and off",
      "stator",

@@ -93,7 +93,7 @@ class BackwardCheck {
       return std::ranges::find(input_.outweighed, term.what(out_.drivers)) != input_.outweighed.end();
     };
     for (auto term = out_.terms.begin(); (term = std::ranges::find_if(out_.terms, is_outweighed)) != out_.terms.end();) {
-      out_.refuse(term->what(out_.drivers), term->loss_without_nats, "more remains unexplained than it explains", true);
+      out_.refuse(term->what(out_.drivers), term->loss_without_nats, kMoreRemains, true);
       const std::vector<bool> stays = all_but(static_cast<std::size_t>(term - out_.terms.begin()));
       keep(stays, refit_with(stays));
     }

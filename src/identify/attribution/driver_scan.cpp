@@ -27,10 +27,7 @@ constexpr double kSecondSignal_share = 0.5;
 /// Of the heat that the prior takes for usual, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
-/// Unknown heat that a curve leaves: below this share of the mean heat every model leaves as much, below this share of what there was
-/// without it the curve explains the heat, and beyond this evidence it is a part of it in any case.
-constexpr double kTolerableLeft_share = 0.05;
-constexpr double kLeft_share = 0.3;
+/// With more evidence a curve is a part of the unknown heat whatever it leaves of it.
 constexpr double kClear_nats = 50.0;
 
 /// How the sensors answer to heats held over the intervals: `heat_W` (intervals × hats) into the node with place `flux`, out of `other`.
@@ -365,20 +362,14 @@ class Scanner {
     }
   }
 
-  /// Of heat that follows no signal some curve always takes a little.
-  [[nodiscard]] bool leaves_heat(const Climber& climber) const {
-    const auto flux = static_cast<std::size_t>(flux_of(*input_.model, climber.family.term.node));
-    const double left_W = table_.grid().at(climber.place).rms_W[flux];
-    return left_W > kTolerableLeft_share * input_.mean_heat_W && left_W > kLeft_share * table_.grid().at(base_.place).rms_W[flux] &&
-           climber.scored.gain_nats < kClear_nats;
-  }
-
   [[nodiscard]] ScanResult result(const Climber& climber) const {
     const Family& family = climber.family;
     const Scored& scored = climber.scored;
     ScanResult out{family.term, family.usual, scored.gain_nats, family.knots, scored.curve, scored.covariance,
                    0.0,         0.0,          climber.place,    false};
-    out.leaves_heat = leaves_heat(climber);
+    // Of heat that follows no signal some curve always takes a little.
+    out.leaves_heat =
+        scored.gain_nats < kClear_nats && table_.grid().leaves_heat(base_.place, climber.place, flux_of(*input_.model, family.term.node));
     std::vector<double> magnitude_W;
     const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     const std::vector<Eigen::VectorXd> multiplier = multipliers(family.term);

@@ -29,6 +29,17 @@ double FluxGrid::log_prior_nats(const Place& place) const {
   return nats;
 }
 
+bool FluxGrid::leaves_heat(const Place& before, const Place& with, int flux) const {
+  constexpr double kTolerable_share = 0.05;
+  constexpr double kPlainlyLess_share = 0.3;
+  const auto unknown_W = [&](const Place& place) {
+    const std::vector<double> each_W = at(place).rms_W;
+    return flux < 0 ? std::accumulate(each_W.begin(), each_W.end(), 0.0) : each_W[static_cast<std::size_t>(flux)];
+  };
+  const double left_W = unknown_W(with);
+  return left_W > kTolerable_share * mean_heat_W && left_W > kPlainlyLess_share * unknown_W(before);
+}
+
 FluxGrid FluxGrid::finer() const {
   const auto between = [](std::span<const double> values) {
     std::vector<double> all;

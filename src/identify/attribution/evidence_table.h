@@ -34,6 +34,8 @@ struct FluxGrid {
   /// How probable a place is before anything is measured: models leave a few per cent of the heat they know unexplained. Exponential in
   /// the strengths (Simpson et al. 2017, the prior that penalises complexity), 5 % of it beyond a tenth of the mean heat.
   [[nodiscard]] double log_prior_nats(const Place& place) const;
+  /// More heat is unknown at the node with place `flux` (-1: at all together) than every model leaves, and not plainly less than before.
+  [[nodiscard]] bool leaves_heat(const Place& before, const Place& with, int flux) const;
   /// One more value between every two (σ = 0 keeps its neighbour): how sure a figure is depends on σ and ℓ more finely than what is named.
   [[nodiscard]] FluxGrid finer() const;
   /// The same (σ, ℓ) in the grid that finer() gives.

@@ -22,9 +22,7 @@ namespace {
 /// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
 constexpr double kMuchUnknown_share = 0.05;
 
-/// How much the free-running error on the training runs may grow: by a curve or a changed figure, and by the mean over what is probable of
-/// unknown heat.
-constexpr double kMostWorse_ratio = 1.1;
+/// How much the free-running error on the training runs may grow by the mean over what is probable of unknown heat.
 constexpr double kMostMoved_ratio = 1.5;
 
 constexpr std::size_t kMostCurvesTried = 3;
@@ -69,7 +67,7 @@ class Selector {
       // What were slow errors of sensors to a model that lacked something are less now; none begin to be.
       options_.errors = with_wander(out_.after, input_.runs, options_.grid, options_.merged, out_.mean_heat_W, options_.errors);
       RefitResult averaged = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
-      if (leads_away(averaged.model, kMostMoved_ratio)) {
+      if (trials().leads_away(averaged.model, kMostMoved_ratio)) {
         out_.after.covariance = std::move(averaged.covariance);
       } else {
         out_.after = std::move(averaged);
@@ -188,7 +186,7 @@ class Selector {
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
     RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options_at(base.place));
     figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-    if (figure->gain_nats < least_nats || leads_away(fit.model, kMostWorse_ratio)) {
+    if (figure->gain_nats < least_nats || trials().leads_away(fit.model, kMostWorse_ratio)) {
       return false;
     }
     out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
@@ -220,7 +218,7 @@ class Selector {
     RefitResult fit = refit(std::move(doubted), input_.runs, law->fit.start_C, options_at(law->fit.place));
     figure->gain_nats = fit.evidence_nats - law->fit.evidence_nats;
     if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats ||
-        leads_away(fit.model, kMostWorse_ratio)) {
+        trials().leads_away(fit.model, kMostWorse_ratio)) {
       return false;
     }
     std::vector<Tried> front;
@@ -350,9 +348,8 @@ class Selector {
 
   /// The best one that follows the runs, and beside it what could stand in its place.
   bool take_front(std::vector<Tried>& tried) {
-    // Errors of sensors have no heat that later effects could put right.
-    while (!tried.empty() && tried.front().judged->candidate.sensor_type && leads_away(tried.front().fit.model, kMostWorse_ratio)) {
-      out_.refuse(tried.front().judged->candidate.id, tried.front().gain_nats, "the model that has it follows the runs worse");
+    for (std::string_view why; !tried.empty() && !(why = trials().why_not(*tried.front().judged, tried.front().fit)).empty();) {
+      out_.refuse(tried.front().judged->candidate.id, tried.front().gain_nats, why);
       tried.erase(tried.begin());
     }
     if (tried.empty() || tried.front().gain_nats < rules_.least_gain_nats) {
@@ -424,14 +421,6 @@ class Selector {
     return true;
   }
 
-  /// What explains the unknown from second to second may still lead the model away over a whole run.
-  [[nodiscard]] bool leads_away(const ExtendedModel& model, double most_ratio) const {
-    constexpr double kMatters_K = 0.1;
-    const double before_K = rms_K(open_loop_errors(out_.after.model, input_.runs, {}));
-    const double with_K = rms_K(open_loop_errors(model, input_.runs, {}));
-    return with_K > most_ratio * before_K && with_K > before_K + kMatters_K;
-  }
-
   [[nodiscard]] const std::string& driver_name(const ScanResult& curve) const {
     return out_.drivers[static_cast<std::size_t>(curve.term.driver)].name;
   }
@@ -462,7 +451,7 @@ class Selector {
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) || leads_away(fit.model, kMostWorse_ratio)) {
+      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) || trials().leads_away(fit.model, kMostWorse_ratio)) {
         continue;
       }
       term.effect_name = std::string(fit.model.model.network.effects().back().name);

@@ -91,7 +91,8 @@ struct Selection {
   double seen_share = 1.0;          ///< of the effects that were judged
   std::vector<Refusal> refused;
 
-  /// Heat is known to follow the curve's signal. Beside a law that was found a curve is what that leaves of its shape, and need not be all.
+  /// Heat is known to follow the curve's signal. Beside a law of much more evidence a curve is what that leaves of its shape, and need
+  /// not be all.
   [[nodiscard]] bool is_known(const ScanResult& curve) const;
   void forget_refusal(const std::string& id);
   /// Takes the place of what was said of it before.
@@ -100,6 +101,8 @@ struct Selection {
   [[nodiscard]] bool leaves_doubt() const;
 };
 
+/// Why, of a refusal of what hardly changes how much heat is unknown.
+inline constexpr std::string_view kMoreRemains = "more remains unexplained than it explains";
 /// Why, of a refusal where whole runs decided the figures.
 inline constexpr std::string_view kHardlyBetterTold =
     "whole runs, which decided the figures of the model, are followed hardly better with it";

@@ -19,7 +19,10 @@ void AcceptedTerm::add_rival(const Candidate& other) {
 }
 
 bool Selection::is_known(const ScanResult& curve) const {
-  return !curve.leaves_heat || !terms.empty() || drivers[static_cast<std::size_t>(curve.term.driver)].name == kTimeDriver;
+  constexpr double kBeside_ratio = 2.0;
+  const auto is_much_more = [&](const AcceptedTerm& term) { return term.candidate && term.gain_nats > kBeside_ratio * curve.gain_nats; };
+  return !curve.leaves_heat || std::ranges::any_of(terms, is_much_more) ||
+         drivers[static_cast<std::size_t>(curve.term.driver)].name == kTimeDriver;
 }
 
 void Selection::forget_refusal(const std::string& id) {

@@ -1,11 +1,15 @@
 // A selection's model with terms added, refitted in the equations.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "identify/attribution/selection.h"
 
 namespace heatsoak {
+
+/// How much the free-running error on the training runs may grow: by a curve, a changed figure, a sensor's error.
+inline constexpr double kMostWorse_ratio = 1.1;
 
 /// All that is given outlives it.
 class Trials {
@@ -18,6 +22,10 @@ class Trials {
   [[nodiscard]] RefitResult of_term(const JudgedCandidate& judged, double promised_nats) const;
   /// Several of a round's candidates at once.
   [[nodiscard]] RefitResult of_set(const SetScore& set, const std::vector<Candidate>& candidates) const;
+  /// What explains the unknown from second to second may still lead the model away over a whole run.
+  [[nodiscard]] bool leads_away(const ExtendedModel& model, double most_ratio) const;
+  /// Why an effect that was tried gets no name; empty where it may.
+  [[nodiscard]] std::string_view why_not(const JudgedCandidate& judged, const RefitResult& fit) const;
 
  private:
   [[nodiscard]] RefitResult from_step(const std::vector<Candidate>& added, const std::vector<double>& size_share,

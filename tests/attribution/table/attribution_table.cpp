@@ -185,15 +185,18 @@ void examine_outsiders(Marks& marks, int number) {
   }
 }
 
+void examine_stranger(Marks& marks, const Outsider& stranger, std::uint64_t seed) {
+  const Answer answer = examined(marks, sealed_case(stranger.make(1.0), seed));
+  const bool is_right = leaves_unnamed(answer, stranger);
+  marks.given_a_name.add(gives_a_name(answer));
+  marks.left_unnamed.add(is_right);
+  say(std::string(stranger.name), seed, answer, is_right);
+}
+
 void examine_strangers(Marks& marks, int number) {
   for (int i = 0; i < number; ++i) {
     for (std::size_t o = 0; o < strangers().size(); ++o) {
-      const Outsider& stranger = strangers()[o];
-      const auto seed = static_cast<std::uint64_t>(70000 + 100 * i) + o;
-      const Answer answer = examined(marks, sealed_case(stranger.make(1.0), seed));
-      marks.given_a_name.add(gives_a_name(answer));
-      marks.left_unnamed.add(leaves_unnamed(answer, stranger));
-      say(std::string(stranger.name), seed, answer, leaves_unnamed(answer, stranger));
+      examine_stranger(marks, strangers()[o], static_cast<std::uint64_t>(70000 + 100 * i) + o);
     }
   }
 }
@@ -303,6 +306,11 @@ int main(int argc, char** argv) {
       for (const Outsider& outsider : outsiders()) {
         if (outsider.name == argv[i + 1]) {
           examine_outsider(marks, outsider, static_cast<std::uint64_t>(std::atoi(argv[i + 3])));
+        }
+      }
+      for (const Outsider& stranger : strangers()) {
+        if (stranger.name == argv[i + 1]) {
+          examine_stranger(marks, stranger, static_cast<std::uint64_t>(std::atoi(argv[i + 3])));
         }
       }
       i += 2;
