@@ -255,17 +255,24 @@ TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
   EXPECT_GT(answer.diagnosis.experiments.front().expected_nats, 1.0);
 }
 
-/// The eight parts of the truth are not of one temperature each: without a doubt about that the intervals of these held 2 of 6.
+/// The eight parts of the truth are not of one temperature each: without a doubt about that the intervals of these held 2 of 6. Where
+/// that doubt takes most of the effect it gets no name.
 TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
-  int held = 0;
+  int held = 0, unnamed = 0;
   for (const std::uint64_t seed : {434028, 434035, 434042, 434049, 434056, 434070}) {
     const Answer answer = examine(sealed(subject("connection_resistance").make(1.0), seed));
+    if (answer.diagnosis.effects.empty()) {
+      ++unnamed;
+      EXPECT_FALSE(answer.diagnosis.selection.refused.empty());
+      continue;
+    }
     ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
     const FittedParameter& size = answer.diagnosis.effects.front().parameters.front();
     held += size.low <= 0.02 && 0.02 <= size.high ? 1 : 0;
     EXPECT_LT(size.high - size.low, 0.03) << account(answer);
   }
   EXPECT_GE(held, 5);
+  EXPECT_LE(unnamed, 1);
 }
 
 TEST(Examination, FinerGridKeepsItsPlaces) {

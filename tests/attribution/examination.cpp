@@ -1,5 +1,7 @@
 #include "examination.h"
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -52,6 +54,7 @@ void shuffle_speed(Recording& log, Dice& dice) {
 }  // namespace
 
 Runs record(const Case& sealed) {
+  constexpr int kEarlier = 3;
   Dice dice(sealed.seed * 7919 + 17);
   Runs runs;
   runs.make.metal_ratio = sealed.metal_ratio;
@@ -60,11 +63,10 @@ Runs record(const Case& sealed) {
     *value *= dice.uniform(0.8, 1.25);
   }
   double age_h = dice.uniform(0.0, 2.0);
-  for (int r = 0; r < sealed.training_runs + 2; ++r) {
-    const std::uint64_t seed = sealed.seed * 131 + static_cast<std::uint64_t>(r);
-    const bool on_bench = (sealed.training_runs > 1 && r == sealed.training_runs - 1) || r == sealed.training_runs + 1;
+  const auto recorded = [&](const Missing& missing, int number, bool on_bench) {
+    const std::uint64_t seed = sealed.seed * 131 + static_cast<std::uint64_t>(number);
     const std::vector<RowInputs> rows = on_bench ? bench_rows(sealed.rows, seed) : robot_rows(sealed.rows, seed);
-    TrueRun run = run_motor(runs.make, sealed.missing, sealed.surprise, rows, age_h, seed ^ 0xabcdef, "run" + std::to_string(r + 1));
+    TrueRun run = run_motor(runs.make, missing, sealed.surprise, rows, age_h, seed ^ 0xabcdef, "run" + std::to_string(number + 1));
     for (const std::size_t channel : {0, 1}) {
       leave_out_outliers(run.log.channels[channel].values);
     }
@@ -75,9 +77,27 @@ Runs record(const Case& sealed) {
       std::ranges::fill(run.log.channels.front().values, kUnknown);
     }
     age_h += sealed.rows / 3600.0;
-    (r < sealed.training_runs ? runs.training : runs.unseen).push_back(std::move(run));
+    return run;
+  };
+  for (int r = 0; r < sealed.training_runs + 2; ++r) {
+    const bool on_bench = (sealed.training_runs > 1 && r == sealed.training_runs - 1) || r == sealed.training_runs + 1;
+    (r < sealed.training_runs ? runs.training : runs.unseen).push_back(recorded(sealed.missing, r, on_bench));
+  }
+  for (int r = 0; sealed.is_calibrated && r < kEarlier; ++r) {
+    runs.earlier.push_back(recorded({}, 100 + r, r == kEarlier - 1));
   }
   return runs;
+}
+
+Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs) {
+  Calibrated all{model_before(make, sealed.seed), {}};
+  std::vector<MeasuredRun> rows;
+  std::ranges::transform(runs, std::back_inserter(rows), measured);
+  all.fit = fit(all.model.model, rows, {});
+  all.model.set_theta(all.fit.theta);
+  all.model.model.prior = {all.fit.theta, all.fit.covariance.inverse()};
+  all.model.free_run_error_K = all.fit.free_run_error_K;
+  return all;
 }
 
 ExtendedModel model_before(const MotorMake& make, std::uint64_t seed) {
@@ -133,7 +153,7 @@ double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs)
 
 DiagnosisInput question(const Case& sealed, const Runs& runs) {
   DiagnosisInput input;
-  input.model = model_before(runs.make, sealed.seed);
+  input.model = runs.earlier.empty() ? model_before(runs.make, sealed.seed) : calibrated(sealed, runs.make, runs.earlier).model;
   for (const TrueRun& run : runs.training) {
     input.train.push_back(measured(run));
     input.free.push_back(free_signals(run.log, input.train.back()));

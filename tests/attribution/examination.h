@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identify/attribution/diagnosis.h"
+#include "identify/fit.h"
 #include "missing_effects.h"
 #include "truth_motor.h"
 
@@ -15,9 +16,10 @@ namespace heatsoak::truth {
 struct Case {
   Missing missing;
   Surprise surprise;
-  int rows = 1800;           ///< of each run, one second each
-  int training_runs = 4;     ///< of several the last is on the bench
-  double metal_ratio = 1.0;  ///< of MotorMake
+  int rows = 1800;             ///< of each run, one second each
+  int training_runs = 4;       ///< of several the last is on the bench
+  double metal_ratio = 1.0;    ///< of MotorMake
+  bool is_calibrated = false;  ///< the model's figures are those of earlier runs in which nothing was missing
   bool has_winding_sensor = true;
   bool has_right_speed = true;  ///< otherwise the logs' speeds are those of other seconds, drawn by lot
   std::uint64_t seed = 1;
@@ -25,7 +27,8 @@ struct Case {
 
 struct Runs {
   std::vector<TrueRun> training;
-  std::vector<TrueRun> unseen;  ///< the last of them on the bench
+  std::vector<TrueRun> unseen;   ///< the last of them on the bench
+  std::vector<TrueRun> earlier;  ///< of those that a model was calibrated with
   MotorMake make;
 };
 /// Every make has capacities and resistances within ±25 % of the usual.
@@ -33,6 +36,13 @@ Runs record(const Case& sealed);
 
 /// What a calibration knows beforehand: copper's resistance is right, everything else is off by up to 25 %.
 ExtendedModel model_before(const MotorMake& make, std::uint64_t seed);
+
+struct Calibrated {
+  ExtendedModel model;
+  Fit fit;
+};
+/// model_before() and what a calibration makes of it with runs of that motor.
+Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs);
 
 /// The log as the tool takes it.
 MeasuredRun measured(const TrueRun& run);

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "examination.h"
-#include "identify/fit.h"
 
 namespace heatsoak::truth {
 namespace {
@@ -19,20 +18,7 @@ Case loose(std::uint64_t seed) {
   return one;
 }
 
-struct Calibrated {
-  ExtendedModel model;
-  Fit fit;
-};
-
-Calibrated calibrated(const Case& one, const std::vector<TrueRun>& runs) {
-  Calibrated all{model_before(record(one).make, one.seed), {}};
-  std::vector<MeasuredRun> rows;
-  std::ranges::transform(runs, std::back_inserter(rows), measured);
-  all.fit = fit(all.model.model, rows, {});
-  all.model.set_theta(all.fit.theta);
-  all.model.model.prior = {all.fit.theta, all.fit.covariance.inverse()};
-  return all;
-}
+Calibrated calibrated(const Case& one, const std::vector<TrueRun>& runs) { return calibrated(one, record(one).make, runs); }
 
 TEST(ManyParts, FreeRunsDecideTheFiguresWhereTwoNodesDoNotStandForAll) {
   for (const std::uint64_t seed : {1, 2, 3}) {
@@ -81,7 +67,6 @@ TEST(ManyParts, AreNoMissingEffect) {
     std::swap(input.train, input.holdout);
     input.free.clear();
     input.model = found.model;
-    input.model.free_run_error_K = found.fit.free_run_error_K;
     const Diagnosis diagnosis = diagnose(input, {});
     EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;
     EXPECT_THAT(diagnosis.effects, testing::IsEmpty()) << seed;
@@ -95,7 +80,6 @@ TEST(ManyParts, HideNothingThatWholeRunsTell) {
     one.missing = std::ranges::find(subjects(), "enclosure_warm_up", &Subject::name)->make(1.5);
     DiagnosisInput input = question(one, record(one));
     input.model = found.model;
-    input.model.free_run_error_K = found.fit.free_run_error_K;
     const Diagnosis diagnosis = diagnose(input, {});
     EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;
   }

@@ -7,12 +7,17 @@
 
 #include "base/parallel.h"
 #include "base/quantity.h"
+#include "identify/attribution/found_effects.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
+#include "identify/attribution/uneven_bodies.h"
 
 namespace heatsoak {
 namespace {
+
+/// How much the free-running error on the training runs may grow by the mean over what is probable of unknown heat.
+constexpr double kMostMoved_ratio = 1.5;
 
 /// What a law has to be ahead of another to take its place.
 constexpr double kSwap_nats = 1.0;
@@ -32,6 +37,20 @@ std::vector<std::string> nodes_of(const AcceptedTerm& term, const std::vector<Dr
   return nodes;
 }
 
+/// What the model says of how large the candidate of a term is, in its own unit.
+double size_in(const ExtendedModel& model, const AcceptedTerm& term) {
+  const Candidate& candidate = *term.candidate;
+  if (candidate.sensor_type) {
+    return std::ranges::find(model.sensors, candidate.sensor_type, &SensorTerm::type)->value;
+  }
+  if (candidate.deviation_type) {
+    const auto is_own = [&](const RunDeviation& each) { return each.is_same(candidate.deviation_type, candidate.condition); };
+    return std::ranges::find_if(model.deviations, is_own)->deviation_share;
+  }
+  const EffectInPlace& effect = *effect_named(model.model.network, term.effect_name);
+  return model.model.values[static_cast<std::size_t>(effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())])];
+}
+
 class BackwardCheck {
  public:
   BackwardCheck(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options)
@@ -42,6 +61,22 @@ class BackwardCheck {
       has_dropped_ = true;
     }
     drop_outweighed();
+  }
+
+  void settle() {
+    RefitResult averaged = averaged_fit();
+    while (drops_unsettled(averaged)) {
+      if (out_.terms.empty() && out_.changed.empty()) {
+        out_.after = out_.before;
+        return;
+      }
+      averaged = averaged_fit();
+    }
+    if (leads_away(out_.after.model, averaged.model, input_.runs, kMostMoved_ratio)) {
+      out_.after.covariance = std::move(averaged.covariance);
+    } else {
+      out_.after = std::move(averaged);
+    }
   }
 
  private:
@@ -86,6 +121,41 @@ class BackwardCheck {
       }
     }
     return false;
+  }
+
+  RefitResult averaged_fit() {
+    options_.place = out_.after.place;
+    options_.averages_flux = true;
+    // What were slow errors of sensors to a model that lacked something are less now; none begin to be.
+    options_.errors = with_wander(out_.after, input_.runs, options_.grid, options_.merged, out_.mean_heat_W, options_.errors);
+    return refit(out_.after.model, input_.runs, out_.after.start_C, options_);
+  }
+
+  /// The effect of least evidence beside all that sensors and bodies may do, where that is too little and the effect gives way to them.
+  bool drops_unsettled(const RefitResult& averaged) {
+    constexpr double kSettled_share = 0.8;
+    double least_nats = rules_.least_gain_nats;
+    std::size_t least = out_.terms.size();
+    for (std::size_t i = 0; i < out_.terms.size(); ++i) {
+      AcceptedTerm& term = out_.terms[i];
+      term.loss_without_nats = averaged.evidence_nats - refit_with(all_but(i)).evidence_nats;
+      const bool gives_way =
+          term.candidate && std::abs(size_in(averaged.model, term)) < kSettled_share * std::abs(size_in(out_.after.model, term));
+      if (term.loss_without_nats < (gives_way ? least_nats : std::min(0.0, least_nats))) {
+        least_nats = term.loss_without_nats;
+        least = i;
+      }
+    }
+    if (least == out_.terms.size()) {
+      return false;
+    }
+    const AcceptedTerm& term = out_.terms[least];
+    out_.refuse(term.what(out_.drivers), term.gain_nats,
+                fmt::format("bodies that are uneven by {:.1f} % and what else sensors do could be it", 100.0 * kUneven_share), true);
+    options_.averages_flux = false;
+    const std::vector<bool> stays = all_but(least);
+    keep(stays, refit_with(stays));
+    return true;
   }
 
   void drop_outweighed() {
@@ -352,6 +422,10 @@ class BackwardCheck {
 
 void check_backwards(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options) {
   BackwardCheck(selection, input, rules, std::move(options)).run();
+}
+
+void settle(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options) {
+  BackwardCheck(selection, input, rules, std::move(options)).settle();
 }
 
 }  // namespace heatsoak

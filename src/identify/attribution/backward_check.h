@@ -9,4 +9,8 @@ namespace heatsoak {
 /// together: these are refused.
 void check_backwards(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options);
 
+/// The figures of what stays, averaged over what is probable of unknown heat and of sensors' errors beside it. Drops what has no evidence
+/// left there: `options` as the selection used them.
+void settle(Selection& selection, const SelectionInput& input, const SelectionRules& rules, RefitOptions options);
+
 }  // namespace heatsoak

@@ -137,7 +137,9 @@ class EffectTeller {
           const double sd = std::sqrt(after().covariance(i, i));
           parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
           parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
-          effect.p_value = std::min(effect.p_value, model.free[static_cast<std::size_t>(i)].by_log ? p_of(1.0, sd) : p_of(theta[i], sd));
+          if (const int size = in_place.type->candidacy.size_parameter; size < 0 || static_cast<std::size_t>(size) == p) {
+            effect.p_value = std::min(effect.p_value, p_of(theta[i], sd));
+          }
           drop_interval_at_bound(i, parameter);
         }
       }

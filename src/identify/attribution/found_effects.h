@@ -31,7 +31,7 @@ struct FoundEffect {
   bool has_heat = true;                          ///< false: a fault of a sensor
   double gain_nats = 0.0;                        ///< that the final model would lose without it
   double delta_bic = 0.0;                        ///< −2 · gain
-  double p_value = 1.0;                          ///< of the size being 0, one parameter
+  double p_value = 1.0;                          ///< of the size being 0; of a curve, of its surest knot
   double visibility_ratio = 0.0;
   std::vector<std::string> confusable_with;  ///< on these runs
   std::string look_alike;                    ///< in general, and what tells them apart: the catalogue's own words

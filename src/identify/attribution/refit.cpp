@@ -212,6 +212,7 @@ class Fitter {
       square += weight * (fit.covariance + fit.coefficients * fit.coefficients.transpose());
     }
     mean /= total_weight;
+    now_.evidence_nats = best_nats;
     now_.covariance = (square / total_weight - mean * mean.transpose()).topLeftCorner(count, count);
     try {
       now_ = moved(mean.head(count), start_steps_K(mean, table), 1.0);

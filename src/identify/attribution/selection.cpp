@@ -22,9 +22,6 @@ namespace {
 /// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
 constexpr double kMuchUnknown_share = 0.05;
 
-/// How much the free-running error on the training runs may grow by the mean over what is probable of unknown heat.
-constexpr double kMostMoved_ratio = 1.5;
-
 constexpr std::size_t kMostCurvesTried = 3;
 /// A curve that nothing in the network can follow has so many times the evidence of all laws before none of them is named for it.
 constexpr double kOutweighed_ratio = 1.6;
@@ -62,16 +59,7 @@ class Selector {
       out_.own = refit(out_.base, input_.runs, out_.before.start_C, options_);
     }
     if (!out_.terms.empty() || !out_.changed.empty()) {
-      options_.place = out_.after.place;
-      options_.averages_flux = true;
-      // What were slow errors of sensors to a model that lacked something are less now; none begin to be.
-      options_.errors = with_wander(out_.after, input_.runs, options_.grid, options_.merged, out_.mean_heat_W, options_.errors);
-      RefitResult averaged = refit(out_.after.model, input_.runs, out_.after.start_C, options_);
-      if (trials().leads_away(averaged.model, kMostMoved_ratio)) {
-        out_.after.covariance = std::move(averaged.covariance);
-      } else {
-        out_.after = std::move(averaged);
-      }
+      settle(out_, input_, rules_, options_);
     }
     for (const AcceptedTerm& term : out_.terms) {
       // A later round has found what an earlier one could not tell.
@@ -186,7 +174,7 @@ class Selector {
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
     RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options_at(base.place));
     figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-    if (figure->gain_nats < least_nats || trials().leads_away(fit.model, kMostWorse_ratio)) {
+    if (figure->gain_nats < least_nats || leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
       return false;
     }
     out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
@@ -218,7 +206,7 @@ class Selector {
     RefitResult fit = refit(std::move(doubted), input_.runs, law->fit.start_C, options_at(law->fit.place));
     figure->gain_nats = fit.evidence_nats - law->fit.evidence_nats;
     if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats ||
-        trials().leads_away(fit.model, kMostWorse_ratio)) {
+        leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
       return false;
     }
     std::vector<Tried> front;
@@ -434,8 +422,9 @@ class Selector {
       if (each.gain_nats < least_nats || tries == kMostCurvesTried) {
         break;
       }
-      // What is far behind another signal only looks like it.
-      if (!out_.is_known(each) || (each.term.driver != front.term.driver && each.gain_nats < rival_nats)) {
+      // What is far behind another signal only looks like it; of one signal the law that the equations want may be far behind.
+      const bool is_front = each.term.driver == front.term.driver;
+      if (!out_.is_known(is_front ? front : each) || (!is_front && each.gain_nats < rival_nats)) {
         continue;
       }
       const std::optional<ExtendedModel> with =
@@ -451,7 +440,8 @@ class Selector {
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) || trials().leads_away(fit.model, kMostWorse_ratio)) {
+      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) ||
+          leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
         continue;
       }
       term.effect_name = std::string(fit.model.model.network.effects().back().name);

@@ -33,13 +33,6 @@ RefitResult Trials::of_set(const SetScore& set, const std::vector<Candidate>& ca
   return from_step(added, {sizes.begin(), sizes.end()}, set.coefficient.head(set.coefficient.size() - count), set.place);
 }
 
-bool Trials::leads_away(const ExtendedModel& model, double most_ratio) const {
-  constexpr double kMatters_K = 0.1;
-  const double before_K = rms_K(open_loop_errors(so_far_.after.model, input_.runs, {}));
-  const double with_K = rms_K(open_loop_errors(model, input_.runs, {}));
-  return with_K > most_ratio * before_K && with_K > before_K + kMatters_K;
-}
-
 std::string_view Trials::why_not(const JudgedCandidate& judged, const RefitResult& fit) const {
   // With more evidence a law is a part of the unknown heat whatever it leaves of it.
   constexpr double kClear_nats = 30.0;
@@ -49,7 +42,9 @@ std::string_view Trials::why_not(const JudgedCandidate& judged, const RefitResul
     return kMoreRemains;
   }
   // Errors of sensors have no heat that later effects could put right.
-  return candidate.sensor_type && leads_away(fit.model, kMostWorse_ratio) ? "the model that has it follows the runs worse" : "";
+  return candidate.sensor_type && leads_away(so_far_.after.model, fit.model, input_.runs, kMostWorse_ratio)
+             ? "the model that has it follows the runs worse"
+             : "";
 }
 
 RefitResult Trials::from_step(const std::vector<Candidate>& added, const std::vector<double>& size_share, const Eigen::VectorXd& step,

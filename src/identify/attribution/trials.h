@@ -22,8 +22,6 @@ class Trials {
   [[nodiscard]] RefitResult of_term(const JudgedCandidate& judged, double promised_nats) const;
   /// Several of a round's candidates at once.
   [[nodiscard]] RefitResult of_set(const SetScore& set, const std::vector<Candidate>& candidates) const;
-  /// What explains the unknown from second to second may still lead the model away over a whole run.
-  [[nodiscard]] bool leads_away(const ExtendedModel& model, double most_ratio) const;
   /// Why an effect that was tried gets no name; empty where it may.
   [[nodiscard]] std::string_view why_not(const JudgedCandidate& judged, const RefitResult& fit) const;
 

@@ -1,5 +1,5 @@
 // How the diagnosis does on motors of which everything is known: one table.
-//   heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [unlogged N] [hard N] [interval N]
+//   heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [unlogged N] [calibrated N] [hard N] [interval N]
 //     [effect NAME SIZE SEED]; NAME also of an outsider, whose size is 1
 // One line per case, wrong ones marked with X, with what the tool weighed; then the table.
 #include <fmt/format.h>
@@ -37,6 +37,10 @@ const std::vector<Hardship>& hardships() {
 struct Marks {
   Share false_alarm, detected, right_of_detected, right_of_visible, among_look_alikes, pairs_right, one_of_pair, outsiders_right,
       left_unnamed, given_a_name, interval_covers, near_floor;
+  /// Of models that were calibrated before: parts that hang together, and loose ones.
+  struct Calibrated {
+    Share false_alarm, detected, right;
+  } whole, loose;
   double seconds_s = 0.0;
   int cases = 0;
   std::vector<double> after_over_floor;
@@ -201,6 +205,34 @@ void examine_strangers(Marks& marks, int number) {
   }
 }
 
+/// Motors of parts that hang together well or hardly at all, with a model that was calibrated before anything was missing.
+void examine_calibrated(Marks& marks, int number) {
+  constexpr double kWhole_ratio = 0.15;
+  const std::vector<double> metal_ratios{0.02, 0.05, 0.1, 0.2, 0.5, 1.0};
+  const std::vector<const Subject*> visible = visible_subjects();
+  for (int i = 0; i < number; ++i) {
+    const auto seed = static_cast<std::uint64_t>(80000 + i);
+    Case sealed = sealed_case({}, seed);
+    sealed.is_calibrated = true;
+    sealed.metal_ratio = metal_ratios[static_cast<std::size_t>(i) % metal_ratios.size()];
+    Marks::Calibrated& share = sealed.metal_ratio < kWhole_ratio ? marks.loose : marks.whole;
+    const Answer nothing = examined(marks, sealed);
+    share.false_alarm.add(!is_silent(nothing));
+    say(fmt::format("nothing; calibrated, metal x {}", sealed.metal_ratio), seed, nothing, is_silent(nothing));
+    const Subject& subject = *visible[static_cast<std::size_t>(i) % visible.size()];
+    Dice dice(seed);
+    const double size = size_of(dice);
+    sealed.missing = subject.make(size);
+    const Answer answer = examined(marks, sealed);
+    const bool is_right = names_only(answer.named, {&subject});
+    share.detected.add(!is_silent(answer));
+    if (!is_silent(answer)) {
+      share.right.add(is_right);
+    }
+    say(fmt::format("{} x {:.2f}; calibrated, metal x {}", subject.name, size, sealed.metal_ratio), seed, answer, is_right);
+  }
+}
+
 void examine_hardships(Marks& marks, int number) {
   const std::vector<const Subject*> visible = visible_subjects();
   for (const Hardship& hardship : hardships()) {
@@ -246,6 +278,12 @@ void print_table(Marks& marks) {
   row("outside the catalogue: unexplained, node and driver right", ">= 90 %", in_words(marks.outsiders_right));
   row("heat that no signal follows: given a name", "<= 5 %", in_words(marks.given_a_name));
   row("heat that no signal follows: unexplained, node right, no name", "", in_words(marks.left_unnamed));
+  for (const auto& [what, share] :
+       {std::pair("calibrated before", marks.whole), std::pair("calibrated before, of loose parts", marks.loose)}) {
+    row(fmt::format("{}: false alarm", what), "", in_words(share.false_alarm));
+    row(fmt::format("{}: detected", what), "", in_words(share.detected));
+    row(fmt::format("{}: right, of those detected", what), "", in_words(share.right));
+  }
   row("unseen runs: error after / floor, median", "<= 1.1", fmt::format("{:.2f}", at_share(marks.after_over_floor, 0.5)));
   row("unseen runs: error after / floor, 90 % of cases below", "", fmt::format("{:.2f}", at_share(marks.after_over_floor, 0.9)));
   row("unseen runs: cases with error after <= 1.1 floor", "", in_words(marks.near_floor));
@@ -278,43 +316,61 @@ bool meets_targets(const Marks& marks) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Marks marks;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string what = argv[i];
-    const int number = std::atoi(argv[i + 1]);
-    if (what == "nothing") {
-      examine_nothing(marks, number);
-    } else if (what == "single") {
-      examine_singles(marks, number);
-    } else if (what == "pair") {
-      examine_pairs(marks, number);
-    } else if (what == "outside") {
-      examine_outsiders(marks, number);
-    } else if (what == "unlogged") {
-      examine_strangers(marks, number);
-    } else if (what == "hard") {
-      examine_hardships(marks, number);
-    } else if (what == "interval") {
-      examine_intervals(marks, number);
-    } else if (what == "effect" && i + 3 < argc) {
-      for (const Subject& subject : subjects()) {
-        if (subject.name == argv[i + 1]) {
-          examine_single(marks, subject, std::atof(argv[i + 2]), static_cast<std::uint64_t>(std::atoi(argv[i + 3])));
-        }
-      }
-      for (const Outsider& outsider : outsiders()) {
-        if (outsider.name == argv[i + 1]) {
-          examine_outsider(marks, outsider, static_cast<std::uint64_t>(std::atoi(argv[i + 3])));
-        }
-      }
-      for (const Outsider& stranger : strangers()) {
-        if (stranger.name == argv[i + 1]) {
-          examine_stranger(marks, stranger, static_cast<std::uint64_t>(std::atoi(argv[i + 3])));
-        }
-      }
-      i += 2;
+namespace {
+
+/// Subjects, outsiders and strangers of that name; false where there is none.
+bool examine_named(Marks& marks, std::string_view name, double size, std::uint64_t seed) {
+  int found = 0;
+  for (const Subject& subject : subjects()) {
+    if (subject.name == name) {
+      examine_single(marks, subject, size, seed);
+      ++found;
     }
+  }
+  for (const Outsider& outsider : outsiders()) {
+    if (outsider.name == name) {
+      examine_outsider(marks, outsider, seed);
+      ++found;
+    }
+  }
+  for (const Outsider& stranger : strangers()) {
+    if (stranger.name == name) {
+      examine_stranger(marks, stranger, seed);
+      ++found;
+    }
+  }
+  return found > 0;
+}
+
+int usage() {
+  fmt::print(stderr,
+             "usage: heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [unlogged N] [calibrated N] [hard N]\n"
+             "         [interval N] [effect NAME SIZE SEED]\n"
+             "example: heatsoak_attribution_table nothing 10 single 1\n");
+  return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::map<std::string, void (*)(Marks&, int)> parts{
+      {"nothing", examine_nothing},    {"single", examine_singles},        {"pair", examine_pairs},     {"outside", examine_outsiders},
+      {"unlogged", examine_strangers}, {"calibrated", examine_calibrated}, {"hard", examine_hardships}, {"interval", examine_intervals},
+  };
+  Marks marks;
+  for (int i = 1; i < argc; i += 2) {
+    const auto part = parts.find(argv[i]);
+    if (part != parts.end() && i + 1 < argc && std::atoi(argv[i + 1]) > 0) {
+      part->second(marks, std::atoi(argv[i + 1]));
+    } else if (std::string_view(argv[i]) == "effect" && i + 3 < argc &&
+               examine_named(marks, argv[i + 1], std::atof(argv[i + 2]), static_cast<std::uint64_t>(std::atoi(argv[i + 3])))) {
+      i += 2;
+    } else {
+      return usage();
+    }
+  }
+  if (marks.cases == 0) {
+    return usage();
   }
   print_table(marks);
   return meets_targets(marks) ? 0 : 1;
