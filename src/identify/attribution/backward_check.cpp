@@ -7,11 +7,11 @@
 
 #include "base/parallel.h"
 #include "base/quantity.h"
-#include "identify/attribution/found_effects.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/open_loop.h"
 #include "identify/attribution/terms.h"
 #include "identify/attribution/uneven_bodies.h"
+#include "identify/interval.h"
 
 namespace heatsoak {
 namespace {
@@ -35,20 +35,6 @@ std::vector<std::string> nodes_of(const AcceptedTerm& term, const std::vector<Dr
     }
   }
   return nodes;
-}
-
-/// What the model says of how large the candidate of a term is, in its own unit.
-double size_in(const ExtendedModel& model, const AcceptedTerm& term) {
-  const Candidate& candidate = *term.candidate;
-  if (candidate.sensor_type) {
-    return std::ranges::find(model.sensors, candidate.sensor_type, &SensorTerm::type)->value;
-  }
-  if (candidate.deviation_type) {
-    const auto is_own = [&](const RunDeviation& each) { return each.is_same(candidate.deviation_type, candidate.condition); };
-    return std::ranges::find_if(model.deviations, is_own)->deviation_share;
-  }
-  const EffectInPlace& effect = *effect_named(model.model.network, term.effect_name);
-  return model.model.values[static_cast<std::size_t>(effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())])];
 }
 
 class BackwardCheck {
@@ -131,18 +117,25 @@ class BackwardCheck {
     return refit(out_.after.model, input_.runs, out_.after.start_C, options_);
   }
 
-  /// The effect of least evidence beside all that sensors and bodies may do, where that is too little and the effect gives way to them.
-  bool drops_unsettled(const RefitResult& averaged) {
+  /// Beside all that sensors and bodies may do little is left of the term, or it may as well be nothing.
+  [[nodiscard]] bool is_unsettled(const AcceptedTerm& term, const RefitResult& averaged) const {
     constexpr double kSettled_share = 0.8;
-    double least_nats = rules_.least_gain_nats;
+    if (!term.candidate || term.loss_without_nats < 0.0) {
+      return term.loss_without_nats < 0.0;
+    }
+    const Eigen::Index own = size_coordinate(averaged.model, *term.candidate, term.effect_name);
+    const double size = std::abs(averaged.model.theta()[own]);
+    const bool gives_way = size < kSettled_share * std::abs(out_.after.model.theta()[own]);
+    return (gives_way && term.loss_without_nats < rules_.least_gain_nats) || size < kInterval_sd * std::sqrt(averaged.covariance(own, own));
+  }
+
+  /// Of those that are unsettled the one of least evidence.
+  bool drops_unsettled(const RefitResult& averaged) {
     std::size_t least = out_.terms.size();
     for (std::size_t i = 0; i < out_.terms.size(); ++i) {
-      AcceptedTerm& term = out_.terms[i];
-      term.loss_without_nats = averaged.evidence_nats - refit_with(all_but(i)).evidence_nats;
-      const bool gives_way =
-          term.candidate && std::abs(size_in(averaged.model, term)) < kSettled_share * std::abs(size_in(out_.after.model, term));
-      if (term.loss_without_nats < (gives_way ? least_nats : std::min(0.0, least_nats))) {
-        least_nats = term.loss_without_nats;
+      out_.terms[i].loss_without_nats = averaged.evidence_nats - refit_with(all_but(i)).evidence_nats;
+      if (is_unsettled(out_.terms[i], averaged) &&
+          (least == out_.terms.size() || out_.terms[i].loss_without_nats < out_.terms[least].loss_without_nats)) {
         least = i;
       }
     }

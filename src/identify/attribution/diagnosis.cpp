@@ -32,15 +32,20 @@ constexpr double kLeastSeen_share = 0.5;
 /// At its node as much heat is left as half of its own, or as the part of its own that nothing else could be, and nothing that could be
 /// added explains it: a signal that does, though the network cannot follow, must be half as sure as the effect. Constant heat may be no
 /// more than the mean of heat that comes and goes by the clock: there a quarter is enough. A sensor's error has no heat: beside
-/// unexplained heat it must still let the runs be followed plainly better.
+/// unexplained heat it must still let the runs be followed plainly better, and so must heat beside many times as much anywhere.
 bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   if (!effect.is_from_catalogue) {
     return told.flux_rms_after_W.contains(effect.node) && told.flux_rms_after_W.at(effect.node) > effect.mean_W;
   }
+  constexpr double kLeftByHeat_share = 0.7;
+  constexpr double kManyTimes_ratio = 4.0;
+  const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
+  if (std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
+      rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train)) {
+    return true;
+  }
   if (!effect.has_heat) {
-    constexpr double kLeftByHeat_share = 0.7;
-    return std::ranges::any_of(told.unexplained, [](const Unexplained& heat) { return !heat.is_in_model; }) &&
-           rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train);
+    return false;
   }
   return std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) {
     const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;

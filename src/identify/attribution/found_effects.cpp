@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "identify/attribution/mean_heat.h"
+#include "identify/attribution/terms.h"
 #include "identify/interval.h"
 
 namespace heatsoak {
@@ -22,7 +23,7 @@ class EffectTeller {
     effect.visibility_ratio = term.visibility_ratio;
     effect.confusable_with = term.confusable_with;
     if (term.candidate && term.candidate->sensor_type) {
-      tell_sensor(*term.candidate->sensor_type, effect);
+      tell_sensor(*term.candidate, effect);
       return effect;
     }
     if (term.candidate && term.candidate->deviation_type) {
@@ -56,44 +57,37 @@ class EffectTeller {
   }
 
  private:
-  void tell_sensor(const SensorEffectType& type, FoundEffect& effect) const {
+  void tell_sensor(const Candidate& candidate, FoundEffect& effect) const {
+    const SensorEffectType& type = *candidate.sensor_type;
     effect.id = type.name;
     effect.has_heat = false;
     effect.node = type.signal.substr(0, type.signal.rfind('_'));
     effect.description = type.summary;
     effect.look_alike = type.look_alike;
-    for (std::size_t i = 0; i < after().model.sensors.size(); ++i) {
-      if (after().model.sensors[i].type == &type) {
-        const auto own = after().model.model.free_count() + static_cast<Eigen::Index>(i);
-        const double sd = type.typical_size * std::sqrt(after().covariance(own, own));
-        const double value = after().model.sensors[i].value;
-        FittedParameter size{std::string(type.size.key), std::string(type.size.unit), value,
-                             std::max(value - kInterval_sd * sd, type.size.range.low), value + kInterval_sd * sd};
-        drop_interval_at_bound(own, size);
-        effect.parameters.push_back(std::move(size));
-        effect.p_value = p_of(value, sd);
-      }
-    }
+    tell_size(candidate, type.size, type.typical_size, type.size.range.low, effect);
+  }
+
+  /// Of what is no effect of the network: its only figure, `unit_size` for each unit of its coordinate.
+  void tell_size(const Candidate& candidate, const ParameterSpec& spec, double unit_size, double low, FoundEffect& effect) const {
+    const Eigen::Index own = size_coordinate(after().model, candidate, {});
+    const double value = unit_size * after().model.theta()[own];
+    const double sd = unit_size * std::sqrt(after().covariance(own, own));
+    FittedParameter size{std::string(spec.key), std::string(spec.unit), value, std::max(value - kInterval_sd * sd, low),
+                         value + kInterval_sd * sd};
+    drop_interval_at_bound(own, size);
+    effect.parameters.push_back(std::move(size));
+    effect.p_value = p_of(value, sd);
   }
 
   void tell_deviation(const Candidate& candidate, FoundEffect& effect) const {
     const RunDeviationType& type = *candidate.deviation_type;
-    const auto& terms = after().model.deviations;
-    const auto place =
-        std::ranges::find_if(terms, [&](const RunDeviation& each) { return each.is_same(&type, candidate.condition); }) - terms.begin();
-    const Eigen::Index own = after().model.first_deviation() + place;
-    const double value = terms[static_cast<std::size_t>(place)].deviation_share;
-    const double sd = type.usual * std::sqrt(after().covariance(own, own));
     effect.id = type.name;
     effect.node = type.node;
     effect.condition = candidate.condition;
     effect.description = type.summary;
     effect.look_alike = type.look_alike;
-    FittedParameter size{std::string(type.size.key), std::string(type.size.unit), value,
-                         std::max(value - kInterval_sd * sd, std::max(-1.0, type.size.range.low)), value + kInterval_sd * sd};
-    drop_interval_at_bound(own, size);
-    effect.parameters.push_back(std::move(size));
-    effect.p_value = p_of(value, sd);
+    tell_size(candidate, type.size, type.usual, std::max(-1.0, type.size.range.low), effect);
+    const double value = effect.parameters.front().value;
     const Network& network = after().model.model.network;
     const HeatOfEffect heat = heat_of(
         after(), runs_, [&](const EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);

@@ -154,6 +154,19 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   return out;
 }
 
+Eigen::Index size_coordinate(const ExtendedModel& model, const Candidate& candidate, std::string_view effect_name) {
+  if (candidate.sensor_type) {
+    return model.model.free_count() + (std::ranges::find(model.sensors, candidate.sensor_type, &SensorTerm::type) - model.sensors.begin());
+  }
+  if (candidate.deviation_type) {
+    const auto is_own = [&](const RunDeviation& each) { return each.is_same(candidate.deviation_type, candidate.condition); };
+    return model.first_deviation() + (std::ranges::find_if(model.deviations, is_own) - model.deviations.begin());
+  }
+  const auto effect = std::ranges::find(model.model.network.effects(), effect_name, &EffectInPlace::name);
+  const int place = effect->parameter_index[static_cast<std::size_t>(candidate.size_parameter())];
+  return std::ranges::find(model.model.free, place, &FreeParameter::place) - model.model.free.begin();
+}
+
 std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
   return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
 }
