@@ -74,10 +74,16 @@ Json tests_json(const std::vector<InnovationTests>& tests) {
 Json unexplained_json(const Unexplained& heat) {
   Json json{{"node", heat.node},
             {"drivers", heat.drivers},
-            {"heat_W", {{"mean", rounded(heat.mean_W, 4)}, {"max", rounded(heat.peak_W, 4)}, {"rms", rounded(heat.rms_W, 4)}}},
+            {"heat_W", {{"mean", rounded(heat.mean_W, 4)}, {"max", rounded(heat.peak_W, 4)}}},
             {"time_scale_s", rounded(heat.time_scale_s, 1)},
             {"nats", rounded(heat.gain_nats, 2)},
             {"in_model", heat.is_in_model}};
+  if (heat.drivers.empty()) {
+    json["heat_W"]["rms"] = rounded(heat.rms_W, 4);
+  }
+  if (!heat.or_nodes.empty()) {
+    json["or_nodes"] = heat.or_nodes;
+  }
   if (!heat.times.empty()) {
     json["drivers"].push_back(heat.times);
     json["times"] = heat.times;

@@ -133,8 +133,10 @@ bool is_leaving(const Unexplained& heat) {
 
 std::string unexplained_in_words(const Unexplained& heat) {
   if (heat.drivers.empty()) {
-    return fmt::format("Unexplained: {} W rms into the {} that come and go within {:.0f} s; no measured signal follows them.",
-                       significant(heat.rms_W, 2), heat.node, heat.time_scale_s);
+    return fmt::format("Unexplained: {} W rms into the {}{} that come and go within {:.0f} s; no measured signal follows them.",
+                       significant(heat.rms_W, 2), heat.node,
+                       heat.or_nodes.empty() ? "" : fmt::format(" (or the {}, which has no sensor)", fmt::join(heat.or_nodes, " or ")),
+                       heat.time_scale_s);
   }
   const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == kTimeDriver;
   const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);

@@ -248,36 +248,62 @@ class Teller {
     if (out_.selection.open_curve) {
       add_curve(*out_.selection.open_curve, {});
     }
-    for (const auto& [node, rms_W] : out_.flux_rms_after_W) {
-      if (rms_W > kTolerableUnknown_share * out_.selection.mean_heat_W && !is_told(node)) {
-        if (const ScanResult* const refused = driver_of_what_was_refused(node)) {
-          add_curve(*refused, {});
-          continue;
-        }
-        Unexplained heat;
-        heat.node = node;
-        heat.rms_W = rms_W;
-        for (const FluxTrace& trace : out_.flux) {
-          if (trace.node == node) {
-            for (const double each_W : trace.after_W) {
-              heat.peak_W = std::max(heat.peak_W, std::abs(each_W));
-              heat.mean_W += std::abs(each_W);
-            }
-          }
-        }
-        double count = 0.0;
-        for (const FluxTrace& trace : out_.flux) {
-          count += trace.node == node ? static_cast<double>(trace.after_W.size()) : 0.0;
-        }
-        heat.mean_W /= count;
-        heat.time_scale_s = flux_at(after()).time_scale_s;
+    for (const auto& [node, members] : unknown_by_sensor()) {
+      Unexplained heat = unnamed_heat(node, members);
+      if (heat.rms_W <= kTolerableUnknown_share * out_.selection.mean_heat_W || is_told(members)) {
+        continue;
+      }
+      if (const ScanResult* const refused = driver_of_what_was_refused(members)) {
+        add_curve(*refused, {});
+      } else {
         out_.unexplained.push_back(std::move(heat));
       }
     }
   }
 
+  [[nodiscard]] bool has_sensor(const std::string& node) const {
+    return std::ranges::any_of(
+        input_.train, [&](const MeasuredRun& run) { return std::ranges::find(run.sensors, node, &Sensor::node) != run.sensors.end(); });
+  }
+
+  /// Nodes that unknown heat may enter, by the one whose sensor shows it: itself, or the first that has one.
+  [[nodiscard]] std::map<std::string, std::vector<std::string>> unknown_by_sensor() const {
+    std::map<std::string, std::vector<std::string>> shown;
+    const auto first = std::ranges::find_if(out_.flux_rms_after_W, [&](const auto& each) { return has_sensor(each.first); });
+    for (const auto& [node, rms_W] : out_.flux_rms_after_W) {
+      shown[has_sensor(node) || first == out_.flux_rms_after_W.end() ? node : first->first].push_back(node);
+    }
+    return shown;
+  }
+
+  /// Of all `members` together.
+  [[nodiscard]] Unexplained unnamed_heat(const std::string& node, const std::vector<std::string>& members) const {
+    Unexplained heat;
+    heat.node = node;
+    std::ranges::copy_if(members, std::back_inserter(heat.or_nodes), [&](const std::string& other) { return other != node; });
+    heat.time_scale_s = flux_at(after()).time_scale_s;
+    std::map<std::string, Eigen::VectorXd> of_run_W;
+    for (const FluxTrace& trace : out_.flux) {
+      if (std::ranges::find(members, trace.node) != members.end()) {
+        const Eigen::Map<const Eigen::VectorXd> own_W(trace.after_W.data(), static_cast<Eigen::Index>(trace.after_W.size()));
+        Eigen::VectorXd& sum_W = of_run_W[trace.run];
+        sum_W = sum_W.size() == 0 ? Eigen::VectorXd(own_W) : Eigen::VectorXd(sum_W + own_W);
+      }
+    }
+    double count = 0.0;
+    for (const auto& [run, sum_W] : of_run_W) {
+      heat.peak_W = std::max(heat.peak_W, sum_W.cwiseAbs().maxCoeff());
+      heat.mean_W += sum_W.cwiseAbs().sum();
+      heat.rms_W += sum_W.squaredNorm();
+      count += static_cast<double>(sum_W.size());
+    }
+    heat.mean_W /= count;
+    heat.rms_W = std::sqrt(heat.rms_W / count);
+    return heat;
+  }
+
   /// A law that the base could stand for gets no name, but the signal that its heat goes with is known. Null where nothing was refused.
-  [[nodiscard]] const ScanResult* driver_of_what_was_refused(const std::string& node) const {
+  [[nodiscard]] const ScanResult* driver_of_what_was_refused(const std::vector<std::string>& nodes) const {
     if (!out_.selection.leaves_doubt() || out_.selection.rounds.empty()) {
       return nullptr;
     }
@@ -286,7 +312,8 @@ class Teller {
         out_.selection.terms.empty() && out_.selection.changed.empty() ? out_.selection.rounds.front() : out_.selection.rounds.back();
     const std::vector<ScanResult>& scan = round.scan;
     const auto found = std::ranges::find_if(scan, [&](const ScanResult& each) {
-      return each.term.node == node && !each.leaves_heat && each.gain_nats >= SelectionRules{}.least_gain_nats;
+      return std::ranges::find(nodes, each.term.node) != nodes.end() && !each.leaves_heat &&
+             each.gain_nats >= SelectionRules{}.least_gain_nats;
     });
     return found == scan.end() ? nullptr : &*found;
   }
@@ -310,8 +337,10 @@ class Teller {
     }
   }
 
-  [[nodiscard]] bool is_told(const std::string& node) const {
-    return std::ranges::any_of(out_.unexplained, [&](const Unexplained& each) { return each.node == node; });
+  /// Whether something was said of the heat into one of the nodes.
+  [[nodiscard]] bool is_told(const std::vector<std::string>& nodes) const {
+    return std::ranges::any_of(out_.unexplained,
+                               [&](const Unexplained& each) { return std::ranges::find(nodes, each.node) != nodes.end(); });
   }
 
   void add_curve(const ScanResult& curve, const std::vector<std::string>& others) {

@@ -22,12 +22,13 @@ struct DiagnosisInput {
 };
 
 struct Unexplained {
-  std::string node;
+  std::string node;                   ///< whose sensor shows it
+  std::vector<std::string> or_nodes;  ///< that it may enter as well: they have no sensor
   std::vector<std::string> drivers;  ///< empty: no measured signal explains it
   std::string times;                 ///< signal that multiplies what goes with the driver; empty: none
   double mean_W = 0.0;
   double peak_W = 0.0;
-  double rms_W = 0.0;
+  double rms_W = 0.0;  ///< of a curve the mean magnitude
   double time_scale_s = 0.0;
   double gain_nats = 0.0;
   std::vector<double> knots;
