@@ -10,14 +10,18 @@
 namespace heatsoak {
 namespace {
 
-std::string errors_in_words(const Errors& before, const Errors& after, std::string_view where) {
+/// What the model's own figures do when they are fitted alone stands between, so that nobody takes their share for that of an effect.
+std::string errors_in_words(const Errors& before, const Errors& refitted, const Errors& after, std::string_view where) {
   std::string text;
   for (const auto& [signal, error] : before) {
     const auto found = after.find(signal);
     if (found != after.end()) {
-      text += fmt::format("{} of the {}: {:.2g} K rms before, {:.2g} K after.",
+      const auto own = refitted.find(signal);
+      text += fmt::format("{} of the {}: {:.2g} K rms before, {}{:.2g} K after.",
                           text.empty() ? fmt::format("On {}, error", where) : std::string(" Error"), signal.substr(0, signal.rfind('_')),
-                          error.rmse_K, found->second.rmse_K);
+                          error.rmse_K,
+                          own == refitted.end() ? "" : fmt::format("{:.2g} K with its own figures refitted alone, ", own->second.rmse_K),
+                          found->second.rmse_K);
     }
   }
   return text;
@@ -173,7 +177,11 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
     all.push_back(unexplained_in_words(heat));
   }
   const bool is_held_out = !diagnosis.before_holdout.empty();
+  const bool is_more = !diagnosis.effects.empty();
   all.push_back(errors_in_words(is_held_out ? diagnosis.before_holdout : diagnosis.before_train,
+                                !is_more      ? Errors{}
+                                : is_held_out ? diagnosis.refitted_holdout
+                                              : diagnosis.refitted_train,
                                 is_held_out ? diagnosis.after_holdout : diagnosis.after_train,
                                 is_held_out ? "runs the fit never saw" : "the training runs") +
                 doubts_in_words(diagnosis));
