@@ -27,7 +27,9 @@ void refuse_repeated(std::span<const Recording> fitted, std::span<const Recordin
   for (const auto& recordings : {fitted, held_out}) {
     for (const Recording& recording : recordings) {
       std::string fingerprint = fingerprint_of(recording);
-      const auto found = std::ranges::find_if(seen, [&](const auto& other) { return share_rows(other.first, fingerprint); });
+      const auto found = std::ranges::find_if(seen, [&](const auto& other) {
+        return share_rows(other.first, fingerprint) || is_cut_from(recording, *other.second) || is_cut_from(*other.second, recording);
+      });
       if (found != seen.end()) {
         repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->second->file.string())});
       }

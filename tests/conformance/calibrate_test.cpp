@@ -162,6 +162,20 @@ TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
   }
 }
 
+TEST(Calibrate, RowsCutOutOfALogDoNotTestIt) {
+  const TemporaryFolder folder;
+  const auto cut = [](std::vector<CsvCells>& rows) { rows.erase(rows.begin() + 1, rows.begin() + 300); };
+  const auto on_its_own_clock = [&](std::vector<CsvCells>& rows) {
+    cut(rows);
+    each_cell(0, [](double time_s) { return std::to_string(time_s - 299.0); })(rows);
+  };
+  write(folder.path() / "cut.csv", spoilt(on_its_own_clock));
+  const std::string log = (kSoak / "match_1.csv").string();
+  const ProgramRun found = run({"calibrate", "--motor", kMotor, "--out", "model.toml", log, "--holdout", "cut.csv"}, in(folder.path()));
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.err, HasSubstr("cut.csv: error: holds the same rows as"));
+}
+
 /// A motor that starts warm gives degrees Fahrenheit away by nothing but what no model of it follows.
 TEST(Calibrate, ModelThatIsTensOfKelvinOffIsRefused) {
   for (const auto& [scale_ratio, exit_code] : {std::pair(1.0, 0), std::pair(2.2, 3)}) {

@@ -123,6 +123,24 @@ std::string balance_table(const Diagnosis& diagnosis) {
   return text + "</table>\n";
 }
 
+/// What of the innovations is not as it should be, and what that means for the figures above.
+std::string tests_in_words(const std::vector<InnovationTests>& tests) {
+  constexpr double kWhite_probability = 0.01;
+  constexpr double kLow_ratio = 0.7, kHigh_ratio = 1.4;
+  std::string words;
+  for (const InnovationTests& test : tests) {
+    if (test.ljung_box_probability < kWhite_probability || test.periodogram_ratio > 1.0) {
+      words += fmt::format(" What is left of {} can still be foretold from one second to the next: its intervals are less sure.",
+                           test.signal);
+    }
+    if (test.variance_ratio < kLow_ratio || test.variance_ratio > kHigh_ratio) {
+      words += fmt::format(" The noise of {} is {} than what its log was taken to have.", test.signal,
+                           test.variance_ratio < 1.0 ? "smaller" : "larger");
+    }
+  }
+  return words.empty() ? "" : "<p>" + words.substr(1) + "</p>\n";
+}
+
 std::string test_table(const Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"innovations of", "model", "variance (1 is right)", "Ljung-Box p (40 lags)",
                                       "cumulated periodogram / band (below 1 is white)", "kurtosis / normal", "correlated with"},
@@ -140,7 +158,7 @@ std::string test_table(const Diagnosis& diagnosis) {
   };
   add(diagnosis.tests_before, "before");
   add(diagnosis.tests_after, "after");
-  return text + "</table>\n";
+  return text + "</table>\n" + tests_in_words(diagnosis.tests_after);
 }
 
 /// With its times where a part of the same recording stands on the other side.

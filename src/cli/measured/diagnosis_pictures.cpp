@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,16 +25,25 @@ struct Axis {
   }
 };
 
+/// In the order in which they stand behind each other.
+std::string listed(const std::vector<std::string>& runs) {
+  constexpr std::size_t kMost = 6;
+  return runs.size() > kMost ? fmt::format("{} runs, {} to {}", runs.size(), runs.front(), runs.back())
+                             : fmt::format("{}", fmt::join(runs, ", "));
+}
+
 ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before, const ExtendedModel& after,
                           const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them, const std::string& title) {
   ChartPanel panel{title, "measured − model / K", {}, {}, {}};
   ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
+  std::vector<std::string> names;
   Axis axis;
   for (const MeasuredRun& run : runs) {
     const auto found = std::ranges::find(run.sensors, signal, &Sensor::signal);
     if (found == run.sensors.end()) {
       continue;
     }
+    names.push_back(run.name);
     const Eigen::Index sensor = found - run.sensors.begin();
     for (const auto& [curve, model] : {std::pair(&old, &before), std::pair(&now, &after)}) {
       const Eigen::VectorXd off_K = run.measured_C.col(sensor) - open_loop_C(*model, run, before_them).col(sensor);
@@ -43,6 +53,7 @@ ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before
     }
     axis.begin_min = now.x.back() + 0.5;
   }
+  panel.title += ": " + listed(names);
   panel.curves = {old, now};
   return panel;
 }
@@ -73,11 +84,13 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
     ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
     ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
     ChartBand band{"95 %", {}, {}, {}, 0};
+    std::vector<std::string> names;
     double begin_min = 0.0;
     for (const FluxTrace& trace : diagnosis.flux) {
       if (trace.node != node) {
         continue;
       }
+      names.push_back(trace.run);
       for (std::size_t k = 0; k < trace.time_s.size(); ++k) {
         const double x = begin_min + (trace.time_s[k] - trace.time_s.front()) / 60.0;
         old.x.push_back(x), old.y.push_back(trace.before_W[k]);
@@ -90,6 +103,7 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
       now.x.push_back(now.x.back()), now.y.push_back(kGap);
       begin_min = now.x.back() + 0.5;
     }
+    panel.title += ": " + listed(names);
     panel.curves = {old, now};
     panel.bands = {band};
     chart.panels.push_back(panel);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <unordered_set>
 #include <vector>
 
 namespace heatsoak {
@@ -57,6 +58,38 @@ std::optional<Rows> parsed(std::string_view text) {
   return number(blank + 1, dash, rows.from_s) && number(dash + 1, text.size() - 2, rows.to_s) ? std::optional(rows) : std::nullopt;
 }
 
+constexpr std::size_t kWindow_rows = 60;
+
+/// Of every stretch of sixty rows its hash (Karp and Rabin 1987), or 0 where too few rows differ from the one before.
+std::vector<std::uint64_t> window_hashes(const std::vector<const Channel*>& channels) {
+  constexpr std::uint64_t kBase = 0x9E37'79B9'7F4A'7C15ULL;
+  constexpr std::size_t kLeastChanging_rows = 40;
+  std::uint64_t last_power = 1;
+  for (std::size_t i = 0; i < kWindow_rows; ++i) {
+    last_power *= kBase;
+  }
+  const std::size_t rows = channels.empty() ? 0 : channels.front()->values.size();
+  std::vector<std::uint64_t> of_row(rows), of_window(rows < kWindow_rows ? 0 : rows - kWindow_rows + 1);
+  std::uint64_t rolling = 0;
+  std::size_t changing = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    Hash hash;
+    std::ranges::for_each(channels, [&](const Channel* channel) { hash.add(bits_of(channel->values[row])); });
+    of_row[row] = hash.value();
+    rolling = rolling * kBase + of_row[row];
+    changing += row > 0 && of_row[row] != of_row[row - 1] ? 1 : 0;
+    if (row >= kWindow_rows) {
+      rolling -= last_power * of_row[row - kWindow_rows];
+      const std::size_t gone = row - kWindow_rows;
+      changing -= of_row[gone + 1] != of_row[gone] ? 1 : 0;
+    }
+    if (row + 1 >= kWindow_rows) {
+      of_window[row + 1 - kWindow_rows] = changing >= kLeastChanging_rows ? rolling : 0;
+    }
+  }
+  return of_window;
+}
+
 }  // namespace
 
 std::string content_hash(const Recording& recording) {
@@ -91,6 +124,34 @@ bool share_rows(std::string_view fingerprint, std::string_view other) {
   const std::optional<Rows> one = parsed(fingerprint);
   const std::optional<Rows> two = parsed(other);
   return one && two && one->content == two->content && one->from_s < two->to_s && two->from_s < one->to_s;
+}
+
+bool is_cut_from(const Recording& part, const Recording& whole) {
+  constexpr double kMost_share = 0.5;
+  std::vector<const Channel*> of_part, of_whole;
+  bool is_of_motor = false;
+  for (const Channel& channel : part.channels) {
+    if (const Channel* const same = whole.find(channel.quantity.key)) {
+      of_part.push_back(&channel);
+      of_whole.push_back(same);
+      is_of_motor = is_of_motor || channel.quantity.kind == QuantityKind::temperature;
+    }
+  }
+  // Commands repeat as they were programmed, measured temperatures do not.
+  if (!is_of_motor) {
+    return false;
+  }
+  std::unordered_set<std::uint64_t> known;
+  const std::vector<std::uint64_t> whole_hashes = window_hashes(of_whole);
+  for (std::size_t row = 0; row < whole_hashes.size(); row += kWindow_rows) {
+    known.insert(whole_hashes[row]);
+  }
+  known.erase(0);
+  std::size_t same_rows = 0;
+  for (const std::uint64_t hash : window_hashes(of_part)) {
+    same_rows += known.contains(hash) ? kWindow_rows : 0;
+  }
+  return static_cast<double>(same_rows) > kMost_share * static_cast<double>(part.rows());
 }
 
 bool is_of_run(const Recording& recording, std::string_view run) {

@@ -35,11 +35,11 @@ const std::vector<Hardship>& hardships() {
 }
 
 struct Marks {
-  Share false_alarm, detected, right_of_detected, right_of_visible, among_look_alikes, pairs_right, one_of_pair, outsiders_right,
-      left_unnamed, given_a_name, interval_covers, near_floor;
+  Share false_alarm, says_nothing, detected, right_of_detected, right_of_visible, among_look_alikes, pairs_right, one_of_pair,
+      outsiders_right, left_unnamed, given_a_name, interval_covers, near_floor;
   /// Of models that were calibrated before: parts that hang together, and loose ones.
   struct Calibrated {
-    Share false_alarm, detected, right;
+    Share false_alarm, says_nothing, detected, right;
   } whole, loose;
   double seconds_s = 0.0;
   int cases = 0;
@@ -75,6 +75,7 @@ void examine_nothing(Marks& marks, int number) {
     const auto seed = static_cast<std::uint64_t>(10000 + i);
     const Answer answer = examined(marks, sealed_case({}, seed));
     marks.false_alarm.add(!is_silent(answer));
+    marks.says_nothing.add(answer.diagnosis.verdict == DiagnosisVerdict::nothing_missing);
     say("nothing", seed, answer, is_silent(answer));
   }
 }
@@ -269,6 +270,7 @@ void print_table(Marks& marks) {
     fmt::print("| {} | {} | {} |\n", score, target, reached);
   };
   row("nothing missing: false alarm", "<= 2 %", in_words(marks.false_alarm));
+  row("nothing missing: the verdict is nothing_missing", "", in_words(marks.says_nothing));
   row("single effects: detected", "", in_words(marks.detected));
   row("single effects: right, of those detected", ">= 98 %", in_words(marks.right_of_detected));
   row("single effects: right, of those visible", ">= 95 %", in_words(marks.right_of_visible));
