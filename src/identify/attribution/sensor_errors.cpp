@@ -123,7 +123,9 @@ SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>&
   constexpr std::array kBegin_noises{2.0, 10.0};
   std::array<SensorErrors, kBegin_noises.size()> wandering;
   std::array<double, kBegin_noises.size()> nats{};
-  in_parallel(kBegin_noises.size(), 0, [&](std::size_t i) {
+  // Known ones are the beginning themselves.
+  const std::size_t begins = known.wander_K.empty() ? kBegin_noises.size() : 1;
+  in_parallel(begins, 0, [&](std::size_t i) {
     wandering[i] = known;
     for (const MeasuredRun& run : runs) {
       for (const Sensor& sensor : run.sensors) {
@@ -134,7 +136,7 @@ SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>&
     Trial trial(fit, runs, grid, designs, little);
     nats[i] = climb(trial, wandering[i]);
   });
-  const auto best = std::ranges::max_element(nats);
+  const auto best = std::max_element(nats.begin(), nats.begin() + static_cast<std::ptrdiff_t>(begins));
   return *best > without_nats + kClearly_nats ? wandering[static_cast<std::size_t>(best - nats.begin())] : known;
 }
 
