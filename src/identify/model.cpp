@@ -34,7 +34,15 @@ double Model::slope_of(Eigen::Index parameter, double theta_value) const {
 std::vector<double> Model::values_at(const Eigen::VectorXd& theta) const {
   std::vector<double> all = values;
   for (Eigen::Index i = 0; i < free_count(); ++i) {
-    all[static_cast<std::size_t>(free[static_cast<std::size_t>(i)].place)] = value_of(i, theta[i]);
+    const FreeParameter& which = free[static_cast<std::size_t>(i)];
+    double& value = all[static_cast<std::size_t>(which.place)];
+    value = value_of(i, theta[i]);
+    // e^(log 3) is a little more than 3: a bound of the search is one of the figure.
+    if (value > which.high && theta[i] <= theta_of(i, which.high)) {
+      value = which.high;
+    } else if (value < which.low && theta[i] >= theta_of(i, which.low)) {
+      value = which.low;
+    }
   }
   return all;
 }

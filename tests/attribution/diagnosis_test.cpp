@@ -319,6 +319,43 @@ TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
   EXPECT_GT(experiments.front().expected_nats, 1.0);
 }
 
+/// The same copper wound for ten times the voltage takes a tenth of the current: the same heat, hence the same answer.
+TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
+  constexpr double kTurns_ratio = 10.0;
+  for (const std::string_view name : {"connection_resistance", "saturation", "load_friction"}) {
+    const Case one = sealed(subject(name).make(1.2), 60106);
+    DiagnosisInput input = question(one, record(one));
+    input.free.clear();
+    for (std::vector<MeasuredRun>* const runs : {&input.train, &input.holdout}) {
+      for (MeasuredRun& run : *runs) {
+        for (OperatingPoint<double>& at : run.at) {
+          at.current_rms_A /= kTurns_ratio;
+        }
+      }
+    }
+    Model& model = input.model.model;
+    for (std::size_t place = 0; place < model.values.size(); ++place) {
+      if (model.network.parameters()[place].name == "copper_loss.terminal_resistance") {
+        model.values[place] *= kTurns_ratio * kTurns_ratio;
+      }
+    }
+    const Diagnosis diagnosis = diagnose(input, {});
+    ASSERT_EQ(diagnosis.effects.size(), 1U) << name << ": " << diagnosis.description;
+    EXPECT_TRUE(names({diagnosis.effects.front().id}, subject(name))) << diagnosis.description;
+  }
+}
+
+TEST(Examination, TheBoundOfASearchIsOneOfTheFigure) {
+  Model model = model_before(record(sealed({}, 1)).make, 1).model;
+  Eigen::VectorXd theta = model.theta();
+  for (const double bound : {3.0, 0.7, 1.9}) {
+    FreeParameter& first = model.free.front();
+    first.low = first.high = bound;
+    theta[0] = std::log(bound);
+    EXPECT_EQ(model.values_at(theta)[static_cast<std::size_t>(first.place)], bound);
+  }
+}
+
 TEST(Examination, OrderOfRunsChangesNothing) {
   const Case one = sealed(subject("iron_loss_eddy").make(0.8), 12);
   const Runs runs = record(one);

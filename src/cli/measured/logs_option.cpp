@@ -26,7 +26,7 @@ struct LogPart {
 /// "run4.csv@0-60%" is the first 60 % of the time of run4.csv.
 LogPart log_part(const std::string& text) {
   const std::size_t at = text.rfind('@');
-  if (at == std::string::npos || !text.ends_with('%')) {
+  if (at == std::string::npos || text.find_first_not_of("0123456789.-% ", at + 1) != std::string::npos) {
     return {text};
   }
   const std::size_t dash = text.find('-', at);
@@ -36,7 +36,7 @@ LogPart log_part(const std::string& text) {
     share /= 100.0;
     return result.ec == std::errc() && result.ptr == text.data() + end;
   };
-  const bool is_sound = dash != std::string::npos && number(at + 1, dash, part.from_share) &&
+  const bool is_sound = text.ends_with('%') && dash != std::string::npos && number(at + 1, dash, part.from_share) &&
                         number(dash + 1, text.size() - 1, part.to_share) && part.from_share >= 0.0 && part.from_share < part.to_share &&
                         part.to_share <= 1.0;
   if (!is_sound) {

@@ -76,23 +76,54 @@ std::vector<std::vector<std::string>> placements(const Network& network, const E
   return all;
 }
 
-/// Of a motor of that size: what is typical in W, W/K and J/K grows with it.
-std::vector<double> scaled(const EffectType& type, std::vector<double> parameters, double scale) {
+/// What is typical of a motor beside one of some 50 W.
+struct MotorSize {
+  double heat_ratio = 1.0;     ///< in W, W/K, J/K
+  double current_ratio = 1.0;  ///< in A: of windings for another voltage
+};
+
+std::vector<double> scaled(const EffectType& type, std::vector<double> parameters, const MotorSize& size) {
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const std::string_view unit = unit_of(type.parameters, p, parameters);
-    if (type.parameters[p].choices.empty() && (unit.starts_with("W") || unit == "J/K")) {
-      parameters[p] *= scale;
+    if (!type.parameters[p].choices.empty()) {
+      continue;
+    }
+    if (unit.starts_with("W") || unit == "J/K") {
+      parameters[p] *= size.heat_ratio;
+    } else if (unit == "A") {
+      parameters[p] *= size.current_ratio;
+    } else if (unit == "ohm") {
+      parameters[p] *= size.heat_ratio / (size.current_ratio * size.current_ratio);
     }
   }
   return parameters;
 }
 
-double scale_of(const Model& model) {
+/// Currents of the usual order count as usual.
+double current_ratio_of(const std::vector<MeasuredRun>& runs) {
+  constexpr double kUsual_A = 8.0;
+  constexpr double kOrder_ratio = 2.5;
+  constexpr double kTop_share = 0.98;
+  std::vector<double> current_A;
+  for (const MeasuredRun& run : runs) {
+    std::ranges::transform(run.at, std::back_inserter(current_A), [](const OperatingPoint<double>& at) { return at.current_rms_A; });
+  }
+  std::erase_if(current_A, [](double each_A) { return !(each_A > 0.0); });
+  if (current_A.empty()) {
+    return 1.0;
+  }
+  const auto top = current_A.begin() + static_cast<std::ptrdiff_t>(kTop_share * static_cast<double>(current_A.size() - 1));
+  std::ranges::nth_element(current_A, top);
+  const double ratio = *top / kUsual_A;
+  return ratio < 1.0 / kOrder_ratio || ratio > kOrder_ratio ? ratio : 1.0;
+}
+
+MotorSize size_of(const Model& model, const std::vector<MeasuredRun>& runs) {
   double capacity_J_per_K = 0.0;
   for (int node = 0; node < model.network.state_count(); ++node) {
     capacity_J_per_K += model.values[static_cast<std::size_t>(model.network.capacity_index(node))];
   }
-  return std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K);
+  return {std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K), current_ratio_of(runs)};
 }
 
 std::string in_words(const Condition& condition) {
@@ -127,7 +158,8 @@ std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
 }
 
 /// What may be different in some of the runs without any signal of it: air that is moved or missing, heat from outside or not in the log.
-void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
+void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size,
+                                CandidateList& list) {
   const Network& network = model.model.network;
   for (const Condition& condition : conditions_of(runs)) {
     for (const std::string_view name : {"airflow", "constant_heat"}) {
@@ -144,7 +176,7 @@ void add_conditional_candidates(const ExtendedModel& model, const std::vector<Me
         for (std::size_t role = 1; role < type.nodes.size(); ++role) {
           candidate.nodes.emplace_back(type.nodes[role].default_node);
         }
-        candidate.parameters = scaled(type, type.candidacy.variants.front(), scale);
+        candidate.parameters = scaled(type, type.candidacy.variants.front(), size);
         if (!is_in(model, candidate)) {
           list.candidates.push_back(std::move(candidate));
         }
@@ -169,7 +201,7 @@ std::string id_of(const EffectType& type, const std::vector<std::string>& nodes)
   return std::string(type.name);
 }
 
-void add_network_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, double scale, CandidateList& list) {
+void add_network_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
   for (const EffectType& type : all_effects()) {
     if (type.candidacy.size_parameter < 0) {
       continue;
@@ -181,7 +213,7 @@ void add_network_candidates(const ExtendedModel& model, const std::vector<Measur
     for (const std::vector<std::string>& nodes : placements(model.model.network, type)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
-        Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, scale), variant++, {}};
+        Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, size), variant++, {}};
         if (!is_in(model, candidate)) {
           list.candidates.push_back(std::move(candidate));
         }
@@ -343,9 +375,9 @@ std::string_view Candidate::experiment() const {
 
 CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs) {
   CandidateList list;
-  const double scale = scale_of(model.model);
-  add_network_candidates(model, runs, scale, list);
-  add_conditional_candidates(model, runs, scale, list);
+  const MotorSize size = size_of(model.model, runs);
+  add_network_candidates(model, runs, size, list);
+  add_conditional_candidates(model, runs, size, list);
   for (const SensorEffectType& type : all_sensor_effects()) {
     const bool is_there = std::ranges::find(model.sensors, &type, &SensorTerm::type) != model.sensors.end();
     if (!is_there && is_measured(runs, type.signal)) {

@@ -14,6 +14,7 @@
 #include "identify/attribution/first_fit.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
+#include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
 #include "identify/turning_rows.h"
 
@@ -304,7 +305,7 @@ class Teller {
 
   /// A law that the base could stand for gets no name, but the signal that its heat goes with is known. Null where nothing was refused.
   [[nodiscard]] const ScanResult* driver_of_what_was_refused(const std::vector<std::string>& nodes) const {
-    if (!out_.selection.leaves_doubt() || out_.selection.rounds.empty()) {
+    if (!out_.selection.leaves_doubt() || out_.selection.rounds.empty() || std::ranges::any_of(input_.train, turns_unseen)) {
       return nullptr;
     }
     // The round whose model is the one that is left.

@@ -256,7 +256,9 @@ class Selector {
           })) {
         return false;
       }
-      out_.open_curve = out_.is_known(front) ? std::optional(front) : std::nullopt;
+      // In place of a speed that nobody logged another signal is no answer.
+      const bool is_answer = out_.is_known(front) && (!is_speed_open_ || driver_name(front) == kTimeDriver);
+      out_.open_curve = is_answer ? std::optional(front) : std::nullopt;
       // Heat that goes by the clock, or of which all laws together explain much less, is none of theirs.
       if (driver_name(front) == kTimeDriver || front.gain_nats > kOutweighed_ratio * std::max(best_nats, catalogue_nats)) {
         return false;
