@@ -37,14 +37,14 @@ const std::vector<Hardship>& hardships() {
 struct Marks {
   Share false_alarm, says_nothing, detected, right_of_detected, right_of_visible, among_look_alikes, pairs_right, one_of_pair,
       outsiders_right, left_unnamed, given_a_name, interval_covers, near_floor;
-  /// Of models that were calibrated before: parts that hang together, and loose ones.
-  struct Calibrated {
-    Share false_alarm, says_nothing, detected, right;
-  } whole, loose;
+  struct Harder {
+    Share false_alarm, detected, right;
+  };
+  Harder whole, loose;  ///< of models that were calibrated before: parts that hang together, and loose ones
   double seconds_s = 0.0;
   int cases = 0;
   std::vector<double> after_over_floor;
-  std::map<std::string, Share> hard_false_alarm, hard_right_of_detected, hard_detected;
+  std::map<std::string, Harder> hard;
   std::map<std::string, std::map<std::string, int>> named_instead;
 };
 
@@ -206,55 +206,44 @@ void examine_strangers(Marks& marks, int number) {
   }
 }
 
+/// Nothing missing, then an effect drawn by the case's own seed.
+void examine_harder(Marks& marks, Case sealed, int number, const std::string& kind, Marks::Harder& share) {
+  const std::vector<const Subject*> visible = visible_subjects();
+  const Answer nothing = examined(marks, sealed);
+  share.false_alarm.add(!is_silent(nothing));
+  say("nothing; " + kind, sealed.seed, nothing, is_silent(nothing));
+  const Subject& subject = *visible[static_cast<std::size_t>(number) % visible.size()];
+  Dice dice(sealed.seed);
+  const double size = size_of(dice);
+  sealed.missing = subject.make(size);
+  const Answer answer = examined(marks, sealed);
+  const bool is_right = names_only(answer.named, {&subject});
+  share.detected.add(!is_silent(answer));
+  if (!is_silent(answer)) {
+    share.right.add(is_right);
+  }
+  say(fmt::format("{} x {:.2f}; {}", subject.name, size, kind), sealed.seed, answer, is_right || is_silent(answer));
+}
+
 /// Motors of parts that hang together well or hardly at all, with a model that was calibrated before anything was missing.
 void examine_calibrated(Marks& marks, int number) {
   constexpr double kWhole_ratio = 0.15;
   const std::vector<double> metal_ratios{0.02, 0.05, 0.1, 0.2, 0.5, 1.0};
-  const std::vector<const Subject*> visible = visible_subjects();
   for (int i = 0; i < number; ++i) {
-    const auto seed = static_cast<std::uint64_t>(80000 + i);
-    Case sealed = sealed_case({}, seed);
+    Case sealed = sealed_case({}, static_cast<std::uint64_t>(80000 + i));
     sealed.is_calibrated = true;
     sealed.metal_ratio = metal_ratios[static_cast<std::size_t>(i) % metal_ratios.size()];
-    Marks::Calibrated& share = sealed.metal_ratio < kWhole_ratio ? marks.loose : marks.whole;
-    const Answer nothing = examined(marks, sealed);
-    share.false_alarm.add(!is_silent(nothing));
-    say(fmt::format("nothing; calibrated, metal x {}", sealed.metal_ratio), seed, nothing, is_silent(nothing));
-    const Subject& subject = *visible[static_cast<std::size_t>(i) % visible.size()];
-    Dice dice(seed);
-    const double size = size_of(dice);
-    sealed.missing = subject.make(size);
-    const Answer answer = examined(marks, sealed);
-    const bool is_right = names_only(answer.named, {&subject});
-    share.detected.add(!is_silent(answer));
-    if (!is_silent(answer)) {
-      share.right.add(is_right);
-    }
-    say(fmt::format("{} x {:.2f}; calibrated, metal x {}", subject.name, size, sealed.metal_ratio), seed, answer, is_right);
+    examine_harder(marks, sealed, i, fmt::format("calibrated, metal x {}", sealed.metal_ratio),
+                   sealed.metal_ratio < kWhole_ratio ? marks.loose : marks.whole);
   }
 }
 
 void examine_hardships(Marks& marks, int number) {
-  const std::vector<const Subject*> visible = visible_subjects();
   for (const Hardship& hardship : hardships()) {
     for (int i = 0; i < number; ++i) {
-      const auto seed = static_cast<std::uint64_t>(50000 + i);
-      Case sealed = sealed_case({}, seed);
+      Case sealed = sealed_case({}, static_cast<std::uint64_t>(50000 + i));
       hardship.make(sealed);
-      const Answer nothing = examined(marks, sealed);
-      marks.hard_false_alarm[hardship.name].add(!is_silent(nothing));
-      say(fmt::format("nothing; {}", hardship.name), seed, nothing, is_silent(nothing));
-      const Subject& subject = *visible[static_cast<std::size_t>(i) % visible.size()];
-      Dice dice(seed);
-      const double size = size_of(dice);
-      sealed.missing = subject.make(size);
-      const Answer answer = examined(marks, sealed);
-      const bool is_right = names_only(answer.named, {&subject});
-      marks.hard_detected[hardship.name].add(!is_silent(answer));
-      if (!is_silent(answer)) {
-        marks.hard_right_of_detected[hardship.name].add(is_right);
-      }
-      say(fmt::format("{} x {:.2f}; {}", subject.name, size, hardship.name), seed, answer, is_right || is_silent(answer));
+      examine_harder(marks, sealed, i, hardship.name, marks.hard[hardship.name]);
     }
   }
 }
@@ -280,20 +269,19 @@ void print_table(Marks& marks) {
   row("outside the catalogue: unexplained, node and driver right", ">= 90 %", in_words(marks.outsiders_right));
   row("heat that no signal follows: given a name", "<= 5 %", in_words(marks.given_a_name));
   row("heat that no signal follows: unexplained, node right, no name", "", in_words(marks.left_unnamed));
-  for (const auto& [what, share] :
-       {std::pair("calibrated before", marks.whole), std::pair("calibrated before, of loose parts", marks.loose)}) {
-    row(fmt::format("{}: false alarm", what), "", in_words(share.false_alarm));
-    row(fmt::format("{}: detected", what), "", in_words(share.detected));
-    row(fmt::format("{}: right, of those detected", what), "", in_words(share.right));
-  }
+  const auto harder = [&](const std::string& what, const Marks::Harder& share) {
+    row(what + ": false alarm", "", in_words(share.false_alarm));
+    row(what + ": detected", "", in_words(share.detected));
+    row(what + ": right, of those detected", "", in_words(share.right));
+  };
+  harder("calibrated before", marks.whole);
+  harder("calibrated before, of loose parts", marks.loose);
   row("unseen runs: error after / floor, median", "<= 1.1", fmt::format("{:.2f}", at_share(marks.after_over_floor, 0.5)));
   row("unseen runs: error after / floor, 90 % of cases below", "", fmt::format("{:.2f}", at_share(marks.after_over_floor, 0.9)));
   row("unseen runs: cases with error after <= 1.1 floor", "", in_words(marks.near_floor));
   row("95 % intervals of an effect's size hold the truth", "93-97 %", in_words(marks.interval_covers));
   for (const Hardship& hardship : hardships()) {
-    row(fmt::format("{}: false alarm", hardship.name), "", in_words(marks.hard_false_alarm[hardship.name]));
-    row(fmt::format("{}: detected", hardship.name), "", in_words(marks.hard_detected[hardship.name]));
-    row(fmt::format("{}: right, of those detected", hardship.name), "", in_words(marks.hard_right_of_detected[hardship.name]));
+    harder(hardship.name, marks.hard[hardship.name]);
   }
   fmt::print("\nmean time per diagnosis, beside whatever else this machine does: {:.2f} s\n", marks.seconds_s / std::max(1, marks.cases));
   for (const auto& [truth, answers] : marks.named_instead) {
