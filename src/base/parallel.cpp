@@ -19,7 +19,9 @@ void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t t
       progress(++done, total);
     }
   };
-  const auto all = [&] { tbb::parallel_for(std::size_t{0}, count, work, tbb::simple_partitioner()); };
+  // A job elsewhere that throws ends jobs beside it, not halves of those that have begun: who waits for their results would go on without.
+  tbb::task_group_context own(tbb::task_group_context::isolated);
+  const auto all = [&] { tbb::parallel_for(std::size_t{0}, count, work, tbb::simple_partitioner(), own); };
   if (threads > 0) {
     tbb::task_arena(std::min(threads, tbb::info::default_concurrency())).execute(all);
   } else {

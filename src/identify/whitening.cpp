@@ -12,9 +12,27 @@ namespace {
 constexpr int kMostSize = 3 * (Network::kMostNodes - 1);
 constexpr Eigen::Index kStrip = 8;
 
-template <int Size>
-using Square = Eigen::Matrix<double, Size, Size, Eigen::RowMajor, Size == Eigen::Dynamic ? kMostSize : Size,
-                             Size == Eigen::Dynamic ? kMostSize : Size>;
+/// How many temperatures, fluxes and slow errors of sensors a filter's state has, in this order.
+template <int X, int Q, int W>
+struct Fixed {
+  static constexpr int kMost = X + Q + W;
+  static constexpr Eigen::Index states() { return X; }
+  static constexpr Eigen::Index fluxes() { return Q; }
+  static constexpr Eigen::Index wanders() { return W; }
+  static constexpr Eigen::Index size() { return X + Q + W; }
+};
+
+struct Counted {
+  static constexpr int kMost = kMostSize;
+  Eigen::Index x, q, w;
+  [[nodiscard]] Eigen::Index states() const { return x; }
+  [[nodiscard]] Eigen::Index fluxes() const { return q; }
+  [[nodiscard]] Eigen::Index wanders() const { return w; }
+  [[nodiscard]] Eigen::Index size() const { return x + q + w; }
+};
+
+/// Of a filter's state, no room asked for.
+using SquareOfState = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostSize, kMostSize>;
 
 using ConstRowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
@@ -38,33 +56,81 @@ Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const Sen
       wander_forget_ratio_.push_back(std::exp(-run.duration_s[k] / noise.wander_time_scale_s));
     }
   }
-  switch (size_) {
-    case 4:
-      build<4>(noise);
-      break;
-    case 5:
-      build<5>(noise);
-      break;
-    case 6:
-      build<6>(noise);
-      break;
-    default:
-      build<Eigen::Dynamic>(noise);
+  for_layout([&](const auto& layout) { build(layout, noise); });
+}
+
+template <class With>
+void Whitening::for_layout(const With& with) const {
+  const Counted counted{run_->states, run_->fluxes, size_ - run_->states - run_->fluxes};
+  const auto is_taken = [&](const auto& layout) {
+    const bool fits = counted.x == layout.states() && counted.q == layout.fluxes() && counted.w == layout.wanders();
+    if (fits) {
+      with(layout);
+    }
+    return fits;
+  };
+  if (!(is_taken(Fixed<2, 2, 0>()) || is_taken(Fixed<2, 2, 1>()) || is_taken(Fixed<2, 2, 2>()) || is_taken(Fixed<3, 2, 0>()) ||
+        is_taken(Fixed<3, 2, 2>()) || is_taken(Fixed<3, 3, 0>()))) {
+    with(counted);
   }
 }
 
-/// [[Φ, Γ, 0], [0, ρ, 0], [0, 0, ρ']] of one interval.
+Whitening::Step Whitening::step_of(Eigen::Index interval) const {
+  const auto place = static_cast<std::size_t>(interval);
+  return {run_->transition.data() + interval * run_->states * run_->states, run_->injection.data() + interval * run_->states * run_->fluxes,
+          forget_ratio_[place], wanders_ ? wander_forget_ratio_[place] : 1.0};
+}
+
+/// F = [[Φ, Γ, 0], [0, ρ, 0], [0, 0, ρ']] of one interval.
 template <class Matrix>
 void Whitening::set_transition(Eigen::Index interval, Matrix& transition) const {
   const Eigen::Index x = run_->states;
   const Eigen::Index q = run_->fluxes;
-  const auto place = static_cast<std::size_t>(interval);
+  const Step step = step_of(interval);
   transition.setZero();
-  transition.topLeftCorner(x, x) = ConstRowMajorMap(run_->transition.data() + interval * x * x, x, x);
-  transition.block(0, x, x, q) = ConstRowMajorMap(run_->injection.data() + interval * x * q, x, q);
-  transition.diagonal().segment(x, q).setConstant(forget_ratio_[place]);
-  if (wanders_) {
-    transition.diagonal().tail(run_->sensors()).setConstant(wander_forget_ratio_[place]);
+  transition.topLeftCorner(x, x) = ConstRowMajorMap(step.transition, x, x);
+  transition.block(0, x, x, q) = ConstRowMajorMap(step.injection, x, q);
+  transition.diagonal().segment(x, q).setConstant(step.forget_ratio);
+  transition.diagonal().tail(size_ - x - q).setConstant(step.wander_forget_ratio);
+}
+
+/// F·P·Fᵀ, most of F being zero. `moved` is room for F·P.
+template <class Layout, class Matrix>
+void Whitening::predict(const Layout& layout, const Step& step, Matrix& covariance, Matrix& moved) {
+  const Eigen::Index x = layout.states();
+  const Eigen::Index q = layout.fluxes();
+  const auto forget_ratio = [&](Eigen::Index i) { return i < x + q ? step.forget_ratio : step.wander_forget_ratio; };
+  for (Eigen::Index i = 0; i < x; ++i) {
+    for (Eigen::Index c = 0; c < layout.size(); ++c) {
+      double sum = 0.0;
+      for (Eigen::Index j = 0; j < x; ++j) {
+        sum += step.transition[i * x + j] * covariance(j, c);
+      }
+      for (Eigen::Index f = 0; f < q; ++f) {
+        sum += step.injection[i * q + f] * covariance(x + f, c);
+      }
+      moved(i, c) = sum;
+    }
+  }
+  for (Eigen::Index i = 0; i < x; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      double sum = 0.0;
+      for (Eigen::Index c = 0; c < x; ++c) {
+        sum += moved(i, c) * step.transition[j * x + c];
+      }
+      for (Eigen::Index f = 0; f < q; ++f) {
+        sum += moved(i, x + f) * step.injection[j * q + f];
+      }
+      covariance(i, j) = covariance(j, i) = sum;
+    }
+    for (Eigen::Index c = x; c < layout.size(); ++c) {
+      covariance(i, c) = covariance(c, i) = moved(i, c) * forget_ratio(c);
+    }
+  }
+  for (Eigen::Index i = x; i < layout.size(); ++i) {
+    for (Eigen::Index c = x; c < layout.size(); ++c) {
+      covariance(i, c) *= forget_ratio(i) * forget_ratio(c);
+    }
   }
 }
 
@@ -92,51 +158,57 @@ void Whitening::add_unknown(Eigen::Index interval, Matrix& covariance) const {
   }
 }
 
-template <int Size>
-void Whitening::build(const SensorNoise& noise) {
-  Square<Size> covariance = Square<Size>::Zero(size_, size_);
-  Square<Size> transition(size_, size_);
-  Square<Size> moved(size_, size_);
+template <class Layout>
+void Whitening::build(const Layout& layout, const SensorNoise& noise) {
+  const Eigen::Index size = layout.size();
+  using Matrix = Eigen::Matrix<double, Layout::kMost, Layout::kMost, Eigen::RowMajor>;
+  Matrix covariance = Matrix::Zero();
+  Matrix moved = Matrix::Zero();
   add_unknown(-1, covariance);
   for (Eigen::Index k = 0; k < run_->samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
       const Eigen::Index row = k * run_->sensors() + sensor;
-      Eigen::Map<Eigen::VectorXd> gain(gain_.data() + row * size_, size_);
+      double* const gain = gain_.data() + row * size;
       const double weight = noise.weight.size() > 0 ? noise.weight[row] : 1.0;
       const int node = node_of(sensor);
-      gain = covariance.col(node);
-      if (wanders_) {
-        gain += covariance.col(wander_place(sensor));
+      const Eigen::Index wander = wander_place(sensor);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        gain[i] = layout.wanders() > 0 ? covariance(node, i) + covariance(wander, i) : covariance(node, i);
       }
-      const double expected_K2 = wanders_ ? gain[node] + gain[wander_place(sensor)] : gain[node];
+      const double expected_K2 = layout.wanders() > 0 ? gain[node] + gain[wander] : gain[node];
       expected_K2_[static_cast<std::size_t>(row)] = expected_K2;
       if (std::isnan(run_->residual_K[row]) || weight <= 0.0) {
-        gain.setZero();
+        std::fill_n(gain, size, 0.0);
         continue;
       }
       const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
       const double variance_K2 = expected_K2 + noise_K * noise_K / weight;
-      gain /= variance_K2;
-      covariance.noalias() -= variance_K2 * gain.head(size_) * gain.head(size_).transpose();
-      inverse_sd_per_K_[static_cast<std::size_t>(row)] = 1.0 / std::sqrt(variance_K2);
+      const double inverse_per_K2 = 1.0 / variance_K2;
+      for (Eigen::Index i = 0; i < size; ++i) {
+        const double shown = gain[i];
+        gain[i] = shown * inverse_per_K2;
+        for (Eigen::Index j = 0; j <= i; ++j) {
+          covariance(j, i) = covariance(i, j) -= shown * gain[j];
+        }
+      }
+      inverse_sd_per_K_[static_cast<std::size_t>(row)] = std::sqrt(inverse_per_K2);
       log_determinant_ += std::log(variance_K2);
       ++count_;
     }
     if (k + 1 < run_->samples()) {
-      set_transition(k, transition);
-      moved.noalias() = transition * covariance;
-      covariance.noalias() = moved * transition.transpose();
+      predict(layout, step_of(k), covariance, moved);
       add_unknown(k, covariance);
     }
   }
 }
 
 /// `kStrip` columns.
-void Whitening::apply_to_strip(Eigen::Ref<Columns> columns) const {
+template <class Layout>
+void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns) const {
   using Row = Eigen::Array<double, 1, kStrip>;
-  const Eigen::Index x = run_->states;
-  const Eigen::Index q = run_->fluxes;
-  std::array<Row, kMostSize> state, moved;
+  const Eigen::Index x = layout.states();
+  const Eigen::Index q = layout.fluxes();
+  std::array<Row, Layout::kMost> state, moved;
   state.fill(Row::Zero());
   for (Eigen::Index k = 0; k < run_->samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
@@ -149,49 +221,49 @@ void Whitening::apply_to_strip(Eigen::Ref<Columns> columns) const {
       }
       Row innovation = shown;
       innovation -= state[static_cast<std::size_t>(node_of(sensor))];
-      if (wanders_) {
+      if (layout.wanders() > 0) {
         innovation -= state[static_cast<std::size_t>(wander_place(sensor))];
       }
-      const double* const gain = gain_.data() + row * size_;
-      for (Eigen::Index i = 0; i < size_; ++i) {
+      const double* const gain = gain_.data() + row * layout.size();
+      for (Eigen::Index i = 0; i < layout.size(); ++i) {
         state[static_cast<std::size_t>(i)] += gain[i] * innovation;
       }
       shown = inverse_sd_per_K * innovation;
     }
     if (k + 1 < run_->samples()) {
-      const double* const transition = run_->transition.data() + k * x * x;
-      const double* const injection = run_->injection.data() + k * x * q;
+      const Step step = step_of(k);
       for (Eigen::Index i = 0; i < x; ++i) {
-        Row sum = transition[i * x] * state[0];
+        Row sum = step.transition[i * x] * state[0];
         for (Eigen::Index j = 1; j < x; ++j) {
-          sum += transition[i * x + j] * state[static_cast<std::size_t>(j)];
+          sum += step.transition[i * x + j] * state[static_cast<std::size_t>(j)];
         }
         for (Eigen::Index j = 0; j < q; ++j) {
-          sum += injection[i * q + j] * state[static_cast<std::size_t>(x + j)];
+          sum += step.injection[i * q + j] * state[static_cast<std::size_t>(x + j)];
         }
         moved[static_cast<std::size_t>(i)] = sum;
       }
       std::copy_n(moved.begin(), x, state.begin());
       for (Eigen::Index j = x; j < x + q; ++j) {
-        state[static_cast<std::size_t>(j)] *= forget_ratio_[static_cast<std::size_t>(k)];
+        state[static_cast<std::size_t>(j)] *= step.forget_ratio;
       }
-      for (Eigen::Index j = x + q; j < size_; ++j) {
-        state[static_cast<std::size_t>(j)] *= wander_forget_ratio_[static_cast<std::size_t>(k)];
+      for (Eigen::Index j = x + q; j < layout.size(); ++j) {
+        state[static_cast<std::size_t>(j)] *= step.wander_forget_ratio;
       }
     }
   }
 }
 
 void Whitening::apply(Eigen::Ref<Columns> columns) const {
+  const auto strip_by_strip = [this](Eigen::Ref<Columns> strip) { for_layout([&](const auto& layout) { apply_to_strip(layout, strip); }); };
   // Eight columns at a time: their filter state stays in the innermost cache while the run goes by.
   for (Eigen::Index first = 0; first < columns.cols(); first += kStrip) {
     if (first + kStrip <= columns.cols()) {
-      apply_to_strip(columns.middleCols(first, kStrip));
+      strip_by_strip(columns.middleCols(first, kStrip));
     } else {
       const Eigen::Index rest = columns.cols() - first;
       Columns strip = Columns::Zero(columns.rows(), kStrip);
       strip.leftCols(rest) = columns.rightCols(rest);
-      apply_to_strip(strip);
+      strip_by_strip(strip);
       columns.rightCols(rest) = strip.leftCols(rest);
     }
   }
@@ -200,7 +272,7 @@ void Whitening::apply(Eigen::Ref<Columns> columns) const {
 Innovations Whitening::innovations(const Eigen::VectorXd& residual_K) const {
   Innovations all{residual_K, residual_K};
   Eigen::VectorXd state = Eigen::VectorXd::Zero(size_);
-  Square<Eigen::Dynamic> transition(size_, size_);
+  SquareOfState transition(size_, size_);
   for (Eigen::Index k = 0; k < run_->samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
       const Eigen::Index row = k * run_->sensors() + sensor;
@@ -223,7 +295,7 @@ Innovations Whitening::innovations(const Eigen::VectorXd& residual_K) const {
 }
 
 FluxEstimate Whitening::smoothed_flux(const Eigen::VectorXd& residual_K) const {
-  using Dynamic = Square<Eigen::Dynamic>;
+  using Dynamic = SquareOfState;
   const Eigen::Index x = run_->states;
   const Eigen::Index q = run_->fluxes;
   const Eigen::Index samples = run_->samples();

@@ -60,8 +60,21 @@ class Whitening {
   [[nodiscard]] FluxEstimate smoothed_flux(const Eigen::VectorXd& residual_K) const;
 
  private:
-  template <int Size>
-  void build(const SensorNoise& noise);
+  template <class Layout>
+  void build(const Layout& layout, const SensorNoise& noise);
+  /// Calls `with` with how many temperatures, fluxes and slow errors the filter's state has: known to the compiler where they are usual.
+  template <class With>
+  void for_layout(const With& with) const;
+  /// What an interval does to temperatures, fluxes and slow errors.
+  struct Step {
+    const double* transition;  ///< x × x, row by row
+    const double* injection;   ///< x × q
+    double forget_ratio;
+    double wander_forget_ratio;
+  };
+  [[nodiscard]] Step step_of(Eigen::Index interval) const;
+  template <class Layout, class Matrix>
+  static void predict(const Layout& layout, const Step& step, Matrix& covariance, Matrix& moved);
   template <class Matrix>
   void set_transition(Eigen::Index interval, Matrix& transition) const;
   /// What fluxes, slow errors and doubts gain in variance before interval `interval` ends; −1: all of it, at the start.
@@ -70,7 +83,8 @@ class Whitening {
   [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }
   /// Of a sensor's slow error in the filter's state.
   [[nodiscard]] Eigen::Index wander_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }
-  void apply_to_strip(Eigen::Ref<Columns> columns) const;
+  template <class Layout>
+  void apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns) const;
 
   const LinearisedRun* run_;
   LatentFlux flux_;

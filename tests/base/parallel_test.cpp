@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace heatsoak {
@@ -54,6 +56,38 @@ TEST(InParallel, JobsMayHoldALockWhileTheirOwnJobsRun) {
     in_parallel(20, 0, [&](std::size_t) { ++done; });
   });
   EXPECT_EQ(done, 4000);
+}
+
+/// Whoever goes on after its own jobs counts on their results.
+TEST(InParallel, AJobThatThrowsDoesNotCutShortTheJobsOfAnother) {
+  std::atomic<bool> has_thrown = false;
+  std::atomic<bool> is_begun = false;
+  std::atomic<int> done = 0;
+  std::atomic<int> done_when_it_went_on = -1;
+  constexpr int kJobs = 2000;
+  const auto job = [&](std::size_t i) {
+    if (i == 0) {
+      while (!is_begun) {
+        std::this_thread::yield();
+      }
+      has_thrown = true;
+      throw std::runtime_error("of another");
+    }
+    in_parallel(kJobs, 0, [&](std::size_t) {
+      is_begun = true;
+      while (!has_thrown) {
+        std::this_thread::yield();
+      }
+      std::this_thread::sleep_for(std::chrono::microseconds(20));
+      ++done;
+    });
+    done_when_it_went_on = done.load();
+  };
+  if (std::thread::hardware_concurrency() < 2) {
+    GTEST_SKIP() << "two jobs at a time need two cores";
+  }
+  EXPECT_THROW(in_parallel(2, 0, job), std::runtime_error);
+  EXPECT_EQ(done_when_it_went_on, kJobs);
 }
 
 }  // namespace

@@ -136,6 +136,24 @@ Dense dense(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise&
   return {covariance(kept, kept), all(kept, Eigen::all)};
 }
 
+void expect_products_of_generalised_least_squares(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
+  const Dense reference = dense(run, flux, noise);
+  const Eigen::LDLT<Eigen::MatrixXd> decomposed(reference.covariance);
+  const Eigen::MatrixXd expected = reference.columns.transpose() * decomposed.solve(Eigen::MatrixXd(reference.columns));
+  const Whitening whitening(run, flux, noise);
+  Columns all(run.by_parameter.rows(), run.states + run.by_parameter.cols() + 1);
+  all << run.by_start, run.by_parameter, run.residual_K;
+  whitening.apply(all);
+  const Eigen::MatrixXd gram = all.transpose() * all;
+  for (Eigen::Index i = 0; i < gram.rows(); ++i) {
+    for (Eigen::Index j = 0; j < gram.cols(); ++j) {
+      EXPECT_NEAR(gram(i, j), expected(i, j), 1e-9 * std::sqrt(expected(i, i) * expected(j, j))) << i << ' ' << j;
+    }
+  }
+  EXPECT_NEAR(whitening.log_determinant(), decomposed.vectorD().array().log().sum(), 1e-9 * static_cast<double>(whitening.count()));
+  EXPECT_EQ(whitening.count(), reference.columns.rows());
+}
+
 TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_the_covariance_written_out) {
   struct Unknown {
     LatentFlux flux;
@@ -144,22 +162,52 @@ TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_
   for (const auto& [flux, wander_K] : {Unknown{{{0.3, 0.7}, 90.0}, {}}, Unknown{{{0.0, 0.0}, 90.0}, {}}, Unknown{{{2.0, 0.0}, 20.0}, {}},
                                        Unknown{{{0.3, 0.7}, 90.0}, {0.5, 0.2}}, Unknown{{{0.0, 0.4}, 90.0}, {0.0, 0.3}}}) {
     const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(3, 100));
-    const SensorNoise noise{{0.15, 0.1}, {}, wander_K, 7.0};
-    const Dense reference = dense(run, flux, noise);
-    const Eigen::LDLT<Eigen::MatrixXd> decomposed(reference.covariance);
-    const Eigen::MatrixXd expected = reference.columns.transpose() * decomposed.solve(Eigen::MatrixXd(reference.columns));
-    const Whitening whitening(run, flux, noise);
-    Columns all(run.by_parameter.rows(), run.states + run.by_parameter.cols() + 1);
-    all << run.by_start, run.by_parameter, run.residual_K;
-    whitening.apply(all);
-    const Eigen::MatrixXd gram = all.transpose() * all;
-    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
-      for (Eigen::Index j = 0; j < gram.cols(); ++j) {
-        EXPECT_NEAR(gram(i, j), expected(i, j), 1e-9 * std::sqrt(expected(i, i) * expected(j, j))) << i << ' ' << j;
-      }
+    expect_products_of_generalised_least_squares(run, flux, {{0.15, 0.1}, {}, wander_K, 7.0});
+  }
+}
+
+/// Of a network with so many nodes, unknown heats and sensors that forgets what it is told within some steps.
+LinearisedRun random_linearised_run(Eigen::Index states, Eigen::Index fluxes, int sensors) {
+  constexpr Eigen::Index kSamples = 40;
+  Random random(11, 0);
+  LinearisedRun run;
+  run.states = states;
+  run.fluxes = fluxes;
+  for (int sensor = 0; sensor < sensors; ++sensor) {
+    run.sensor_node.push_back(sensor);
+  }
+  const auto any = [&random](Eigen::Index rows, Eigen::Index columns) {
+    return Columns(Columns::NullaryExpr(rows, columns, [&random] { return random.uniform() - 0.5; }));
+  };
+  run.state_C = Eigen::MatrixXd::Constant(states, kSamples, 25.0);
+  run.residual_K = any(kSamples * sensors, 1);
+  run.residual_K[7] = kNan;
+  run.by_start = any(kSamples * sensors, states);
+  run.by_parameter = any(kSamples * sensors, 3);
+  for (Eigen::Index k = 0; k + 1 < kSamples; ++k) {
+    const Columns transition = 0.6 * Columns::Identity(states, states) + 0.2 * any(states, states);
+    const Columns injection = any(states, fluxes);
+    run.transition.insert(run.transition.end(), transition.data(), transition.data() + transition.size());
+    run.injection.insert(run.injection.end(), injection.data(), injection.data() + injection.size());
+    run.duration_s.push_back(1.0 + random.uniform());
+  }
+  return run;
+}
+
+TEST(Whitening, is_the_same_operator_for_any_number_of_nodes_heats_and_sensors) {
+  struct Size {
+    Eigen::Index states, fluxes;
+    int sensors;
+  };
+  for (const auto& [states, fluxes, sensors] : {Size{2, 2, 1}, Size{2, 1, 2}, Size{3, 2, 2}, Size{3, 3, 1}, Size{3, 3, 3}, Size{5, 4, 2}}) {
+    for (const bool wanders : {false, true}) {
+      SCOPED_TRACE(testing::Message() << states << " nodes, " << fluxes << " heats, " << sensors << " sensors, slow errors " << wanders);
+      const LatentFlux flux{std::vector<double>(static_cast<std::size_t>(fluxes), 0.4), 5.0};
+      const auto count = static_cast<std::size_t>(sensors);
+      expect_products_of_generalised_least_squares(
+          random_linearised_run(states, fluxes, sensors), flux,
+          {std::vector<double>(count, 0.2), {}, wanders ? std::vector<double>(count, 0.3) : std::vector<double>{}, 7.0});
     }
-    EXPECT_NEAR(whitening.log_determinant(), decomposed.vectorD().array().log().sum(), 1e-9 * static_cast<double>(whitening.count()));
-    EXPECT_EQ(whitening.count(), reference.columns.rows());
   }
 }
 

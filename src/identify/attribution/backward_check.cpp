@@ -112,8 +112,8 @@ class BackwardCheck {
   RefitResult averaged_fit() {
     options_.place = out_.after.place;
     options_.averages_flux = true;
-    // What were slow errors of sensors to a model that lacked something are less now; none begin to be.
-    options_.errors = with_wander(out_.after, input_.runs, options_.grid, options_.merged, out_.mean_heat_W, options_.errors);
+    // What were slow errors of sensors to a model that lacked something are less now.
+    options_.errors = wander_at(out_.after, input_.runs, options_.grid, options_.merged, options_.errors);
     return refit(out_.after.model, input_.runs, out_.after.start_C, options_);
   }
 
@@ -282,7 +282,7 @@ class BackwardCheck {
       RefitOptions options = options_;
       options.place = out_.after.place;
       in_parallel(rivals.size(), 0, [&](std::size_t j) {
-        fits[j] = refit(with_candidate(without, rivals[j], 1.0), input_.runs, out_.before.start_C, options);
+        fits[j] = try_refit(with_candidate(without, rivals[j], 1.0), input_.runs, out_.before.start_C, options);
       });
       std::size_t best = rivals.size();
       double best_nats = out_.after.evidence_nats + kSwap_nats;

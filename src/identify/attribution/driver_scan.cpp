@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "base/parallel.h"
 #include "identify/attribution/curve.h"
@@ -110,11 +112,14 @@ class Scanner {
     if (input_.drivers->empty()) {
       return {};
     }
-    std::vector<ScanResult> results = best_of(terms_of_one_signal(*input_.model, *input_.runs), most);
+    constexpr double kAnyGain_nats = -std::numeric_limits<double>::infinity();
+    std::vector<ScanResult> results = best_of(terms_of_one_signal(*input_.model, *input_.runs), most, base_.place, kAnyGain_nats);
     if (results.front().gain_nats > kWorthZooming_nats) {
       const double one_nats = results.front().gain_nats;
       const double least_nats = one_nats + std::max(kSecondSignal_nats, kSecondSignal_share * one_nats);
-      for (ScanResult& each : best_of(terms_of_two_signals(*input_.model, *input_.runs), most)) {
+      // Beside the unknown heat that is best for one signal two must be ahead already.
+      const FluxGrid::Place beside = results.front().place;
+      for (ScanResult& each : best_of(terms_of_two_signals(*input_.model, *input_.runs), most, beside, one_nats)) {
         if (each.gain_nats > least_nats) {
           results.push_back(std::move(each));
         }
@@ -126,15 +131,16 @@ class Scanner {
   }
 
  private:
-  /// Every driver for each of the terms; at most `most` come back.
-  std::vector<ScanResult> best_of(const std::vector<ScanTerm>& terms, int most) {
+  /// Every driver for each of the terms, from the unknown heat at `begin` on; those that gain less there than `least_nats` go no further,
+  /// and at most `most` come back.
+  std::vector<ScanResult> best_of(const std::vector<ScanTerm>& terms, int most, const FluxGrid::Place& begin, double least_nats) {
     std::vector<Climber> climbers;
     for (const ScanTerm& term : terms) {
       const std::vector<Eigen::VectorXd> multiplier = multipliers(term);
       const std::size_t first = climbers.size();
       for (std::size_t driver = 0; driver < input_.drivers->size(); ++driver) {
         if (goes_with((*input_.drivers)[driver], term.multiplier)) {
-          climbers.push_back({family(term, static_cast<int>(driver), multiplier), {}, base_.place});
+          climbers.push_back({family(term, static_cast<int>(driver), multiplier), {}, begin});
         }
       }
       in_parallel(climbers.size() - first, 0, [&](std::size_t i) {
@@ -146,6 +152,7 @@ class Scanner {
       std::ranges::stable_sort(climbers, [](const Climber& a, const Climber& b) { return a.scored.gain_nats > b.scored.gain_nats; });
       climbers.resize(std::min<std::size_t>(climbers.size(), static_cast<std::size_t>(count)));
     };
+    std::erase_if(climbers, [&](const Climber& each) { return each.scored.gain_nats < least_nats; });
     keep_best(2 * most);
     in_parallel(climbers.size(), 0, [&](std::size_t i) { climb(climbers[i]); });
     keep_best(most);
@@ -212,32 +219,34 @@ class Scanner {
   }
 
   const std::vector<SharedRun>& shared_at(const FluxGrid::Place& place) {
-    const std::lock_guard lock(mutex_);
-    const auto found = shared_.find(place);
-    if (found != shared_.end()) {
-      return found->second;
+    Shared* shared = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      shared = &shared_[place];
     }
-    const LatentFlux flux = table_.grid().at(place);
+    // Others that look at other places go on meanwhile.
+    std::call_once(shared->is_made, [&] { shared->run = make_shared_runs(table_.grid().at(place)); });
+    return shared->run;
+  }
+
+  [[nodiscard]] std::vector<SharedRun> make_shared_runs(const LatentFlux& flux) const {
     std::vector<SharedRun> shared;
     for (const DesignRun& design : table_.runs()) {
       shared.push_back({Whitening(design.run, flux, design.noise), {}, {}});
-    }
-    in_parallel(shared.size(), 0, [&](std::size_t r) {
-      const DesignRun& design = table_.runs()[r];
       const Eigen::Index starts = design.run.states;
-      Columns& columns = shared[r].columns;
+      Columns& columns = shared.back().columns;
       columns.resize(design.columns.rows(), starts + static_cast<Eigen::Index>(inner_.size()) + 1);
       columns << design.run.by_start, design.columns(Eigen::all, inner_), design.run.residual_K;
-      shared[r].whitening.apply(columns);
-      shared[r].products = columns.transpose() * columns;
+      shared.back().whitening.apply(columns);
+      Eigen::MatrixXd& products = shared.back().products;
+      products = columns.transpose() * columns;
       const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
-      Eigen::MatrixXd& products = shared[r].products;
       const Eigen::Index last = columns.cols() - 1;
       products.topLeftCorner(starts, starts).diagonal() += precision;
       products.topRightCorner(starts, 1) += precision.cwiseProduct(design.start.mean_K);
       products(last, last) += design.start.mean_K.dot(precision.cwiseProduct(design.start.mean_K));
-    });
-    return shared_.emplace(place, std::move(shared)).first->second;
+    }
+    return shared;
   }
 
   /// Its gain over the base at the base's own best place.
@@ -339,6 +348,7 @@ class Scanner {
 
   void climb(Climber& climber, const std::vector<Eigen::VectorXd>& multiplier) {
     const std::vector<HatColumns> shown = responses(climber.family, multiplier);
+    std::set<FluxGrid::Place> tried{climber.place};
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t axis = 0; axis < climber.place.size(); ++axis) {
@@ -347,7 +357,7 @@ class Scanner {
         for (const int step : {-1, 1}) {
           FluxGrid::Place place = climber.place;
           place[axis] += step;
-          if (place[axis] < 0 || place[axis] >= count) {
+          if (place[axis] < 0 || place[axis] >= count || !tried.insert(place).second) {
             continue;
           }
           Scored scored = score(climber.family, shown, place);
@@ -397,7 +407,11 @@ class Scanner {
   const SetScore& base_;
   std::mutex mutex_;
   std::vector<Eigen::Index> inner_;  ///< columns of the table that the base fits
-  std::map<FluxGrid::Place, std::vector<SharedRun>> shared_;
+  struct Shared {
+    std::once_flag is_made;
+    std::vector<SharedRun> run;
+  };
+  std::map<FluxGrid::Place, Shared> shared_;
 };
 
 }  // namespace

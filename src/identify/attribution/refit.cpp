@@ -15,6 +15,9 @@
 namespace heatsoak {
 namespace {
 
+/// A fit rests where its next step promises no more: no name hangs on a tenth of a nat.
+constexpr double kConverged_nats = 0.1;
+
 /// The prior of the moving coordinates, the others held at `step`.
 ThetaPrior prior_given(const ThetaPrior& prior, const std::vector<Eigen::Index>& moving, const Eigen::VectorXd& step) {
   const Eigen::MatrixXd own = prior.precision(moving, moving);
@@ -128,7 +131,7 @@ class Fitter {
       const double promised = misfit - fit.misfit;
       now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
       now_.covariance = fit.covariance;
-      now_.converged = promised < 0.02;
+      now_.converged = promised < kConverged_nats;
       const bool rests = now_.converged || !take(fit, misfit, table);
       // What no step improves at first may move once the unknown heat is what the misfit asks for.
       if (!rests || step == 0) {
@@ -281,6 +284,18 @@ class Fitter {
 RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                   const RefitOptions& options) {
   return Fitter(std::move(model), runs, std::move(start_C), options).run();
+}
+
+RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                      const RefitOptions& options) {
+  try {
+    return refit(std::move(model), runs, std::move(start_C), options);
+  } catch (const Failure&) {
+    RefitResult none;
+    none.place = options.place;
+    none.evidence_nats = -std::numeric_limits<double>::infinity();
+    return none;
+  }
 }
 
 void set_wander(SensorNoise& noise, const MeasuredRun& run, const SensorErrors& errors) {

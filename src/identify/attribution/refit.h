@@ -34,6 +34,10 @@ struct RefitOptions {
 RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                   const RefitOptions& options);
 
+/// The same for a model that is only tried: where its temperatures run away its evidence is −∞, and nothing of it is fitted.
+RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                      const RefitOptions& options);
+
 /// The slow errors of a run's sensors.
 void set_wander(SensorNoise& noise, const MeasuredRun& run, const SensorErrors& errors);
 

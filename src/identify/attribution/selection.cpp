@@ -41,8 +41,7 @@ class Selector {
     options_ = std::move(first.options);
     first_place_ = std::move(first.place);
     out_.before = std::move(first.fit);
-    look_at_sensors(out_.before);
-    out_.before = refit(out_.before.model, input_.runs, out_.before.start_C, options_);
+    fit_beside_sensor_errors();
     out_.after = out_.before;
     out_.base = out_.before.model;
     out_.grid = options_.grid;
@@ -75,12 +74,32 @@ class Selector {
     out_.after.place = FluxGrid::in_finer(out_.after.place);
   }
 
-  void look_at_sensors(const RefitResult& fit) {
+  /// At a bad fit sensors seem to do what they do not: the better one tells, until nothing moves any more.
+  void fit_beside_sensor_errors() {
+    RefitResult& fit = out_.before;
     options_.place = fit.place;
-    options_.errors = with_wander(fit, input_.runs, options_.grid, options_.merged, kMuchUnknown_share * out_.mean_heat_W, options_.errors);
+    const std::vector<double> unknown_W = options_.grid.at(fit.place).rms_W;
+    if (*std::ranges::max_element(unknown_W) > kMuchUnknown_share * out_.mean_heat_W) {
+      options_.errors = with_wander(fit, input_.runs, options_.grid, options_.merged, options_.errors);
+    }
     options_.errors.weights = outlier_weights(fit, input_.runs, options_.grid, options_.errors);
     if (!options_.errors.wander_K.empty()) {
       options_.place = first_place_;
+    }
+    fit = refit(fit.model, input_.runs, fit.start_C, options_);
+    constexpr int kMostLooks = 3;
+    for (int look = 0; look < kMostLooks; ++look) {
+      RefitOptions options = options_at(fit.place);
+      options.errors = wander_at(fit, input_.runs, options_.grid, options_.merged, options_.errors);
+      if (options.errors.is_same_wander(options_.errors)) {
+        return;
+      }
+      RefitResult next = refit(fit.model, input_.runs, fit.start_C, options);
+      if (next.evidence_nats < fit.evidence_nats) {
+        return;
+      }
+      fit = std::move(next);
+      options_.errors = std::move(options.errors);
     }
   }
 
@@ -172,7 +191,7 @@ class Selector {
     }
     ExtendedModel doubted = out_.after.model;
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
-    RefitResult fit = refit(std::move(doubted), input_.runs, out_.after.start_C, options_at(base.place));
+    RefitResult fit = try_refit(std::move(doubted), input_.runs, out_.after.start_C, options_at(base.place));
     figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
     if (figure->gain_nats < least_nats || leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
       return false;
@@ -203,7 +222,7 @@ class Selector {
     }
     ExtendedModel doubted = law->fit.model;
     doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
-    RefitResult fit = refit(std::move(doubted), input_.runs, law->fit.start_C, options_at(law->fit.place));
+    RefitResult fit = try_refit(std::move(doubted), input_.runs, law->fit.start_C, options_at(law->fit.place));
     figure->gain_nats = fit.evidence_nats - law->fit.evidence_nats;
     if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats ||
         leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
@@ -308,7 +327,7 @@ class Selector {
 
   Tried try_out(JudgedCandidate& judged) const {
     RefitResult fit = trials().of_term(judged, 0.5 * judged.gain_nats);
-    judged.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
+    judged.gain_nats = std::isfinite(fit.evidence_nats) ? fit.evidence_nats - out_.after.evidence_nats : 0.0;
     return {&judged, std::move(fit), judged.gain_nats};
   }
 
@@ -435,9 +454,9 @@ class Selector {
         continue;
       }
       ++tries;
-      RefitResult fit = refit(*with, input_.runs, out_.after.start_C, options_at(each.place));
+      RefitResult fit = try_refit(*with, input_.runs, out_.after.start_C, options_at(each.place));
       if (fit.evidence_nats < out_.after.evidence_nats + least_nats) {
-        fit = refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options_at(first_place_));
+        fit = try_refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options_at(first_place_));
       }
       AcceptedTerm term;
       term.curve = each;

@@ -15,73 +15,89 @@ constexpr double kShortestWander_s = 4.0;
 constexpr double kLongestWander_s = 64.0;
 /// So much more probable must a model be with errors of the sensors than without.
 constexpr double kClearly_nats = 10.0;
+/// What a step has to bring, and how far behind it may be before other unknown heat beside it is looked for: that mostly brings a few.
+constexpr double kBetter_nats = 0.5;
+constexpr double kHopeless_nats = 30.0;
 
-/// The evidence of the model at the fit, at the unknown heat that is best then.
-class Trial {
+/// To the slow errors under which the model at the fit is most probable, the unknown heat being what is best beside them.
+class Climb {
  public:
-  /// `designs` as the runs are with faultless sensors.
-  Trial(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<DesignRun>& designs,
-        FluxGrid::Place begin)
-      : fit_(fit), runs_(runs), grid_(grid), designs_(designs), place_(std::move(begin)) {}
+  /// `designs` as the runs are with faultless sensors; `place` is where the search for the unknown heat begins.
+  Climb(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<DesignRun>& designs,
+        FluxGrid::Place place)
+      : fit_(fit), runs_(runs), grid_(grid), designs_(designs), place_(std::move(place)) {}
 
   double evidence_nats(const SensorErrors& errors) {
+    const SetScore best = table(errors).best({}, place_, Search::rough);
+    place_ = best.place;
+    return best.evidence_nats;
+  }
+
+  /// Doubles and halves one number after the other as long as the evidence grows; returns the evidence.
+  double run(SensorErrors& errors) {
+    best_nats_ = evidence_nats(errors);
+    constexpr int kMostRounds = 4;
+    bool moved = true;
+    for (int round = 0; moved && round < kMostRounds; ++round) {
+      moved = false;
+      for (const double factor : {2.0, 0.5}) {
+        for (const auto& [signal, now_K] : std::map(errors.wander_K)) {
+          while (steps_to(errors, [&, &name = signal](SensorErrors& next) { next.wander_K[name] *= factor; })) {
+            moved = true;
+          }
+        }
+        while (steps_to(errors, [&](SensorErrors& next) { next.wander_time_scale_s *= factor; })) {
+          moved = true;
+        }
+      }
+      if (moved) {
+        best_nats_ = evidence_nats(errors);
+      }
+    }
+    return best_nats_;
+  }
+
+ private:
+  [[nodiscard]] EvidenceTable table(const SensorErrors& errors) const {
     std::vector<DesignRun> designs = designs_;
     for (std::size_t r = 0; r < designs.size(); ++r) {
       set_wander(designs[r].noise, runs_[r], errors);
     }
-    EvidenceTable table(std::move(designs), grid_, prior_here(fit_.model), {});
-    const SetScore best = table.best({}, place_, Search::rough);
-    last_ = best.place;
-    return best.evidence_nats;
+    return {std::move(designs), grid_, prior_here(fit_.model), {}};
   }
-  /// The next trials begin where the last one ended.
-  void go_on_there() { place_ = last_; }
 
- private:
+  /// False where it brings nothing. Other unknown heat is looked for only where it may decide.
+  template <class Change>
+  bool steps_to(SensorErrors& errors, const Change& change) {
+    SensorErrors next = errors;
+    change(next);
+    if (next.wander_time_scale_s < kShortestWander_s || next.wander_time_scale_s > kLongestWander_s) {
+      return false;
+    }
+    EvidenceTable beside = table(next);
+    double nats = beside.score({}, place_).evidence_nats;
+    if (nats <= best_nats_ + kBetter_nats && nats > best_nats_ - kHopeless_nats) {
+      const SetScore best = beside.best({}, place_, Search::rough);
+      nats = best.evidence_nats;
+      if (nats > best_nats_ + kBetter_nats) {
+        place_ = best.place;
+      }
+    }
+    if (nats <= best_nats_ + kBetter_nats) {
+      return false;
+    }
+    best_nats_ = nats;
+    errors = std::move(next);
+    return true;
+  }
+
   const RefitResult& fit_;
   const std::vector<MeasuredRun>& runs_;
   const FluxGrid& grid_;
   const std::vector<DesignRun>& designs_;
-  FluxGrid::Place place_, last_;
+  FluxGrid::Place place_;
+  double best_nats_ = 0.0;
 };
-
-/// Doubles and halves one number after the other as long as the evidence grows.
-double climb(Trial& trial, SensorErrors& errors) {
-  double best_nats = trial.evidence_nats(errors);
-  trial.go_on_there();
-  const auto try_out = [&](const SensorErrors& next) {
-    const double nats = trial.evidence_nats(next);
-    if (nats <= best_nats + 0.5) {
-      return false;
-    }
-    best_nats = nats;
-    errors = next;
-    trial.go_on_there();
-    return true;
-  };
-  constexpr int kMostRounds = 4;
-  bool moved = true;
-  for (int round = 0; moved && round < kMostRounds; ++round) {
-    moved = false;
-    for (const double factor : {2.0, 0.5}) {
-      for (const auto& [signal, now_K] : std::map(errors.wander_K)) {
-        SensorErrors next = errors;
-        next.wander_K[signal] *= factor;
-        while (try_out(next)) {
-          moved = true;
-          next.wander_K[signal] *= factor;
-        }
-      }
-      SensorErrors next = errors;
-      next.wander_time_scale_s *= factor;
-      while (next.wander_time_scale_s >= kShortestWander_s && next.wander_time_scale_s <= kLongestWander_s && try_out(next)) {
-        moved = true;
-        next.wander_time_scale_s *= factor;
-      }
-    }
-  }
-  return best_nats;
-}
 
 }  // namespace
 
@@ -109,35 +125,35 @@ std::vector<Eigen::VectorXd> outlier_weights(const RefitResult& fit, const std::
 }
 
 SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
-                         double tolerable_W, SensorErrors known) {
-  const LatentFlux flux = grid.at(fit.place);
-  if (known.wander_K.empty() && *std::ranges::max_element(flux.rms_W) <= tolerable_W) {
-    return known;
-  }
+                         SensorErrors known) {
   const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, runs, known, merged, {});
-  const double without_nats =
-      known.wander_K.empty() ? Trial(fit, runs, grid, designs, fit.place).evidence_nats(known) : -std::numeric_limits<double>::infinity();
   // Little unknown heat beside it to begin with: much of it has taken the place of what is looked for.
   FluxGrid::Place little = fit.place;
   std::ranges::fill(little.begin(), little.end() - 1, std::min(3, static_cast<int>(grid.rms_W.size()) - 1));
   constexpr std::array kBegin_noises{2.0, 10.0};
-  std::array<SensorErrors, kBegin_noises.size()> wandering;
-  std::array<double, kBegin_noises.size()> nats{};
-  // Known ones are the beginning themselves.
-  const std::size_t begins = known.wander_K.empty() ? kBegin_noises.size() : 1;
-  in_parallel(begins, 0, [&](std::size_t i) {
-    wandering[i] = known;
+  std::vector<SensorErrors> wandering(kBegin_noises.size(), known);
+  std::vector<double> nats(wandering.size());
+  in_parallel(wandering.size(), 0, [&](std::size_t i) {
     for (const MeasuredRun& run : runs) {
       for (const Sensor& sensor : run.sensors) {
         double& wander_K = wandering[i].wander_K[sensor.signal];
-        wander_K = known.wander_K.empty() ? std::max(wander_K, kBegin_noises[i] * sensor.noise_K) : wander_K;
+        wander_K = std::max(wander_K, kBegin_noises[i] * sensor.noise_K);
       }
     }
-    Trial trial(fit, runs, grid, designs, little);
-    nats[i] = climb(trial, wandering[i]);
+    nats[i] = Climb(fit, runs, grid, designs, little).run(wandering[i]);
   });
-  const auto best = std::max_element(nats.begin(), nats.begin() + static_cast<std::ptrdiff_t>(begins));
-  return *best > without_nats + kClearly_nats ? wandering[static_cast<std::size_t>(best - nats.begin())] : known;
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(nats) - nats.begin());
+  const double without_nats = Climb(fit, runs, grid, designs, fit.place).evidence_nats(known);
+  return nats[best] > without_nats + kClearly_nats ? std::move(wandering[best]) : known;
+}
+
+SensorErrors wander_at(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
+                       SensorErrors known) {
+  if (!known.wander_K.empty()) {
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, runs, known, merged, {});
+    Climb(fit, runs, grid, designs, fit.place).run(known);
+  }
+  return known;
 }
 
 }  // namespace heatsoak

@@ -19,15 +19,22 @@ struct SensorErrors {
   /// a motor that creeps. Empty: none.
   std::map<std::string, double> wander_K;
   double wander_time_scale_s = 10.0;
+
+  [[nodiscard]] bool is_same_wander(const SensorErrors& other) const {
+    return wander_K == other.wander_K && wander_time_scale_s == other.wander_time_scale_s;
+  }
 };
 
 /// Samples that no smooth heat explains.
 std::vector<Eigen::VectorXd> outlier_weights(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid,
                                              const SensorErrors& known);
 
-/// `known` with slow errors that make the model at the fit most probable. They are looked for where much unknown heat, more than
-/// `tolerable_W`, would be needed otherwise, and believed where the evidence for them is clear.
+/// `known` with slow errors that make the model at the fit most probable, where the evidence for them is clear.
 SensorErrors with_wander(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
-                         double tolerable_W, SensorErrors known);
+                         SensorErrors known);
+
+/// The slow errors of `known` as they are most probable at the fit; none begin to be.
+SensorErrors wander_at(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const FluxGrid& grid, const std::vector<int>& merged,
+                       SensorErrors known);
 
 }  // namespace heatsoak

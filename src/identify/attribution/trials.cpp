@@ -19,7 +19,7 @@ RefitResult Trials::of_term(const JudgedCandidate& judged, double promised_nats)
   options.place = first_place_;
   const double sign = judged.size_share < 0.0 ? -1.0 : 1.0;
   RefitResult afresh =
-      refit(with_candidate(with_values_of(model, input_.model), judged.candidate, sign), input_.runs, so_far_.before.start_C, options);
+      try_refit(with_candidate(with_values_of(model, input_.model), judged.candidate, sign), input_.runs, so_far_.before.start_C, options);
   return afresh.evidence_nats > fit.evidence_nats ? std::move(afresh) : std::move(fit);
 }
 
@@ -67,7 +67,7 @@ RefitResult Trials::from_step(const std::vector<Candidate>& added, const std::ve
     theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
   }
   model.set_theta(theta);
-  return refit(std::move(model), input_.runs, so_far_.after.start_C, options);
+  return try_refit(std::move(model), input_.runs, so_far_.after.start_C, options);
 }
 
 }  // namespace heatsoak
