@@ -182,6 +182,20 @@ TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_foretold_
   EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing);
 }
 
+TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_gets_a_loss_at_speed_once_two_loads_were_seen_for_a_while) {
+  const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
+  SKIP_WITHOUT(folder);
+  for (const double cut : {0.7, 0.75}) {
+    const Diagnosis diagnosis = of_traction_motor(*folder, cut);
+    const auto found = std::ranges::find(diagnosis.effects, "load_friction", &FoundEffect::id);
+    ASSERT_NE(found, diagnosis.effects.end()) << diagnosis.description;
+    EXPECT_THAT(found->confusable_with, testing::Contains("armature_iron_loss@winding"));
+    for (const char* const signal : {"winding_C", "stator_C"}) {
+      EXPECT_LE(diagnosis.after_holdout.at(signal).rmse_K, 3.0) << signal << diagnosis.description;
+    }
+  }
+}
+
 TEST(MeasuredMotors, half_a_log_at_one_load_does_not_claim_to_know_another_load) {
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
   SKIP_WITHOUT(folder);
