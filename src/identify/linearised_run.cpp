@@ -1,5 +1,8 @@
 #include "identify/linearised_run.h"
 
+#include <fmt/format.h>
+
+#include "base/diagnostic.h"
 #include "thermal/tangent_run.h"
 
 namespace heatsoak {
@@ -77,8 +80,10 @@ void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun&
   }
 }
 
-LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
-                        std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
+namespace {
+
+LinearisedRun linearise_unnamed(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+                                std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
   LinearisedRun out;
   out.states = network.state_count();
   out.fluxes = static_cast<Eigen::Index>(flux_nodes.size());
@@ -113,6 +118,20 @@ LinearisedRun linearise(const Network& network, std::span<const double> paramete
     }
   }
   return out;
+}
+
+}  // namespace
+
+LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+                        std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
+  try {
+    return linearise_unnamed(network, parameters, wanted, flux_nodes, start_C, run);
+  } catch (const Failure& failure) {
+    throw Failure(failure.code(),
+                  fmt::format("{}: {}; is a column of the log in another unit (milliamperes, a sensor's wrong gain), or a resistance of "
+                              "the model many times what it is? `heatsoak log inspect` shows the log, `heatsoak lint` the motor",
+                              run.name, failure.message()));
+  }
 }
 
 }  // namespace heatsoak

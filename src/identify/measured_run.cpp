@@ -155,7 +155,7 @@ class Builder {
       lacking.push_back({{recording_.file.string()}, "winding_C", "the log has no temperature of winding, stator or housing"});
     }
     if (!lacking.empty()) {
-      throw Failure(ExitCode::bad_input, fmt::format("{} cannot be used for a fit", recording_.name), std::move(lacking));
+      throw Failure(ExitCode::bad_input, fmt::format("{} cannot be compared with the model", recording_.name), std::move(lacking));
     }
   }
 

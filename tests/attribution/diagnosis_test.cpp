@@ -29,6 +29,17 @@ ExtendedModel known_to(double sd_share, const DiagnosisInput& input) {
   return known;
 }
 
+TEST(Diagnosis, fails_where_the_models_own_figures_follow_the_runs_held_out_better) {
+  Diagnosis told;
+  told.refitted_holdout["winding_C"].rmse_K = 0.33;
+  told.after_holdout["winding_C"].rmse_K = 0.53;
+  EXPECT_FALSE(fails_on_holdout(told)) << "nothing was added";
+  told.effects.emplace_back();
+  EXPECT_TRUE(fails_on_holdout(told));
+  told.after_holdout["winding_C"].rmse_K = 0.40;
+  EXPECT_FALSE(fails_on_holdout(told)) << "less than matters";
+}
+
 TEST(Examination, NothingMissingIsSaidToBeNothing) {
   for (const std::uint64_t seed : {1, 2}) {
     const Answer answer = examine(sealed({}, seed));

@@ -121,6 +121,44 @@ TEST(Diagnose, NamesNothingInPlaceOfASpeedThatNobodyLogged) {
   EXPECT_LT(error_K("after"), error_K("before"));
 }
 
+TEST(Diagnose, NamesTheLogUnderWhichTheModelRunsAway) {
+  const TemporaryFolder folder;
+  const std::string file = changed_log(folder, "match_3.csv", [](int line, std::vector<std::string>& cells) {
+    cells[kCurrent] = line > 0 ? fmt::format("{}", 30.0 * std::stod(cells[kCurrent])) : cells[kCurrent];
+  });
+  const ProgramRun done =
+      run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), "--holdout", file, "--as-is"}, in(folder));
+  EXPECT_EQ(done.exit_code, 4) << done.out;
+  EXPECT_THAT(done.err, HasSubstr("match_3: the network leaves"));
+  EXPECT_THAT(done.err, HasSubstr("in another unit"));
+}
+
+// Half a log may begin with all of a warm motor at 68 °C, which in a whole one would be degrees Fahrenheit of a room.
+TEST(Diagnose, TakesAHotHalfOfASoundLog) {
+  const TemporaryFolder folder;
+  const auto cooling_at_end = [&](bool in_fahrenheit) {
+    return changed_log(folder, "bench.csv", [&](int line, std::vector<std::string>& cells) {
+      constexpr int kHalf = 900;
+      if (line > kHalf) {
+        cells[1] = cells[2] = fmt::format("{:.1f}", 19.2 + 48.8 * std::exp((kHalf - line) / 1500.0));
+        cells[kCurrent] = cells[kCurrent + 1] = "0";
+      }
+      for (std::size_t column = 1; line > 0 && in_fahrenheit && column <= 3; ++column) {
+        cells[column] = cells[column].empty() ? "" : fmt::format("{}", 32.0 + 1.8 * std::stod(cells[column]));
+      }
+    });
+  };
+  const auto told_of = [&](const std::string& file) {
+    return run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), file + "@50-100%", "--json", "-"},
+               in(folder));
+  };
+  const ProgramRun sound = told_of(cooling_at_end(false));
+  EXPECT_EQ(sound.exit_code, 0) << sound.err;
+  const ProgramRun wrong = told_of(cooling_at_end(true));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("Fahrenheit"));
+}
+
 TEST(Diagnose, LeavesNoFolderWhereAnOutputCannotBeWritten) {
   const TemporaryFolder folder;
   const ProgramRun done =

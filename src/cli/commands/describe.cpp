@@ -346,6 +346,9 @@ Description describe(const std::string& name, const DataFolders& folders) {
   for (const EffectType& effect : all_effects()) {
     known.emplace_back(effect.name);
   }
+  if (name == "motors" || name == "robots" || name == "duties" || name == "effects") {
+    throw Failure(ExitCode::bad_input, fmt::format("'{0}' are many: `heatsoak list {0}` shows them, `heatsoak describe NAME` one", name));
+  }
   throw Failure(ExitCode::bad_input,
                 fmt::format("there is no '{}' among motors, robots, duties, shapes and effects{}", name, did_you_mean(name, known)));
 }

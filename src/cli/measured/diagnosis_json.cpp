@@ -149,7 +149,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
                                             {"nats", rounded(figure.gain_nats, 2)}});
   }
   if (!diagnosis.unexplained.empty()) {
-    json["unexplained"] = unexplained_json(diagnosis.unexplained.front());
+    json["unexplained"] = unexplained_json(*std::ranges::max_element(diagnosis.unexplained, {}, &Unexplained::mean_W));
     json["unexplained_all"] = Json::array();
     for (const Unexplained& heat : diagnosis.unexplained) {
       json["unexplained_all"].push_back(unexplained_json(heat));

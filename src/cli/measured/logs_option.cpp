@@ -12,6 +12,7 @@
 #include "cli/measured/log_text.h"
 #include "cli/quantity_option.h"
 #include "identify/measurement/mapping.h"
+#include "identify/measurement/quality.h"
 #include "identify/measurement/read_recording.h"
 
 namespace heatsoak {
@@ -74,8 +75,12 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
     for (const std::string& sentence : left_out_sentences(report)) {
       tell(fmt::format("{}: left out: {}", recording.name, sentence));
     }
-    const bool is_whole = part.from_share == 0.0 && part.to_share == 1.0;
-    all.push_back(is_whole ? std::move(recording) : part_of(recording, part.from_share, part.to_share));
+    if (part.from_share == 0.0 && part.to_share == 1.0) {
+      all.push_back(std::move(recording));
+      continue;
+    }
+    all.push_back(part_of(recording, part.from_share, part.to_share));
+    all.back().spoiling_of_whole = assess(recording, report, options.ambient_C).spoiling;
   }
   return all;
 }

@@ -120,13 +120,17 @@ class BackwardCheck {
   /// Beside all that sensors and bodies may do little is left of the term, or it may as well be nothing.
   [[nodiscard]] bool is_unsettled(const AcceptedTerm& term, const RefitResult& averaged) const {
     constexpr double kSettled_share = 0.8;
-    if (!term.candidate || term.loss_without_nats < 0.0) {
-      return term.loss_without_nats < 0.0;
+    const bool is_little = term.loss_without_nats < rules_.least_gain_nats;
+    // Uneven bodies take nats from every law, and leave the size of those that are right.
+    const bool is_law = term.candidate && term.candidate->type;
+    if (!term.candidate || (is_little && !is_law)) {
+      return is_little;
     }
     const Eigen::Index own = size_coordinate(averaged.model, *term.candidate, term.effect_name);
     const double size = std::abs(averaged.model.theta()[own]);
     const bool gives_way = size < kSettled_share * std::abs(out_.after.model.theta()[own]);
-    return (gives_way && term.loss_without_nats < rules_.least_gain_nats) || size < kInterval_sd * std::sqrt(averaged.covariance(own, own));
+    return (gives_way && is_little) || size < kInterval_sd * std::sqrt(averaged.covariance(own, own)) ||
+           !why_small_fault(term, averaged.model).empty();
   }
 
   /// Of those that are unsettled the one of least evidence.
@@ -182,10 +186,23 @@ class BackwardCheck {
     return false;
   }
 
+  /// Motors of more parts than the model has look as if sensors had a little of a fault. Empty where it is more.
+  [[nodiscard]] std::string why_small_fault(const AcceptedTerm& term, const ExtendedModel& model) const {
+    const SensorEffectType* const type = term.candidate->sensor_type;
+    const auto own = std::ranges::find(model.sensors, type, &SensorTerm::type);
+    const bool is_small = type && own != model.sensors.end() && term.loss_without_nats < rules_.unmistakable_nats &&
+                          std::abs(own->value) < rules_.least_fault_share * type->typical_size;
+    return is_small ? fmt::format("it is {}{}{} only", significant(own->value, 2), type->size.unit.empty() ? "" : " ", type->size.unit)
+                    : std::string();
+  }
+
   /// Empty where it is not.
   [[nodiscard]] std::string why_negligible(const AcceptedTerm& term) const {
     if (!term.candidate) {
       return {};
+    }
+    if (std::string small = why_small_fault(term, out_.after.model); !small.empty()) {
+      return small;
     }
     const double beside_nats = gain_nats([&](const AcceptedTerm& other) {
       return other.candidate && other.candidate->type && term.candidate->type &&

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/quantity.h"
 #include "identify/attribution/diagnosis.h"
@@ -36,8 +37,9 @@ std::string condition_in_words(const std::map<std::string, std::string>& conditi
   return text.empty() ? "" : ", " + text;
 }
 
-std::string effect_in_words(const FoundEffect& effect) {
-  std::string text = fmt::format("Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
+std::string effect_in_words(const FoundEffect& effect, bool holds) {
+  std::string text = fmt::format("{}: {} at the {}{}", holds ? "Found" : "Does not hold on unseen runs", effect.id, effect.node,
+                                 condition_in_words(effect.condition));
   for (const FittedParameter& parameter : effect.parameters) {
     if (parameter.low < parameter.high) {
       text += fmt::format("; {} {:.3g}{}{} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
@@ -68,7 +70,7 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
   std::string text;
   const double before_K = rms_K(diagnosis.before_holdout), refitted_K = rms_K(diagnosis.refitted_holdout);
   const double after_K = rms_K(diagnosis.after_holdout), train_K = rms_K(diagnosis.after_train);
-  if (!diagnosis.effects.empty() && refitted_K < after_K - kMatters_K && refitted_K * kWorse_ratio < after_K) {
+  if (fails_on_holdout(diagnosis)) {
     text += fmt::format(" The model's own figures refitted without any of this leave {} K there, less: do not rely on what was added.",
                         significant(refitted_K, 2));
   } else if (before_K < after_K - kMatters_K && before_K * kWorse_ratio < after_K) {
@@ -99,6 +101,10 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                    "smooth heat of the size that every model leaves."
                  : "No effect is missing that these runs show, but not all of the file's figures hold in them.";
     case DiagnosisVerdict::unexplained:
+      if (fails_on_holdout(diagnosis)) {
+        return "The training runs show more than the model has, but what would explain them does not hold on the runs never seen: it is no "
+               "answer.";
+      }
       return "The runs show heat that the model does not have, and no law of the catalogue explains it.";
     case DiagnosisVerdict::not_identifiable:
       break;
@@ -135,7 +141,18 @@ bool is_leaving(const Unexplained& heat) {
   return heat.curve_unit == "W/K" ? largest > 0.0 : largest < 0.0;
 }
 
-std::string unexplained_in_words(const Unexplained& heat) {
+/// Of curves over one signal that share what they say.
+std::string watts_in_words(std::span<const Unexplained* const> curves) {
+  std::vector<std::string> each;
+  for (const Unexplained* const heat : curves) {
+    each.push_back(fmt::format("{} W on average, up to {} W", significant(heat->mean_W, 2), significant(heat->peak_W, 2)));
+  }
+  return curves.size() == 1 ? each.front() : fmt::format("in {} curves: {}", each.size(), fmt::join(each, "; "));
+}
+
+/// `curves` are all with the first one's node and signals.
+std::string unexplained_in_words(std::span<const Unexplained* const> curves) {
+  const Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {
     return fmt::format("Unexplained: {} W rms into the {}{} that come and go within {:.0f} s; no measured signal follows them.",
                        significant(heat.rms_W, 2), heat.node,
@@ -147,8 +164,7 @@ std::string unexplained_in_words(const Unexplained& heat) {
   return (goes_by_clock ? fmt::format("Unexplained: heat {} that no measured signal explains; it goes by the time since a run began", where)
                         : fmt::format("Unnamed: heat {} that follows {}{}", where,
                                       heat.times.empty() ? "" : heat.times + " times a curve over ", fmt::join(heat.drivers, " or "))) +
-         fmt::format(", {} W on average, up to {} W.", significant(heat.mean_W, 2), significant(heat.peak_W, 2)) +
-         (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
+         fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
          (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
 }
 
@@ -164,7 +180,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
   for (const FoundEffect& effect : diagnosis.effects) {
     // What has no name in the catalogue is told below, with its driver.
     if (effect.is_from_catalogue) {
-      all.push_back(effect_in_words(effect));
+      all.push_back(effect_in_words(effect, !fails_on_holdout(diagnosis)));
     }
   }
   for (const ChangedFigure& figure : diagnosis.changed) {
@@ -173,8 +189,21 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
   if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
     all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
   }
-  for (const Unexplained& heat : diagnosis.unexplained) {
-    all.push_back(unexplained_in_words(heat));
+  for (auto heat = diagnosis.unexplained.begin(); heat != diagnosis.unexplained.end(); ++heat) {
+    const auto says_the_same = [&](const Unexplained& other) {
+      return other.node == heat->node && other.drivers == heat->drivers && other.times == heat->times &&
+             other.is_in_model == heat->is_in_model && is_leaving(other) == is_leaving(*heat);
+    };
+    if (std::any_of(diagnosis.unexplained.begin(), heat, says_the_same)) {
+      continue;
+    }
+    std::vector<const Unexplained*> curves;
+    for (const Unexplained& other : diagnosis.unexplained) {
+      if (&other == &*heat || (!heat->drivers.empty() && says_the_same(other))) {
+        curves.push_back(&other);
+      }
+    }
+    all.push_back(unexplained_in_words(curves));
   }
   const bool is_held_out = !diagnosis.before_holdout.empty();
   const bool is_more = !diagnosis.effects.empty();

@@ -239,11 +239,12 @@ class Teller {
     if (out_.selection.is_held) {
       return follows_as_usual() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::unexplained;
     }
-    if (std::ranges::any_of(out_.effects,
-                            [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
+    const bool holds = !fails_on_holdout(out_);
+    if (holds && std::ranges::any_of(out_.effects,
+                                     [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
       return DiagnosisVerdict::effect_found;
     }
-    if (!out_.unexplained.empty()) {
+    if (!out_.unexplained.empty() || !holds) {
       return DiagnosisVerdict::unexplained;
     }
     const bool is_same_mounting = std::ranges::none_of(
@@ -258,6 +259,13 @@ class Teller {
 };
 
 }  // namespace
+
+bool fails_on_holdout(const Diagnosis& diagnosis) {
+  constexpr double kWorse_ratio = 1.1;
+  constexpr double kMatters_K = 0.1;
+  const double refitted_K = rms_K(diagnosis.refitted_holdout), after_K = rms_K(diagnosis.after_holdout);
+  return !diagnosis.effects.empty() && refitted_K < after_K - kMatters_K && refitted_K * kWorse_ratio < after_K;
+}
 
 std::string_view to_string(DiagnosisVerdict verdict) {
   switch (verdict) {

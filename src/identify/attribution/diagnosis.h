@@ -24,8 +24,8 @@ struct DiagnosisInput {
 struct Unexplained {
   std::string node;                   ///< whose sensor shows it
   std::vector<std::string> or_nodes;  ///< that it may enter as well: they have no sensor
-  std::vector<std::string> drivers;  ///< empty: no measured signal explains it
-  std::string times;                 ///< signal that multiplies what goes with the driver; empty: none
+  std::vector<std::string> drivers;   ///< empty: no measured signal explains it
+  std::string times;                  ///< signal that multiplies what goes with the driver; empty: none
   double mean_W = 0.0;
   double peak_W = 0.0;
   double rms_W = 0.0;  ///< of a curve the mean magnitude
@@ -79,6 +79,9 @@ struct Diagnosis {
   std::string description;                   ///< the same as one paragraph
   Selection selection;
 };
+
+/// The model's own figures, refitted without anything that was added, follow the runs held out plainly better.
+bool fails_on_holdout(const Diagnosis& diagnosis);
 
 /// Takes the runs for ones whose motor turns round within rows of the log where that is more probable than that its speed was held over
 /// them; says so in a sentence, or nothing.

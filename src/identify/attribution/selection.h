@@ -36,6 +36,7 @@ struct SelectionRules {
   double least_heat_share = 0.01;   ///< of the heat that the model knows: an effect of less on average, and of less than
   double least_peak_share = 0.04;   ///< that at its peak, is not named
   double least_deviation_share = 0.03;  ///< that some runs are said to have of heat or of a resistance
+  double least_fault_share = 0.35;      ///< of what is typical: a sensor's fault that is less gets no name unless it is unmistakable
   int refitted = 6;
   int most_terms = 4;
 };

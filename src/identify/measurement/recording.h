@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,6 +41,8 @@ struct Recording {
   /// Of all that was read, of which this may be a part: content_hash() and the time of its first row.
   std::string content = {};
   double content_begin_s = 0.0;
+  /// Where this is a part: what the whole looks like that spoils a fit, see Suspicions. Half a run may start warm and only cool.
+  std::optional<std::vector<std::string>> spoiling_of_whole = {};
   InputHabit inputs = InputHabit::held;  ///< before it was brought to this one: which end of a gap a sample speaks of
 
   [[nodiscard]] const Channel* find(std::string_view key) const;
