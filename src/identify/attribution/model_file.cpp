@@ -12,6 +12,7 @@
 #include "identify/admission.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
+#include "identify/log_rows.h"
 #include "identify/measurement/fingerprint.h"
 
 namespace heatsoak {
@@ -51,11 +52,15 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
         fmt::format("no log has a heat input that {} turns into heat: current_A, or power_in_W with an effect input_power_loss", motor.id));
   }
   for (const EffectInPlace& effect : out.model.model.network.effects()) {
+    std::vector<std::string_view> lacking;
     for (const Signal signal : signals_of(effect, out.model.model)) {
       if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
-        out.notes.push_back(fmt::format("no log has what {} needs: it counts as 0", effect.name));
-        break;
+        lacking.push_back(column_of(signal));
       }
+    }
+    if (!lacking.empty()) {
+      out.notes.push_back(
+          fmt::format("no log has {}, which {} goes with: there it is taken as 0", fmt::join(lacking, " and "), effect.name));
     }
   }
 }
