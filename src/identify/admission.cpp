@@ -214,17 +214,16 @@ Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span
     if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
       notes.push_back(fmt::format("{} says that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
     }
-    const std::vector<std::string> spoiling_of_log = recording.spoiling_of_whole.value_or(quality.spoiling);
+    std::vector<std::string> spoiling = recording.spoiling_of_whole.value_or(quality.spoiling);
     for (const std::string& each : quality.suspicions) {
-      const bool is_of_part = std::ranges::find(quality.spoiling, each) != quality.spoiling.end() &&
-                              std::ranges::find(spoiling_of_log, each) == spoiling_of_log.end();
+      const bool is_of_part =
+          std::ranges::find(quality.spoiling, each) != quality.spoiling.end() && std::ranges::find(spoiling, each) == spoiling.end();
       if (is_of_part) {
         continue;
       }
       notes.push_back(fmt::format("{}: {}", recording.name, each));
     }
     late_answers(motor, recording, quality, admission);
-    std::vector<std::string> spoiling = spoiling_of_log;
     if (spoiling.empty()) {
       beyond_the_motor(motor, recording, spoiling);
       faster_than_the_motor(motor, recording, spoiling);

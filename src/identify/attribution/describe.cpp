@@ -64,20 +64,17 @@ std::string effect_in_words(const FoundEffect& effect, bool holds) {
 
 /// What the reader must know before he trusts the model on other runs.
 std::string doubts_in_words(const Diagnosis& diagnosis) {
-  constexpr double kWorse_ratio = 1.1;
   constexpr double kElsewhere_ratio = 3.0;
-  constexpr double kMatters_K = 0.1;
   std::string text;
   const double before_K = rms_K(diagnosis.before_holdout), refitted_K = rms_K(diagnosis.refitted_holdout);
   const double after_K = rms_K(diagnosis.after_holdout), train_K = rms_K(diagnosis.after_train);
   if (fails_on_holdout(diagnosis)) {
     text += fmt::format(" The model's own figures refitted without any of this leave {} K there, less: do not rely on what was added.",
                         significant(refitted_K, 2));
-  } else if (before_K < after_K - kMatters_K && before_K * kWorse_ratio < after_K) {
+  } else if (is_plainly_worse(after_K, before_K)) {
     text += " The error on runs the fit never saw grows: do not rely on the new model there.";
   }
-  const double fitted_before_K = rms_K(diagnosis.before_train);
-  if (fitted_before_K < train_K - kMatters_K && fitted_before_K * kWorse_ratio < train_K) {
+  if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
     text += " The error on the training runs grows: keep the model's own figures.";
   }
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
@@ -168,6 +165,22 @@ std::string unexplained_in_words(std::span<const Unexplained* const> curves) {
          (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
 }
 
+/// Curves over one signal share what they have in common to say.
+void add_unexplained(const std::vector<Unexplained>& heats, std::vector<std::string>& all) {
+  const auto is_shared = [](const Unexplained& a, const Unexplained& b) {
+    return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.times == b.times && a.is_in_model == b.is_in_model &&
+           is_leaving(a) == is_leaving(b);
+  };
+  std::vector<std::vector<const Unexplained*>> groups;
+  for (const Unexplained& heat : heats) {
+    const auto own = std::ranges::find_if(groups, [&](const auto& group) { return is_shared(*group.front(), heat); });
+    (own == groups.end() ? groups.emplace_back() : *own).push_back(&heat);
+  }
+  for (const auto& group : groups) {
+    all.push_back(unexplained_in_words(group));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> describe(const Diagnosis& diagnosis) {
@@ -189,22 +202,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
   if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
     all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
   }
-  for (auto heat = diagnosis.unexplained.begin(); heat != diagnosis.unexplained.end(); ++heat) {
-    const auto says_the_same = [&](const Unexplained& other) {
-      return other.node == heat->node && other.drivers == heat->drivers && other.times == heat->times &&
-             other.is_in_model == heat->is_in_model && is_leaving(other) == is_leaving(*heat);
-    };
-    if (std::any_of(diagnosis.unexplained.begin(), heat, says_the_same)) {
-      continue;
-    }
-    std::vector<const Unexplained*> curves;
-    for (const Unexplained& other : diagnosis.unexplained) {
-      if (&other == &*heat || (!heat->drivers.empty() && says_the_same(other))) {
-        curves.push_back(&other);
-      }
-    }
-    all.push_back(unexplained_in_words(curves));
-  }
+  add_unexplained(diagnosis.unexplained, all);
   const bool is_held_out = !diagnosis.before_holdout.empty();
   const bool is_more = !diagnosis.effects.empty();
   all.push_back(errors_in_words(is_held_out ? diagnosis.before_holdout : diagnosis.before_train,

@@ -260,11 +260,13 @@ class Teller {
 
 }  // namespace
 
-bool fails_on_holdout(const Diagnosis& diagnosis) {
+bool is_plainly_worse(double error_K, double than_K) {
   constexpr double kWorse_ratio = 1.1;
-  constexpr double kMatters_K = 0.1;
-  const double refitted_K = rms_K(diagnosis.refitted_holdout), after_K = rms_K(diagnosis.after_holdout);
-  return !diagnosis.effects.empty() && refitted_K < after_K - kMatters_K && refitted_K * kWorse_ratio < after_K;
+  return error_K > than_K + kMatters_K && error_K > kWorse_ratio * than_K;
+}
+
+bool fails_on_holdout(const Diagnosis& diagnosis) {
+  return !diagnosis.effects.empty() && is_plainly_worse(rms_K(diagnosis.after_holdout), rms_K(diagnosis.refitted_holdout));
 }
 
 std::string_view to_string(DiagnosisVerdict verdict) {

@@ -80,6 +80,11 @@ struct Diagnosis {
   Selection selection;
 };
 
+inline constexpr double kMatters_K = 0.1;  ///< errors that differ by less differ to nobody
+
+/// By a tenth, and by more than matters to anybody.
+bool is_plainly_worse(double error_K, double than_K);
+
 /// The model's own figures, refitted without anything that was added, follow the runs held out plainly better.
 bool fails_on_holdout(const Diagnosis& diagnosis);
 
