@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSharesOfTimeConstant = 5.0;
 /// Sensors lag by some seconds, and that must stay to be seen.
-constexpr double kLongestStretch_s = 2.0;
+constexpr double kLongestStretch_s = 3.0;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

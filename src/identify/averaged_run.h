@@ -9,7 +9,7 @@
 
 namespace heatsoak {
 
-/// How many samples of a run may become one: they span at most a fifth of the fastest node's time constant and at most 2 s.
+/// How many samples of a run may become one: they span at most a fifth of the fastest node's time constant and at most 3 s.
 int mergeable_samples(const LinearisedRun& run);
 
 class Averaging {

@@ -10,6 +10,7 @@ namespace {
 
 /// Most nodes that a network has, each with a flux and a sensor.
 constexpr int kMostSize = 3 * (Network::kMostNodes - 1);
+/// So many columns at a time keep the filter's state in the innermost cache while the run goes by.
 constexpr Eigen::Index kStrip = 8;
 
 /// How many temperatures, fluxes and slow errors of sensors a filter's state has, in this order.
@@ -165,6 +166,9 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
   Matrix covariance = Matrix::Zero();
   Matrix moved = Matrix::Zero();
   add_unknown(-1, covariance);
+  // Logarithms take time: one for many factors, as long as their product can be represented.
+  constexpr double kSmall = 1e-100;
+  double determinant = 1.0;
   for (Eigen::Index k = 0; k < run_->samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
       const Eigen::Index row = k * run_->sensors() + sensor;
@@ -192,7 +196,11 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
         }
       }
       inverse_sd_per_K_[static_cast<std::size_t>(row)] = std::sqrt(inverse_per_K2);
-      log_determinant_ += std::log(variance_K2);
+      determinant *= variance_K2;
+      if (determinant < kSmall || determinant > 1.0 / kSmall) {
+        log_determinant_ += std::log(determinant);
+        determinant = 1.0;
+      }
       ++count_;
     }
     if (k + 1 < run_->samples()) {
@@ -200,12 +208,12 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
       add_unknown(k, covariance);
     }
   }
+  log_determinant_ += std::log(determinant);
 }
 
-/// `kStrip` columns.
-template <class Layout>
+template <int kWidth, class Layout>
 void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns) const {
-  using Row = Eigen::Array<double, 1, kStrip>;
+  using Row = Eigen::Array<double, 1, kWidth>;
   const Eigen::Index x = layout.states();
   const Eigen::Index q = layout.fluxes();
   std::array<Row, Layout::kMost> state, moved;
@@ -253,18 +261,29 @@ void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns
   }
 }
 
+template <int kWidth>
+void Whitening::apply_to_strip(Eigen::Ref<Columns> columns) const {
+  const auto whiten = [this](Eigen::Ref<Columns> strip) { for_layout([&](const auto& layout) { apply_to_strip<kWidth>(layout, strip); }); };
+  if (columns.cols() == kWidth) {
+    whiten(columns);
+    return;
+  }
+  Columns strip = Columns::Zero(columns.rows(), kWidth);
+  strip.leftCols(columns.cols()) = columns;
+  whiten(strip);
+  columns = strip.leftCols(columns.cols());
+}
+
 void Whitening::apply(Eigen::Ref<Columns> columns) const {
-  const auto strip_by_strip = [this](Eigen::Ref<Columns> strip) { for_layout([&](const auto& layout) { apply_to_strip(layout, strip); }); };
-  // Eight columns at a time: their filter state stays in the innermost cache while the run goes by.
   for (Eigen::Index first = 0; first < columns.cols(); first += kStrip) {
-    if (first + kStrip <= columns.cols()) {
-      strip_by_strip(columns.middleCols(first, kStrip));
+    const Eigen::Index count = std::min(kStrip, columns.cols() - first);
+    const auto strip = columns.middleCols(first, count);
+    if (count > kStrip / 2) {
+      apply_to_strip<kStrip>(strip);
+    } else if (count > kStrip / 4) {
+      apply_to_strip<kStrip / 2>(strip);
     } else {
-      const Eigen::Index rest = columns.cols() - first;
-      Columns strip = Columns::Zero(columns.rows(), kStrip);
-      strip.leftCols(rest) = columns.rightCols(rest);
-      strip_by_strip(strip);
-      columns.rightCols(rest) = strip.leftCols(rest);
+      apply_to_strip<kStrip / 4>(strip);
     }
   }
 }

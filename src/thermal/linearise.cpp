@@ -182,14 +182,15 @@ void Network::linearise(const OperatingPoint<double>& at, std::span<const double
   for_each_quantity([](Tangent& to, const double& from) { to.a = from; }, seen, at);
   seen.copper_loss_W.v.setZero();
   Linearisation linearisation(parameters, temperature_C.data(), state_count(), workspace, out);
-  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
-    const bool is_copper = turn == 0 && copper_effect_ >= 0;
+  std::size_t turn = 0;
+  if (copper_effect_ >= 0) {
     CopperGradient copper;
-    linearisation.add(effects_[booked_at(turn)], seen, is_copper ? &copper : nullptr);
-    if (is_copper) {
-      linearisation.set_copper(copper);
-      seen.copper_loss_W = Tangent(copper.heat_W);
-    }
+    linearisation.add(effects_[booked_at(turn++)], seen, &copper);
+    linearisation.set_copper(copper);
+    seen.copper_loss_W = Tangent(copper.heat_W);
+  }
+  for (; turn < effects_.size(); ++turn) {
+    linearisation.add(effects_[booked_at(turn)], seen, nullptr);
   }
   linearisation.divide_by(capacity_index_);
 }

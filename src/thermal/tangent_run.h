@@ -16,7 +16,8 @@ struct NetworkStep {
   Eigen::MatrixXd by_parameter;  ///< n × (w + q): by the wanted parameters, per unit, with the start held; then by heat, in K/W
 };
 
-/// The classical Runge-Kutta method with its own derivatives; steps short against the fastest time constant.
+/// The classical Runge-Kutta method with its own derivatives; steps short against the fastest time constant. Very short ones are Heun's of
+/// third order.
 class TangentRun {
  public:
   /// `wanted`: places in the network's list of parameters. `heated`: nodes whose response to a heat that nobody knows, held over the
@@ -29,7 +30,7 @@ class TangentRun {
 
  private:
   /// `slope_` is that of the step's beginning already.
-  void one_step(double step_s, const OperatingPoint<double>& at);
+  void one_step(double step_s, bool is_short, const OperatingPoint<double>& at);
   void set_slope(const OperatingPoint<double>& at, const Eigen::VectorXd& state_C);
 
   const Network& network_;

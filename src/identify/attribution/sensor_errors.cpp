@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "base/parallel.h"
 #include "identify/attribution/refit.h"
@@ -36,6 +37,7 @@ class Climb {
   /// Doubles and halves one number after the other as long as the evidence grows; returns the evidence.
   double run(SensorErrors& errors) {
     best_nats_ = evidence_nats(errors);
+    tried_ = {{errors.wander_time_scale_s, errors.wander_K}};
     constexpr int kMostRounds = 4;
     bool moved = true;
     for (int round = 0; moved && round < kMostRounds; ++round) {
@@ -71,7 +73,8 @@ class Climb {
   bool steps_to(SensorErrors& errors, const Change& change) {
     SensorErrors next = errors;
     change(next);
-    if (next.wander_time_scale_s < kShortestWander_s || next.wander_time_scale_s > kLongestWander_s) {
+    if (next.wander_time_scale_s < kShortestWander_s || next.wander_time_scale_s > kLongestWander_s ||
+        !tried_.emplace(next.wander_time_scale_s, next.wander_K).second) {
       return false;
     }
     EvidenceTable beside = table(next);
@@ -97,6 +100,7 @@ class Climb {
   const std::vector<DesignRun>& designs_;
   FluxGrid::Place place_;
   double best_nats_ = 0.0;
+  std::set<std::pair<double, std::map<std::string, double>>> tried_;
 };
 
 }  // namespace
