@@ -101,16 +101,21 @@ void Whitening::predict(const Layout& layout, const Step& step, Matrix& covarian
   const Eigen::Index x = layout.states();
   const Eigen::Index q = layout.fluxes();
   const auto forget_ratio = [&](Eigen::Index i) { return i < x + q ? step.forget_ratio : step.wander_forget_ratio; };
+  // Row after row, which the compiler does several columns at once.
+  const auto add_row = [&](Eigen::Index i, double share, Eigen::Index j) {
+    for (Eigen::Index c = 0; c < layout.size(); ++c) {
+      moved(i, c) += share * covariance(j, c);
+    }
+  };
   for (Eigen::Index i = 0; i < x; ++i) {
     for (Eigen::Index c = 0; c < layout.size(); ++c) {
-      double sum = 0.0;
-      for (Eigen::Index j = 0; j < x; ++j) {
-        sum += step.transition[i * x + j] * covariance(j, c);
-      }
-      for (Eigen::Index f = 0; f < q; ++f) {
-        sum += step.injection[i * q + f] * covariance(x + f, c);
-      }
-      moved(i, c) = sum;
+      moved(i, c) = step.transition[i * x] * covariance(0, c);
+    }
+    for (Eigen::Index j = 1; j < x; ++j) {
+      add_row(i, step.transition[i * x + j], j);
+    }
+    for (Eigen::Index f = 0; f < q; ++f) {
+      add_row(i, step.injection[i * q + f], x + f);
     }
   }
   for (Eigen::Index i = 0; i < x; ++i) {
@@ -165,6 +170,7 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
   using Matrix = Eigen::Matrix<double, Layout::kMost, Layout::kMost, Eigen::RowMajor>;
   Matrix covariance = Matrix::Zero();
   Matrix moved = Matrix::Zero();
+  std::array<double, Layout::kMost> learnt_K{};
   add_unknown(-1, covariance);
   // Logarithms take time: one for many factors, as long as their product can be represented.
   constexpr double kSmall = 1e-100;
@@ -187,15 +193,17 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
       }
       const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
       const double variance_K2 = expected_K2 + noise_K * noise_K / weight;
-      const double inverse_per_K2 = 1.0 / variance_K2;
+      const double inverse_sd_per_K = 1.0 / std::sqrt(variance_K2);
       for (Eigen::Index i = 0; i < size; ++i) {
-        const double shown = gain[i];
-        gain[i] = shown * inverse_per_K2;
-        for (Eigen::Index j = 0; j <= i; ++j) {
-          covariance(j, i) = covariance(i, j) -= shown * gain[j];
+        learnt_K[static_cast<std::size_t>(i)] = gain[i] * inverse_sd_per_K;
+        gain[i] *= inverse_sd_per_K * inverse_sd_per_K;
+      }
+      for (Eigen::Index i = 0; i < size; ++i) {
+        for (Eigen::Index j = 0; j < size; ++j) {
+          covariance(i, j) -= learnt_K[static_cast<std::size_t>(i)] * learnt_K[static_cast<std::size_t>(j)];
         }
       }
-      inverse_sd_per_K_[static_cast<std::size_t>(row)] = std::sqrt(inverse_per_K2);
+      inverse_sd_per_K_[static_cast<std::size_t>(row)] = inverse_sd_per_K;
       determinant *= variance_K2;
       if (determinant < kSmall || determinant > 1.0 / kSmall) {
         log_determinant_ += std::log(determinant);

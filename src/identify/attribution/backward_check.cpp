@@ -120,6 +120,7 @@ class BackwardCheck {
   /// Beside all that sensors and bodies may do little is left of the term, or it may as well be nothing.
   [[nodiscard]] bool is_unsettled(const AcceptedTerm& term, const RefitResult& averaged) const {
     constexpr double kSettled_share = 0.8;
+    constexpr double kNothing_share = 0.01;
     const bool is_little = term.loss_without_nats < rules_.least_gain_nats;
     // Uneven bodies take nats from every law, and leave the size of those that are right.
     const bool is_law = term.candidate && term.candidate->type;
@@ -129,7 +130,9 @@ class BackwardCheck {
     const Eigen::Index own = size_coordinate(averaged.model, *term.candidate, term.effect_name);
     const double size = std::abs(averaged.model.theta()[own]);
     const bool gives_way = size < kSettled_share * std::abs(out_.after.model.theta()[own]);
-    return (gives_way && is_little) || size < kInterval_sd * std::sqrt(averaged.covariance(own, own)) ||
+    // At a bound nothing seems uncertain, and nothing is there.
+    const bool is_nothing = size < kNothing_share * std::abs(out_.after.model.theta()[own]);
+    return (gives_way && is_little) || is_nothing || size < kInterval_sd * std::sqrt(averaged.covariance(own, own)) ||
            !why_small_fault(term, averaged.model).empty();
   }
 

@@ -18,7 +18,7 @@ constexpr double kLongestWander_s = 64.0;
 constexpr double kClearly_nats = 10.0;
 /// What a step has to bring, and how far behind it may be before other unknown heat beside it is looked for: that mostly brings a few.
 constexpr double kBetter_nats = 0.5;
-constexpr double kHopeless_nats = 30.0;
+constexpr double kHopeless_nats = 15.0;
 
 /// To the slow errors under which the model at the fit is most probable, the unknown heat being what is best beside them.
 class Climb {
