@@ -79,6 +79,7 @@ struct Candidacy {
   std::vector<std::vector<double>> variants;
   std::string_view family;      ///< what it can be called while the exact law is open: "speed loss at the stator"
   std::string_view experiment;  ///< what to record so that its look-alikes separate
+  bool is_anywhere = false;     ///< looked for at every node, also where the network has two only
 };
 
 /// Numbers computed by hand beside the equation; run as a test for every effect.

@@ -34,10 +34,28 @@ TEST(Diagnosis, fails_where_the_models_own_figures_follow_the_runs_held_out_bett
   told.refitted_holdout["winding_C"].rmse_K = 0.33;
   told.after_holdout["winding_C"].rmse_K = 0.53;
   EXPECT_FALSE(fails_on_holdout(told)) << "nothing was added";
-  told.effects.emplace_back();
+  told.effects.emplace_back().gain_nats = 30.0;
   EXPECT_TRUE(fails_on_holdout(told));
   told.after_holdout["winding_C"].rmse_K = 0.40;
   EXPECT_FALSE(fails_on_holdout(told)) << "less than matters";
+  told.effects.front().gain_nats = 6.0;
+  EXPECT_TRUE(fails_on_holdout(told)) << "an effect that is hardly sure";
+  told.after_holdout["winding_C"].rmse_K = 0.34;
+  EXPECT_FALSE(fails_on_holdout(told)) << "by chance";
+}
+
+TEST(Examination, ConstantHeatInTheWindingOfAllRunsIsOneEffect) {
+  constexpr double kHeat_W = 1.3;
+  Missing missing;
+  missing.heat.emplace_back([](const Moment&, PerPart& q) { q[slot] += kHeat_W; });
+  const Answer answer = examine(sealed(missing, 12));
+  ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
+  const FoundEffect& found = answer.diagnosis.effects.front();
+  EXPECT_EQ(found.id, "constant_heat");
+  EXPECT_EQ(found.node, "winding");
+  EXPECT_THAT(found.condition, testing::IsEmpty());
+  EXPECT_NEAR(found.mean_W, kHeat_W, 0.2 * kHeat_W);
+  EXPECT_LT(answer.after_K, 0.3 * answer.before_K) << account(answer);
 }
 
 TEST(Examination, NothingMissingIsSaidToBeNothing) {

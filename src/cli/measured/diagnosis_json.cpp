@@ -41,17 +41,21 @@ Json effect_json(const FoundEffect& effect) {
                           {"ci95", {parameter.low, parameter.high}},
                           {"fitted", is_fitted}});
   }
-  return {{"id", effect.id},
-          {"name", effect.name},
-          {"node", effect.node},
-          {"parameters", parameters},
-          {"condition", effect.condition},
-          {"drivers", effect.drivers},
-          {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
-          {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
-          {"visibility", rounded(effect.visibility_ratio, 4)},
-          {"confusable_with", plain_ids(effect.confusable_with)},
-          {"look_alike", effect.look_alike}};
+  Json json{
+      {"id", effect.id},
+      {"name", effect.name},
+      {"node", effect.node},
+      {"parameters", parameters},
+      {"condition", effect.condition},
+      {"drivers", effect.drivers},
+      {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
+      {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
+      {"confusable_with", plain_ids(effect.confusable_with)},
+      {"look_alike", effect.look_alike}};
+  if (effect.is_from_catalogue) {
+    json["visibility"] = rounded(effect.visibility_ratio, 4);
+  }
+  return json;
 }
 
 Json tests_json(const std::vector<InnovationTests>& tests) {

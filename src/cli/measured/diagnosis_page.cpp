@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "base/quantity.h"
 #include "cli/measured/diagnosis_answer.h"
@@ -82,8 +84,9 @@ std::string effect_table(const Diagnosis& diagnosis) {
     }
   }
   text += "</table>\n";
+  std::set<std::string> told;
   for (const FoundEffect& effect : diagnosis.effects) {
-    if (!effect.look_alike.empty() && effect.is_from_catalogue) {
+    if (!effect.look_alike.empty() && effect.is_from_catalogue && told.insert(effect.id).second) {
       text += fmt::format("<p>{} in general: {}</p>\n", escaped(effect.id), escaped(effect.look_alike));
     }
   }
@@ -130,8 +133,8 @@ std::string tests_in_words(const std::vector<InnovationTests>& tests) {
   std::string words;
   for (const InnovationTests& test : tests) {
     if (test.ljung_box_probability < kWhite_probability || test.periodogram_ratio > 1.0) {
-      words += fmt::format(" What is left of {} can still be foretold from one second to the next: its intervals are less sure.",
-                           test.signal);
+      words +=
+          fmt::format(" What is left of {} can still be foretold from one second to the next: its intervals are less sure.", test.signal);
     }
     if (test.variance_ratio < kLow_ratio || test.variance_ratio > kHigh_ratio) {
       words += fmt::format(" The noise of {} is {} than what its log was taken to have.", test.signal,

@@ -132,7 +132,8 @@ class BackwardCheck {
     const bool gives_way = size < kSettled_share * std::abs(out_.after.model.theta()[own]);
     // At a bound nothing seems uncertain, and nothing is there.
     const bool is_nothing = size < kNothing_share * std::abs(out_.after.model.theta()[own]);
-    return (gives_way && is_little) || is_nothing || size < kInterval_sd * std::sqrt(averaged.covariance(own, own)) ||
+    const bool is_better_without = term.loss_without_nats < 0.0;
+    return (gives_way && is_little) || is_nothing || is_better_without || size < kInterval_sd * std::sqrt(averaged.covariance(own, own)) ||
            !why_small_fault(term, averaged.model).empty();
   }
 
@@ -193,8 +194,10 @@ class BackwardCheck {
   [[nodiscard]] std::string why_small_fault(const AcceptedTerm& term, const ExtendedModel& model) const {
     const SensorEffectType* const type = term.candidate->sensor_type;
     const auto own = std::ranges::find(model.sensors, type, &SensorTerm::type);
-    const bool is_small = type && own != model.sensors.end() && term.loss_without_nats < rules_.unmistakable_nats &&
-                          std::abs(own->value) < rules_.least_fault_share * type->typical_size;
+    // Less than a tenth nobody's sensor can be blamed for, however well it fits.
+    constexpr double kNoFault_share = 0.1;
+    const double least_share = term.loss_without_nats < rules_.unmistakable_nats ? rules_.least_fault_share : kNoFault_share;
+    const bool is_small = type && own != model.sensors.end() && std::abs(own->value) < least_share * type->typical_size;
     return is_small ? fmt::format("it is {}{}{} only", significant(own->value, 2), type->size.unit.empty() ? "" : " ", type->size.unit)
                     : std::string();
   }

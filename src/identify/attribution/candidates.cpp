@@ -61,13 +61,15 @@ std::vector<std::string> usual_nodes(const Network& network, const EffectType& t
   return nodes;
 }
 
-/// Effects of one node act at every node that stores heat; the rest where their roles say.
+/// Effects of one node act at every node that stores heat, in a network of two the usual one unless they say otherwise; the rest where
+/// their roles say.
 std::vector<std::vector<std::string>> placements(const Network& network, const EffectType& type) {
   std::vector<std::vector<std::string>> all;
   if (std::vector<std::string> usual = usual_nodes(network, type); !usual.empty()) {
     all.push_back(std::move(usual));
   }
-  const bool moves = type.nodes.size() == 1 && type.nodes.front().own_capacity < 0 && network.state_count() > 2;
+  const bool moves =
+      type.nodes.size() == 1 && type.nodes.front().own_capacity < 0 && (type.candidacy.is_anywhere || network.state_count() > 2);
   for (int node = 0; moves && node < network.state_count(); ++node) {
     if (network.node_name(node) != type.nodes.front().default_node) {
       all.push_back({std::string(network.node_name(node))});

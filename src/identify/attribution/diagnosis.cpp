@@ -25,6 +25,9 @@ namespace {
 /// A figure of the file that is further off than this (of its logarithm) is no longer the same mounting.
 constexpr double kOtherMounting = 0.1;
 
+/// Errors that grow by more have grown.
+constexpr double kWorse_ratio = 1.1;
+
 /// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
 constexpr double kLeastSeen_share = 0.5;
 
@@ -39,11 +42,16 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   constexpr double kLeftByHeat_share = 0.7;
   constexpr double kManyTimes_ratio = 4.0;
   const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
-  if (std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
+  // Heat that follows no signal may stand in for little; not for what is this sure. Heat without a law may be the mean of any.
+  constexpr double kBeyondDoubt_nats = 100.0;
+  const bool is_beyond_doubt = effect.gain_nats > kBeyondDoubt_nats && effect.id != "constant_heat" &&
+                               std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
+  if (!is_beyond_doubt &&
+      std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
       rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train)) {
     return true;
   }
-  if (!effect.has_heat) {
+  if (!effect.has_heat || is_beyond_doubt) {
     return false;
   }
   return std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) {
@@ -260,13 +268,15 @@ class Teller {
 
 }  // namespace
 
-bool is_plainly_worse(double error_K, double than_K) {
-  constexpr double kWorse_ratio = 1.1;
-  return error_K > than_K + kMatters_K && error_K > kWorse_ratio * than_K;
-}
+bool is_plainly_worse(double error_K, double than_K) { return error_K > than_K + kMatters_K && error_K > kWorse_ratio * than_K; }
 
 bool fails_on_holdout(const Diagnosis& diagnosis) {
-  return !diagnosis.effects.empty() && is_plainly_worse(rms_K(diagnosis.after_holdout), rms_K(diagnosis.refitted_holdout));
+  const double after_K = rms_K(diagnosis.after_holdout);
+  const double refitted_K = rms_K(diagnosis.refitted_holdout);
+  // What is hardly sure must not follow them worse at all.
+  const bool is_hardly_sure =
+      std::ranges::all_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.gain_nats < SelectionRules{}.least_gain_nats; });
+  return !diagnosis.effects.empty() && (is_plainly_worse(after_K, refitted_K) || (is_hardly_sure && after_K > kWorse_ratio * refitted_K));
 }
 
 std::string_view to_string(DiagnosisVerdict verdict) {
@@ -304,7 +314,14 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   asked.free = input.free;
   Diagnosis told = Teller(input, select_effects(asked, rules)).tell();
   asked.outweighed = outweighed_in(told);
-  return asked.outweighed.empty() ? told : Teller(input, select_effects(asked, rules)).tell();
+  if (!asked.outweighed.empty()) {
+    told = Teller(input, select_effects(asked, rules)).tell();
+  }
+  // Where nothing that was found holds on other runs, heat remains unexplained though little of it shows in these.
+  if (told.verdict == DiagnosisVerdict::unexplained && told.unexplained.empty()) {
+    told.unexplained.push_back(most_heat_left(told, input.train));
+  }
+  return told;
 }
 
 }  // namespace heatsoak

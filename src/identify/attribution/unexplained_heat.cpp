@@ -44,6 +44,17 @@ class HeatTeller {
     return std::move(heats_);
   }
 
+  [[nodiscard]] Unexplained most() const {
+    Unexplained most;
+    for (const auto& [node, members] : unknown_by_sensor()) {
+      Unexplained heat = unnamed_heat(node, members);
+      if (most.node.empty() || heat.rms_W > most.rms_W) {
+        most = std::move(heat);
+      }
+    }
+    return most;
+  }
+
  private:
   [[nodiscard]] const RefitResult& after() const { return told_.selection.after; }
   [[nodiscard]] double time_scale_s() const { return told_.selection.grid.at(after().place).time_scale_s; }
@@ -161,5 +172,7 @@ class HeatTeller {
 std::vector<Unexplained> unexplained_heat(const Diagnosis& told, const std::vector<MeasuredRun>& train) {
   return HeatTeller(told, train).tell();
 }
+
+Unexplained most_heat_left(const Diagnosis& told, const std::vector<MeasuredRun>& train) { return HeatTeller(told, train).most(); }
 
 }  // namespace heatsoak

@@ -24,7 +24,7 @@ EffectType constant_heat() {
       .nodes = {{"heated", "stator"}},
       .parameters = {{"power", "W", Range::non_negative(), "that the node takes up"}},
       .typical = "0.5 to 3 W",
-      .look_alike = "An offset of the stator's sensor or of the ambient's: the first minutes before power tell.",
+      .look_alike = "An offset of the node's sensor or of the ambient's: the first minutes before power tell.",
       // 1.5 W, whatever the motor does
       .example = {.parameters = {1.5}, .at = {}, .temperature_C = {40.0}, .expected_heat_W = {1.5}},
       .laws = laws<ConstantHeat>(),
@@ -32,7 +32,8 @@ EffectType constant_heat() {
       .candidacy = {.size_parameter = power,
                     .variants = {{1.0}},
                     .family = "heat that no signal drives",
-                    .experiment = "half an hour at rest in the same place, from equal temperatures of motor and surroundings"},
+                    .experiment = "half an hour at rest in the same place, from equal temperatures of motor and surroundings",
+                    .is_anywhere = true},
   };
 }
 
