@@ -10,7 +10,6 @@ namespace {
 
 /// Most nodes that a network has, each with a flux and a sensor.
 constexpr int kMostSize = 3 * (Network::kMostNodes - 1);
-/// So many columns at a time keep the filter's state in the innermost cache while the run goes by.
 constexpr Eigen::Index kStrip = 8;
 
 /// How many temperatures, fluxes and slow errors of sensors a filter's state has, in this order.
@@ -219,9 +218,10 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
   log_determinant_ += std::log(determinant);
 }
 
-template <int kWidth, class Layout>
+/// `kStrip` columns.
+template <class Layout>
 void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns) const {
-  using Row = Eigen::Array<double, 1, kWidth>;
+  using Row = Eigen::Array<double, 1, kStrip>;
   const Eigen::Index x = layout.states();
   const Eigen::Index q = layout.fluxes();
   std::array<Row, Layout::kMost> state, moved;
@@ -269,29 +269,18 @@ void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns
   }
 }
 
-template <int kWidth>
-void Whitening::apply_to_strip(Eigen::Ref<Columns> columns) const {
-  const auto whiten = [this](Eigen::Ref<Columns> strip) { for_layout([&](const auto& layout) { apply_to_strip<kWidth>(layout, strip); }); };
-  if (columns.cols() == kWidth) {
-    whiten(columns);
-    return;
-  }
-  Columns strip = Columns::Zero(columns.rows(), kWidth);
-  strip.leftCols(columns.cols()) = columns;
-  whiten(strip);
-  columns = strip.leftCols(columns.cols());
-}
-
 void Whitening::apply(Eigen::Ref<Columns> columns) const {
+  const auto strip_by_strip = [this](Eigen::Ref<Columns> strip) { for_layout([&](const auto& layout) { apply_to_strip(layout, strip); }); };
+  // Eight columns at a time: their filter state stays in the innermost cache while the run goes by.
   for (Eigen::Index first = 0; first < columns.cols(); first += kStrip) {
-    const Eigen::Index count = std::min(kStrip, columns.cols() - first);
-    const auto strip = columns.middleCols(first, count);
-    if (count > kStrip / 2) {
-      apply_to_strip<kStrip>(strip);
-    } else if (count > kStrip / 4) {
-      apply_to_strip<kStrip / 2>(strip);
+    if (first + kStrip <= columns.cols()) {
+      strip_by_strip(columns.middleCols(first, kStrip));
     } else {
-      apply_to_strip<kStrip / 4>(strip);
+      const Eigen::Index rest = columns.cols() - first;
+      Columns strip = Columns::Zero(columns.rows(), kStrip);
+      strip.leftCols(rest) = columns.rightCols(rest);
+      strip_by_strip(strip);
+      columns.rightCols(rest) = strip.leftCols(rest);
     }
   }
 }

@@ -83,12 +83,8 @@ class Whitening {
   [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }
   /// Of a sensor's slow error in the filter's state.
   [[nodiscard]] Eigen::Index wander_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }
-  /// `kWidth` columns.
-  template <int kWidth, class Layout>
+  template <class Layout>
   void apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns) const;
-  /// At most `kWidth` columns.
-  template <int kWidth>
-  void apply_to_strip(Eigen::Ref<Columns> columns) const;
 
   const LinearisedRun* run_;
   LatentFlux flux_;

@@ -80,8 +80,6 @@ struct Diagnosis {
   Selection selection;
 };
 
-inline constexpr double kMatters_K = 0.1;  ///< errors that differ by less differ to nobody
-
 /// By a tenth, and by more than matters to anybody.
 bool is_plainly_worse(double error_K, double than_K);
 

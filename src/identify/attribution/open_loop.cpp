@@ -92,7 +92,6 @@ double rms_K(const Errors& errors) {
 }
 
 bool leads_away(const ExtendedModel& from, const ExtendedModel& to, const std::vector<MeasuredRun>& runs, double most_ratio) {
-  constexpr double kMatters_K = 0.1;
   const double before_K = rms_K(open_loop_errors(from, runs, {}));
   const double after_K = rms_K(open_loop_errors(to, runs, {}));
   return after_K > most_ratio * before_K && after_K > before_K + kMatters_K;

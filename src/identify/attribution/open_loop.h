@@ -14,6 +14,8 @@ struct ErrorOfSignal {
   double rmse_K = 0.0;
   double max_abs_K = 0.0;
 };
+inline constexpr double kMatters_K = 0.1;  ///< errors that differ by less differ to nobody
+
 /// By signal, "winding_C".
 using Errors = std::map<std::string, ErrorOfSignal>;
 
