@@ -9,6 +9,7 @@
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "base/unknown.h"
+#include "identify/log_columns.h"
 #include "identify/log_rows.h"
 #include "identify/measurement/noise.h"
 #include "identify/measurement/row_order.h"
@@ -249,6 +250,8 @@ class Builder {
     }
     if (kept.size() >= kLeastSamples) {
       run.name = all_.runs.empty() ? recording_.name : fmt::format("{}#{}", recording_.name, all_.runs.size() + 1);
+      run.columns = columns_along(recording_, run.time_s);
+      set_column(run, options_.column);
       all_.runs.push_back(std::move(run));
       used_rows_ += last - first + 1;
     }

@@ -39,6 +39,7 @@ struct MeasuredRun {
   std::vector<Signal> signals;  ///< what of the operating points was measured
   /// What is said of the run: the recording's conditions, and "run" -> the recording's name.
   std::map<std::string, std::string> conditions;
+  std::map<std::string, Eigen::VectorXd> columns;  ///< of the log that are no operating point: columns_along
 
   [[nodiscard]] Eigen::Index samples() const { return static_cast<Eigen::Index>(time_s.size()); }
   [[nodiscard]] bool has(Signal signal) const;
@@ -61,6 +62,7 @@ struct MeasuredRunOptions {
   double least_current_A = 0.0;          ///< less turns no motor: a log that never has more is one of a motor that stands
   ShaftTorque torque = {};               ///< where the recording has none but current and speed
   std::vector<SensorFault> faults = {};  ///< of the sensors, as they are stated
+  std::string column = {};               ///< key of the one that goes into the operating points
   double ambient_C = kNotStated_C;       ///< where the recording has neither coolant nor ambient; NaN: it must have one
   static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
 };

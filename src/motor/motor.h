@@ -79,6 +79,7 @@ struct MotorEffect {
   /// Where it acts: "cooling" -> "fan" as logs name their conditions. Empty: everywhere. An effect with a condition was seen in
   /// some runs only, so predictions leave it out.
   std::map<std::string, std::string> condition = {};
+  std::string column = {};  ///< of logs, that a curve is drawn over; empty where it is over another signal
 };
 
 /// A fault that the file states for a sensor at the motor: it moves what is shown, not the temperature.

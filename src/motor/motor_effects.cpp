@@ -110,6 +110,10 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
   }
 }
 
+bool goes_with_column(const MotorEffect& effect) {
+  return std::ranges::any_of(effect.parameters, [](const Figure& each) { return each.printed == kColumnChoice; });
+}
+
 /// Those that bring a node come before those that name it, else as in the file.
 std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& table) {
   std::vector<std::string> there(kNodes.begin(), kNodes.end());
@@ -164,6 +168,14 @@ void read_effects(Reader& top, Motor& motor) {
     if (std::optional<Reader> condition = entry.reader.table("condition", Need::optional)) {
       for (const std::string& key : condition->keys()) {
         effect.condition.emplace(key, condition->text(key, Need::required).value_or(""));
+      }
+    }
+    if (goes_with_column(effect)) {
+      effect.column = entry.reader.text("column", Need::required).value_or("");
+      const auto other = std::ranges::find_if(effects, [&](const MotorEffect& e) { return !e.column.empty() && e.column != effect.column; });
+      if (other != effects.end()) {
+        entry.reader.problem("column", fmt::format("is '{}', and {} goes with '{}'; expected one column in all effects of a motor",
+                                                   effect.column, other->name, other->column));
       }
     }
     entry.reader.finish();

@@ -87,6 +87,7 @@ std::string effect_text(const MotorEffect& effect) {
     text += fmt::format("{} = {}\n", spec.key,
                         spec.choices.empty() ? figure_text(effect.parameters[i], unit) : toml_text(effect.parameters[i].printed));
   }
+  text += effect.column.empty() ? "" : fmt::format("column = {}\n", toml_text(effect.column));
   if (!effect.condition.empty()) {
     text += fmt::format("[effects.{}.condition]\n", effect.name);
     for (const auto& [key, value] : effect.condition) {

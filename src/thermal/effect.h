@@ -90,6 +90,9 @@ struct WorkedExample {
   std::vector<double> expected_heat_W;  ///< one per role, positive into the node
 };
 
+/// Of a choice of signals: a column of the log, which the motor file names beside it.
+inline constexpr std::string_view kColumnChoice = "column";
+
 struct EffectType {
   std::string_view name;  ///< the file's name; set by find_effect()
   std::string_view summary;

@@ -29,6 +29,8 @@ struct OperatingPoint {
   S age_h = S(0.0);                    ///< hours of running behind it
   S velocity_rad_per_s = S(0.0);       ///< signed mean of ω, motor shaft: a log of |ω| alone has none of its sign
   S acceleration_rad_per_s2 = S(0.0);  ///< mean of |dω/dt|, motor shaft
+  S column = S(0.0);                   ///< of a log, in its own unit: what a curve over no signal of these is drawn over
+  S column_share = S(0.0);             ///< 1 where that is known, else 0
   S copper_loss_W = S(0.0);            ///< heat of the network's copper loss; the network fills it in before other laws are asked
 };
 
@@ -52,6 +54,8 @@ constexpr void for_each_quantity(F&& f, Point&... at) {
   f(at.age_h...);
   f(at.velocity_rad_per_s...);
   f(at.acceleration_rad_per_s2...);
+  f(at.column...);
+  f(at.column_share...);
   f(at.copper_loss_W...);
 }
 

@@ -31,6 +31,7 @@ ExtendedModel known_to(double sd_share, const DiagnosisInput& input) {
 
 TEST(Diagnosis, fails_where_the_models_own_figures_follow_the_runs_held_out_better) {
   Diagnosis told;
+  told.before_holdout["winding_C"].rmse_K = 0.90;
   told.refitted_holdout["winding_C"].rmse_K = 0.33;
   told.after_holdout["winding_C"].rmse_K = 0.53;
   EXPECT_FALSE(fails_on_holdout(told)) << "nothing was added";
@@ -42,6 +43,38 @@ TEST(Diagnosis, fails_where_the_models_own_figures_follow_the_runs_held_out_bett
   EXPECT_TRUE(fails_on_holdout(told)) << "an effect that is hardly sure";
   told.after_holdout["winding_C"].rmse_K = 0.34;
   EXPECT_FALSE(fails_on_holdout(told)) << "by chance";
+  told.before_holdout["winding_C"].rmse_K = 0.10;
+  told.effects.front().gain_nats = 30.0;
+  EXPECT_TRUE(fails_on_holdout(told)) << "the model as it was follows them better";
+}
+
+/// Heat that the runs held out do not have.
+TEST(Examination, WhatFailsOnUnseenRunsIsToldAndNotAdded) {
+  Case one = sealed(subject("iron_loss_eddy").make(1.5), 12);
+  DiagnosisInput input = question(one, record(one));
+  one.missing = {};
+  input.holdout = question(one, record(one)).holdout;
+  const Diagnosis told = diagnose(input, {});
+  EXPECT_EQ(told.verdict, DiagnosisVerdict::unexplained) << told.description;
+  EXPECT_THAT(told.effects, testing::IsEmpty()) << told.description;
+  EXPECT_THAT(told.unexplained, testing::Not(testing::IsEmpty())) << told.description;
+  EXPECT_FALSE(is_plainly_worse(rms_K(told.after_holdout), rms_K(told.before_holdout))) << told.description;
+  EXPECT_THAT(told.description, testing::HasSubstr("does not hold on the runs never seen"));
+  EXPECT_THAT(told.description, testing::HasSubstr("but with it the runs held out are followed worse"));
+}
+
+/// No operating point has the sign of the current, only the log.
+TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
+  Missing missing;
+  missing.heat.emplace_back([](const Moment& now, PerPart& q) { q[slot] += now.in.current_A > 0.0 ? 0.5 * now.copper_loss_W : 0.0; });
+  const Answer answer = examine(sealed(missing, 12));
+  const Diagnosis& told = answer.diagnosis;
+  ASSERT_EQ(told.effects.size(), 1U) << account(answer);
+  EXPECT_EQ(told.effects.front().drivers, std::vector<std::string>{"current_A"}) << account(answer);
+  EXPECT_EQ(told.selection.after.model.column, "current_A");
+  ASSERT_FALSE(told.unexplained.empty());
+  EXPECT_TRUE(told.unexplained.front().is_in_model);
+  EXPECT_LT(rms_K(told.after_holdout), 0.3 * rms_K(told.refitted_holdout)) << account(answer);
 }
 
 TEST(Examination, ConstantHeatInTheWindingOfAllRunsIsOneEffect) {
@@ -200,7 +233,7 @@ TEST(Examination, LawIsFoundThoughTheFileIsSureOfAFigureThatMovesWithIt) {
   });
   const Runs runs = record(one);
   const DiagnosisInput changed = question(one, runs);
-  input.train = changed.train, input.free = changed.free, input.holdout = changed.holdout;
+  input.train = changed.train, input.holdout = changed.holdout;
   const Diagnosis found = diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << found.description;
   EXPECT_EQ(found.effects.front().id, "contact_temperature_dependence") << found.description;
@@ -354,9 +387,9 @@ TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
   for (const std::string_view name : {"connection_resistance", "saturation", "load_friction"}) {
     const Case one = sealed(subject(name).make(1.2), 60106);
     DiagnosisInput input = question(one, record(one));
-    input.free.clear();
     for (std::vector<MeasuredRun>* const runs : {&input.train, &input.holdout}) {
       for (MeasuredRun& run : *runs) {
+        run.columns.clear();
         for (OperatingPoint<double>& at : run.at) {
           at.current_rms_A /= kTurns_ratio;
         }

@@ -7,6 +7,7 @@
 
 #include "base/unknown.h"
 #include "drive_rows.h"
+#include "identify/log_columns.h"
 #include "identify/measured_run.h"
 
 namespace heatsoak::truth {
@@ -137,7 +138,8 @@ double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs)
   double squares_K2 = 0.0;
   double count = 0.0;
   for (const TrueRun& run : runs) {
-    const MeasuredRun as_run = measured(run);
+    MeasuredRun as_run = measured(run);
+    set_column(as_run, model.column);
     std::vector<double> start_C(static_cast<std::size_t>(model.model.network.state_count()), as_run.at.front().ambient_C);
     start_C[0] = run.winding_C.front();
     start_C[1] = run.stator_C.front();
@@ -156,7 +158,6 @@ DiagnosisInput question(const Case& sealed, const Runs& runs) {
   input.model = runs.earlier.empty() ? model_before(runs.make, sealed.seed) : calibrated(sealed, runs.make, runs.earlier).model;
   for (const TrueRun& run : runs.training) {
     input.train.push_back(measured(run));
-    input.free.push_back(free_signals(run.log, input.train.back()));
   }
   for (const TrueRun& run : runs.unseen) {
     input.holdout.push_back(measured(run));

@@ -65,7 +65,6 @@ TEST(ManyParts, AreNoMissingEffect) {
     Calibrated found = calibrated(one, runs.training);
     DiagnosisInput input = question(one, runs);
     std::swap(input.train, input.holdout);
-    input.free.clear();
     input.model = found.model;
     const Diagnosis diagnosis = diagnose(input, {});
     EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;

@@ -30,7 +30,6 @@ DiagnosisInput input_of(const ModelOfLogs& model, const std::vector<Recording>& 
   how.ambient_C = ambient_C;
   for (const Recording& recording : train) {
     for (MeasuredRun& run : measured_runs(recording, how).runs) {
-      input.free.push_back(free_signals(recording, run));
       input.train.push_back(std::move(run));
     }
   }

@@ -120,7 +120,6 @@ Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& logs) {
   input.model = out.model.model;
   for (const Recording& log : logs) {
     for (MeasuredRun& run : measured_runs(log, out.model.how).runs) {
-      input.free.push_back(free_signals(log, run));
       input.train.push_back(std::move(run));
     }
   }

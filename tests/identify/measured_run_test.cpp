@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/diagnostic.h"
+#include "identify/log_columns.h"
 #include "identify/turning_rows.h"
 
 namespace heatsoak {
@@ -337,6 +338,28 @@ TEST(MeasuredRun, merging_keeps_heat_and_doubt) {
   const MeasuredRun thin = thinned(run, 2);
   EXPECT_NEAR(heat_A2s(thin), heat_A2s(run), 1e-9);
   EXPECT_EQ(thin.unknown_inputs.size(), 1U);
+}
+
+TEST(MeasuredRun, brings_one_column_of_the_log_into_the_operating_points) {
+  Recording log = recording_of(rows_of_a_step());
+  log.channels.push_back({*quantity_named("thrust_N"), {}});
+  for (int k = 0; k < 20; ++k) {
+    log.channels.back().values.push_back(k < 15 ? k : std::nan(""));
+    log.channels.front().values[static_cast<std::size_t>(k)] *= k < 5 ? -1.0 : 1.0;
+  }
+  MeasuredRunOptions options{.longest_step_s = 2.0, .needed = {Signal::current}, .column = "thrust_N", .ambient_C = 25.0};
+  MeasuredRun run = measured_runs(log, options).runs.at(0);
+  ASSERT_EQ(run.columns.size(), 2U) << "a current of both signs is one";
+  for (std::size_t k = 0; k < run.at.size(); ++k) {
+    const double begin_s = run.time_s[k], end_s = std::min(run.time_s[k + 1], 15.0);
+    EXPECT_EQ(run.at[k].column_share, begin_s < 15.0 ? 1.0 : 0.0) << begin_s;
+    EXPECT_EQ(run.at[k].column, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : 0.0) << begin_s;
+  }
+  EXPECT_EQ(thinned(run, 1000).at.at(0).column_share, 15.0 / 19.0);
+  set_column(run, "current_A");
+  EXPECT_EQ(run.at.front().column, -2.0);
+  set_column(run, "nobody_logs_this");
+  EXPECT_EQ(run.at.front().column_share, 0.0);
 }
 
 }  // namespace

@@ -52,6 +52,8 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      "value", "values", "low", "high", "absolute", "kUnknown", "slope", "intercept",
                                                      // of a distribution: the variable of that type has the unit
                                                      "nominal", "p05", "p50", "p95",
+                                                     // of a log's column: the log has the unit
+                                                     "column",
                                                      // of a chart: its axis label has the unit; of an ODE: the system has it
                                                      "x", "y", "dydt", "event_values", "written",
                                                      // mixed units, place by place

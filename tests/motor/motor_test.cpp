@@ -1,5 +1,6 @@
 #include "motor/motor.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -156,6 +157,26 @@ last_knot = { value = "6000 rpm", origin = "measured", source = "sheet" }
   EXPECT_NEAR(motor.effects[0].parameters[3].value, 200.0 * std::numbers::pi, 1e-9);
   EXPECT_NEAR(motor.effects[0].parameters[6].value, 0.3, 1e-12);
   EXPECT_EQ(data_quality(motor), "datasheet");
+}
+
+std::string curve_over_column(const std::string& name, const std::string& rest) {
+  std::string curve = fmt::format("[effects.{}]\ntype = \"tabulated\"\ndriver = \"column\"\nform = \"per_copper_loss\"\n{}", name, rest);
+  for (const char* key : {"first_knot", "last_knot", "value_1", "value_2", "value_3", "value_4", "value_5", "value_6", "value_7"}) {
+    curve += fmt::format("{} = {{ value = \"{}\", origin = \"measured\", source = \"sheet\" }}\n", key,
+                         key == std::string_view("last_knot") ? 1 : 0);
+  }
+  return curve;
+}
+
+TEST(MotorEffects, a_curve_over_a_column_of_a_log_names_it) {
+  const auto with = [](const std::string& curves) { return motor_with("between_terminals", "per_dc_ampere", curves); };
+  const Motor motor = with(curve_over_column("a", "column = \"fan_ratio\"\n") + curve_over_column("b", "column = \"fan_ratio\"\n"));
+  ASSERT_EQ(motor.effects.size(), 2U);
+  EXPECT_EQ(motor.effects[1].column, "fan_ratio");
+  EXPECT_NE(to_toml(motor).find("column = \"fan_ratio\"\n"), std::string::npos);
+  EXPECT_THROW(with(curve_over_column("a", "")), Failure) << "which column";
+  EXPECT_THROW(with(curve_over_column("a", "column = \"fan_ratio\"\n") + curve_over_column("b", "column = \"thrust_N\"\n")), Failure)
+      << "an operating point has room for one";
 }
 
 const std::string kSensors = R"([effects.sensor_lag_stator]

@@ -43,7 +43,7 @@ class BackwardCheck {
       : out_(selection), input_(input), rules_(rules), options_(std::move(options)) {}
 
   void run() {
-    while (drops_superfluous() || drops_invisible() || drops_negligible() || drops_idle() || swaps_for_rival()) {
+    while (drops_superfluous() || drops_doubt() || drops_invisible() || drops_negligible() || drops_idle() || swaps_for_rival()) {
       has_dropped_ = true;
     }
     drop_outweighed();
@@ -85,6 +85,27 @@ class BackwardCheck {
         keep(stays, std::move(without));
         return true;
       }
+    }
+    return false;
+  }
+
+  /// A figure was doubted while what is found now was not there.
+  bool drops_doubt() {
+    for (std::size_t i = 0; i < out_.changed.size() && !out_.terms.empty(); ++i) {
+      std::vector<ChangedFigure> others = out_.changed;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const Prior doubted = out_.base.model.prior;
+      out_.base.model.prior = input_.model.model.prior;
+      for (const ChangedFigure& other : others) {
+        out_.base.model.prior = with_doubt(out_.base.model.prior, other.coordinate);
+      }
+      RefitResult sure = refit_with(std::vector<bool>(out_.terms.size(), true));
+      if (out_.after.evidence_nats - sure.evidence_nats < rules_.least_gain_nats) {
+        out_.after = std::move(sure);
+        out_.changed = std::move(others);
+        return true;
+      }
+      out_.base.model.prior = doubted;
     }
     return false;
   }
@@ -161,7 +182,7 @@ class BackwardCheck {
 
   void drop_outweighed() {
     const auto is_outweighed = [&](const AcceptedTerm& term) {
-      return std::ranges::find(input_.outweighed, term.what(out_.drivers)) != input_.outweighed.end();
+      return std::ranges::find(input_.outweighed, term.own_name()) != input_.outweighed.end();
     };
     for (auto term = out_.terms.begin(); (term = std::ranges::find_if(out_.terms, is_outweighed)) != out_.terms.end();) {
       out_.refuse(term->what(out_.drivers), term->loss_without_nats, kMoreRemains, true);

@@ -37,9 +37,8 @@ std::string condition_in_words(const std::map<std::string, std::string>& conditi
   return text.empty() ? "" : ", " + text;
 }
 
-std::string effect_in_words(const FoundEffect& effect, bool holds) {
-  std::string text = fmt::format("{}: {} at the {}{}", holds ? "Found" : "Does not hold on unseen runs", effect.id, effect.node,
-                                 condition_in_words(effect.condition));
+std::string effect_in_words(const FoundEffect& effect) {
+  std::string text = fmt::format("Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
   for (const FittedParameter& parameter : effect.parameters) {
     if (parameter.low < parameter.high) {
       text += fmt::format("; {} {:.3g}{}{} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
@@ -66,15 +65,14 @@ std::string effect_in_words(const FoundEffect& effect, bool holds) {
 std::string doubts_in_words(const Diagnosis& diagnosis) {
   constexpr double kElsewhere_ratio = 3.0;
   std::string text;
-  const double before_K = rms_K(diagnosis.before_holdout), refitted_K = rms_K(diagnosis.refitted_holdout);
+  const double before_K = rms_K(diagnosis.before_holdout);
   const double after_K = rms_K(diagnosis.after_holdout), train_K = rms_K(diagnosis.after_train);
-  if (fails_on_holdout(diagnosis)) {
-    text += fmt::format(" The model's own figures refitted without any of this leave {} K there, less: do not rely on what was added.",
-                        significant(refitted_K, 2));
-  } else if (is_plainly_worse(after_K, before_K)) {
+  if (is_plainly_worse(after_K, before_K)) {
     text += " The error on runs the fit never saw grows: do not rely on the new model there.";
   }
-  if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
+  if (diagnosis.selection.keeps_figures) {
+    text += " Figures refitted to the training runs follow the others worse: the model keeps those of its file.";
+  } else if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
     text += " The error on the training runs grows: keep the model's own figures.";
   }
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
@@ -98,7 +96,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                    "smooth heat of the size that every model leaves."
                  : "No effect is missing that these runs show, but not all of the file's figures hold in them.";
     case DiagnosisVerdict::unexplained:
-      if (fails_on_holdout(diagnosis)) {
+      if (diagnosis.selection.is_withdrawn) {
         return "The training runs show more than the model has, but what would explain them does not hold on the runs never seen: it is no "
                "answer.";
       }
@@ -193,7 +191,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
   for (const FoundEffect& effect : diagnosis.effects) {
     // What has no name in the catalogue is told below, with its driver.
     if (effect.is_from_catalogue) {
-      all.push_back(effect_in_words(effect, !fails_on_holdout(diagnosis)));
+      all.push_back(effect_in_words(effect));
     }
   }
   for (const ChangedFigure& figure : diagnosis.changed) {

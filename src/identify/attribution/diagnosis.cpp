@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "base/parallel.h"
 #include "identify/attribution/advisor.h"
@@ -17,6 +18,7 @@
 #include "identify/attribution/unexplained_heat.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
+#include "identify/log_columns.h"
 #include "identify/turning_rows.h"
 
 namespace heatsoak {
@@ -37,7 +39,11 @@ constexpr double kLeastSeen_share = 0.5;
 /// unexplained heat it must still let the runs be followed plainly better, and so must heat beside many times as much anywhere.
 bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   if (!effect.is_from_catalogue) {
-    return told.flux_rms_after_W.contains(effect.node) && told.flux_rms_after_W.at(effect.node) > effect.mean_W;
+    double curves_W = 0.0;
+    for (const FoundEffect& other : told.effects) {
+      curves_W += !other.is_from_catalogue && other.node == effect.node && other.drivers == effect.drivers ? other.mean_W : 0.0;
+    }
+    return told.flux_rms_after_W.contains(effect.node) && told.flux_rms_after_W.at(effect.node) > curves_W;
   }
   constexpr double kLeftByHeat_share = 0.7;
   constexpr double kManyTimes_ratio = 4.0;
@@ -68,7 +74,7 @@ std::vector<std::string> outweighed_in(const Diagnosis& told) {
   std::vector<std::string> outweighed;
   for (std::size_t i = 0; told.verdict == DiagnosisVerdict::unexplained && i < told.effects.size(); ++i) {
     if (is_outweighed(told.effects[i], told)) {
-      outweighed.push_back(told.selection.terms[i].what(told.selection.drivers));
+      outweighed.push_back(told.selection.terms[i].own_name());
     }
   }
   return outweighed;
@@ -76,9 +82,12 @@ std::vector<std::string> outweighed_in(const Diagnosis& told) {
 
 class Teller {
  public:
-  Teller(const DiagnosisInput& input, Selection selection) : input_(input) { out_.selection = std::move(selection); }
+  Teller(const DiagnosisInput& input, Selection selection) : input_(input) {
+    out_.selection = std::move(selection);
+    set_column(input_, out_.selection);
+  }
 
-  Diagnosis tell() {
+  Diagnosis tell(std::optional<DiagnosisVerdict> verdict_known = {}) {
     for (const AcceptedTerm& term : out_.selection.terms) {
       out_.effects.push_back(found_effect(term, out_.selection, input_.train));
     }
@@ -92,7 +101,7 @@ class Teller {
     if (!follows_as_usual()) {
       out_.unexplained = unexplained_heat(out_, input_.train);
     }
-    out_.verdict = verdict();
+    out_.verdict = verdict_known.value_or(verdict());
     out_.experiments = next_experiments(out_.selection, input_.train);
     out_.beyond_training = beyond_fitted(input_.train, input_.holdout);
     out_.words = describe(out_);
@@ -247,7 +256,7 @@ class Teller {
     if (out_.selection.is_held) {
       return follows_as_usual() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::unexplained;
     }
-    const bool holds = !fails_on_holdout(out_);
+    const bool holds = !out_.selection.is_withdrawn && !fails_on_holdout(out_);
     if (holds && std::ranges::any_of(out_.effects,
                                      [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
       return DiagnosisVerdict::effect_found;
@@ -262,7 +271,7 @@ class Teller {
                                                                             : DiagnosisVerdict::not_identifiable;
   }
 
-  const DiagnosisInput& input_;
+  DiagnosisInput input_;
   Diagnosis out_;
 };
 
@@ -276,7 +285,13 @@ bool fails_on_holdout(const Diagnosis& diagnosis) {
   // What is hardly sure must not follow them worse at all.
   const bool is_hardly_sure =
       std::ranges::all_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.gain_nats < SelectionRules{}.least_gain_nats; });
-  return !diagnosis.effects.empty() && (is_plainly_worse(after_K, refitted_K) || (is_hardly_sure && after_K > kWorse_ratio * refitted_K));
+  const double best_K = std::min(refitted_K, rms_K(diagnosis.before_holdout));
+  return !diagnosis.effects.empty() && (is_plainly_worse(after_K, best_K) || (is_hardly_sure && after_K > kWorse_ratio * refitted_K));
+}
+
+void set_column(DiagnosisInput& input, const Selection& found) {
+  set_column(input.train, found.after.model.column);
+  set_column(input.holdout, found.after.model.column);
 }
 
 std::string_view to_string(DiagnosisVerdict verdict) {
@@ -311,11 +326,19 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   SelectionInput asked;
   asked.model = input.model;
   asked.runs = input.train;
-  asked.free = input.free;
   Diagnosis told = Teller(input, select_effects(asked, rules)).tell();
   asked.outweighed = outweighed_in(told);
   if (!asked.outweighed.empty()) {
     told = Teller(input, select_effects(asked, rules)).tell();
+  }
+  if (fails_on_holdout(told)) {
+    asked.adds_terms = false;
+    told = Teller(input, withdrawn(told.selection, select_effects(asked, rules))).tell();
+  }
+  if (told.effects.empty() && !told.selection.is_held && is_plainly_worse(rms_K(told.after_holdout), rms_K(told.before_holdout))) {
+    asked.adds_terms = false;
+    asked.model.hold_figures();
+    told = Teller(input, with_figures_of_file(told.selection, select_effects(asked, rules))).tell(told.verdict);
   }
   // Where nothing that was found holds on other runs, heat remains unexplained though little of it shows in these.
   if (told.verdict == DiagnosisVerdict::unexplained && told.unexplained.empty()) {

@@ -17,7 +17,6 @@ std::string_view to_string(DiagnosisVerdict verdict);
 struct DiagnosisInput {
   ExtendedModel model;  ///< as calibrated
   std::vector<MeasuredRun> train;
-  std::vector<FreeSignals> free;  ///< of the training runs
   std::vector<MeasuredRun> holdout;
 };
 
@@ -83,12 +82,15 @@ struct Diagnosis {
 /// By a tenth, and by more than matters to anybody.
 bool is_plainly_worse(double error_K, double than_K);
 
-/// The model's own figures, refitted without anything that was added, follow the runs held out plainly better.
-bool fails_on_holdout(const Diagnosis& diagnosis);
-
 /// Takes the runs for ones whose motor turns round within rows of the log where that is more probable than that its speed was held over
 /// them; says so in a sentence, or nothing.
 std::string settle_turning_rows(DiagnosisInput& input);
+
+/// The model as it was, or its own figures refitted without anything that was added, follows the runs held out plainly better.
+bool fails_on_holdout(const Diagnosis& diagnosis);
+
+/// Whoever runs the model that was found on the runs needs the column in them that one of its curves is drawn over.
+void set_column(DiagnosisInput& input, const Selection& found);
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
 

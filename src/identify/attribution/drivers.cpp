@@ -220,54 +220,25 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
 
 }  // namespace
 
-FreeSignals free_signals(const Recording& recording, const MeasuredRun& run) {
-  static const std::set<std::string, std::less<>> kElsewhere{
-      "current_A", "speed_rad_per_s", "bus_V", "power_in_W", "duty_ratio", "vehicle_speed_m_per_s", "neighbour_C", "ambient_C", "age_h"};
-  FreeSignals signals;
-  for (const Channel& channel : recording.channels) {
-    // The network's laws see the current's magnitude; which way it flows, only the log knows.
-    const bool has_both_signs = channel.quantity.key == "current_A" &&
-                                std::ranges::any_of(channel.values, [](double a) { return a < 0.0; }) &&
-                                std::ranges::any_of(channel.values, [](double a) { return a > 0.0; });
-    if (channel.quantity.kind == QuantityKind::temperature || (kElsewhere.contains(channel.quantity.key) && !has_both_signs)) {
-      continue;
-    }
-    Eigen::VectorXd& values = signals[channel.quantity.key];
-    values.setConstant(run.samples() - 1, kUnknown);
-    auto row = static_cast<std::size_t>(std::ranges::lower_bound(recording.time_s, run.time_s.front()) - recording.time_s.begin());
-    for (Eigen::Index k = 0; k < values.size(); ++k) {
-      double sum = 0.0;
-      double count = 0.0;
-      for (; row < recording.rows() && recording.time_s[row] < run.time_s[static_cast<std::size_t>(k) + 1]; ++row) {
-        if (!std::isnan(channel.values[row])) {
-          sum += channel.values[row];
-          count += 1.0;
-        }
-      }
-      values[k] = count > 0.0 ? sum / count : kUnknown;
-    }
-  }
-  return signals;
-}
-
-std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                               const std::vector<FreeSignals>& free) {
+std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
   Collector all(model, fitted, runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
   all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only),
           [&](std::size_t r, Eigen::Index k) { return runs[r].time_s[static_cast<std::size_t>(k)] - runs[r].time_s.front(); });
   std::set<std::string> names;
-  for (const FreeSignals& of_run : free) {
-    for (const auto& [name, values] : of_run) {
+  for (const MeasuredRun& run : runs) {
+    for (const auto& [name, values] : run.columns) {
       names.insert(name);
     }
   }
   for (const std::string& name : names) {
     const std::optional<Quantity> quantity = quantity_named(name);
-    all.add(driver_of(name, quantity ? quantity->unit : "", DriverKind::log_only), [&](std::size_t r, Eigen::Index k) {
-      const auto found = free[r].find(name);
-      return found == free[r].end() ? kUnknown : found->second[k];
+    Driver driver = driver_of(name, quantity ? quantity->unit : "", DriverKind::log_only);
+    driver.choice = kColumnChoice;
+    all.add(std::move(driver), [&](std::size_t r, Eigen::Index k) {
+      const auto found = runs[r].columns.find(name);
+      return found == runs[r].columns.end() ? kUnknown : found->second[k];
     });
   }
   return all.take();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -34,12 +33,7 @@ struct Driver {
 /// Seconds since a run's begin.
 inline constexpr std::string_view kTimeDriver = "time";
 
-/// Quantities of a log that are no operating point, brought to the intervals of a run: by name.
-using FreeSignals = std::map<std::string, Eigen::VectorXd>;
-FreeSignals free_signals(const Recording& recording, const MeasuredRun& run);
-
-/// What varies enough to be told from a constant, without copies of each other. `free` may be empty or has one entry per run.
-std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                               const std::vector<FreeSignals>& free);
+/// What varies enough to be told from a constant, without copies of each other.
+std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
 
 }  // namespace heatsoak

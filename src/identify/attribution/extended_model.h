@@ -31,6 +31,7 @@ struct ExtendedModel {
   std::vector<ConditionalTerm> conditional;
   std::vector<SensorTerm> sensors;
   std::vector<RunDeviation> deviations;
+  std::string column;             ///< of the logs, that a curve is drawn over; set_column puts it into runs; empty: none
   double free_run_error_K = 0.0;  ///< of MotorFit: above 0 what is added must let the model follow whole runs better
 
   /// How much surer of its figures a model is taken to hold them.

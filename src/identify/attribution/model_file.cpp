@@ -117,6 +117,7 @@ MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
       chosen.value = value;
       chosen.printed = spec.choices[static_cast<std::size_t>(value)].name;
       effect.parameters.push_back(chosen);
+      effect.column = chosen.printed == kColumnChoice ? found.drivers.front() : effect.column;
       continue;
     }
     const FittedParameter& fitted = *std::ranges::find(found.parameters, spec.key, &FittedParameter::name);
@@ -215,6 +216,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
   MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
   out.how = how_to_read(motor);
+  out.model.column = out.how.column;
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
     out.notes.push_back(
         fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of what is unexplained; no effect at the stator is "
@@ -226,6 +228,10 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.figures = std::move(built.figures);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));
+  const auto has_column = [&](const Recording& each) { return has_values(each.find(out.model.column)); };
+  if (!out.model.column.empty() && !std::ranges::all_of(recordings, has_column)) {
+    out.notes.push_back(fmt::format("not every log has a column {}: there the hottest of the curve over it is taken", out.model.column));
+  }
   for (const MotorEffect& effect : motor.effects) {
     const int size = effect.type->candidacy.size_parameter;
     if (!effect.condition.empty() && size >= 0) {

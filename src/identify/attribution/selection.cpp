@@ -15,6 +15,7 @@
 #include "identify/attribution/terms.h"
 #include "identify/attribution/trials.h"
 #include "identify/calibration/unlogged_speed.h"
+#include "identify/log_columns.h"
 
 namespace heatsoak {
 namespace {
@@ -142,18 +143,10 @@ class Selector {
 
   /// Its results name drivers by their places in the list of all rounds: what one round looks at, another may not have.
   std::vector<ScanResult> scan(EvidenceTable& table, const SetScore& base) {
-    std::vector<Driver> drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs, input_.free);
+    std::vector<Driver> drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs);
     std::vector<ScanResult> results = scan_drivers(scan_input(drivers), table, base, 8);
     std::vector<int> place;
-    for (Driver& driver : drivers) {
-      const auto known = std::ranges::find(out_.drivers, driver.name, &Driver::name);
-      place.push_back(static_cast<int>(known - out_.drivers.begin()));
-      if (known == out_.drivers.end()) {
-        out_.drivers.push_back(std::move(driver));
-      } else {
-        *known = std::move(driver);
-      }
-    }
+    std::ranges::transform(drivers, std::back_inserter(place), [&](Driver& driver) { return out_.place_of(std::move(driver)); });
     for (ScanResult& each : results) {
       each.term.driver = place[static_cast<std::size_t>(each.term.driver)];
     }
@@ -453,6 +446,7 @@ class Selector {
       if (!with) {
         continue;
       }
+      set_column(input_.runs, with->column);
       ++tries;
       RefitResult fit = try_refit(*with, input_.runs, out_.after.start_C, options_at(each.place));
       if (fit.evidence_nats < out_.after.evidence_nats + least_nats) {
@@ -481,7 +475,7 @@ class Selector {
     return false;
   }
 
-  const SelectionInput& input_;
+  SelectionInput input_;  ///< whose runs get the column that a curve is drawn over
   const SelectionRules& rules_;
   bool is_speed_open_;  ///< heat at the stator then may well be the loss at the speed that nobody logged
   RefitOptions options_;

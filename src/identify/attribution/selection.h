@@ -17,10 +17,9 @@ namespace heatsoak {
 struct SelectionInput {
   ExtendedModel model;            ///< near its fit
   std::vector<MeasuredRun> runs;  ///< at least one
-  std::vector<FreeSignals> free;  ///< per run, or empty
   bool scans_drivers = true;
   bool adds_terms = true;               ///< false: what is in question is looked at and nothing taken in
-  std::vector<std::string> outweighed;  ///< AcceptedTerm::what of terms that are refused in the end: more remains than they explain
+  std::vector<std::string> outweighed;  ///< AcceptedTerm::own_name of terms that are refused in the end: more remains than they explain
 };
 
 /// Thresholds in nats. An effect is named where the evidence for it is e^7 ≈ 1100 : 1 against the model without it.
@@ -62,6 +61,8 @@ struct AcceptedTerm {
 
   /// Id of the effect, or the driver of the curve.
   [[nodiscard]] const std::string& what(const std::vector<Driver>& all_drivers) const;
+  /// Of two curves over one signal each has its own.
+  [[nodiscard]] const std::string& own_name() const { return effect_name.empty() ? candidate->id : effect_name; }
   /// What could stand in the place of an effect of the catalogue, told once.
   void add_rival(const Candidate& other);
 };
@@ -77,6 +78,8 @@ struct Selection {
   RefitResult before;
   RefitResult after;
   bool is_held = false;  ///< whole runs had decided the figures, and with nothing that was found they are followed plainly better
+  bool is_withdrawn = false;    ///< what was found follows the runs held out plainly worse: nothing of it was added
+  bool keeps_figures = false;   ///< so does the model with figures refitted alone: those of the file stay
   ExtendedModel base;    ///< the model as it was, with doubt where the runs contradict its file
   std::vector<ChangedFigure> changed;
   RefitResult own;  ///< `before` once more with that doubt: the model's own figures, nothing added
@@ -95,6 +98,10 @@ struct Selection {
   /// Heat is known to follow the curve's signal. Beside a law of much more evidence a curve is what that leaves of its shape, and need
   /// not be all.
   [[nodiscard]] bool is_known(const ScanResult& curve) const;
+  /// Place of the driver of that name in the list, which then has this one.
+  int place_of(Driver driver);
+  /// A curve of the other selection, its driver by this one's list.
+  ScanResult with_drivers_of(const Selection& other, ScanResult curve);
   void forget_refusal(const std::string& id);
   /// Takes the place of what was said of it before.
   void refuse(const std::string& id, double gain_nats, std::string_view why, bool is_negligible = false);
@@ -107,11 +114,18 @@ inline constexpr std::string_view kMoreRemains = "more remains unexplained than 
 /// Why, of a refusal where whole runs decided the figures.
 inline constexpr std::string_view kHardlyBetterTold =
     "whole runs, which decided the figures of the model, are followed hardly better with it";
+/// Why, of what fits the training runs only.
+inline constexpr std::string_view kFailsElsewhere = "with it the runs held out are followed worse";
 /// Then what an effect leaves of the error of free runs is at most this share, or it is not named.
 inline constexpr double kPlainlyBetter_share = 0.85;
 /// `found`, unless whole runs decided the model's figures and are followed hardly better with it: then that model as it stands, with
 /// nothing added, and what was found among the refused.
 Selection judged_by_whole_runs(const SelectionInput& input, Selection found, const std::function<Selection(const SelectionInput&)>& select);
+
+/// `none`, which has nothing added, with what is to be said of all that was `found` and fails on runs held out.
+Selection withdrawn(const Selection& found, Selection none);
+/// `held`, which has the file's figures, in place of `refitted`, whose figures follow the runs held out plainly worse.
+Selection with_figures_of_file(const Selection& refitted, Selection held);
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);
 

@@ -4,6 +4,7 @@
 
 #include "identify/attribution/open_loop.h"
 #include "identify/attribution/selection.h"
+#include "identify/log_columns.h"
 
 namespace heatsoak {
 
@@ -25,6 +26,22 @@ bool Selection::is_known(const ScanResult& curve) const {
          drivers[static_cast<std::size_t>(curve.term.driver)].name == kTimeDriver;
 }
 
+int Selection::place_of(Driver driver) {
+  const auto known = std::ranges::find(drivers, driver.name, &Driver::name);
+  const auto place = static_cast<int>(known - drivers.begin());
+  if (known == drivers.end()) {
+    drivers.push_back(std::move(driver));
+  } else {
+    *known = std::move(driver);
+  }
+  return place;
+}
+
+ScanResult Selection::with_drivers_of(const Selection& other, ScanResult curve) {
+  curve.term.driver = place_of(other.drivers[static_cast<std::size_t>(curve.term.driver)]);
+  return curve;
+}
+
 void Selection::forget_refusal(const std::string& id) {
   std::erase_if(refused, [&](const Refusal& known) { return known.id == id; });
 }
@@ -36,6 +53,33 @@ void Selection::refuse(const std::string& id, double gain_nats, std::string_view
   refused.push_back({id, fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why), is_negligible});
 }
 
+Selection withdrawn(const Selection& found, Selection none) {
+  none.is_withdrawn = true;
+  for (const AcceptedTerm& term : found.terms) {
+    none.refuse(term.what(found.drivers), term.gain_nats, kFailsElsewhere);
+    if (term.curve && !none.open_curve) {
+      none.open_curve = none.with_drivers_of(found, *term.curve);
+    }
+  }
+  return none;
+}
+
+Selection with_figures_of_file(const Selection& refitted, Selection held) {
+  held.keeps_figures = true;
+  held.is_withdrawn = refitted.is_withdrawn;
+  for (const Refusal& refusal : refitted.refused) {
+    held.forget_refusal(refusal.id);
+    held.refused.push_back(refusal);
+  }
+  for (const ChangedFigure& figure : refitted.changed) {
+    held.refuse(fmt::format("another {}", figure.name), figure.gain_nats, kFailsElsewhere);
+  }
+  if (refitted.open_curve) {
+    held.open_curve = held.with_drivers_of(refitted, *refitted.open_curve);
+  }
+  return held;
+}
+
 Selection judged_by_whole_runs(const SelectionInput& input, Selection found,
                                const std::function<Selection(const SelectionInput&)>& select) {
   if (input.model.free_run_error_K == 0.0 || !input.outweighed.empty()) {
@@ -43,9 +87,11 @@ Selection judged_by_whole_runs(const SelectionInput& input, Selection found,
   }
   // What the model leaves in other runs of the same motor is no effect as a rule.
   constexpr double kThanUsual_share = 0.7;
-  const double before_K = rms_K(open_loop_errors(input.model, input.runs, {}));
+  std::vector<MeasuredRun> runs = input.runs;
+  set_column(runs, found.after.model.column);
+  const double before_K = rms_K(open_loop_errors(input.model, runs, {}));
   const double most_share = input.model.is_as_usual(before_K) ? kThanUsual_share : kPlainlyBetter_share;
-  if (rms_K(open_loop_errors(found.after.model, input.runs, {})) < most_share * before_K) {
+  if (rms_K(open_loop_errors(found.after.model, runs, {})) < most_share * before_K) {
     return found;
   }
   SelectionInput held = input;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "identify/attribution/curve.h"
 
@@ -19,6 +20,13 @@ constexpr double kKnotSpread = 0.5;
 constexpr double kBodySpread = 1.0;
 
 std::string named(std::string_view name, std::string usual) { return name.empty() ? std::move(usual) : std::string(name); }
+
+/// What a motor file takes for a name.
+std::string as_word(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '_'; });
+  return text;
+}
 
 std::string unused_name(const Network& network, const std::string& wanted) {
   std::string name = wanted;
@@ -77,7 +85,9 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   const EffectType& type = *find_effect("tabulated");
   const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
-  if (!choice || !form) {
+  const bool is_column = driver.choice == kColumnChoice;
+  // An operating point has room for one.
+  if (!choice || !form || (is_column && !model.column.empty() && model.column != driver.name)) {
     return std::nullopt;
   }
   const Eigen::VectorXd values = passive(curve);
@@ -88,7 +98,8 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
   parameters.insert(parameters.end(), values.begin(), values.end());
   ExtendedModel out = model;
-  const EffectInPlace effect = add(out.model, named(name, fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name)), type,
+  out.column = is_column ? driver.name : model.column;
+  const EffectInPlace effect = add(out.model, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))), type,
                                    {curve.term.node, cold, watched, reference}, parameters);
   const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
   for (const std::size_t end : {2U, 3U}) {

@@ -268,6 +268,9 @@ MeasuredRunOptions how_to_read(const Motor& motor) {
   for (const MotorSensor& sensor : motor.sensors) {
     how.faults.push_back({sensor.type, sensor.size.value});
   }
+  for (const MotorEffect& effect : motor.effects) {
+    how.column = effect.column.empty() ? how.column : effect.column;
+  }
   return how;
 }
 

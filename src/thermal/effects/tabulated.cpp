@@ -25,6 +25,7 @@ enum Driver {
   temperature,
   temperature_difference,
   neighbour_difference,
+  column,
 };
 constexpr std::array kDrivers{
     Choice{"speed", "rad/s", "mean of |ω|"},
@@ -41,6 +42,7 @@ constexpr std::array kDrivers{
     Choice{"temperature", "degC", "of the node 'watched'"},
     Choice{"temperature_difference", "K", "of the node 'watched' above 'reference'"},
     Choice{"neighbour_difference", "K", "of the next motor above the node 'watched'"},
+    Choice{kColumnChoice, "", "of a log, the one that 'column' names; where it is not known the curve's hottest value counts"},
 };
 
 enum Form { heat_into, per_copper_loss, per_difference, per_current, per_speed };
@@ -81,9 +83,22 @@ S value_of_driver(const Situation<S>& x) {
       return x.temperature_C(watched);
     case temperature_difference:
       return x.temperature_C(watched) - x.temperature_C(reference);
+    case column:
+      return x.at.column;
     default:
       return x.at.neighbour_share * (x.at.neighbour_C - x.temperature_C(watched));
   }
+}
+
+/// The curve's largest heat; of a conductance the least.
+template <class S>
+S hottest(const Situation<S>& x) {
+  const double sign = chosen(x.parameter(form)) == per_difference ? -1.0 : 1.0;
+  S most = sign * x.parameter(first_value);
+  for (int knot = 1; knot < kKnots; ++knot) {
+    most += positive_part(sign * x.parameter(first_value + knot) - most);
+  }
+  return sign * most;
 }
 
 struct Tabulated {
@@ -97,6 +112,9 @@ struct Tabulated {
     S curve = x.parameter(first_value) * positive_part(1.0 - within);
     for (int knot = 1; knot < kKnots; ++knot) {
       curve += x.parameter(first_value + knot) * positive_part(1.0 - magnitude(within - static_cast<double>(knot)));
+    }
+    if (chosen(x.parameter(driver)) == column) {
+      curve = x.at.column_share * curve + (1.0 - x.at.column_share) * hottest(x);
     }
     switch (chosen(x.parameter(form))) {
       case heat_into:
@@ -132,7 +150,8 @@ std::vector<Signal> needs_of(std::span<const double> values) {
                                                                            {Signal::age},
                                                                            {},
                                                                            {},
-                                                                           {Signal::neighbour_temperature}}};
+                                                                           {Signal::neighbour_temperature},
+                                                                           {}}};
   static const std::array<std::vector<Signal>, kForms.size()> kOfForm{{{}, {Signal::current}, {}, {Signal::current}, {Signal::speed}}};
   std::vector<Signal> needed = kOfDriver[static_cast<std::size_t>(values[driver])];
   const std::vector<Signal>& besides = kOfForm[static_cast<std::size_t>(values[form])];

@@ -30,17 +30,12 @@ struct Options {
 };
 
 std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options,
-                                 std::vector<FreeSignals>* free, std::vector<std::string>& notes) {
+                                 std::vector<std::string>& notes) {
   std::vector<MeasuredRun> all;
   for (const Recording& recording : recordings) {
     MeasuredRuns runs = measured_runs(recording, options);
     notes.insert(notes.end(), runs.notes.begin(), runs.notes.end());
-    for (MeasuredRun& run : runs.runs) {
-      if (free) {
-        free->push_back(free_signals(recording, run));
-      }
-      all.push_back(std::move(run));
-    }
+    std::ranges::move(runs.runs, std::back_inserter(all));
   }
   return all;
 }
@@ -88,12 +83,13 @@ ExitCode run(const Options& options, Session& session) {
   how.ambient_C = options.logs.ambient_C;
   DiagnosisInput input;
   input.model = model.model;
-  input.train = runs_of(train, how, &input.free, notes);
-  input.holdout = runs_of(holdout, how, nullptr, notes);
+  input.train = runs_of(train, how, notes);
+  input.holdout = runs_of(holdout, how, notes);
   if (std::string told = settle_turning_rows(input); !told.empty()) {
     notes.push_back(std::move(told));
   }
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
+  set_column(input, diagnosis.selection);
   refuse_where_nothing_follows(diagnosis, input);
   diagnosis.notes = notes;
   session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), fmt::join(diagnosis.words, "\n")));
