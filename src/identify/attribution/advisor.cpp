@@ -192,35 +192,38 @@ bool has_nodes_of(const Network& network, const Candidate& candidate) {
   return has_all;
 }
 
+/// In the first round that judged it; null where none did: then it has the words of its own experiment.
+const JudgedCandidate* judged(const Selection& selection, const std::string& id) {
+  for (const Round& round : selection.rounds) {
+    const auto found = std::ranges::find_if(round.ladder, [&](const JudgedCandidate& each) { return each.candidate.id == id; });
+    if (found != round.ladder.end()) {
+      return &*found;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs) {
   std::vector<Experiment> experiments;
   const bool has_rivals = std::ranges::any_of(selection.terms, [](const AcceptedTerm& term) { return !term.confusable_with.empty(); });
   const std::vector<Plan> menu_here = has_rivals ? plans(selection, runs) : std::vector<Plan>();
-  for (std::size_t t = 0; t < selection.terms.size(); ++t) {
-    const AcceptedTerm& term = selection.terms[t];
+  for (const AcceptedTerm& term : selection.terms) {
     for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
-      const auto& ladder = selection.rounds[std::min(t, selection.rounds.size() - 1)].ladder;
-      const auto found =
-          std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.confusable_with[rival]; });
-      if (found == ladder.end()) {
-        continue;
-      }
+      Experiment best{fmt::format("{} or {}", term.candidate->id, term.confusable_with[rival]), term.experiments[rival], 0.0};
+      const JudgedCandidate* const other = judged(selection, term.confusable_with[rival]);
       // At a body that came with another effect: there is no such body where the next run is tried out.
-      if (!has_nodes_of(selection.before.model.model.network, *term.candidate) ||
-          !has_nodes_of(selection.before.model.model.network, found->candidate)) {
-        experiments.push_back({fmt::format("{} or {}", term.candidate->id, found->candidate.id), term.experiments[rival], 0.0});
+      if (!other || !has_nodes_of(selection.before.model.model.network, *term.candidate) ||
+          !has_nodes_of(selection.before.model.model.network, other->candidate)) {
+        experiments.push_back(std::move(best));
         continue;
       }
-      const auto own = std::ranges::find_if(ladder, [&](const JudgedCandidate& each) { return each.candidate.id == term.candidate->id; });
-      const std::vector<Candidate> pair{*term.candidate, found->candidate};
-      Experiment best;
-      best.rivals = fmt::format("{} or {}", term.candidate->id, found->candidate.id);
-      best.what = term.experiments[rival];
+      const JudgedCandidate* const own = judged(selection, term.candidate->id);
+      const std::vector<Candidate> pair{*term.candidate, other->candidate};
       for (const Plan& plan : menu_here) {
-        const double nats = separation_nats(selection.before, selection.grid.at(selection.after.place), pair,
-                                            own == ladder.end() ? 1.0 : own->size_share, plan);
+        const double nats =
+            separation_nats(selection.before, selection.grid.at(selection.after.place), pair, own ? own->size_share : 1.0, plan);
         if (nats > best.expected_nats) {
           best.expected_nats = nats;
           best.what = plan.what;

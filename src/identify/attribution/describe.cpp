@@ -146,7 +146,7 @@ std::string watts_in_words(std::span<const Unexplained* const> curves) {
 }
 
 /// `curves` are all with the first one's node and signals.
-std::string unexplained_in_words(std::span<const Unexplained* const> curves) {
+std::string unexplained_in_words(std::span<const Unexplained* const> curves, bool keeps_figures) {
   const Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {
     return fmt::format("Unexplained: {} W rms into the {}{} that come and go within {:.0f} s; no measured signal follows them.",
@@ -160,11 +160,13 @@ std::string unexplained_in_words(std::span<const Unexplained* const> curves) {
                         : fmt::format("Unnamed: heat {} that follows {}{}", where,
                                       heat.times.empty() ? "" : heat.times + " times a curve over ", fmt::join(heat.drivers, " or "))) +
          fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
-         (heat.is_in_model ? "" : " The extended model does not have it: its figures carry what they can of it.");
+         (heat.is_in_model ? " The extended model has it as a curve."
+          : keeps_figures  ? " The extended model does not have it."
+                           : " The extended model does not have it: its figures carry what they can of it.");
 }
 
 /// Curves over one signal share what they have in common to say.
-void add_unexplained(const std::vector<Unexplained>& heats, std::vector<std::string>& all) {
+void add_unexplained(const std::vector<Unexplained>& heats, bool keeps_figures, std::vector<std::string>& all) {
   const auto is_shared = [](const Unexplained& a, const Unexplained& b) {
     return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.times == b.times && a.is_in_model == b.is_in_model &&
            is_leaving(a) == is_leaving(b);
@@ -175,7 +177,7 @@ void add_unexplained(const std::vector<Unexplained>& heats, std::vector<std::str
     (own == groups.end() ? groups.emplace_back() : *own).push_back(&heat);
   }
   for (const auto& group : groups) {
-    all.push_back(unexplained_in_words(group));
+    all.push_back(unexplained_in_words(group, keeps_figures));
   }
 }
 
@@ -200,7 +202,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
   if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
     all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
   }
-  add_unexplained(diagnosis.unexplained, all);
+  add_unexplained(diagnosis.unexplained, diagnosis.selection.keeps_figures, all);
   const bool is_held_out = !diagnosis.before_holdout.empty();
   const bool is_more = !diagnosis.effects.empty();
   all.push_back(errors_in_words(is_held_out ? diagnosis.before_holdout : diagnosis.before_train,

@@ -333,7 +333,7 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   }
   if (fails_on_holdout(told)) {
     asked.adds_terms = false;
-    told = Teller(input, withdrawn(told.selection, select_effects(asked, rules))).tell();
+    told = Teller(input, withdrawn(told.selection, select_effects(asked, rules), input.holdout)).tell();
   }
   if (told.effects.empty() && !told.selection.is_held && is_plainly_worse(rms_K(told.after_holdout), rms_K(told.before_holdout))) {
     asked.adds_terms = false;

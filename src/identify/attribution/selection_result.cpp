@@ -53,10 +53,13 @@ void Selection::refuse(const std::string& id, double gain_nats, std::string_view
   refused.push_back({id, fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why), is_negligible});
 }
 
-Selection withdrawn(const Selection& found, Selection none) {
+Selection withdrawn(const Selection& found, Selection none, const std::vector<MeasuredRun>& held_out) {
   none.is_withdrawn = true;
+  const std::string& column = found.after.model.column;
+  const bool is_logged = std::ranges::all_of(held_out, [&](const MeasuredRun& run) { return run.columns.contains(column); });
   for (const AcceptedTerm& term : found.terms) {
-    none.refuse(term.what(found.drivers), term.gain_nats, kFailsElsewhere);
+    const std::string& what = term.what(found.drivers);
+    none.refuse(what, term.gain_nats, what == column && !is_logged ? kNotLoggedElsewhere : kFailsElsewhere);
     if (term.curve && !none.open_curve) {
       none.open_curve = none.with_drivers_of(found, *term.curve);
     }
