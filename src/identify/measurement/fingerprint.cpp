@@ -38,19 +38,19 @@ std::uint64_t bits_of(double value) {
   return std::isnan(value) ? kUnknown : std::bit_cast<std::uint32_t>(static_cast<float>(value) + 0.0F);
 }
 
-struct Rows {
+struct RowSpan {
   std::string_view content;
   double from_s = 0.0;
   double to_s = 0.0;
 };
 
-std::optional<Rows> parsed(std::string_view text) {
+std::optional<RowSpan> parsed(std::string_view text) {
   const std::size_t blank = text.find(' ');
   const std::size_t dash = text.find('-', blank == std::string_view::npos ? blank : blank + 1);
   if (dash == std::string_view::npos || !text.ends_with(" s")) {
     return std::nullopt;
   }
-  Rows rows{text.substr(0, blank)};
+  RowSpan rows{text.substr(0, blank)};
   const auto number = [&](std::size_t begin, std::size_t end, double& value_s) {
     const auto result = std::from_chars(text.data() + begin, text.data() + end, value_s);
     return result.ec == std::errc() && result.ptr == text.data() + end;
@@ -121,8 +121,8 @@ std::string fingerprint_of(const Recording& recording) {
 std::string name_and_fingerprint(const Recording& recording) { return fmt::format("{} ({})", recording.name, fingerprint_of(recording)); }
 
 bool share_rows(std::string_view fingerprint, std::string_view other) {
-  const std::optional<Rows> one = parsed(fingerprint);
-  const std::optional<Rows> two = parsed(other);
+  const std::optional<RowSpan> one = parsed(fingerprint);
+  const std::optional<RowSpan> two = parsed(other);
   return one && two && one->content == two->content && one->from_s < two->to_s && two->from_s < one->to_s;
 }
 
