@@ -1,5 +1,7 @@
 #include "identify/log_columns.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -27,7 +29,35 @@ Eigen::VectorXd means_along(const Channel& channel, const std::vector<double>& r
   return means;
 }
 
+/// Each unknown value as the nearest that is known; all unknown where none is.
+Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
+  Eigen::Index last = -1;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    if (std::isnan(values[k])) {
+      continue;
+    }
+    const Eigen::Index middle = last < 0 ? 0 : (last + k + 1) / 2;
+    for (Eigen::Index gap = last + 1; gap < k; ++gap) {
+      values[gap] = gap < middle ? values[last] : values[k];
+    }
+    last = k;
+  }
+  if (last >= 0) {
+    values.tail(values.size() - 1 - last).setConstant(values[last]);
+  }
+  return values;
+}
+
 }  // namespace
+
+std::string column_lacking(const std::string& column, std::span<const Recording> recordings) {
+  const auto has_it = [&](const Recording& each) { return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column); };
+  return column.empty() || std::ranges::all_of(recordings, has_it) ? std::string()
+                                                                   : fmt::format(
+                                                                         "not every log has a column {} beside the signals of its own that "
+                                                                         "a model knows: there the hottest of the curve over it is taken",
+                                                                         column);
+}
 
 std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s) {
   static const std::set<std::string, std::less<>> kElsewhere{
@@ -45,15 +75,39 @@ std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording,
   return columns;
 }
 
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::vector<MeasuredRun>& others) {
+  std::map<std::string, std::size_t> counts;
+  for (const std::vector<MeasuredRun>* const all : {&runs, &others}) {
+    for (const MeasuredRun& run : *all) {
+      for (const auto& [key, values] : run.columns) {
+        counts[key] += values.array().isNaN().all() ? 0 : 1;
+      }
+    }
+  }
+  std::vector<std::string> left_out;
+  for (const auto& [key, count] : counts) {
+    if (count < runs.size() + others.size()) {
+      left_out.push_back(key);
+    }
+  }
+  for (std::vector<MeasuredRun>* const all : {&runs, &others}) {
+    for (MeasuredRun& run : *all) {
+      std::erase_if(run.columns, [&](const auto& each) { return std::ranges::find(left_out, each.first) != left_out.end(); });
+    }
+  }
+  return left_out;
+}
+
 void set_column(MeasuredRun& run, const std::string& key) {
   if (key.empty()) {
     return;
   }
   const auto found = run.columns.find(key);
+  const Eigen::VectorXd values = found == run.columns.end() ? Eigen::VectorXd() : without_gaps(found->second);
+  const bool is_known = values.size() > 0 && !std::isnan(values[0]);
   const auto set = [&](OperatingPoint<double>& at, Eigen::Index k) {
-    const double value = found == run.columns.end() ? kUnknown : found->second[k];
-    at.column = std::isnan(value) ? 0.0 : value;
-    at.column_share = std::isnan(value) ? 0.0 : 1.0;
+    at.column = is_known ? values[k] : 0.0;
+    at.column_share = is_known ? 1.0 : 0.0;
   };
   for (std::size_t k = 0; k < run.at.size(); ++k) {
     set(run.at[k], static_cast<Eigen::Index>(k));

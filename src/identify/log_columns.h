@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,14 @@ namespace heatsoak {
 /// them: laws take its magnitude.
 std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s);
 
-/// Puts one of a run's columns into its operating points. What the run does not have is unknown there; no key
-/// changes nothing.
+/// A sentence where a model's curve is over a column that not all logs have; else empty.
+std::string column_lacking(const std::string& column, std::span<const Recording> recordings);
+
+/// What a run lacks cannot be told from what follows it: keeps of the columns those that all runs have; names the others.
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::vector<MeasuredRun>& others);
+
+/// Puts one of a run's columns into its operating points. Where it is not known for a while it is what it was
+/// or will be, whichever is nearer; where the run does not have it at all it is unknown. No key changes nothing.
 void set_column(MeasuredRun& run, const std::string& key);
 void set_column(std::vector<MeasuredRun>& runs, const std::string& key);
 

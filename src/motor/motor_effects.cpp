@@ -172,7 +172,14 @@ void read_effects(Reader& top, Motor& motor) {
     }
     if (goes_with_column(effect)) {
       effect.column = entry.reader.text("column", Need::required).value_or("");
-      const auto other = std::ranges::find_if(effects, [&](const MotorEffect& e) { return !e.column.empty() && e.column != effect.column; });
+      if (effect.column.empty()) {
+        entry.reader.problem("column", "is no name; expected that of a column of the logs, with its unit, as \"fan_ratio\"");
+      } else if (effect.column.ends_with("_C")) {
+        entry.reader.problem("column",
+                             fmt::format("'{}' is a temperature; expected driver = \"temperature\" and watched = the node", effect.column));
+      }
+      const auto other =
+          std::ranges::find_if(effects, [&](const MotorEffect& e) { return !e.column.empty() && e.column != effect.column; });
       if (other != effects.end()) {
         entry.reader.problem("column", fmt::format("is '{}', and {} goes with '{}'; expected one column in all effects of a motor",
                                                    effect.column, other->name, other->column));

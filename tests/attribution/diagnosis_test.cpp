@@ -63,6 +63,21 @@ TEST(Examination, WhatFailsOnUnseenRunsIsToldAndNotAdded) {
   EXPECT_THAT(told.description, testing::HasSubstr("but with it the runs held out are followed worse"));
 }
 
+/// Either alone makes whole runs worse: heat that is always there, and air that is there at a low supply and takes as much away.
+TEST(Examination, CurveAndLawThatBalanceEachOtherAreBothFound) {
+  Missing missing;
+  missing.heat.emplace_back([](const Moment& now, PerPart& q) {
+    q[yoke] += 1.8;
+    q[sleeve] -= now.in.bus_V < 23.5 ? 0.15 * (now.part_C[sleeve] - now.in.ambient_C) : 0.0;
+  });
+  Case one = sealed(missing, 12);
+  one.is_calibrated = true;
+  const Answer answer = examine(one);
+  EXPECT_TRUE(answer.diagnosis.selection.waits_for_others) << account(answer);
+  EXPECT_THAT(answer.named, testing::UnorderedElementsAre("constant_heat", "stator~bus_voltage")) << account(answer);
+  EXPECT_LT(answer.after_K, 0.3 * answer.before_K) << account(answer);
+}
+
 /// No operating point has the sign of the current, only the log.
 TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
   Missing missing;

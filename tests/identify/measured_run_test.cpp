@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -352,14 +353,39 @@ TEST(MeasuredRun, brings_one_column_of_the_log_into_the_operating_points) {
   ASSERT_EQ(run.columns.size(), 2U) << "a current of both signs is one";
   for (std::size_t k = 0; k < run.at.size(); ++k) {
     const double begin_s = run.time_s[k], end_s = std::min(run.time_s[k + 1], 15.0);
-    EXPECT_EQ(run.at[k].column_share, begin_s < 15.0 ? 1.0 : 0.0) << begin_s;
-    EXPECT_EQ(run.at[k].column, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : 0.0) << begin_s;
+    EXPECT_EQ(run.at[k].column_share, 1.0) << begin_s;
+    EXPECT_EQ(run.at[k].column, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : run.at[k - 1].column) << begin_s;
   }
-  EXPECT_EQ(thinned(run, 1000).at.at(0).column_share, 15.0 / 19.0);
+  EXPECT_GT(thinned(run, 1000).at.at(0).column, 5.0);
   set_column(run, "current_A");
   EXPECT_EQ(run.at.front().column, -2.0);
   set_column(run, "nobody_logs_this");
   EXPECT_EQ(run.at.front().column_share, 0.0);
+}
+
+TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {
+  MeasuredRun run = runs_of(rows_of_a_step()).runs.at(0);
+  run.at.resize(6);
+  const double unknown = std::nan("");
+  run.columns["fan_ratio"] = Eigen::Map<const Eigen::VectorXd>(std::array{unknown, 1.0, unknown, unknown, 3.0, unknown}.data(), 6);
+  set_column(run, "fan_ratio");
+  std::vector<double> column;
+  std::ranges::transform(run.at, std::back_inserter(column), &OperatingPoint<double>::column);
+  EXPECT_THAT(column, testing::ElementsAre(1.0, 1.0, 1.0, 3.0, 3.0, 3.0));
+}
+
+TEST(MeasuredRun, a_column_that_one_run_lacks_tells_nothing_of_any) {
+  std::vector<MeasuredRun> runs(2), others(1);
+  for (MeasuredRun* const run : {&runs[0], &runs[1], &others[0]}) {
+    run->columns["fan_ratio"].setOnes(3);
+    run->columns["thrust_N"].setOnes(3);
+    run->columns["steps_ratio"].setOnes(3);
+  }
+  runs[1].columns.erase("thrust_N");
+  others[0].columns["steps_ratio"].setConstant(std::nan(""));
+  EXPECT_THAT(keep_common_columns(runs, others), testing::ElementsAre("steps_ratio", "thrust_N"));
+  EXPECT_EQ(runs[0].columns.size(), 1U);
+  EXPECT_EQ(others[0].columns.count("fan_ratio"), 1U);
 }
 
 }  // namespace

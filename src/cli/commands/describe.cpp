@@ -91,6 +91,12 @@ Description describe_motor(const Motor& motor) {
     result.json["network"].push_back(
         {{"name", each.name}, {"value", each.choices.empty() ? Json(each.value) : Json(value)}, {"unit", each.unit}});
   }
+  for (const MotorEffect& effect : motor.effects) {
+    if (!effect.column.empty()) {
+      result.text += fmt::format("  {:36} {:>22}\n", effect.name + ".column", effect.column);
+      result.json["network"].push_back({{"name", effect.name + ".column"}, {"value", effect.column}, {"unit", ""}});
+    }
+  }
   result.text += motor.sensors.empty() ? "" : "\nsensors: errors that they have\n";
   for (const MotorSensor& sensor : motor.sensors) {
     result.text += fmt::format("  {} ({})\n", sensor.name, sensor.type->name) +

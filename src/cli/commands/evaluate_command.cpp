@@ -14,6 +14,7 @@
 #include "cli/condition_option.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
 #include "cli/verdict_words.h"
 #include "duty/duty.h"
@@ -138,29 +139,6 @@ std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& ro
     text +=
         "data \"estimated\": thermal figures that nobody publishes are estimates from similar motors; the verdict rests on them\n"
         "(`heatsoak describe MOTOR` shows how each was found). Calibrate on a bench before you rely on it.\n";
-  }
-  return text;
-}
-
-/// Effects of the files whose signal no prediction has.
-std::string silent_effects(const std::vector<Motor>& motors) {
-  std::string text;
-  for (const Motor& motor : motors) {
-    for (const MotorEffect& effect : motor.effects) {
-      std::vector<double> values;
-      std::ranges::transform(effect.parameters, std::back_inserter(values), &Figure::value);
-      const std::vector<Signal> needed = effect.type->needed_with(values);
-      const auto needs = [&](Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
-      const bool needs_neighbour = needs(Signal::neighbour_temperature);
-      if (!effect.column.empty()) {
-        text += fmt::format("{}: a duty says nothing of {}, which {} goes with: its hottest value is reckoned with\n", motor.id,
-                            effect.column, effect.name);
-      }
-      if (needs_neighbour || needs(Signal::age)) {
-        text += fmt::format("{}: {} is not reckoned with: a duty says nothing of {}\n", motor.id, effect.name,
-                            needs_neighbour ? "the neighbour's temperature" : "the hours that the motor has run");
-      }
-    }
   }
   return text;
 }

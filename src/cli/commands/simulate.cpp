@@ -14,6 +14,7 @@
 #include "cli/match_simulation.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
 #include "cli/verdict_words.h"
 #include "motor/conditions.h"
@@ -84,7 +85,8 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
                   "current {:.2f} A: {}\n{}{}",
                   motor.id, robot.id, duty.id, duration_text(duration_s), result.wheel, result.data_quality, duty.origin,
                   result.winding_peak_C.nominal, result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A,
-                  to_string(result.verdict), why_infeasible(result, robot), balance_text(trace)));
+                  to_string(result.verdict), why_infeasible(result, robot), balance_text(trace)) +
+      silent_effects(one));
   for (const std::string& file : {options.out, options.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "cli/silent_effects.h"
 #include "motor/datasheet_network.h"
 #include "motor/motor.h"
 #include "thermal/periodic_state.h"
@@ -90,7 +91,7 @@ ExitCode run(const Options& options, Session& session) {
   const bool over = runaway || !(periodic.peak_C[states::winding] <= values.winding_limit_C);
   session.say(fmt::format("{} ({} thermal data), rms current {:.2f} A, ambient {:.0f} °C\n", motor.id, data_quality(motor),
                           rms.current_rms_A, options.current.ambient_C) +
-              in_words(values, rms, is_bare, periodic, over));
+              in_words(values, rms, is_bare, periodic, over) + silent_effects({&motor, 1}));
   using Json = nlohmann::ordered_json;
   const auto rest = [&](double value_C) { return runaway || rms.runaway ? Json() : Json(value_C); };
   const auto of_winding = [&](const std::vector<double>& value_C) { return runaway ? Json() : Json(value_C[states::winding]); };

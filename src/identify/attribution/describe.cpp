@@ -7,6 +7,7 @@
 
 #include "base/quantity.h"
 #include "identify/attribution/diagnosis.h"
+#include "identify/calibration/unlogged_speed.h"
 
 namespace heatsoak {
 namespace {
@@ -75,6 +76,17 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
   } else if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
     text += " The error on the training runs grows: keep the model's own figures.";
   }
+  const auto tell_grown = [&](const Errors& before, const Errors& after, std::string_view where) {
+    for (const auto& [signal, error] : after) {
+      const auto own = before.find(signal);
+      if (own != before.end() && is_plainly_worse(error.rmse_K, own->second.rmse_K) && !is_plainly_worse(rms_K(after), rms_K(before))) {
+        text += fmt::format(" That of the {} alone grows on {}, from {} to {} K.", signal.substr(0, signal.rfind('_')), where,
+                            significant(own->second.rmse_K, 2), significant(error.rmse_K, 2));
+      }
+    }
+  };
+  tell_grown(diagnosis.before_holdout, diagnosis.after_holdout, "the runs held out");
+  tell_grown(diagnosis.before_train, diagnosis.after_train, "the training runs");
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
     text += fmt::format(" It is {:.0f} times that on the training runs: those runs hold something that these do not show.",
                         after_K / std::max(kMatters_K, train_K));
@@ -146,13 +158,16 @@ std::string watts_in_words(std::span<const Unexplained* const> curves) {
 }
 
 /// `curves` are all with the first one's node and signals.
-std::string unexplained_in_words(std::span<const Unexplained* const> curves, bool keeps_figures) {
+std::string unexplained_in_words(std::span<const Unexplained* const> curves, const Diagnosis& diagnosis) {
   const Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {
-    return fmt::format("Unexplained: {} W rms into the {}{} that come and go within {:.0f} s; no measured signal follows them.",
-                       significant(heat.rms_W, 2), heat.node,
+    const std::string_view no_driver = diagnosis.selection.is_withdrawn ? "what follows them here does not on the runs held out"
+                                       : std::ranges::any_of(diagnosis.runs, turns_unseen)
+                                           ? "while not every log has a speed no signal is taken for what follows them"
+                                           : "no signal that all logs have follows them";
+    return fmt::format("Unexplained: {} W rms into the {}{} that come and go within {:.0f} s; {}.", significant(heat.rms_W, 2), heat.node,
                        heat.or_nodes.empty() ? "" : fmt::format(" (or the {}, which has no sensor)", fmt::join(heat.or_nodes, " or ")),
-                       heat.time_scale_s);
+                       heat.time_scale_s, no_driver);
   }
   const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == kTimeDriver;
   const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);
@@ -160,24 +175,24 @@ std::string unexplained_in_words(std::span<const Unexplained* const> curves, boo
                         : fmt::format("Unnamed: heat {} that follows {}{}", where,
                                       heat.times.empty() ? "" : heat.times + " times a curve over ", fmt::join(heat.drivers, " or "))) +
          fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
-         (heat.is_in_model ? " The extended model has it as a curve."
-          : keeps_figures  ? " The extended model does not have it."
-                           : " The extended model does not have it: its figures carry what they can of it.");
+         (heat.is_in_model                    ? " The extended model has it as a curve."
+          : diagnosis.selection.keeps_figures ? " The extended model does not have it."
+                                              : " The extended model does not have it: its figures carry what they can of it.");
 }
 
 /// Curves over one signal share what they have in common to say.
-void add_unexplained(const std::vector<Unexplained>& heats, bool keeps_figures, std::vector<std::string>& all) {
+void add_unexplained(const Diagnosis& diagnosis, std::vector<std::string>& all) {
   const auto is_shared = [](const Unexplained& a, const Unexplained& b) {
     return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.times == b.times && a.is_in_model == b.is_in_model &&
            is_leaving(a) == is_leaving(b);
   };
   std::vector<std::vector<const Unexplained*>> groups;
-  for (const Unexplained& heat : heats) {
+  for (const Unexplained& heat : diagnosis.unexplained) {
     const auto own = std::ranges::find_if(groups, [&](const auto& group) { return is_shared(*group.front(), heat); });
     (own == groups.end() ? groups.emplace_back() : *own).push_back(&heat);
   }
   for (const auto& group : groups) {
-    all.push_back(unexplained_in_words(group, keeps_figures));
+    all.push_back(unexplained_in_words(group, diagnosis));
   }
 }
 
@@ -202,7 +217,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
   if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
     all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
   }
-  add_unexplained(diagnosis.unexplained, diagnosis.selection.keeps_figures, all);
+  add_unexplained(diagnosis, all);
   const bool is_held_out = !diagnosis.before_holdout.empty();
   const bool is_more = !diagnosis.effects.empty();
   all.push_back(errors_in_words(is_held_out ? diagnosis.before_holdout : diagnosis.before_train,

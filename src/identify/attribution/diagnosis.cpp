@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "base/quantity.h"
 #include "identify/attribution/advisor.h"
 #include "identify/attribution/coverage.h"
 #include "identify/attribution/curve.h"
@@ -38,14 +39,15 @@ constexpr double kLeastSeen_share = 0.5;
 /// more than the mean of heat that comes and goes by the clock: there a quarter is enough. A sensor's error has no heat: beside
 /// unexplained heat it must still let the runs be followed plainly better, and so must heat beside many times as much anywhere.
 bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
+  constexpr double kLeftByHeat_share = 0.7;
+  const bool is_hardly_better = rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train);
   if (!effect.is_from_catalogue) {
     double curves_W = 0.0;
     for (const FoundEffect& other : told.effects) {
       curves_W += !other.is_from_catalogue && other.node == effect.node && other.drivers == effect.drivers ? other.mean_W : 0.0;
     }
-    return told.flux_rms_after_W.contains(effect.node) && told.flux_rms_after_W.at(effect.node) > curves_W;
+    return told.flux_rms_after_W.contains(effect.node) && told.flux_rms_after_W.at(effect.node) > curves_W && is_hardly_better;
   }
-  constexpr double kLeftByHeat_share = 0.7;
   constexpr double kManyTimes_ratio = 4.0;
   const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
   // Heat that follows no signal may stand in for little; not for what is this sure. Heat without a law may be the mean of any.
@@ -54,7 +56,7 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
                                std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
   if (!is_beyond_doubt &&
       std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
-      rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train)) {
+      is_hardly_better) {
     return true;
   }
   if (!effect.has_heat || is_beyond_doubt) {
@@ -322,6 +324,17 @@ std::string settle_turning_rows(DiagnosisInput& input) {
   return std::string(kTurningRowsTold);
 }
 
+namespace {
+
+std::string why_withdrawn(const Diagnosis& told) {
+  return fmt::format("what was found takes the error of the training runs from {} to {} K and that of the runs held out from {} to {} K",
+                     significant(rms_K(told.refitted_train), 2), significant(rms_K(told.after_train), 2),
+                     significant(std::min(rms_K(told.before_holdout), rms_K(told.refitted_holdout)), 2),
+                     significant(rms_K(told.after_holdout), 2));
+}
+
+}  // namespace
+
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   SelectionInput asked;
   asked.model = input.model;
@@ -333,7 +346,7 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   }
   if (fails_on_holdout(told)) {
     asked.adds_terms = false;
-    told = Teller(input, withdrawn(told.selection, select_effects(asked, rules), input.holdout)).tell();
+    told = Teller(input, withdrawn(told.selection, select_effects(asked, rules), why_withdrawn(told))).tell();
   }
   if (told.effects.empty() && !told.selection.is_held && is_plainly_worse(rms_K(told.after_holdout), rms_K(told.before_holdout))) {
     asked.adds_terms = false;

@@ -12,6 +12,7 @@
 #include "identify/admission.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
+#include "identify/log_columns.h"
 #include "identify/log_rows.h"
 #include "identify/measurement/fingerprint.h"
 
@@ -228,16 +229,15 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.figures = std::move(built.figures);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));
-  const auto has_column = [&](const Recording& each) { return has_values(each.find(out.model.column)); };
-  if (!out.model.column.empty() && !std::ranges::all_of(recordings, has_column)) {
-    out.notes.push_back(fmt::format("not every log has a column {}: there the hottest of the curve over it is taken", out.model.column));
-  }
   for (const MotorEffect& effect : motor.effects) {
     const int size = effect.type->candidacy.size_parameter;
     if (!effect.condition.empty() && size >= 0) {
       const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
       out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
     }
+  }
+  if (const std::string lacking = column_lacking(out.how.column, recordings); !lacking.empty()) {
+    out.notes.push_back(lacking);
   }
   set_needed(out, motor, recordings);
   const bool has_torque = have(Signal::shaft_power);

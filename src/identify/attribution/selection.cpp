@@ -33,8 +33,8 @@ constexpr double kKeptPromise_ratio = 0.5;
 
 class Selector {
  public:
-  Selector(const SelectionInput& input, const SelectionRules& rules)
-      : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
+  Selector(const SelectionInput& input, const SelectionRules& rules, bool waits_for_others)
+      : input_(input), rules_(rules), waits_for_others_(waits_for_others), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
 
   Selection run() {
     FirstFit first = first_fit(input_.model, input_.runs);
@@ -441,9 +441,12 @@ class Selector {
       if (!out_.is_known(is_front ? front : each) || (!is_front && each.gain_nats < rival_nats)) {
         continue;
       }
-      const std::optional<ExtendedModel> with =
-          with_curve(out_.after.model, each, out_.drivers[static_cast<std::size_t>(each.term.driver)]);
+      const Driver& driver = out_.drivers[static_cast<std::size_t>(each.term.driver)];
+      const std::optional<ExtendedModel> with = with_curve(out_.after.model, each, driver);
       if (!with) {
+        if (driver.choice == kColumnChoice) {
+          out_.refuse(driver.name, each.gain_nats, kNoRoom);
+        }
         continue;
       }
       set_column(input_.runs, with->column);
@@ -455,19 +458,17 @@ class Selector {
       AcceptedTerm term;
       term.curve = each;
       term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats) ||
-          leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
+      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats)) {
         continue;
       }
-      term.effect_name = std::string(fit.model.model.network.effects().back().name);
-      for (const ScanResult& other : round.scan) {
-        const std::string& name = driver_name(other);
-        // The same driver may rule another node or another law: that is no other driver.
-        if (other.term.driver != each.term.driver && other.gain_nats > each.gain_nats - rules_.ambiguous_within_nats &&
-            std::ranges::find(term.confusable_with, name) == term.confusable_with.end()) {
-          term.confusable_with.push_back(name);
+      if (leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
+        if (!waits_for_others_) {
+          continue;
         }
+        out_.waits_for_others = true;
       }
+      term.effect_name = std::string(fit.model.model.network.effects().back().name);
+      out_.tell_other_drivers(term, round.scan, rules_.ambiguous_within_nats);
       out_.after = std::move(fit);
       out_.terms.push_back(std::move(term));
       return true;
@@ -477,7 +478,8 @@ class Selector {
 
   SelectionInput input_;  ///< whose runs get the column that a curve is drawn over
   const SelectionRules& rules_;
-  bool is_speed_open_;  ///< heat at the stator then may well be the loss at the speed that nobody logged
+  bool waits_for_others_;  ///< takes curves too with which whole runs are followed worse until what balances them is found
+  bool is_speed_open_;     ///< heat at the stator then may well be the loss at the speed that nobody logged
   RefitOptions options_;
   FluxGrid::Place first_place_;
   std::vector<JudgedCandidate> hidden_;  ///< of this round, best first: what the base parameters could stand for
@@ -487,7 +489,10 @@ class Selector {
 }  // namespace
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules) {
-  const auto select = [&](const SelectionInput& from) { return Selector(from, rules).run(); };
+  const auto select = [&](const SelectionInput& from) {
+    Selection found = Selector(from, rules, true).run();
+    return found.waits_for_others && !follows_better(from, found) ? Selector(from, rules, false).run() : found;
+  };
   return judged_by_whole_runs(input, select(input), select);
 }
 

@@ -77,10 +77,11 @@ struct Refusal {
 struct Selection {
   RefitResult before;
   RefitResult after;
-  bool is_held = false;        ///< whole runs had decided the figures, and with nothing that was found they are followed plainly better
-  bool is_withdrawn = false;   ///< what was found follows the runs held out plainly worse: nothing of it was added
-  bool keeps_figures = false;  ///< so does the model with figures refitted alone: those of the file stay
-  ExtendedModel base;          ///< the model as it was, with doubt where the runs contradict its file
+  bool is_held = false;           ///< whole runs had decided the figures, and with nothing that was found they are followed plainly better
+  bool waits_for_others = false;  ///< with one of the curves, when it was taken, whole runs were followed worse
+  bool is_withdrawn = false;      ///< what was found follows the runs held out plainly worse: nothing of it was added
+  bool keeps_figures = false;     ///< so does the model with figures refitted alone: those of the file stay
+  ExtendedModel base;             ///< the model as it was, with doubt where the runs contradict its file
   std::vector<ChangedFigure> changed;
   RefitResult own;  ///< `before` once more with that doubt: the model's own figures, nothing added
   std::vector<AcceptedTerm> terms;
@@ -102,6 +103,8 @@ struct Selection {
   int place_of(Driver driver);
   /// A curve of the other selection, its driver by this one's list.
   ScanResult with_drivers_of(const Selection& other, ScanResult curve);
+  /// To a curve those of the scan that explain as much within the ambiguity.
+  void tell_other_drivers(AcceptedTerm& term, const std::vector<ScanResult>& scan, double within_nats) const;
   void forget_refusal(const std::string& id);
   /// Takes the place of what was said of it before.
   void refuse(const std::string& id, double gain_nats, std::string_view why, bool is_negligible = false);
@@ -116,15 +119,18 @@ inline constexpr std::string_view kHardlyBetterTold =
     "whole runs, which decided the figures of the model, are followed hardly better with it";
 /// Why, of what fits the training runs only.
 inline constexpr std::string_view kFailsElsewhere = "with it the runs held out are followed worse";
-inline constexpr std::string_view kNotLoggedElsewhere = "not all runs held out log it, and its hottest value does not follow them";
+/// Why, of a curve beside one over another column of the log.
+inline constexpr std::string_view kNoRoom = "a model has room for one column of the logs";
 /// Then what an effect leaves of the error of free runs is at most this share, or it is not named.
 inline constexpr double kPlainlyBetter_share = 0.85;
 /// `found`, unless whole runs decided the model's figures and are followed hardly better with it: then that model as it stands, with
 /// nothing added, and what was found among the refused.
 Selection judged_by_whole_runs(const SelectionInput& input, Selection found, const std::function<Selection(const SelectionInput&)>& select);
 
+/// Whole runs, with what was found, than with the model's own figures alone.
+bool follows_better(const SelectionInput& input, const Selection& found);
 /// `none`, which has nothing added, with what is to be said of all that was `found` and fails on the runs held out.
-Selection withdrawn(const Selection& found, Selection none, const std::vector<MeasuredRun>& held_out);
+Selection withdrawn(const Selection& found, Selection none, std::string_view why);
 /// `held`, which has the file's figures, in place of `refitted`, whose figures follow the runs held out plainly worse.
 Selection with_figures_of_file(const Selection& refitted, Selection held);
 

@@ -42,6 +42,17 @@ ScanResult Selection::with_drivers_of(const Selection& other, ScanResult curve) 
   return curve;
 }
 
+void Selection::tell_other_drivers(AcceptedTerm& term, const std::vector<ScanResult>& scan, double within_nats) const {
+  for (const ScanResult& other : scan) {
+    const std::string& name = drivers[static_cast<std::size_t>(other.term.driver)].name;
+    // The same driver may rule another node or another law: that is no other driver.
+    if (other.term.driver != term.curve->term.driver && other.gain_nats > term.curve->gain_nats - within_nats &&
+        std::ranges::find(term.confusable_with, name) == term.confusable_with.end()) {
+      term.confusable_with.push_back(name);
+    }
+  }
+}
+
 void Selection::forget_refusal(const std::string& id) {
   std::erase_if(refused, [&](const Refusal& known) { return known.id == id; });
 }
@@ -53,13 +64,10 @@ void Selection::refuse(const std::string& id, double gain_nats, std::string_view
   refused.push_back({id, fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why), is_negligible});
 }
 
-Selection withdrawn(const Selection& found, Selection none, const std::vector<MeasuredRun>& held_out) {
+Selection withdrawn(const Selection& found, Selection none, std::string_view why) {
   none.is_withdrawn = true;
-  const std::string& column = found.after.model.column;
-  const bool is_logged = std::ranges::all_of(held_out, [&](const MeasuredRun& run) { return run.columns.contains(column); });
   for (const AcceptedTerm& term : found.terms) {
-    const std::string& what = term.what(found.drivers);
-    none.refuse(what, term.gain_nats, what == column && !is_logged ? kNotLoggedElsewhere : kFailsElsewhere);
+    none.refuse(term.what(found.drivers), std::max(term.gain_nats, term.loss_without_nats), why);
     if (term.curve && !none.open_curve) {
       none.open_curve = none.with_drivers_of(found, *term.curve);
     }
@@ -81,6 +89,12 @@ Selection with_figures_of_file(const Selection& refitted, Selection held) {
     held.open_curve = held.with_drivers_of(refitted, *refitted.open_curve);
   }
   return held;
+}
+
+bool follows_better(const SelectionInput& input, const Selection& found) {
+  std::vector<MeasuredRun> runs = input.runs;
+  set_column(runs, found.after.model.column);
+  return rms_K(open_loop_errors(found.after.model, runs, {})) < rms_K(open_loop_errors(found.own.model, runs, {}));
 }
 
 Selection judged_by_whole_runs(const SelectionInput& input, Selection found,

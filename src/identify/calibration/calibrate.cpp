@@ -14,6 +14,7 @@
 #include "identify/calibration/profile.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
+#include "identify/log_columns.h"
 #include "identify/measurement/fingerprint.h"
 #include "identify/measurement/quality.h"
 #include "identify/turning_rows.h"
@@ -74,6 +75,9 @@ class Calibrating {
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.notes));
     MeasuredRunOptions how = how_to_read(motor);
+    if (std::string lacking = column_lacking(how.column, recordings_); !lacking.empty()) {
+      all_.notes.push_back(std::move(lacking));
+    }
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;
     all_.runs = runs_of(recordings_, how, all_.notes);

@@ -146,14 +146,23 @@ class ModelBuilder {
 
   void effects() {
     for (const MotorEffect& effect : motor_.effects) {
+      std::vector<double> values;
+      std::ranges::transform(effect.parameters, std::back_inserter(values), &Figure::value);
+      std::vector<std::string_view> held;
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
         const ParameterSpec& spec = effect.type->parameters[i];
         const std::string name = fmt::format("{}.{}", effect.name, spec.key);
         if (!spec.choices.empty() || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
-          all_.held.push_back(fmt::format("effects.{} is held: the file states no spread for it", name));
+          if (spec.choices.empty()) {
+            held.push_back(spec.key);
+          }
           continue;
         }
-        add("effects." + name, std::string(spec.unit), effect.parameters[i], {{free(name), 1.0}});
+        add("effects." + name, std::string(unit_of(effect.type->parameters, i, values)), effect.parameters[i], {{free(name), 1.0}});
+      }
+      if (!held.empty()) {
+        all_.held.push_back(fmt::format("effects.{}: {} {} held: the file states no spread", effect.name, fmt::join(held, ", "),
+                                        held.size() == 1 ? "is" : "are"));
       }
     }
   }

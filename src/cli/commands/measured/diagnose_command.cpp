@@ -15,6 +15,7 @@
 #include "cli/named_files.h"
 #include "identify/admission.h"
 #include "identify/attribution/model_file.h"
+#include "identify/log_columns.h"
 #include "identify/open_loop.h"
 #include "motor/write_motor.h"
 
@@ -87,6 +88,10 @@ ExitCode run(const Options& options, Session& session) {
   input.holdout = runs_of(holdout, how, notes);
   if (std::string told = settle_turning_rows(input); !told.empty()) {
     notes.push_back(std::move(told));
+  }
+  if (const std::vector<std::string> rare = keep_common_columns(input.train, input.holdout); !rare.empty()) {
+    notes.push_back(fmt::format("not every log has {}: no heat is looked for that follows {}, unless the logs without are left out",
+                                fmt::join(rare, ", "), rare.size() == 1 ? "it" : "them"));
   }
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   set_column(input, diagnosis.selection);

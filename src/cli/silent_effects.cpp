@@ -1,0 +1,33 @@
+#include "cli/silent_effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+namespace heatsoak {
+
+std::string silent_effects(std::span<const Motor> motors) {
+  std::string text;
+  for (const Motor& motor : motors) {
+    for (const MotorEffect& effect : motor.effects) {
+      std::vector<double> values;
+      std::ranges::transform(effect.parameters, std::back_inserter(values), &Figure::value);
+      const std::vector<Signal> needed = effect.type->needed_with(values);
+      const auto needs = [&](Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
+      const bool needs_neighbour = needs(Signal::neighbour_temperature);
+      if (!effect.column.empty()) {
+        text += fmt::format("{}: a duty says nothing of {}, which {} goes with: its hottest value is reckoned with\n", motor.id,
+                            effect.column, effect.name);
+      }
+      if (needs_neighbour || needs(Signal::age)) {
+        text += fmt::format("{}: {} is not reckoned with: a duty says nothing of {}\n", motor.id, effect.name,
+                            needs_neighbour ? "the neighbour's temperature" : "the hours that the motor has run");
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,14 @@
+// What a prediction cannot know of the effects in motor files.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "motor/motor.h"
+
+namespace heatsoak {
+
+/// A line for each effect whose signal no duty has, with what is done about it; empty where there is none.
+std::string silent_effects(std::span<const Motor> motors);
+
+}  // namespace heatsoak
