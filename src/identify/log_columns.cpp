@@ -75,7 +75,7 @@ std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording,
   return columns;
 }
 
-std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::vector<MeasuredRun>& others) {
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::vector<MeasuredRun>& others, std::string_view of_model) {
   std::map<std::string, std::size_t> counts;
   for (const std::vector<MeasuredRun>* const all : {&runs, &others}) {
     for (const MeasuredRun& run : *all) {
@@ -86,7 +86,7 @@ std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std
   }
   std::vector<std::string> left_out;
   for (const auto& [key, count] : counts) {
-    if (count < runs.size() + others.size()) {
+    if (count < runs.size() + others.size() && key != of_model) {
       left_out.push_back(key);
     }
   }

@@ -89,7 +89,7 @@ ExitCode run(const Options& options, Session& session) {
   if (std::string told = settle_turning_rows(input); !told.empty()) {
     notes.push_back(std::move(told));
   }
-  if (const std::vector<std::string> rare = keep_common_columns(input.train, input.holdout); !rare.empty()) {
+  if (const std::vector<std::string> rare = keep_common_columns(input.train, input.holdout, input.model.column); !rare.empty()) {
     notes.push_back(fmt::format("not every log has {}: no heat is looked for that follows {}, unless the logs without are left out",
                                 fmt::join(rare, ", "), rare.size() == 1 ? "it" : "them"));
   }
