@@ -80,6 +80,10 @@ ExitCode run(const Options& options, Session& session) {
                     std::back_inserter(notes));
   ModelOfLogs model = model_of_logs(motor, train);
   notes.insert(notes.end(), model.notes.begin(), model.notes.end());
+  if (std::string lacking = column_lacking(model.how.column, holdout);
+      !lacking.empty() && std::ranges::find(notes, lacking) == notes.end()) {
+    notes.push_back(std::move(lacking));
+  }
   MeasuredRunOptions how = model.how;
   how.ambient_C = options.logs.ambient_C;
   DiagnosisInput input;
