@@ -46,7 +46,7 @@ class BackwardCheck {
     while (drops_superfluous() || drops_doubt() || drops_invisible() || drops_negligible() || drops_idle() || swaps_for_rival()) {
       has_dropped_ = true;
     }
-    drop_outweighed();
+    drop_refused();
   }
 
   void settle() {
@@ -180,12 +180,10 @@ class BackwardCheck {
     return true;
   }
 
-  void drop_outweighed() {
-    const auto is_outweighed = [&](const AcceptedTerm& term) {
-      return std::ranges::find(input_.outweighed, term.own_name()) != input_.outweighed.end();
-    };
-    for (auto term = out_.terms.begin(); (term = std::ranges::find_if(out_.terms, is_outweighed)) != out_.terms.end();) {
-      out_.refuse(term->what(out_.drivers), term->loss_without_nats, kMoreRemains, true);
+  void drop_refused() {
+    const auto is_refused = [&](const AcceptedTerm& term) { return input_.refused.contains(term.own_name()); };
+    for (auto term = out_.terms.begin(); (term = std::ranges::find_if(out_.terms, is_refused)) != out_.terms.end();) {
+      out_.refuse(term->what(out_.drivers), term->loss_without_nats, input_.refused.at(term->own_name()), true);
       const std::vector<bool> stays = all_but(static_cast<std::size_t>(term - out_.terms.begin()));
       keep(stays, refit_with(stays));
     }

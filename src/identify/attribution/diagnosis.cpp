@@ -72,11 +72,11 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
 }
 
 /// What got a name though nothing of what was found is more than what remains.
-std::vector<std::string> outweighed_in(const Diagnosis& told) {
-  std::vector<std::string> outweighed;
+std::map<std::string, std::string> outweighed_in(const Diagnosis& told) {
+  std::map<std::string, std::string> outweighed;
   for (std::size_t i = 0; told.verdict == DiagnosisVerdict::unexplained && i < told.effects.size(); ++i) {
     if (is_outweighed(told.effects[i], told)) {
-      outweighed.push_back(told.selection.terms[i].own_name());
+      outweighed.emplace(told.selection.terms[i].own_name(), kMoreRemains);
     }
   }
   return outweighed;
@@ -340,8 +340,21 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   asked.model = input.model;
   asked.runs = input.train;
   Diagnosis told = Teller(input, select_effects(asked, rules)).tell();
-  asked.outweighed = outweighed_in(told);
-  if (!asked.outweighed.empty()) {
+  asked.refused = outweighed_in(told);
+  if (!asked.refused.empty()) {
+    told = Teller(input, select_effects(asked, rules)).tell();
+  }
+  if (fails_on_holdout(told) && told.selection.waits_for_others) {
+    asked.waits_for_others = false;
+    told = Teller(input, select_effects(asked, rules)).tell();
+  }
+  // One that is wrong beside others that are right: the least sure goes first.
+  while (fails_on_holdout(told) && told.selection.terms.size() > 1) {
+    const std::vector<AcceptedTerm>& terms = told.selection.terms;
+    const std::string least_sure = std::ranges::min_element(terms, {}, &AcceptedTerm::loss_without_nats)->own_name();
+    if (!asked.refused.emplace(least_sure, why_withdrawn(told)).second) {
+      break;
+    }
     told = Teller(input, select_effects(asked, rules)).tell();
   }
   if (fails_on_holdout(told)) {

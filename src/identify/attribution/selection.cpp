@@ -31,10 +31,13 @@ constexpr double kHiddenBeside_share = 0.1;
 /// Of the evidence that the scan has for a curve, what its refit has to reach within what physics allows.
 constexpr double kKeptPromise_ratio = 0.5;
 
+/// Of a curve with which whole runs are followed worse: so much evidence is waited for what balances it.
+constexpr double kBalanced_nats = 50.0;
+
 class Selector {
  public:
-  Selector(const SelectionInput& input, const SelectionRules& rules, bool waits_for_others)
-      : input_(input), rules_(rules), waits_for_others_(waits_for_others), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
+  Selector(const SelectionInput& input, const SelectionRules& rules)
+      : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
 
   Selection run() {
     FirstFit first = first_fit(input_.model, input_.runs);
@@ -50,7 +53,7 @@ class Selector {
     }
     out_.errors = options_.errors;
     check_backwards(out_, input_, rules_, options_);
-    while (input_.adds_terms && input_.outweighed.empty() && (!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
+    while (input_.adds_terms && input_.refused.empty() && (!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
     }
     look_more_finely();
     out_.own = out_.before;
@@ -462,7 +465,7 @@ class Selector {
         continue;
       }
       if (leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
-        if (!waits_for_others_) {
+        if (!input_.waits_for_others || term.gain_nats < kBalanced_nats) {
           continue;
         }
         out_.waits_for_others = true;
@@ -478,8 +481,7 @@ class Selector {
 
   SelectionInput input_;  ///< whose runs get the column that a curve is drawn over
   const SelectionRules& rules_;
-  bool waits_for_others_;  ///< takes curves too with which whole runs are followed worse until what balances them is found
-  bool is_speed_open_;     ///< heat at the stator then may well be the loss at the speed that nobody logged
+  bool is_speed_open_;  ///< heat at the stator then may well be the loss at the speed that nobody logged
   RefitOptions options_;
   FluxGrid::Place first_place_;
   std::vector<JudgedCandidate> hidden_;  ///< of this round, best first: what the base parameters could stand for
@@ -488,12 +490,6 @@ class Selector {
 
 }  // namespace
 
-Selection select_effects(const SelectionInput& input, const SelectionRules& rules) {
-  const auto select = [&](const SelectionInput& from) {
-    Selection found = Selector(from, rules, true).run();
-    return found.waits_for_others && !follows_better(from, found) ? Selector(from, rules, false).run() : found;
-  };
-  return judged_by_whole_runs(input, select(input), select);
-}
+Selection select_once(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
 
 }  // namespace heatsoak

@@ -1,7 +1,7 @@
 // Which effects a model lacks: forward selection by evidence with a nonlinear refit of the best, backward check, driver scan.
 #pragma once
 
-#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,8 +18,9 @@ struct SelectionInput {
   ExtendedModel model;            ///< near its fit
   std::vector<MeasuredRun> runs;  ///< at least one
   bool scans_drivers = true;
-  bool adds_terms = true;               ///< false: what is in question is looked at and nothing taken in
-  std::vector<std::string> outweighed;  ///< AcceptedTerm::own_name of terms that are refused in the end: more remains than they explain
+  bool waits_for_others = true;  ///< takes curves too with which whole runs are followed worse until what balances them is found
+  bool adds_terms = true;        ///< false: what is in question is looked at and nothing taken in
+  std::map<std::string, std::string> refused;  ///< AcceptedTerm::own_name of terms that are refused in the end, and why
 };
 
 /// Thresholds in nats. An effect is named where the evidence for it is e^7 ≈ 1100 : 1 against the model without it.
@@ -123,17 +124,15 @@ inline constexpr std::string_view kFailsElsewhere = "with it the runs held out a
 inline constexpr std::string_view kNoRoom = "a model has room for one column of the logs";
 /// Then what an effect leaves of the error of free runs is at most this share, or it is not named.
 inline constexpr double kPlainlyBetter_share = 0.85;
-/// `found`, unless whole runs decided the model's figures and are followed hardly better with it: then that model as it stands, with
-/// nothing added, and what was found among the refused.
-Selection judged_by_whole_runs(const SelectionInput& input, Selection found, const std::function<Selection(const SelectionInput&)>& select);
-
-/// Whole runs, with what was found, than with the model's own figures alone.
-bool follows_better(const SelectionInput& input, const Selection& found);
 /// `none`, which has nothing added, with what is to be said of all that was `found` and fails on the runs held out.
 Selection withdrawn(const Selection& found, Selection none, std::string_view why);
 /// `held`, which has the file's figures, in place of `refitted`, whose figures follow the runs held out plainly worse.
 Selection with_figures_of_file(const Selection& refitted, Selection held);
 
+/// One way through the rounds.
+Selection select_once(const SelectionInput& input, const SelectionRules& rules);
+/// With a look at whole runs: curves that balance nothing are not waited with; where whole runs had decided the model's figures and are
+/// followed hardly better with what was found, it is that model as it stands, with nothing added.
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);
 
 }  // namespace heatsoak

@@ -91,15 +91,30 @@ Selection with_figures_of_file(const Selection& refitted, Selection held) {
   return held;
 }
 
+namespace {
+
+/// Whole runs, with what was found, than with the model's own figures alone.
 bool follows_better(const SelectionInput& input, const Selection& found) {
   std::vector<MeasuredRun> runs = input.runs;
   set_column(runs, found.after.model.column);
   return rms_K(open_loop_errors(found.after.model, runs, {})) < rms_K(open_loop_errors(found.own.model, runs, {}));
 }
 
-Selection judged_by_whole_runs(const SelectionInput& input, Selection found,
-                               const std::function<Selection(const SelectionInput&)>& select) {
-  if (input.model.free_run_error_K == 0.0 || !input.outweighed.empty()) {
+Selection selected(const SelectionInput& input, const SelectionRules& rules) {
+  Selection found = select_once(input, rules);
+  if (!found.waits_for_others || follows_better(input, found)) {
+    return found;
+  }
+  SelectionInput strict = input;
+  strict.waits_for_others = false;
+  return select_once(strict, rules);
+}
+
+}  // namespace
+
+Selection select_effects(const SelectionInput& input, const SelectionRules& rules) {
+  Selection found = selected(input, rules);
+  if (input.model.free_run_error_K == 0.0 || !input.refused.empty()) {
     return found;
   }
   // What the model leaves in other runs of the same motor is no effect as a rule.
@@ -114,7 +129,7 @@ Selection judged_by_whole_runs(const SelectionInput& input, Selection found,
   SelectionInput held = input;
   held.model.hold_figures();
   held.adds_terms = false;
-  Selection none = select(held);
+  Selection none = selected(held, rules);
   none.is_held = true;
   for (const AcceptedTerm& term : found.terms) {
     none.refuse(term.what(found.drivers), term.gain_nats, kHardlyBetterTold, true);
