@@ -37,6 +37,9 @@ TEST(Diagnosis, fails_where_the_models_own_figures_follow_the_runs_held_out_bett
   EXPECT_FALSE(fails_on_holdout(told)) << "nothing was added";
   told.effects.emplace_back().gain_nats = 30.0;
   EXPECT_TRUE(fails_on_holdout(told));
+  told.refitted_train["winding_C"].rmse_K = 1.60, told.after_train["winding_C"].rmse_K = 0.30;
+  EXPECT_FALSE(fails_on_holdout(told)) << "little beside what the training runs gain";
+  told.refitted_train.clear(), told.after_train.clear();
   told.after_holdout["winding_C"].rmse_K = 0.40;
   EXPECT_FALSE(fails_on_holdout(told)) << "less than matters";
   told.effects.front().gain_nats = 6.0;
@@ -60,7 +63,8 @@ TEST(Examination, WhatFailsOnUnseenRunsIsToldAndNotAdded) {
   EXPECT_THAT(told.unexplained, testing::Not(testing::IsEmpty())) << told.description;
   EXPECT_FALSE(is_plainly_worse(rms_K(told.after_holdout), rms_K(told.before_holdout))) << told.description;
   EXPECT_THAT(told.description, testing::HasSubstr("does not hold on the runs never seen"));
-  EXPECT_THAT(told.description, testing::ContainsRegex("iron_loss_\\w+: [0-9]+ nats, but what was found takes the error of the training runs from"));
+  EXPECT_THAT(told.description,
+              testing::ContainsRegex("iron_loss_\\w+: [0-9]+ nats, but what was found takes the error of the training runs from"));
 }
 
 /// Either alone makes whole runs worse: heat that is always there, and air that is there at a low supply and takes as much away.

@@ -287,8 +287,12 @@ bool fails_on_holdout(const Diagnosis& diagnosis) {
   // What is hardly sure must not follow them worse at all.
   const bool is_hardly_sure =
       std::ranges::all_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.gain_nats < SelectionRules{}.least_gain_nats; });
-  const double best_K = std::min(refitted_K, rms_K(diagnosis.before_holdout));
-  return !diagnosis.effects.empty() && (is_plainly_worse(after_K, best_K) || (is_hardly_sure && after_K > kWorse_ratio * refitted_K));
+  // A little worse than figures bent to do without it is no answer to what it takes off the training runs.
+  constexpr double kOfGain_share = 0.25;
+  const double gain_K = rms_K(diagnosis.refitted_train) - rms_K(diagnosis.after_train);
+  const bool is_worse = is_plainly_worse(after_K, rms_K(diagnosis.before_holdout)) ||
+                        (is_plainly_worse(after_K, refitted_K) && after_K - refitted_K > kOfGain_share * gain_K);
+  return !diagnosis.effects.empty() && (is_worse || (is_hardly_sure && after_K > kWorse_ratio * refitted_K));
 }
 
 void set_column(DiagnosisInput& input, const Selection& found) {

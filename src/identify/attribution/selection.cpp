@@ -66,7 +66,7 @@ class Selector {
     }
     for (const AcceptedTerm& term : out_.terms) {
       // A later round has found what an earlier one could not tell.
-      out_.forget_refusal(term.candidate ? term.candidate->id : std::string());
+      out_.forget_refusal(term.what(out_.drivers));
     }
     return std::move(out_);
   }
@@ -466,6 +466,7 @@ class Selector {
       }
       if (leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
         if (!input_.waits_for_others || term.gain_nats < kBalanced_nats) {
+          out_.refuse(driver.name, term.gain_nats, kStraysAlone, true);
           continue;
         }
         out_.waits_for_others = true;

@@ -122,6 +122,8 @@ inline constexpr std::string_view kHardlyBetterTold =
 inline constexpr std::string_view kFailsElsewhere = "with it the runs held out are followed worse";
 /// Why, of a curve beside one over another column of the log.
 inline constexpr std::string_view kNoRoom = "a model has room for one column of the logs";
+/// Why, of a curve that something else may balance, which was not found.
+inline constexpr std::string_view kStraysAlone = "with it alone whole runs are followed worse";
 /// Then what an effect leaves of the error of free runs is at most this share, or it is not named.
 inline constexpr double kPlainlyBetter_share = 0.85;
 /// `none`, which has nothing added, with what is to be said of all that was `found` and fails on the runs held out.
