@@ -343,14 +343,15 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   SelectionInput asked;
   asked.model = input.model;
   asked.runs = input.train;
-  Diagnosis told = Teller(input, select_effects(asked, rules)).tell();
+  const auto tell_of_asked = [&] { return Teller(input, select_effects(asked, rules)).tell(); };
+  Diagnosis told = tell_of_asked();
   asked.refused = outweighed_in(told);
   if (!asked.refused.empty()) {
-    told = Teller(input, select_effects(asked, rules)).tell();
+    told = tell_of_asked();
   }
   if (fails_on_holdout(told) && told.selection.waits_for_others) {
     asked.waits_for_others = false;
-    told = Teller(input, select_effects(asked, rules)).tell();
+    told = tell_of_asked();
   }
   // One that is wrong beside others that are right: the least sure goes first.
   while (fails_on_holdout(told) && told.selection.terms.size() > 1) {
@@ -359,7 +360,7 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
     if (!asked.refused.emplace(least_sure, why_withdrawn(told)).second) {
       break;
     }
-    told = Teller(input, select_effects(asked, rules)).tell();
+    told = tell_of_asked();
   }
   if (fails_on_holdout(told)) {
     asked.adds_terms = false;
