@@ -174,14 +174,7 @@ class Fitting {
  private:
   /// The least squares of a few points of a Latin hypercube, on merged rows and with white noise; the best one goes on.
   void find_start() {
-    std::vector<MeasuredRun> rough;
-    for (const MeasuredRun& run : runs_) {
-      const double step_s = (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size());
-      constexpr double kRoughStep_s = 15.0;
-      constexpr int kLeastRows = 60;
-      const int merged = std::min(static_cast<int>(kRoughStep_s / step_s), static_cast<int>(run.at.size()) / kLeastRows);
-      rough.push_back(merged > 1 ? thinned(run, merged) : run);
-    }
+    const std::vector<MeasuredRun> rough = roughly(runs_);
     // Misfit of a model that lacks something is some kelvins: with the sensors' own noise every start would look hopeless.
     LeastSquaresProblem problem{.model = &model_, .runs = rough, .whitening = {}, .white_noise_K = 1.0, .threads = options_.threads};
     struct Candidate {

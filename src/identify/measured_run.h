@@ -82,5 +82,7 @@ MeasuredRuns measured_runs(const Recording& recording, const MeasuredRunOptions&
 
 /// Every `merged` intervals become one, with the same heat; for a rough look.
 MeasuredRun thinned(const MeasuredRun& run, int merged);
+/// Every run by intervals of some 15 s, of which a run has 60 at least where it had as many: for a search that begins anywhere.
+std::vector<MeasuredRun> roughly(std::span<const MeasuredRun> runs);
 
 }  // namespace heatsoak

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "identify/mean_inputs.h"
 #include "identify/measured_run.h"
 
@@ -29,6 +31,18 @@ MeasuredRun thinned(const MeasuredRun& run, int merged) {
     thin.measured_C.row(static_cast<Eigen::Index>(k)) = run.measured_C.row(kept[k]);
   }
   return thin;
+}
+
+std::vector<MeasuredRun> roughly(std::span<const MeasuredRun> runs) {
+  std::vector<MeasuredRun> rough;
+  for (const MeasuredRun& run : runs) {
+    const double step_s = (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size());
+    constexpr double kRoughStep_s = 15.0;
+    constexpr int kLeastRows = 60;
+    const int merged = std::min(static_cast<int>(kRoughStep_s / step_s), static_cast<int>(run.at.size()) / kLeastRows);
+    rough.push_back(merged > 1 ? thinned(run, merged) : run);
+  }
+  return rough;
 }
 
 }  // namespace heatsoak
