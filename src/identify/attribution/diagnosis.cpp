@@ -52,7 +52,12 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
   // Heat that follows no signal may stand in for little; not for what is this sure. Heat without a law may be the mean of any.
   constexpr double kBeyondDoubt_nats = 100.0;
-  const bool is_beyond_doubt = effect.gain_nats > kBeyondDoubt_nats && effect.id != "constant_heat" &&
+  // Nor for what foretells runs that the fit never saw.
+  constexpr double kForetells_share = 0.7;
+  constexpr double kClear_nats = 20.0;
+  const bool foretells = effect.gain_nats > kClear_nats && !told.after_holdout.empty() &&
+                         rms_K(told.after_holdout) < kForetells_share * std::min(rms_K(told.before_holdout), rms_K(told.refitted_holdout));
+  const bool is_beyond_doubt = (foretells || effect.gain_nats > kBeyondDoubt_nats) && effect.id != "constant_heat" &&
                                std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
   if (!is_beyond_doubt &&
       std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
