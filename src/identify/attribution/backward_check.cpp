@@ -299,7 +299,8 @@ class BackwardCheck {
     return false;
   }
 
-  /// In the shape that was found little of it may be its own, and the runs still tell that little from whatever figures of the file do.
+  /// In the shape that was found little of it may be its own, and the runs still tell that little from whatever figures of the file do:
+  /// by much evidence, or because with those in its place whole runs are followed much worse.
   [[nodiscard]] bool beats_changed_figures(std::size_t term) const {
     ExtendedModel doubted = model_with(all_but(term));
     for (Eigen::Index i = 0; i < doubted.model.free_count(); ++i) {
@@ -308,7 +309,10 @@ class BackwardCheck {
     RefitOptions options = options_;
     options.place = out_.after.place;
     const RefitResult without = refit(std::move(doubted), input_.runs, out_.before.start_C, options);
-    return out_.after.evidence_nats - without.evidence_nats >= rules_.unmistakable_nats;
+    const double ahead_nats = out_.after.evidence_nats - without.evidence_nats;
+    constexpr double kMuchWorse_ratio = 2.0;
+    return ahead_nats >= rules_.unmistakable_nats ||
+           (ahead_nats >= rules_.least_gain_nats && leads_away(out_.after.model, without.model, input_.runs, kMuchWorse_ratio));
   }
 
   /// Of several terms the first was chosen while the others were not there: a law of its family may go better with them, or as well.

@@ -125,7 +125,7 @@ class Selector {
       out_.unseen = sight.unseen;
       out_.seen_share = sight.seen_share;
     }
-    const std::vector<int> few = most_promising(of_all.single_gains_nats(base), static_cast<std::size_t>(rules_.refitted) + 2);
+    const std::vector<int> few = most_promising(of_all.single_gains_nats(base), static_cast<std::size_t>(rules_.in_question));
     std::vector<Candidate> candidates;
     std::ranges::transform(few, std::back_inserter(candidates), [&](int j) { return list.candidates[static_cast<std::size_t>(j)]; });
     EvidenceTable table = std::move(of_all).only(few);

@@ -37,7 +37,8 @@ struct SelectionRules {
   double least_peak_share = 0.04;   ///< that at its peak, is not named
   double least_deviation_share = 0.03;  ///< that some runs are said to have of heat or of a resistance
   double least_fault_share = 0.35;      ///< of what is typical: a sensor's fault that is less gets no name unless it is unmistakable
-  int refitted = 6;
+  int in_question = 12;                 ///< that a round judges, of which sets are made, and of which so many are
+  int refitted = 6;                     ///< in the equations
   int most_terms = 4;
 };
 
