@@ -62,13 +62,25 @@ struct Drone {
   Motor motor;  ///< calibrated on runs 1, 3 and 5
 };
 
-Drone drone(const std::filesystem::path& folder) {
+/// A motor whose start of a fit was guessed otherwise.
+Motor guessed_otherwise(Motor motor, const std::map<std::string, double>& factor) {
+  for (const auto& [key, by] : factor) {
+    Figure& figure = *find_figure(motor, key);
+    figure.value *= by;
+    figure.spread->low *= by;
+    figure.spread->high *= by;
+  }
+  refresh_values(motor);
+  return motor;
+}
+
+Drone drone(const std::filesystem::path& folder, const std::map<std::string, double>& factor = {}) {
   Drone all;
   for (const char* const name : {"run1", "run2", "run3", "run4", "run5"}) {
     all.run[name] = read(folder / (std::string(name) + ".csv"), kReports / "uav_fan/recordings.map.toml");
     EXPECT_THAT(all.run[name].conditions, testing::IsEmpty());
   }
-  const Motor start = read_motor(kReports / "uav_motor.toml");
+  const Motor start = guessed_otherwise(read_motor(kReports / "uav_motor.toml"), factor);
   all.motor = calibrated_motor(start, calibrate(start, std::vector{all.run["run1"], all.run["run3"], all.run["run5"]}, {}, {}));
   return all;
 }
@@ -100,6 +112,32 @@ TEST(MeasuredMotors, a_fan_that_nobody_told_of_is_found_in_the_run_that_had_it) 
     EXPECT_GT(rms_K(found.input.model, run4, signal), 40.0) << signal;
     EXPECT_LE(rms_K(after, run4, signal), 3.0) << signal;
     EXPECT_LE(rms_K(after, run2, signal), rms_K(found.input.model, run2, signal)) << signal;
+  }
+}
+
+TEST(MeasuredMotors, a_fan_is_found_from_another_start_too) {
+  const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
+  SKIP_WITHOUT(folder);
+  Drone all = drone(*folder, {{"thermal_resistance_winding_stator", 1.7},
+                              {"thermal_resistance_stator_ambient", 1.5},
+                              {"thermal_time_constant_winding", 1.6},
+                              {"thermal_time_constant_stator", 0.7}});
+  const DroneCase found = diagnosed(all, 0.6);
+  const std::vector<MeasuredRun> run4 = input_of(found.model, {all.run["run4"]}, {}).train;
+  for (const char* const signal : {"winding_C", "stator_C"}) {
+    EXPECT_LE(rms_K(found.diagnosis.selection.after.model, run4, signal), 3.0) << signal << found.diagnosis.description;
+  }
+}
+
+/// The law that brings the whole set together is hardly visible here, and without it whole runs are followed six times worse.
+TEST(MeasuredMotors, what_hangs_on_a_hardly_visible_law_is_kept_where_no_figure_could_be_it) {
+  const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
+  SKIP_WITHOUT(folder);
+  Drone all = drone(*folder);
+  const DroneCase found = diagnosed(all, 0.65);
+  for (const char* const signal : {"winding_C", "stator_C"}) {
+    EXPECT_GT(found.diagnosis.before_holdout.at(signal).rmse_K, 50.0) << signal;
+    EXPECT_LE(found.diagnosis.after_holdout.at(signal).rmse_K, 6.0) << signal << found.diagnosis.description;
   }
 }
 
@@ -143,6 +181,52 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
   const double measured_rise_K = run.measured_C.col(0).tail(run.samples() - stopped).maxCoeff() - run.measured_C(stopped, 0);
   EXPECT_GT(measured_rise_K, 4.0);
   EXPECT_NEAR(foretold_C.col(0).tail(run.samples() - stopped).maxCoeff() - foretold_C(stopped, 0), measured_rise_K, 1.0);
+}
+
+/// Calibrated without the propeller's air the figures carry what they can of it, and much heat is left that comes and goes. The law
+/// foretells another day's recording at half the error; that is more than the heat can say against it.
+TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_because_another_day_is_foretold_with_it) {
+  const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
+  SKIP_WITHOUT(folder);
+  const std::filesystem::path map = kReports / "propeller_bench/recordings.map.toml";
+  const Recording january = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-01-27_105922.csv", map);
+  const Recording march = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-03-05_145559.csv", map);
+  const Motor start = read_motor(kReports / "propeller_bench/start.toml");
+  const ModelOfLogs model = model_of_logs(calibrated_motor(start, calibrate(start, std::vector{january}, {}, {})), {january});
+  const Diagnosis diagnosis = diagnose(input_of(model, {january}, {march}), {});
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
+  ASSERT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
+  EXPECT_LT(diagnosis.after_holdout.at("stator_C").rmse_K, 0.5 * diagnosis.before_holdout.at("stator_C").rmse_K);
+  EXPECT_LT(diagnosis.after_holdout.at("stator_C").rmse_K, 0.5 * diagnosis.refitted_holdout.at("stator_C").rmse_K);
+}
+
+/// From the guess no step along the whitened errors leads anywhere: the way goes past the figures that follow the runs as they are.
+TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anything_is_looked_for) {
+  const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
+  SKIP_WITHOUT(folder);
+  const std::filesystem::path map = kReports / "propeller_bench/recordings.map.toml";
+  const std::vector<Recording> both{read(*folder / "cooling_slopes__Spike-Mega-1700_2020-01-27_105922.csv", map),
+                                    read(*folder / "cooling_slopes__Spike-Mega-1700_2020-03-05_145559.csv", map)};
+  const ModelOfLogs model = model_of_logs(read_motor(kReports / "propeller_bench/start.toml"), both);
+  const Diagnosis diagnosis = diagnose(input_of(model, both, {}), {});
+  EXPECT_GT(diagnosis.before_train.at("stator_C").rmse_K, 40.0);
+  EXPECT_LT(diagnosis.refitted_train.at("stator_C").rmse_K, 3.0);
+  EXPECT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
+  EXPECT_LT(diagnosis.after_train.at("stator_C").rmse_K, diagnosis.refitted_train.at("stator_C").rmse_K);
+}
+
+/// A second motor of the bench, which was no one's example while the tool was made: the speed was recorded once only.
+TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propeller) {
+  const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
+  SKIP_WITHOUT(folder);
+  const Recording all =
+      read(*folder / "cooling_slopes__Spike-P80-1700_2020-02-11_162559.csv", kReports / "propeller_bench/recordings.map.toml");
+  const std::vector<Recording> train{part_of(all, 0.0, 0.7)};
+  const ModelOfLogs model = model_of_logs(read_motor(kReports / "propeller_bench/start.toml"), train);
+  const Diagnosis diagnosis = diagnose(input_of(model, train, {part_of(all, 0.7, 1.0)}), {});
+  ASSERT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
+  EXPECT_LE(diagnosis.after_train.at("stator_C").rmse_K, 0.5);
+  EXPECT_LE(diagnosis.after_holdout.at("stator_C").rmse_K, 0.5);
 }
 
 TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_model) {
