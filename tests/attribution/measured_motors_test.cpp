@@ -158,14 +158,27 @@ TEST_P(DroneWithFan, is_named_wherever_its_run_is_cut) {
 INSTANTIATE_TEST_SUITE_P(MeasuredMotors, DroneWithFan, testing::Values(50, 60, 70),
                          [](const auto& each) { return "first_" + std::to_string(each.param) + "_percent"; });
 
+/// Of a bench: the outrunner "Mega" under a propeller on two days.
+struct PropellerBench {
+  Recording january;
+  Recording march;
+  Motor start = read_motor(kReports / "propeller_bench/start.toml");
+};
+
+Recording of_bench(const std::filesystem::path& folder, const char* name) {
+  return read(folder / ("cooling_slopes__Spike-" + std::string(name) + ".csv"), kReports / "propeller_bench/recordings.map.toml");
+}
+
+PropellerBench propeller_bench(const std::filesystem::path& folder) {
+  return {of_bench(folder, "Mega-1700_2020-01-27_105922"), of_bench(folder, "Mega-1700_2020-03-05_145559")};
+}
+
 /// The probe at the coils lies in the air that the propeller drives; the copper behind it is hotter, and after switch-off the probe rises.
 TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_comes_out_after_switch_off) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
-  const std::filesystem::path map = kReports / "propeller_bench/recordings.map.toml";
-  const Recording january = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-01-27_105922.csv", map);
-  const Recording march = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-03-05_145559.csv", map);
-  const ModelOfLogs model = model_of_logs(read_motor(kReports / "propeller_bench/start.toml"), {january});
+  const auto [january, march, start] = propeller_bench(*folder);
+  const ModelOfLogs model = model_of_logs(start, {january});
   const DiagnosisInput input = input_of(model, {january}, {march});
   const Diagnosis diagnosis = diagnose(input, {});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
@@ -188,10 +201,7 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
 TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_because_another_day_is_foretold_with_it) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
-  const std::filesystem::path map = kReports / "propeller_bench/recordings.map.toml";
-  const Recording january = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-01-27_105922.csv", map);
-  const Recording march = read(*folder / "cooling_slopes__Spike-Mega-1700_2020-03-05_145559.csv", map);
-  const Motor start = read_motor(kReports / "propeller_bench/start.toml");
+  const auto [january, march, start] = propeller_bench(*folder);
   const ModelOfLogs model = model_of_logs(calibrated_motor(start, calibrate(start, std::vector{january}, {}, {})), {january});
   const Diagnosis diagnosis = diagnose(input_of(model, {january}, {march}), {});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
@@ -204,10 +214,9 @@ TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_because_an
 TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anything_is_looked_for) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
-  const std::filesystem::path map = kReports / "propeller_bench/recordings.map.toml";
-  const std::vector<Recording> both{read(*folder / "cooling_slopes__Spike-Mega-1700_2020-01-27_105922.csv", map),
-                                    read(*folder / "cooling_slopes__Spike-Mega-1700_2020-03-05_145559.csv", map)};
-  const ModelOfLogs model = model_of_logs(read_motor(kReports / "propeller_bench/start.toml"), both);
+  const auto [january, march, start] = propeller_bench(*folder);
+  const std::vector<Recording> both{january, march};
+  const ModelOfLogs model = model_of_logs(start, both);
   const Diagnosis diagnosis = diagnose(input_of(model, both, {}), {});
   EXPECT_GT(diagnosis.before_train.at("stator_C").rmse_K, 40.0);
   EXPECT_LT(diagnosis.refitted_train.at("stator_C").rmse_K, 3.0);
@@ -219,8 +228,7 @@ TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anyth
 TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propeller) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
-  const Recording all =
-      read(*folder / "cooling_slopes__Spike-P80-1700_2020-02-11_162559.csv", kReports / "propeller_bench/recordings.map.toml");
+  const Recording all = of_bench(*folder, "P80-1700_2020-02-11_162559");
   const std::vector<Recording> train{part_of(all, 0.0, 0.7)};
   const ModelOfLogs model = model_of_logs(read_motor(kReports / "propeller_bench/start.toml"), train);
   const Diagnosis diagnosis = diagnose(input_of(model, train, {part_of(all, 0.7, 1.0)}), {});
