@@ -224,6 +224,26 @@ TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anyth
   EXPECT_LT(diagnosis.after_train.at("stator_C").rmse_K, diagnosis.refitted_train.at("stator_C").rmse_K);
 }
 
+/// With nothing added the model is the one with its own figures refitted, wherever a law that did not stay had led them.
+TEST(MeasuredMotors, where_no_law_stays_its_own_figures_are_what_they_were_without_it) {
+  const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
+  SKIP_WITHOUT(folder);
+  const auto [january, march, start] = propeller_bench(*folder);
+  const Motor guess = guessed_otherwise(start, {{"thermal_resistance_winding_stator", 1.31},
+                                                {"thermal_resistance_stator_ambient", 1.70},
+                                                {"thermal_time_constant_winding", 1.91},
+                                                {"thermal_time_constant_stator", 2.64}});
+  const std::vector<Recording> train{january, part_of(march, 0.0, 0.6)};
+  const ModelOfLogs model = model_of_logs(guess, train);
+  const Diagnosis diagnosis = diagnose(input_of(model, train, {part_of(march, 0.6, 1.0)}), {});
+  EXPECT_THAT(diagnosis.selection.refused, testing::Not(testing::IsEmpty()));
+  if (diagnosis.effects.empty()) {
+    EXPECT_NEAR(diagnosis.after_train.at("stator_C").rmse_K, diagnosis.refitted_train.at("stator_C").rmse_K, 0.01);
+  } else {
+    EXPECT_LT(diagnosis.after_holdout.at("stator_C").rmse_K, diagnosis.refitted_holdout.at("stator_C").rmse_K);
+  }
+}
+
 /// A second motor of the bench, which was no one's example while the tool was made: the speed was recorded once only.
 TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propeller) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
@@ -253,6 +273,8 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
   EXPECT_LE(diagnosis.after_holdout.at("winding_C").rmse_K, 0.4) << diagnosis.description;
   EXPECT_LE(diagnosis.after_holdout.at("stator_C").rmse_K, 0.2) << diagnosis.description;
   EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.5 * diagnosis.before_train.at("winding_C").rmse_K);
+  // Of 37 samples at steps of 1 K.
+  EXPECT_THAT(diagnosis.effects, testing::Each(testing::Field(&FoundEffect::p_value, testing::Gt(1e-60))));
 }
 
 Diagnosis of_traction_motor(const std::filesystem::path& folder, double cut) {

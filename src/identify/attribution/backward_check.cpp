@@ -43,10 +43,14 @@ class BackwardCheck {
       : out_(selection), input_(input), rules_(rules), options_(std::move(options)) {}
 
   void run() {
+    const bool had_terms = !out_.terms.empty();
     while (drops_superfluous() || drops_doubt() || drops_invisible() || drops_negligible() || drops_idle() || swaps_for_rival()) {
       has_dropped_ = true;
     }
     drop_refused();
+    if (had_terms && out_.terms.empty() && out_.changed.empty()) {
+      out_.after = out_.before;
+    }
   }
 
   void settle() {
@@ -434,9 +438,17 @@ class BackwardCheck {
     return with_values_of(std::move(model), out_.after.model);
   }
 
+  /// What was found may have led the figures far away: then the way back is tried from where they were, too.
   [[nodiscard]] RefitResult refit_with(const std::vector<bool>& stays) {
     options_.place = out_.after.place;
-    return refit(model_with(stays), input_.runs, out_.before.start_C, options_);
+    RefitResult fit = refit(model_with(stays), input_.runs, out_.before.start_C, options_);
+    if (has_strayed(out_.after.model, out_.before.model)) {
+      RefitOptions options = options_;
+      options.place = out_.before.place;
+      RefitResult back = try_refit(with_values_of(model_with(stays), out_.before.model), input_.runs, out_.before.start_C, options);
+      return back.evidence_nats > fit.evidence_nats ? std::move(back) : std::move(fit);
+    }
+    return fit;
   }
 
   void keep(const std::vector<bool>& stays, RefitResult fit) {

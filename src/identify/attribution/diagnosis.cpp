@@ -57,8 +57,8 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   constexpr double kClear_nats = 20.0;
   const bool foretells = effect.gain_nats > kClear_nats && !told.after_holdout.empty() &&
                          rms_K(told.after_holdout) < kForetells_share * std::min(rms_K(told.before_holdout), rms_K(told.refitted_holdout));
-  const bool is_beyond_doubt = (foretells || effect.gain_nats > kBeyondDoubt_nats) && effect.id != "constant_heat" &&
-                               std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
+  const bool is_alone = std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
+  const bool is_beyond_doubt = effect.id != "constant_heat" && (foretells || (effect.gain_nats > kBeyondDoubt_nats && is_alone));
   if (!is_beyond_doubt &&
       std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
       is_hardly_better) {

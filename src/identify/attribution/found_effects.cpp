@@ -131,7 +131,9 @@ class EffectTeller {
           const double sd = std::sqrt(after().covariance(i, i));
           parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
           parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
-          if (const int size = in_place.type->candidacy.size_parameter; size < 0 || static_cast<std::size_t>(size) == p) {
+          // Where a curve's knots lie says nothing of whether it is there.
+          const int size = in_place.type->candidacy.size_parameter;
+          if (size < 0 ? spec.range.low == 0.0 : static_cast<std::size_t>(size) == p) {
             effect.p_value = std::min(effect.p_value, p_of(theta[i], sd));
           }
           drop_interval_at_bound(i, parameter);
