@@ -48,16 +48,15 @@ class BackwardCheck {
       has_dropped_ = true;
     }
     drop_refused();
-    if (had_terms && out_.terms.empty() && out_.changed.empty()) {
-      out_.after = out_.before;
+    if (had_terms) {
+      goes_back();
     }
   }
 
   void settle() {
     RefitResult averaged = averaged_fit();
     while (drops_unsettled(averaged)) {
-      if (out_.terms.empty() && out_.changed.empty()) {
-        out_.after = out_.before;
+      if (goes_back()) {
         return;
       }
       averaged = averaged_fit();
@@ -70,6 +69,15 @@ class BackwardCheck {
   }
 
  private:
+  /// With nothing left of what was found the model is what it was before; false where something is.
+  bool goes_back() {
+    if (!out_.terms.empty() || !out_.changed.empty()) {
+      return false;
+    }
+    out_.after = out_.before;
+    return true;
+  }
+
   /// False where none is.
   bool drops_superfluous() {
     for (std::size_t i = out_.terms.size(); i-- > 0;) {

@@ -34,6 +34,14 @@ constexpr double kWorse_ratio = 1.1;
 /// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
 constexpr double kLeastSeen_share = 0.5;
 
+/// Sure enough, and runs that the fit never saw are followed plainly better with what was found.
+bool foretells(const FoundEffect& effect, const Diagnosis& told) {
+  constexpr double kForetells_share = 0.7;
+  constexpr double kClear_nats = 20.0;
+  return effect.gain_nats > kClear_nats && !told.after_holdout.empty() &&
+         rms_K(told.after_holdout) < kForetells_share * std::min(rms_K(told.before_holdout), rms_K(told.refitted_holdout));
+}
+
 /// At its node as much heat is left as half of its own, or as the part of its own that nothing else could be, and nothing that could be
 /// added explains it: a signal that does, though the network cannot follow, must be half as sure as the effect. Constant heat may be no
 /// more than the mean of heat that comes and goes by the clock: there a quarter is enough. A sensor's error has no heat: beside
@@ -50,15 +58,11 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   }
   constexpr double kManyTimes_ratio = 4.0;
   const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
-  // Heat that follows no signal may stand in for little; not for what is this sure. Heat without a law may be the mean of any.
+  // Heat that follows no signal may stand in for little; not for what is this sure or foretells. Constant heat may be the mean of any.
   constexpr double kBeyondDoubt_nats = 100.0;
-  // Nor for what foretells runs that the fit never saw.
-  constexpr double kForetells_share = 0.7;
-  constexpr double kClear_nats = 20.0;
-  const bool foretells = effect.gain_nats > kClear_nats && !told.after_holdout.empty() &&
-                         rms_K(told.after_holdout) < kForetells_share * std::min(rms_K(told.before_holdout), rms_K(told.refitted_holdout));
   const bool is_alone = std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
-  const bool is_beyond_doubt = effect.id != "constant_heat" && (foretells || (effect.gain_nats > kBeyondDoubt_nats && is_alone));
+  const bool is_beyond_doubt =
+      effect.id != "constant_heat" && (foretells(effect, told) || (effect.gain_nats > kBeyondDoubt_nats && is_alone));
   if (!is_beyond_doubt &&
       std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
       is_hardly_better) {
