@@ -65,29 +65,18 @@ double heating_factor(const Robot& robot) {
   return robot.commutation == Commutation::sinusoidal ? 3.0 / std::numbers::pi : 1.0;
 }
 
-double input_power_W(const MotorValues& motor, double heating_current_A, double shaft_power_W, double speed_rad_per_s) {
-  return heating_current_A * heating_current_A * motor.terminal_resistance_ohm + shaft_power_W + drag_torque_Nm(motor) * speed_rad_per_s;
-}
-
 OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C) {
   const double speed_rad_per_s = std::abs(point.motor_speed_rad_per_s);
   // Driving, the back-EMF stands against the supply; braking, it helps.
   const double back_emf_V =
       motor.torque_constant_Nm_per_A * speed_rad_per_s * (point.current_A * point.motor_speed_rad_per_s >= 0.0 ? 1.0 : -1.0);
-  const double heating_A = std::abs(point.current_A) * heating_factor(robot);
-  const double shaft_power_W = point.motor_torque_Nm * point.motor_speed_rad_per_s;
-  return {.current_rms_A = heating_A,
-          .speed_mean_rad_per_s = speed_rad_per_s,
-          .speed_rms_rad_per_s = speed_rad_per_s,
-          .ambient_C = ambient_C,
-          .resistive_headroom_V = std::max(0.0, robot.available_V() - back_emf_V) * heating_factor(robot),
-          .series_resistance_ohm = robot.series_resistance_ohm(),
-          .shaft_power_W = shaft_power_W,
-          .input_power_W = input_power_W(motor, heating_A, shaft_power_W, speed_rad_per_s),
-          .bus_V = robot.battery_V,
-          .modulation_ratio = std::min(1.0, std::abs(driver_voltage_V(motor, robot, point, kSheetTemperature_C)) / robot.battery_V),
-          .vehicle_speed_m_per_s = speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m,
-          .velocity_rad_per_s = point.motor_speed_rad_per_s};
+  OperatingPoint<double> at = machine_point<double>(motor, robot, point.current_A, point.motor_speed_rad_per_s,
+                                                    point.motor_torque_Nm * point.motor_speed_rad_per_s);
+  at.ambient_C = ambient_C;
+  at.resistive_headroom_V = std::max(0.0, robot.available_V() - back_emf_V) * heating_factor(robot);
+  at.series_resistance_ohm = robot.series_resistance_ohm();
+  at.vehicle_speed_m_per_s = speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m;
+  return at;
 }
 
 }  // namespace heatsoak

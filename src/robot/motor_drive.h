@@ -2,9 +2,11 @@
 // and current.
 #pragma once
 
+#include "motor/datasheet_network.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
 #include "thermal/effect.h"
+#include "thermal/scalar.h"
 
 namespace heatsoak {
 
@@ -49,7 +51,29 @@ double driver_voltage_V(const MotorValues& motor, const Robot& robot, const Driv
 double heating_factor(const Robot& robot);
 
 /// Electrical power into the motor: copper loss at 25 °C, drag and what leaves at the shaft. `speed_rad_per_s` is |ω|.
-double input_power_W(const MotorValues& motor, double heating_current_A, double shaft_power_W, double speed_rad_per_s);
+template <class S>
+S input_power_W(const MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s) {
+  return heating_current_A * heating_current_A * motor.terminal_resistance_ohm + shaft_power_W + drag_torque_Nm(motor) * speed_rad_per_s;
+}
+
+/// What of an operating point follows from current and speed alone, for numbers and for formulas: no headroom, no vehicle.
+/// `current_A` and `velocity_rad_per_s` have the same sign where the motor drives.
+template <class S>
+OperatingPoint<S> machine_point(const MotorValues& motor, const Robot& robot, const S& current_A, const S& velocity_rad_per_s,
+                                const S& shaft_power_W) {
+  OperatingPoint<S> at;
+  at.current_rms_A = magnitude(current_A) * heating_factor(robot);
+  at.speed_mean_rad_per_s = magnitude(velocity_rad_per_s);
+  at.speed_rms_rad_per_s = at.speed_mean_rad_per_s;
+  at.velocity_rad_per_s = velocity_rad_per_s;
+  at.shaft_power_W = shaft_power_W;
+  at.input_power_W = input_power_W(motor, at.current_rms_A, shaft_power_W, at.speed_mean_rad_per_s);
+  at.bus_V = robot.battery_V;
+  const S terminal_V = current_A * motor.terminal_resistance_ohm + motor.torque_constant_Nm_per_A * velocity_rad_per_s;
+  const S modulation_ratio = magnitude(terminal_V + current_A * robot.series_resistance_ohm()) / robot.battery_V;
+  at.modulation_ratio = modulation_ratio - positive_part(modulation_ratio - 1.0);
+  return at;
+}
 
 /// What the thermal network sees of it. Voltage and input power are those of a winding at 25 °C; the vehicle is as fast as
 /// the wheel rolls, an estimate where wheels stand askew. Nothing is known of neighbours, and the motor is new.

@@ -12,6 +12,7 @@
 #include "base/parameter.h"
 #include "thermal/operating_point.h"
 #include "thermal/tangent.h"
+#include "thermal/traced.h"
 
 namespace heatsoak {
 
@@ -50,18 +51,42 @@ class HeatBook {
   const int* node_index_;
 };
 
+/// Heat as formulas, moved and made apart: only what is made grows with a reserve.
+struct TracedHeat {
+  Traced moved_W;
+  Traced made_W;
+};
+
+template <>
+class HeatBook<Traced> {
+ public:
+  HeatBook(TracedHeat* node_heat, const int* node_index) : node_heat_(node_heat), node_index_(node_index) {}
+
+  void flow(int from_role, int to_role, const Traced& heat_W) {
+    node_heat_[node_index_[from_role]].moved_W -= heat_W;
+    node_heat_[node_index_[to_role]].moved_W += heat_W;
+  }
+  void source(int into_role, const Traced& heat_W) { node_heat_[node_index_[into_role]].made_W += heat_W; }
+
+ private:
+  TracedHeat* node_heat_;
+  const int* node_index_;
+};
+
 /// One law for every scalar the network runs on; filled by laws<Law>() from one template.
 struct Laws {
   void (*one)(const Situation<double>&, HeatBook<double>&) = nullptr;
   void (*lanes)(const Situation<Lanes>&, HeatBook<Lanes>&) = nullptr;
   void (*tangent)(const Situation<Tangent>&, HeatBook<Tangent>&) = nullptr;
+  void (*traced)(const Situation<Traced>&, HeatBook<Traced>&) = nullptr;
 };
 
 template <class Law>
 constexpr Laws laws() {
   return {[](const Situation<double>& x, HeatBook<double>& heat) { Law::book(x, heat); },
           [](const Situation<Lanes>& x, HeatBook<Lanes>& heat) { Law::book(x, heat); },
-          [](const Situation<Tangent>& x, HeatBook<Tangent>& heat) { Law::book(x, heat); }};
+          [](const Situation<Tangent>& x, HeatBook<Tangent>& heat) { Law::book(x, heat); },
+          [](const Situation<Traced>& x, HeatBook<Traced>& heat) { Law::book(x, heat); }};
 }
 
 struct NodeRole {

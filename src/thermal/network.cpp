@@ -172,6 +172,23 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   }
 }
 
+void Network::trace(const OperatingPoint<Traced>& at, std::span<const Traced> temperature_C, std::span<TracedHeat> node_heat) const {
+  const std::vector<double> values_of_all = values();
+  const std::vector<Traced> parameters(values_of_all.begin(), values_of_all.end());
+  std::ranges::fill(node_heat, TracedHeat());
+  OperatingPoint<Traced> seen = at;
+  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
+    const EffectInPlace& effect = effects_[booked_at(turn)];
+    const Situation<Traced> situation(seen, parameters.data(), effect.parameter_index.data(), temperature_C.data(),
+                                      effect.node_index.data());
+    HeatBook<Traced> heat_book(node_heat.data(), effect.node_index.data());
+    effect.type->laws.traced(situation, heat_book);
+    if (turn == 0 && copper_effect_ >= 0) {
+      seen.copper_loss_W = node_heat[static_cast<std::size_t>(effect.node_index[0])].made_W;
+    }
+  }
+}
+
 template double Network::within_headroom<double>(const OperatingPoint<double>&, const double*, const double*) const;
 template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
 template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;

@@ -82,6 +82,10 @@ class Network {
   void linearise(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                  Linearised& out) const;
 
+  /// The laws as formulas, with the network's own parameters as constants: heat of every node at node_heat[n], node_count() entries.
+  /// `temperature_C` has as many, ambient last. The current is taken as given: the operating point's headroom must be infinite.
+  void trace(const OperatingPoint<Traced>& at, std::span<const Traced> temperature_C, std::span<TracedHeat> node_heat) const;
+
   /// Heat in W that effect e books into node n, at heat_W[e · node_count() + n]; positive into the node.
   void balance_W(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                  std::span<double> heat_W) const;

@@ -1,0 +1,162 @@
+#include "thermal/traced.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+namespace heatsoak {
+namespace {
+
+template <class Number>
+Number worked_out(Operation operation, Number a, Number b) {
+  constexpr Number kNone{0};
+  switch (operation) {
+    case Operation::add:
+      return a + b;
+    case Operation::subtract:
+      return a - b;
+    case Operation::multiply:
+      return a * b;
+    case Operation::divide:
+      return a / b;
+    case Operation::magnitude:
+      return std::abs(a);
+    case Operation::positive_part:
+      return a > kNone ? a : kNone;
+    case Operation::square_root:
+      return std::sqrt(a);
+    case Operation::power:
+      return a > kNone ? std::pow(a, b) : kNone;
+    case Operation::exponential:
+      return std::exp(a);
+    default:
+      throw std::logic_error("no arithmetic");
+  }
+}
+
+}  // namespace
+
+int Formula::place_of(const Step& step) {
+  const auto [found, is_new] = known_.try_emplace({step.operation, step.left, step.right, std::bit_cast<std::uint64_t>(step.value)},
+                                                  static_cast<int>(steps_.size()));
+  if (is_new) {
+    steps_.push_back(step);
+  }
+  return found->second;
+}
+
+int Formula::constant(double value) { return place_of({.operation = Operation::constant, .value = value}); }
+
+int Formula::input(std::string name) {
+  inputs_.push_back(std::move(name));
+  return place_of({.operation = Operation::input, .left = static_cast<int>(inputs_.size()) - 1});
+}
+
+int Formula::apply(Operation operation, int left, int right) { return place_of({operation, left, right}); }
+
+std::vector<char> Formula::needed_for(std::span<const int> results) const {
+  std::vector<char> needed(steps_.size(), 0);
+  for (const int result : results) {
+    needed[static_cast<std::size_t>(result)] = 1;
+  }
+  for (std::size_t place = steps_.size(); place-- > 0;) {
+    const Step& step = steps_[place];
+    if (needed[place] == 0 || step.operation == Operation::input || step.operation == Operation::constant) {
+      continue;
+    }
+    needed[static_cast<std::size_t>(step.left)] = 1;
+    if (step.right >= 0) {
+      needed[static_cast<std::size_t>(step.right)] = 1;
+    }
+  }
+  return needed;
+}
+
+template <class Number>
+FormulaRun<Number>::FormulaRun(const Formula& formula, std::span<const int> results) : input_count_(formula.inputs().size()) {
+  const std::vector<char> needed = formula.needed_for(results);
+  std::vector<int> place(formula.steps().size(), -1);
+  values_.resize(input_count_);
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const Formula::Step& step = formula.steps()[i];
+    if (step.operation == Operation::input) {
+      place[i] = step.left;
+    } else if (step.operation == Operation::constant && needed[i] != 0) {
+      place[i] = static_cast<int>(values_.size());
+      values_.push_back(static_cast<Number>(step.value));
+    }
+  }
+  first_step_ = values_.size();
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    if (needed[i] == 0 || place[i] >= 0) {
+      continue;
+    }
+    Formula::Step step = formula.steps()[i];
+    step.left = place[static_cast<std::size_t>(step.left)];
+    step.right = step.right < 0 ? step.left : place[static_cast<std::size_t>(step.right)];
+    place[i] = static_cast<int>(values_.size());
+    values_.push_back(Number{0});
+    steps_.push_back(step);
+  }
+  for (const int result : results) {
+    result_place_.push_back(place[static_cast<std::size_t>(result)]);
+  }
+}
+
+template <class Number>
+void FormulaRun<Number>::run(std::span<const Number> inputs, std::span<Number> results) {
+  std::copy_n(inputs.begin(), input_count_, values_.begin());
+  std::size_t to = first_step_;
+  for (const Formula::Step& step : steps_) {
+    values_[to++] =
+        worked_out<Number>(step.operation, values_[static_cast<std::size_t>(step.left)], values_[static_cast<std::size_t>(step.right)]);
+  }
+  for (std::size_t i = 0; i < result_place_.size(); ++i) {
+    results[i] = values_[static_cast<std::size_t>(result_place_[i])];
+  }
+}
+
+template class FormulaRun<float>;
+template class FormulaRun<double>;
+
+Traced Traced::joined(Operation operation, const Traced& a, const Traced& b) {
+  if (a.is_constant() && b.is_constant()) {
+    return {worked_out(operation, a.value_, b.value_)};
+  }
+  Formula& formula = a.is_constant() ? *b.formula_ : *a.formula_;
+  const int left = a.step_in(formula);
+  return {formula, formula.apply(operation, left, b.step_in(formula))};
+}
+
+Traced operator+(const Traced& a, const Traced& b) { return a.is(0.0) ? b : b.is(0.0) ? a : Traced::joined(Operation::add, a, b); }
+
+Traced operator-(const Traced& a, const Traced& b) { return b.is(0.0) ? a : Traced::joined(Operation::subtract, a, b); }
+
+Traced operator*(const Traced& a, const Traced& b) {
+  if (a.is(0.0) || b.is(0.0)) {
+    return {0.0};
+  }
+  return a.is(1.0) ? b : b.is(1.0) ? a : Traced::joined(Operation::multiply, a, b);
+}
+
+Traced operator/(const Traced& a, const Traced& b) {
+  if (b.is_constant() && !a.is_constant()) {
+    return a * Traced(1.0 / b.value_);  // the controller divides in 14 cycles and multiplies in one
+  }
+  return Traced::joined(Operation::divide, a, b);
+}
+
+Traced applied(Operation operation, const Traced& x) {
+  return x.is_constant() ? Traced(worked_out(operation, x.value_, 0.0)) : Traced(*x.formula_, x.formula_->apply(operation, x.step_));
+}
+
+Traced power(const Traced& base, const Traced& exponent) { return Traced::joined(Operation::power, base, exponent); }
+
+int chosen(const Traced& parameter) {
+  if (!parameter.is_constant()) {
+    throw std::logic_error("a choice is no variable");
+  }
+  return static_cast<int>(parameter.value());
+}
+
+}  // namespace heatsoak

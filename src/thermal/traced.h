@@ -1,0 +1,113 @@
+// A number that remembers how it was made: a law written for `double` runs on it unchanged and leaves its arithmetic behind, as
+// straight-line steps that can be run in single precision or printed as C.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+namespace heatsoak {
+
+enum class Operation { constant, input, add, subtract, multiply, divide, magnitude, positive_part, square_root, power, exponential };
+
+/// Steps in the order in which they can be run; each looks at earlier ones only. One that was made before is not made again.
+class Formula {
+ public:
+  struct Step {
+    Operation operation = Operation::constant;
+    int left = -1;       ///< place of a step, or of the input
+    int right = -1;      ///< place of a step; -1 where the operation takes one
+    double value = 0.0;  ///< of a constant
+  };
+
+  [[nodiscard]] std::span<const Step> steps() const { return steps_; }
+  [[nodiscard]] std::span<const std::string> inputs() const { return inputs_; }
+  /// For each step whether one of `results` (places of steps) hangs on it.
+  [[nodiscard]] std::vector<char> needed_for(std::span<const int> results) const;
+
+  int constant(double value);
+  int input(std::string name);
+  int apply(Operation operation, int left, int right = -1);
+
+ private:
+  int place_of(const Step& step);
+
+  std::vector<Step> steps_;
+  std::vector<std::string> inputs_;
+  std::map<std::tuple<Operation, int, int, std::uint64_t>, int> known_;  ///< a constant by its bits
+};
+
+/// Runs what of a formula some results need, in the precision of Number. Does not allocate once it is made.
+template <class Number>
+class FormulaRun {
+ public:
+  FormulaRun(const Formula& formula, std::span<const int> results);
+
+  /// `inputs` in the formula's order, `results` as asked for.
+  void run(std::span<const Number> inputs, std::span<Number> results);
+
+ private:
+  std::vector<Formula::Step> steps_;  ///< those that are neither constant nor input, with places in values_
+  std::vector<Number> values_;        ///< inputs, constants, then one per step
+  std::size_t input_count_ = 0;
+  std::size_t first_step_ = 0;
+  std::vector<int> result_place_;
+};
+extern template class FormulaRun<float>;
+extern template class FormulaRun<double>;
+
+/// A constant without a formula until it meets a number that has one; constants are worked out at once.
+class Traced {
+ public:
+  Traced(double value = 0.0) : value_(value) {}  // NOLINT(google-explicit-constructor): laws mix it with numbers
+  Traced(Formula& formula, int step) : formula_(&formula), step_(step) {}
+
+  [[nodiscard]] bool is_constant() const { return formula_ == nullptr; }
+  /// Of a constant.
+  [[nodiscard]] double value() const { return value_; }
+  /// Its place in the formula, where a constant gets one too.
+  [[nodiscard]] int step_in(Formula& formula) const { return is_constant() ? formula.constant(value_) : step_; }
+
+  Traced& operator+=(const Traced& other) { return *this = *this + other; }
+  Traced& operator-=(const Traced& other) { return *this = *this - other; }
+  Traced operator-() const { return 0.0 - *this; }
+  friend Traced operator+(const Traced& a, const Traced& b);
+  friend Traced operator-(const Traced& a, const Traced& b);
+  friend Traced operator*(const Traced& a, const Traced& b);
+  friend Traced operator/(const Traced& a, const Traced& b);
+  friend Traced applied(Operation operation, const Traced& x);
+  friend Traced power(const Traced& base, const Traced& exponent);
+
+ private:
+  static Traced joined(Operation operation, const Traced& a, const Traced& b);
+  [[nodiscard]] bool is(double value) const { return is_constant() && value_ == value; }
+
+  Formula* formula_ = nullptr;
+  int step_ = -1;
+  double value_ = 0.0;
+};
+
+Traced operator+(const Traced& a, const Traced& b);
+Traced operator-(const Traced& a, const Traced& b);
+Traced operator*(const Traced& a, const Traced& b);
+Traced operator/(const Traced& a, const Traced& b);
+/// One of the operations that take one number.
+Traced applied(Operation operation, const Traced& x);
+
+// What scalar.h asks of every scalar.
+inline Traced magnitude(const Traced& x) { return applied(Operation::magnitude, x); }
+inline Traced positive_part(const Traced& x) { return applied(Operation::positive_part, x); }
+inline Traced exponential(const Traced& x) { return applied(Operation::exponential, x); }
+inline Traced soft_positive_part(const Traced& x, double width) {
+  return 0.5 * (x + applied(Operation::square_root, x * x + width * width));
+}
+inline Traced soft_step(const Traced& x) { return 1.0 / (1.0 + exponential(-x)); }
+Traced power(const Traced& base, const Traced& exponent);
+/// A choice is a constant in every trace.
+int chosen(const Traced& parameter);
+
+}  // namespace heatsoak
