@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/effect_topic.h"
+#include "derate/exporter.h"
 #include "duty/duty.h"
 #include "duty/log_type.h"
 #include "motor/motor.h"
@@ -61,6 +62,9 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
     }
     for (const LogType& log : all_logs()) {
       result.push_back({std::string(log.name), fmt::format("recorded game: {}; duty --import LOG", log.summary)});
+    }
+    for (const ExporterType& exporter : all_exporters()) {
+      result.push_back({std::string(exporter.name), fmt::format("derating: {}; derate --to {}", exporter.summary, exporter.name)});
     }
     result.push_back({"svg", "picture: --plot FILE.svg"});
     result.push_back({"json", "answer: --json FILE"});

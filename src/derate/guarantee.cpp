@@ -1,0 +1,166 @@
+#include "derate/guarantee.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "motor/datasheet_network.h"
+#include "robot/motor_drive.h"
+#include "select/spread.h"
+#include "thermal/ensemble.h"
+
+namespace heatsoak {
+namespace {
+
+/// What the network sees as one interval, with its rms current: as long as the current changes by little, and no longer than a second.
+struct Stretch {
+  double duration_s = 0.0;
+  double current2_A2_s = 0.0;
+  double first_A = 0.0;
+
+  [[nodiscard]] bool is_over(double current_A) const {
+    constexpr double kLongest_s = 1.0;
+    constexpr double kLittle = 0.02;
+    return duration_s > 0.0 && (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A);
+  }
+  void take(double current_A, double period_s) {
+    first_A = duration_s > 0.0 ? first_A : current_A;
+    duration_s += period_s;
+    current2_A2_s += current_A * current_A * period_s;
+  }
+};
+constexpr double kSettled = 4.0;  ///< slowest time constants
+constexpr double kShortest_s = 600.0;
+constexpr double kLongest_s = 4.0 * 3600.0;
+
+/// What the firmware would be told while the motor is used that way, in air as hot as declared.
+std::array<float, firmware::kSignalCount> signals_at(const BarrierRules& rules, float current_A, double speed_rad_per_s) {
+  const auto ambient_C = static_cast<float>(rules.hottest_ambient_C);
+  return {current_A, static_cast<float>(speed_rad_per_s), ambient_C, 0.0F, ambient_C, 0.0F, 0.0F};
+}
+
+OperatingPoint<double> point(const MotorValues& motor, const Robot& robot, const BarrierRules& rules, double current_rms_A,
+                             double speed_rad_per_s) {
+  const double shaft_power_W = motor.torque_constant_Nm_per_A * current_rms_A * speed_rad_per_s - drag_torque_Nm(motor) * speed_rad_per_s;
+  OperatingPoint<double> at = machine_point(motor, robot, current_rms_A, speed_rad_per_s, shaft_power_W);
+  at.ambient_C = rules.hottest_ambient_C;
+  at.neighbour_C = rules.hottest_ambient_C;
+  at.neighbour_share = 1.0;
+  if (!std::isnan(robot.battery_full_V)) {
+    at.bus_V = robot.battery_full_V;
+  }
+  return at;
+}
+
+double duration_s(const MotorValues& motor) { return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s); }
+
+struct SamplePeak {
+  double winding_C = 0.0;
+  bool is_over = false;
+};
+
+/// Eight drawn motors through every use.
+std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses,
+                                     std::uint64_t seed, std::uint64_t first_stream) {
+  std::vector<Network> networks;
+  std::vector<Lanes> parameters;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
+    networks.push_back(datasheet_network(motor, draw_sample(motor, random)));
+    const std::vector<double> values = networks.back().values();
+    parameters.resize(values.size());
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      parameters[p][lane] = values[p];
+    }
+  }
+  std::array<SamplePeak, kLanes> result;
+  for (const UsePlayed& each : uses) {
+    const auto to_lanes = [](const OperatingPoint<double>& at) {
+      OperatingPoint<Lanes> lanes;
+      for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, lanes, at);
+      return lanes;
+    };
+    const double ambient_C = each.intervals.front().at.ambient_C;
+    const std::vector<Lanes> start_C(static_cast<std::size_t>(networks.front().state_count()), Lanes::Constant(ambient_C));
+    EnsembleRun run(networks.front(), parameters, start_C);
+    const double step_s = longest_step_s(networks.front(), parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
+    for (const Interval& interval : each.intervals) {
+      run.over(interval.duration_s, to_lanes(interval.at), step_s);
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      SamplePeak& peak = result[static_cast<std::size_t>(lane)];
+      const double winding_C = run.peak_C()[states::winding][lane];
+      peak.winding_C = std::max(peak.winding_C, winding_C);
+      peak.is_over =
+          peak.is_over || winding_C > limits.winding_C || (limits.stator_C && run.peak_C()[states::stator][lane] > *limits.stator_C);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::span<const Use> hardest_uses() {
+  static constexpr std::array<Use, 8> kUses{
+      {{0.0}, {0.3}, {0.6}, {0.9}, {0.0, 2.0, 4.0}, {0.6, 2.0, 4.0}, {0.0, 60.0, 120.0}, {0.6, 60.0, 120.0}}};
+  return kUses;
+}
+
+UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
+               const Use& use, double period_s) {
+  UsePlayed result;
+  result.use = use;
+  const double speed_rad_per_s = use.speed_share * rules.most_speed_rad_per_s;
+  ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));
+  const auto periods = static_cast<std::int64_t>(duration_s(motor.nominal) / period_s);
+  Stretch stretch;
+  const auto end_stretch = [&](double time_s) {
+    const double current_rms_A = std::sqrt(stretch.current2_A2_s / stretch.duration_s);
+    result.intervals.push_back({stretch.duration_s, point(motor.nominal, robot, rules, current_rms_A, speed_rad_per_s)});
+    result.time_s.push_back(time_s);
+    result.current_A.push_back(current_rms_A);
+    stretch = {};
+  };
+  for (std::int64_t i = 0; i < periods; ++i) {
+    const double time_s = static_cast<double>(i) * period_s;
+    const bool is_on = use.on_s <= 0.0 || std::fmod(time_s, use.on_s + use.off_s) < use.on_s;
+    const float allowed_A =
+        is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]) : 0.0F;
+    if (stretch.is_over(allowed_A)) {
+      end_stretch(time_s);
+    }
+    stretch.take(allowed_A, period_s);
+    run.step(signals_at(rules, allowed_A, speed_rad_per_s));
+    result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
+    result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[states::stator]);
+  }
+  end_stretch(static_cast<double>(periods) * period_s);
+  return result;
+}
+
+Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
+                std::uint64_t first_stream, const Progress& progress) {
+  const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
+  std::vector<SamplePeak> all(blocks * kLanes);
+  in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
+    const auto found = peaks(motor, limits, uses, options.seed, first_stream + block * kLanes);
+    std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
+  });
+  all.resize(static_cast<std::size_t>(options.samples));
+  std::vector<double> winding_C;
+  std::vector<char> is_over;
+  for (const SamplePeak& each : all) {
+    winding_C.push_back(each.winding_C);
+    is_over.push_back(each.is_over ? 1 : 0);
+  }
+  Guarantee result{.samples = options.samples,
+                   .over = static_cast<int>(std::ranges::count(is_over, char{1})),
+                   .over_share = sample_intervals(winding_C, is_over).probability};
+  std::ranges::sort(winding_C);
+  result.winding_p50_C = quantile(winding_C, 0.5);
+  result.winding_p95_C = quantile(winding_C, 0.95);
+  return result;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,60 @@
+// How far the table can be trusted: motors drawn from every declared tolerance, driven with all the current that it allows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "derate/current_table.h"
+#include "motor/motor.h"
+#include "robot/robot.h"
+#include "select/evaluate.h"
+#include "thermal/transient.h"
+
+namespace heatsoak {
+
+/// Always all that is allowed, at one share of the highest speed: held, or in pulses.
+struct Use {
+  double speed_share = 0.0;
+  double on_s = 0.0;  ///< of a pulse; 0: held
+  double off_s = 0.0;
+};
+std::span<const Use> hardest_uses();
+
+/// What the firmware lets through in one use, and what its observer saw.
+struct UsePlayed {
+  Use use;
+  std::vector<Interval> intervals;  ///< as the motor's network sees them
+  std::vector<double> time_s;       ///< ends of the intervals
+  std::vector<double> current_A;    ///< allowed and flowing, rms of the interval
+  double winding_peak_C = 0.0;      ///< of the observer
+  double stator_peak_C = 0.0;
+};
+
+/// From a motor as warm as the air until the slowest body has settled, with the arithmetic of the firmware.
+UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
+               const Use& use, double period_s);
+
+struct GuaranteeOptions {
+  double confidence = 0.95;  ///< share of motors that keep every limit in every use
+  int samples = 400;         ///< fresh ones that it is checked on; as many others find the reserve
+  std::uint64_t seed = 1;
+  int threads = 0;
+};
+
+/// Of fresh samples.
+struct Guarantee {
+  int samples = 0;
+  int over = 0;  ///< pass a limit in one of the uses
+  Interval95 over_share;
+  double winding_p50_C = 0.0;  ///< of the hottest moment of the hottest use
+  double winding_p95_C = 0.0;
+};
+
+/// Peaks of drawn motors under what was let through; streams of chance from `first_stream` on.
+Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
+                std::uint64_t first_stream, const Progress& progress = {});
+
+}  // namespace heatsoak

@@ -1,0 +1,113 @@
+#include "derate/observer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "motor/datasheet_network.h"
+#include "robot/motor_drive.h"
+
+namespace heatsoak {
+
+namespace firmware {
+
+std::span<const SignalSpec> signals() {
+  static constexpr std::array<SignalSpec, kSignalCount> kSignals{{
+      {"current_A", "equivalent DC current (torque per torque constant), mean over the period; the sign of the speed where it drives"},
+      {"speed_rad_per_s", "of the motor's shaft, signed"},
+      {"ambient_C", "air around the motor; the hottest declared where it is not measured"},
+      {"vehicle_speed_m_per_s", "of the robot through the air, not of its wheels; 0 where it is not known"},
+      {"neighbour_C", "temperature of the motor next to this one; the winding's limit where it is not known"},
+      {"age_h", "hours that the motor has run"},
+      {"acceleration_rad_per_s2", "of the motor's shaft, magnitude"},
+  }};
+  return kSignals;
+}
+
+}  // namespace firmware
+
+namespace {
+
+OperatingPoint<Traced> traced_point(Formula& formula, const MotorValues& motor, const Robot& robot) {
+  std::array<Traced, firmware::kSignalCount> of;
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    of[i] = Traced(formula, formula.input(std::string(firmware::signals()[i].name)));
+  }
+  const Traced& current_A = of[firmware::current];
+  const Traced& speed_rad_per_s = of[firmware::speed];
+  const Traced shaft_power_W =
+      motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - drag_torque_Nm(motor) * magnitude(speed_rad_per_s);
+  OperatingPoint<Traced> at = machine_point(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
+  at.ambient_C = of[firmware::ambient];
+  at.vehicle_speed_m_per_s = of[firmware::vehicle_speed];
+  at.neighbour_C = of[firmware::neighbour];
+  at.neighbour_share = 1.0;
+  at.age_h = of[firmware::age];
+  at.acceleration_rad_per_s2 = of[firmware::acceleration];
+  if (!std::isnan(robot.battery_full_V)) {
+    at.bus_V = robot.battery_full_V;
+  }
+  return at;
+}
+
+}  // namespace
+
+Observer::Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_reserve_ratio)
+    : heat_reserve_ratio_(heat_reserve_ratio) {
+  const OperatingPoint<Traced> at = traced_point(formula_, motor, robot);
+  std::vector<Traced> temperature_C;
+  for (int node = 0; node < network.state_count(); ++node) {
+    state_names_.emplace_back(network.node_name(node));
+    temperature_C.emplace_back(formula_, formula_.input(fmt::format("{}_C", network.node_name(node))));
+  }
+  temperature_C.push_back(at.ambient_C);
+  std::vector<TracedHeat> heat(temperature_C.size());
+  network.trace(at, temperature_C, heat);
+  const std::vector<double> values = network.values();
+  for (int node = 0; node < network.state_count(); ++node) {
+    const TracedHeat& here = heat[static_cast<std::size_t>(node)];
+    const Traced rate = (heat_reserve_ratio * here.made_W + here.moved_W) / values[static_cast<std::size_t>(network.capacity_index(node))];
+    rate_steps_.push_back(rate.step_in(formula_));
+  }
+  const std::vector<char> needed = formula_.needed_for(rate_steps_);
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    const Formula::Step& step = formula_.steps()[i];
+    if (step.operation == Operation::input && static_cast<std::size_t>(step.left) < is_used_.size()) {
+      is_used_[static_cast<std::size_t>(step.left)] = needed[i];
+    }
+  }
+  is_used_[firmware::current] = is_used_[firmware::speed] = is_used_[firmware::ambient] = 1;
+}
+
+template <class Number>
+ObserverRun<Number>::ObserverRun(const Observer& observer, Number period_s, Number start_C)
+    : rates_(observer.formula(), observer.rate_steps()),
+      period_s_(period_s),
+      state_C_(observer.state_count(), start_C),
+      carry_K_(observer.state_count(), Number{0}),
+      inputs_(firmware::kSignalCount + observer.state_count()),
+      rate_(observer.state_count()) {}
+
+template <class Number>
+void ObserverRun<Number>::step(std::span<const Number, firmware::kSignalCount> signals) {
+  std::ranges::copy(signals, inputs_.begin());
+  std::ranges::copy(state_C_, inputs_.begin() + firmware::kSignalCount);
+  rates_.run(inputs_, rate_);
+  for (std::size_t i = 0; i < state_C_.size(); ++i) {
+    const Number change_K = period_s_ * rate_[i] - carry_K_[i];
+    const Number next_C = state_C_[i] + change_K;
+    carry_K_[i] = (next_C - state_C_[i]) - change_K;
+    state_C_[i] = next_C;
+  }
+}
+
+template <class Number>
+Number ObserverRun<Number>::hottest_body_C() const {
+  return *std::max_element(state_C_.begin() + 1, state_C_.end());
+}
+
+template class ObserverRun<float>;
+template class ObserverRun<double>;
+
+}  // namespace heatsoak

@@ -1,0 +1,105 @@
+// `heatsoak derate` as a user meets it: the shipped robot, a model that a diagnosis extended, and wrong command lines.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program_run.h"
+#include "soak_example.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const Words kDerate{"derate", "--robot", "roboteam_twente_v2024"};
+
+RunOptions in(const TemporaryFolder& folder) {
+  RunOptions options;
+  options.folder = folder.path();
+  return options;
+}
+
+double lasting_A(const nlohmann::json& answer) {
+  // At half the table's speeds, a hot stator and the winding at its limit.
+  const nlohmann::json& table = answer["table"];
+  const std::size_t stators = table["stator_C"].size();
+  const std::size_t windings = table["winding_C"].size();
+  return table["current_A"][(3 * stators + 3) * windings + windings - 2].get<double>();
+}
+
+TEST(DerateCommand, TellsWhatItGuarantees) {
+  const TemporaryFolder folder;
+  const ProgramRun done = run(kDerate + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"}, in(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const nlohmann::json answer = done.json();
+  EXPECT_EQ(answer["schema"], "heatsoak.derating/1");
+  EXPECT_EQ(answer["winding_limit_C"], 155.0);
+  EXPECT_GE(answer["heat_reserve_ratio"].get<double>(), 1.0);
+  EXPECT_LE(answer["guarantee"]["over"].get<int>(), 0.05 * answer["guarantee"]["samples"].get<int>());
+  const nlohmann::json& table = answer["table"];
+  EXPECT_EQ(table["current_A"].size(), table["speed_rad_per_s"].size() * table["stator_C"].size() * table["winding_C"].size());
+  EXPECT_THAT(done.err, HasSubstr("motors drawn from the declared tolerances"));
+  EXPECT_THAT(content_of(folder.path() / "guard.h"), HasSubstr("maxon_ecx_flat_32l_48v_step"));
+}
+
+// The loop closed: logs -> effect that the model lacked -> firmware.
+TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
+  const TemporaryFolder folder;
+  const auto log = [](const char* name) { return (kSoak / name).string(); };
+  ASSERT_EQ(run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), log("bench.csv"), "--holdout",
+                 log("match_3.csv"), "--out", "found"},
+                in(folder))
+                .exit_code,
+            0);
+  const Words extended{"--motor", kMotor, "--model", fmt::format("found/{}.toml", kMotor)};
+  const ProgramRun before = run(kDerate + Words{"--motor", kMotor, "--out", "before.h", "--json", "-"}, in(folder));
+  const ProgramRun after = run(kDerate + extended + Words{"--out", "after.h", "--json", "-"}, in(folder));
+  ASSERT_EQ(before.exit_code, 0) << before.err;
+  ASSERT_EQ(after.exit_code, 0) << after.err;
+  EXPECT_THAT(before.json()["nodes"], ElementsAre("winding", "stator"));
+  EXPECT_THAT(after.json()["nodes"], ElementsAre("winding", "stator", "third_node"));
+  EXPECT_THAT(after.err, HasSubstr("effects of the file that act: third_node"));
+  EXPECT_THAT(content_of(folder.path() / "after.h"), HasSubstr("winding stator third_node"));
+  // What was measured needs less of a reserve than a data sheet, so more current is allowed.
+  EXPECT_LT(after.json()["heat_reserve_ratio"].get<double>(), before.json()["heat_reserve_ratio"].get<double>());
+  EXPECT_GT(lasting_A(after.json()), 1.02 * lasting_A(before.json()));
+}
+
+TEST(DerateCommand, WritesTheTableAlone) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run(kDerate + Words{"--motor", kMotor, "--to", "csv", "--out", "table.csv"}, in(folder)).exit_code, 0);
+  EXPECT_THAT(content_of(folder.path() / "table.csv"), testing::StartsWith("speed_rad_per_s,stator_C,winding_C,allowed_current_A\n"));
+}
+
+struct WrongLine {
+  Words words;
+  int exit_code;
+  std::string message;
+};
+
+TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
+  const std::vector<WrongLine> wrong{
+      {{"--out", "x.h"}, 2, "which motor?"},
+      {{"--motor", kMotor}, 2, "--out"},
+      {{"--motor", kMotor, "--to", "c_heder", "--out", "x.h"}, 2, "did you mean 'c_header'?"},
+      {{"--motor", kMotor, "--out", "x.h", "--period", "1s"}, 2, "too long"},
+      {{"--motor", kMotor, "--out", "x.h", "--samples", "0"}, 2, "--samples 60"},
+      {{"--motor", kMotor, "--out", "x.h", "--confidence", "0.999"}, 2, "--samples 3000"},
+      {{"--motor", kMotor, "--out", "x.h", "--ambient", "119degC"}, 1, "however little current"},
+      {{"--motor", kMotor, "--out", "x.h", "--confidence", "95"}, 2, "--confidence"},
+      {{"--motor", kMotor, "--out", "x.h", "--ambient", "120degC", "--condition", "fan=on"}, 2, "no effect of"},
+      {{"--motor", kMotor, "--out", "missing/x.h"}, 2, "missing"},
+  };
+  for (const WrongLine& each : wrong) {
+    const TemporaryFolder folder;
+    const ProgramRun done = run(kDerate + each.words, in(folder));
+    EXPECT_EQ(done.exit_code, each.exit_code) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(each.message));
+    EXPECT_THAT(folder.names(), IsEmpty());
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,201 @@
+// The header as a firmware's compiler takes it, and what it does when things go wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "derate/exporter.h"
+#include "guarded_motor.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::HasSubstr;
+
+/// Reads a line of inputs, `current speed ambient`, or a command: "start C", "zero", "break", and answers each input with the bits of
+/// allowed current, winding and stator, and the reason.
+constexpr const char* kProgram = R"(
+#include "guard.h"
+#include <stdio.h>
+#include <string.h>
+static unsigned bits(float x) { unsigned u; memcpy(&u, &x, 4); return u; }
+int main(void) {
+  guarded_state state;
+  char word[64];
+  memset(&state, 0, sizeof state);
+  while (scanf("%60s", word) == 1) {
+    double a, b, c;
+    if (strcmp(word, "start") == 0) {
+      if (scanf("%lf", &a) != 1) return 1;
+      guarded_start(&state, (float)a);
+    } else if (strcmp(word, "zero") == 0) {
+      memset(&state, 0, sizeof state);
+    } else if (strcmp(word, "break") == 0) {
+      state.state_C[1] = -1e30f;
+    } else {
+      guarded_input in;
+      guarded_output out;
+      if (scanf("%lf %lf %lf", &a, &b, &c) != 3) return 1;
+      in.current_A = (float)a;
+      in.speed_rad_per_s = (float)b;
+      in.ambient_C = (float)c;
+      out = guarded_step(&state, &in);
+      printf("%x %x %x %d\n", bits(out.allowed_current_A), bits(out.winding_C), bits(state.state_C[1]), (int)out.reason);
+    }
+  }
+  return 0;
+}
+)";
+
+enum Reason { full, derated, no_current, input_unknown, not_started };
+
+struct Answer {
+  float allowed_A = 0.0F;
+  float winding_C = 0.0F;
+  float stator_C = 0.0F;
+  int reason = -1;
+};
+
+Derating guarded_ecx_32() {
+  const GuardedMotor guarded(ecx_32(), rules_for(ecx_32()), 1.5);
+  return {.motor_id = "guarded",
+          .robot_id = "a */ robot",
+          .data_quality = "estimated",
+          .torque_constant_Nm_per_A = guarded.motor.nominal.torque_constant_Nm_per_A,
+          .observer = guarded.observer,
+          .rules = guarded.rules,
+          .table = guarded.table,
+          .options = {},
+          .effects = {{"copper_loss", "copper_loss", "P = I² R"}},
+          .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
+          .uses = {}};
+}
+
+std::string header_text() {
+  for (const ExporterType& each : all_exporters()) {
+    if (each.name == "c_header") {
+      return each.write(guarded_ecx_32());
+    }
+  }
+  return {};
+}
+
+class CHeader : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (std::system("cc --version > /dev/null 2>&1 && c++ --version > /dev/null 2>&1") != 0) {
+      GTEST_SKIP() << "no compiler here";
+    }
+    folder_ = std::filesystem::path(testing::TempDir()) / ("heatsoak_guard_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "guard.h") << header_text();
+    std::ofstream(folder_ / "main.c") << kProgram;
+    const std::string warnings =
+        " -O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wunused -Werror -ffp-contract=off ";
+    const std::string command = std::string(GetParam()) + warnings + "-o '" + (folder_ / "guard").string() + "' '" +
+                                (folder_ / "main.c").string() + "' -lm 2> '" + (folder_ / "errors").string() + "'";
+    std::stringstream errors;
+    const int code = std::system(command.c_str());
+    errors << std::ifstream(folder_ / "errors").rdbuf();
+    ASSERT_EQ(code, 0) << errors.str();
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::vector<Answer> ask(const std::string& lines) const {
+    std::ofstream(folder_ / "asked") << lines;
+    const auto quoted = [this](const char* file) { return fmt::format("'{}'", (folder_ / file).string()); };
+    const std::string command = fmt::format("{} < {} > {}", quoted("guard"), quoted("asked"), quoted("answered"));
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    std::ifstream answered(folder_ / "answered");
+    std::vector<Answer> answers;
+    std::uint32_t allowed = 0;
+    std::uint32_t winding = 0;
+    std::uint32_t stator = 0;
+    for (int reason = 0; answered >> std::hex >> allowed >> winding >> stator >> std::dec >> reason;) {
+      answers.push_back({std::bit_cast<float>(allowed), std::bit_cast<float>(winding), std::bit_cast<float>(stator), reason});
+    }
+    return answers;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Compilers, CHeader, testing::Values("cc -std=c99", "c++ -x c++ -std=c++11"),
+                         [](const testing::TestParamInfo<const char*>& each) { return each.index == 0 ? "c99" : "cpp11"; });
+
+// The bits of what the search was made with: what was checked is what runs.
+TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
+  const Derating derating = guarded_ecx_32();
+  ObserverRun<float> run(derating.observer, 0.01F, 31.0F);
+  std::ostringstream lines;
+  lines << "start 31\n";
+  std::vector<Answer> expected;
+  std::mt19937_64 engine(2);
+  std::uniform_real_distribution<float> uniform;
+  for (int i = 0; i < 20'000; ++i) {
+    const float current_A = 8.0F * (uniform(engine) - 0.3F);
+    const float speed_rad_per_s = 900.0F * (uniform(engine) - 0.5F);
+    const float ambient_C = 20.0F + 10.0F * uniform(engine);
+    lines << fmt::format("in {:.9g} {:.9g} {:.9g}\n", current_A, speed_rad_per_s, ambient_C);
+    run.step(std::array<float, firmware::kSignalCount>{current_A, speed_rad_per_s, ambient_C, 0.0F, 0.0F, 0.0F, 0.0F});
+    expected.push_back({derating.table.allowed_A(std::abs(speed_rad_per_s), run.hottest_body_C(), run.state_C()[0]), run.state_C()[0],
+                        run.state_C()[1], 0});
+  }
+  const std::vector<Answer> answers = ask(lines.str());
+  ASSERT_EQ(answers.size(), expected.size());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    ASSERT_EQ(answers[i].winding_C, expected[i].winding_C) << "in step " << i;
+    ASSERT_EQ(answers[i].stator_C, expected[i].stator_C) << "in step " << i;
+    // The table is rounded down to single precision, by one digit at most.
+    ASSERT_LE(answers[i].allowed_A, expected[i].allowed_A * (1.0F + 1e-6F)) << "in step " << i;
+    ASSERT_GE(answers[i].allowed_A, expected[i].allowed_A * (1.0F - 1e-6F)) << "in step " << i;
+  }
+}
+
+TEST_P(CHeader, counts_as_hot_what_was_never_started) {
+  for (const char* const state : {"zero\n", "start nan\n", "start 5000\n", "start 30\nbreak\n"}) {
+    const std::vector<Answer> answers = ask(std::string(state) + "in 0 0 25\n");
+    ASSERT_EQ(answers.size(), 1U);
+    EXPECT_GT(answers[0].winding_C, 154.0F) << state;
+    EXPECT_LT(answers[0].allowed_A, 3.0F) << state;
+  }
+  EXPECT_EQ(ask("zero\nin 0 0 25\n")[0].reason, not_started);
+  EXPECT_EQ(ask("start 30\nbreak\nin 0 0 25\n")[0].reason, not_started);
+  EXPECT_NE(ask("start 30\nin 0 0 25\n")[0].reason, not_started);
+}
+
+TEST_P(CHeader, takes_the_hottest_case_for_what_is_no_number) {
+  const std::vector<Answer> known = ask("start 80\nin 0 0 25\nin 0 0 25\n");
+  for (const char* const in :
+       {"in nan 0 25\n", "in inf 0 25\n", "in -inf 0 25\n", "in 0 nan 25\n", "in 0 0 nan\n", "in 0 0 -273\n", "in 0 0 1e30\n"}) {
+    const std::vector<Answer> answers = ask(fmt::format("start 80\n{}in 0 0 25\n", in));
+    ASSERT_EQ(answers.size(), 2U);
+    EXPECT_EQ(answers[0].reason, input_unknown) << in;
+    EXPECT_GE(answers[1].winding_C + answers[1].stator_C, known[1].winding_C + known[1].stator_C) << in;
+    EXPECT_LT(answers[1].winding_C, 200.0F) << in;
+    EXPECT_NE(answers[1].reason, input_unknown) << in;
+  }
+  EXPECT_GT(ask("start 80\nin nan 0 25\n")[0].winding_C, known[0].winding_C + 0.5F);
+}
+
+TEST_P(CHeader, gives_no_current_beyond_its_table) {
+  EXPECT_EQ(ask("start 30\nin 0 5000 25\n")[0].reason, no_current);
+  EXPECT_EQ(ask("start 30\nin 0 -5000 25\n")[0].allowed_A, 0.0F);
+  EXPECT_EQ(ask("start 170\nin 0 0 25\n")[0].allowed_A, 0.0F);
+  EXPECT_GT(ask("start 30\nin 0 -300 25\n")[0].allowed_A, 5.0F);
+}
+
+TEST(CHeaderText, ACommentEndsWhereItShould) {
+  EXPECT_THAT(header_text(), HasSubstr("a * / robot"));
+  EXPECT_THAT(header_text(), HasSubstr("of 400 drawn from the declared tolerances 10 passed a limit"));
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,174 @@
+// Whether drawn motors keep their limits: in driving that the search never saw, through the reference solver.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/diagnostic.h"
+#include "derate/exporter.h"
+#include "guarded_motor.h"
+#include "thermal/transient.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// What the firmware lets through of ten minutes of random driving, as a network sees it.
+std::vector<Interval> random_driving(const Derating& derating, unsigned seed) {
+  std::vector<Interval> intervals;
+  Driver driver(seed);
+  ObserverRun<float> run(derating.observer, 0.01F, 40.0F);
+  for (int i = 0; i < 6000; ++i) {
+    double current2_A2 = 0.0;
+    double speed_rad_per_s = 0.0;
+    constexpr int kPeriods = 10;
+    const Driver::Wish wish = driver.after(0.01 * kPeriods);
+    for (int k = 0; k < kPeriods; ++k) {
+      speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
+      const float current_A = static_cast<float>(wish.current_share) *
+                              derating.table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[0]);
+      run.step(std::array<float, firmware::kSignalCount>{current_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+      current2_A2 += static_cast<double>(current_A) * static_cast<double>(current_A) / kPeriods;
+    }
+    OperatingPoint<double> at;
+    at.current_rms_A = std::sqrt(current2_A2);
+    at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = speed_rad_per_s;
+    at.ambient_C = 40.0;
+    intervals.push_back({0.01 * kPeriods, at});
+  }
+  return intervals;
+}
+
+TEST(Derate, DrawnMotorsKeepTheirLimitInDrivingThatTheSearchNeverSaw) {
+  const Motor motor = ecx_32();
+  const Derating derating = derate(motor, twente(), {});
+  EXPECT_LE(derating.guarantee.over, 20) << "of 400";
+  int over = 0;
+  constexpr int kMotors = 60;
+  for (int i = 0; i < kMotors; ++i) {
+    Random random(4711, static_cast<std::uint64_t>(i));
+    const Network real = datasheet_network(motor, draw_sample(motor, random));
+    const TransientResult result = run_transient(real, real.values(), random_driving(derating, static_cast<unsigned>(i)), {});
+    over += result.peak_C[states::winding] > motor.nominal.winding_limit_C ? 1 : 0;
+  }
+  // Five in a hundred of 60 would be three; nine or more come by chance once in 400 times.
+  EXPECT_LE(over, 8);
+}
+
+TEST(Derate, NominalFiguresAloneWouldNotDo) {
+  const Motor motor = ecx_32();
+  const Derating derating = derate(motor, twente(), {});
+  EXPECT_GT(derating.observer.heat_reserve_ratio(), 1.2);
+  const GuardedMotor bare(motor, derating.rules, 1.0);
+  std::vector<UsePlayed> uses;
+  for (const Use& use : hardest_uses()) {
+    uses.push_back(play(bare.observer, bare.table, bare.rules, motor, twente(), use, 0.01));
+  }
+  EXPECT_GT(check(motor, derating.rules.limits, uses, {}, 0).over, 100) << "of 400";
+}
+
+TEST(Derate, MoreConfidenceAllowsLess) {
+  DerateOptions careful;
+  careful.guarantee.confidence = 0.99;
+  DerateOptions bold;
+  bold.guarantee.confidence = 0.7;
+  const double more_A = derate(ecx_32(), twente(), bold).table.allowed_A(0.0, 60.0, 140.0);
+  const double usual_A = derate(ecx_32(), twente(), {}).table.allowed_A(0.0, 60.0, 140.0);
+  const double less_A = derate(ecx_32(), twente(), careful).table.allowed_A(0.0, 60.0, 140.0);
+  EXPECT_GT(more_A, 1.05 * usual_A);
+  EXPECT_GT(usual_A, 1.05 * less_A);
+}
+
+TEST(Derate, SameSeedSameBytesOnAnyNumberOfThreads) {
+  DerateOptions one;
+  one.guarantee.threads = 1;
+  const std::string with_one = all_exporters().front().write(derate(ecx_32(), twente(), one));
+  EXPECT_EQ(all_exporters().front().write(derate(ecx_32(), twente(), {})), with_one);
+}
+
+/// The motor with effects as a diagnosis writes them into its file.
+Motor with_effects(const std::string& lines) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "heatsoak_guarded.toml";
+  std::ifstream sheet(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  std::ofstream(file) << sheet.rdbuf() << "\n" << lines;
+  return read_motor(file);
+}
+
+TEST(Derate, EffectThatWasFoundActsInObserverAndTable) {
+  const Motor plain = ecx_32();
+  const Motor soaked = with_effects(R"([effects.chassis]
+type = "third_node"
+heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" }
+conductance = { value = "0.3 W/K", origin = "estimated", derivation = "a test" }
+leak_ratio = { value = "0.2", origin = "estimated", derivation = "a test" }
+)");
+  const GuardedMotor bare(plain, rules_for(plain), 1.0);
+  const GuardedMotor with_chassis(soaked, rules_for(soaked), 1.0);
+  EXPECT_EQ(bare.observer.state_count(), 2U);
+  EXPECT_THAT(std::vector<std::string>(with_chassis.observer.state_names().begin(), with_chassis.observer.state_names().end()),
+              ElementsAre("winding", "stator", "chassis"));
+  const Motor lossy = with_effects(R"([effects.eddy]
+type = "iron_loss_eddy"
+loss = { value = "8 W", origin = "estimated", derivation = "a test" }
+exponent = { value = "2", origin = "estimated", derivation = "a test" }
+)");
+  const GuardedMotor with_loss(lossy, rules_for(lossy), 1.0);
+  EXPECT_NEAR(with_loss.table.allowed_A(0.0, 120.0, 153.0), bare.table.allowed_A(0.0, 120.0, 153.0), 1e-3);
+  const auto lasting_A = [](const GuardedMotor& guarded) {
+    ObserverRun<float> run(guarded.observer, 0.01F, 40.0F);
+    float allowed_A = 0.0F;
+    for (int i = 0; i < 200'000; ++i) {
+      allowed_A = guarded.table.allowed_A(300.0F, run.hottest_body_C(), run.state_C()[0]);
+      run.step(std::array<float, firmware::kSignalCount>{allowed_A, 300.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+    }
+    return allowed_A;
+  };
+  EXPECT_LT(lasting_A(with_loss), 0.97F * lasting_A(bare));
+}
+
+TEST(Derate, FirmwareIsAskedForWhatALawLooksAt) {
+  const Motor plain = ecx_32();
+  const Motor blown = with_effects(R"([effects.drive_wind]
+type = "vehicle_airflow"
+conductance = { value = "0.2 W/K", origin = "estimated", derivation = "a test" }
+exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
+)");
+  const Network network = datasheet_network(blown, nominal_sample(blown));
+  const Observer observer(network, blown.nominal, twente(), 1.0);
+  EXPECT_TRUE(observer.uses(firmware::vehicle_speed));
+  EXPECT_FALSE(observer.uses(firmware::age));
+  const Network bare = datasheet_network(plain, nominal_sample(plain));
+  EXPECT_FALSE(Observer(bare, plain.nominal, twente(), 1.0).uses(firmware::vehicle_speed));
+  // Air that nobody can promise cools nothing in the table.
+  const GuardedMotor with_wind(blown, rules_for(blown), 1.0);
+  const GuardedMotor without(plain, rules_for(plain), 1.0);
+  EXPECT_NEAR(with_wind.table.allowed_A(100.0, 100.0, 150.0), without.table.allowed_A(100.0, 100.0, 150.0), 1e-3);
+}
+
+TEST(Derate, SaysWhereNoCurrentIsLittleEnough) {
+  DerateOptions hot;
+  hot.hottest_ambient_C = 154.0;
+  Motor motor = with_effects(R"([effects.standby]
+type = "constant_heat"
+power = { value = "20 W", origin = "estimated", derivation = "a test" }
+)");
+  try {
+    derate(motor, twente(), hot);
+    FAIL() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::limit_exceeded) << failure.what();
+    EXPECT_THAT(failure.what(), HasSubstr("155"));
+  }
+}
+
+TEST(Derate, RefusesAPeriodThatIsTooLongForTheMotor) {
+  DerateOptions slow;
+  slow.period_s = 0.4;
+  EXPECT_THROW(derate(ecx_32(), twente(), slow), Failure);
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,67 @@
+// A motor with its observer and its table, made as `derate` makes them but with a reserve that the test names.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "derate/current_table.h"
+#include "motor/datasheet_network.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+
+inline BarrierRules rules_for(const Motor& motor, double approach_s = 0.5) {
+  BarrierRules rules;
+  rules.limits.winding_C = motor.nominal.winding_limit_C;
+  rules.approach_s = approach_s;
+  rules.stator_approach_s = std::max(approach_s, 3.0 * motor.nominal.thermal_time_constant_winding_s);
+  rules.hottest_ambient_C = 40.0;
+  rules.most_current_A = 24.0;
+  rules.most_speed_rad_per_s = 400.0;
+  return rules;
+}
+
+struct GuardedMotor {
+  GuardedMotor(const Motor& of, const BarrierRules& with, double heat_reserve_ratio)
+      : motor(of),
+        rules(with),
+        network(datasheet_network(motor, nominal_sample(motor))),
+        observer(network, motor.nominal, twente(), heat_reserve_ratio),
+        table(current_table(observer, rules)) {}
+
+  Motor motor;
+  BarrierRules rules;
+  Network network;
+  Observer observer;
+  CurrentTable table;
+};
+
+/// Someone who drives as hard as is allowed, and now and then less: a share of the allowed current, a speed, for a while.
+class Driver {
+ public:
+  explicit Driver(unsigned seed) : engine_(seed) {}
+
+  struct Wish {
+    double current_share = 1.0;
+    double speed_share = 0.0;
+  };
+  Wish after(double period_s) {
+    left_s_ -= period_s;
+    if (left_s_ <= 0.0) {
+      left_s_ = std::exponential_distribution<double>(0.2)(engine_);
+      const double draw = uniform();
+      wish_ = {draw < 0.6 ? 1.0 : draw < 0.8 ? 0.0 : uniform(), uniform() < 0.3 ? 0.0 : uniform()};
+      wish_.current_share *= uniform() < 0.3 ? -1.0 : 1.0;
+    }
+    return wish_;
+  }
+
+ private:
+  double uniform() { return std::uniform_real_distribution<double>()(engine_); }
+
+  std::mt19937_64 engine_;
+  double left_s_ = 0.0;
+  Wish wish_;
+};
+
+}  // namespace heatsoak
