@@ -15,7 +15,7 @@ using testing::IsEmpty;
 
 const Words kDerate{"derate", "--robot", "roboteam_twente_v2024"};
 
-RunOptions in(const TemporaryFolder& folder) {
+RunOptions here(const TemporaryFolder& folder) {
   RunOptions options;
   options.folder = folder.path();
   return options;
@@ -31,7 +31,7 @@ double lasting_A(const nlohmann::json& answer) {
 
 TEST(DerateCommand, TellsWhatItGuarantees) {
   const TemporaryFolder folder;
-  const ProgramRun done = run(kDerate + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"}, in(folder));
+  const ProgramRun done = run(kDerate + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"}, here(folder));
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const nlohmann::json answer = done.json();
   EXPECT_EQ(answer["schema"], "heatsoak.derating/1");
@@ -50,12 +50,12 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
   const auto log = [](const char* name) { return (kSoak / name).string(); };
   ASSERT_EQ(run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), log("bench.csv"), "--holdout",
                  log("match_3.csv"), "--out", "found"},
-                in(folder))
+                here(folder))
                 .exit_code,
             0);
   const Words extended{"--motor", kMotor, "--model", fmt::format("found/{}.toml", kMotor)};
-  const ProgramRun before = run(kDerate + Words{"--motor", kMotor, "--out", "before.h", "--json", "-"}, in(folder));
-  const ProgramRun after = run(kDerate + extended + Words{"--out", "after.h", "--json", "-"}, in(folder));
+  const ProgramRun before = run(kDerate + Words{"--motor", kMotor, "--out", "before.h", "--json", "-"}, here(folder));
+  const ProgramRun after = run(kDerate + extended + Words{"--out", "after.h", "--json", "-"}, here(folder));
   ASSERT_EQ(before.exit_code, 0) << before.err;
   ASSERT_EQ(after.exit_code, 0) << after.err;
   EXPECT_THAT(before.json()["nodes"], ElementsAre("winding", "stator"));
@@ -69,7 +69,7 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
 
 TEST(DerateCommand, WritesTheTableAlone) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run(kDerate + Words{"--motor", kMotor, "--to", "csv", "--out", "table.csv"}, in(folder)).exit_code, 0);
+  ASSERT_EQ(run(kDerate + Words{"--motor", kMotor, "--to", "csv", "--out", "table.csv"}, here(folder)).exit_code, 0);
   EXPECT_THAT(content_of(folder.path() / "table.csv"), testing::StartsWith("speed_rad_per_s,stator_C,winding_C,allowed_current_A\n"));
 }
 
@@ -94,7 +94,7 @@ TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
   };
   for (const WrongLine& each : wrong) {
     const TemporaryFolder folder;
-    const ProgramRun done = run(kDerate + each.words, in(folder));
+    const ProgramRun done = run(kDerate + each.words, here(folder));
     EXPECT_EQ(done.exit_code, each.exit_code) << done.err;
     EXPECT_THAT(done.err, HasSubstr(each.message));
     EXPECT_THAT(folder.names(), IsEmpty());
