@@ -8,8 +8,21 @@
 
 namespace heatsoak {
 
-std::string silent_effects(std::span<const Motor> motors) {
+std::string columns_at_their_hottest(std::span<const Motor> motors) {
   std::string text;
+  for (const Motor& motor : motors) {
+    for (const MotorEffect& effect : motor.effects) {
+      if (!effect.column.empty()) {
+        text += fmt::format("{}: nothing is known of {}, which {} goes with: its hottest value is reckoned with\n", motor.id, effect.column,
+                            effect.name);
+      }
+    }
+  }
+  return text;
+}
+
+std::string silent_effects(std::span<const Motor> motors) {
+  std::string text = columns_at_their_hottest(motors);
   for (const Motor& motor : motors) {
     for (const MotorEffect& effect : motor.effects) {
       std::vector<double> values;
@@ -17,10 +30,6 @@ std::string silent_effects(std::span<const Motor> motors) {
       const std::vector<Signal> needed = effect.type->needed_with(values);
       const auto needs = [&](Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
       const bool needs_neighbour = needs(Signal::neighbour_temperature);
-      if (!effect.column.empty()) {
-        text += fmt::format("{}: a duty says nothing of {}, which {} goes with: its hottest value is reckoned with\n", motor.id,
-                            effect.column, effect.name);
-      }
       if (needs_neighbour || needs(Signal::age)) {
         text += fmt::format("{}: {} is not reckoned with: a duty says nothing of {}\n", motor.id, effect.name,
                             needs_neighbour ? "the neighbour's temperature" : "the hours that the motor has run");

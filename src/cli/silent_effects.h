@@ -11,4 +11,7 @@ namespace heatsoak {
 /// A line for each effect whose signal no duty has, with what is done about it; empty where there is none.
 std::string silent_effects(std::span<const Motor> motors);
 
+/// Of those the ones that go with a column of logs, which no prediction knows.
+std::string columns_at_their_hottest(std::span<const Motor> motors);
+
 }  // namespace heatsoak

@@ -11,28 +11,7 @@ namespace {
 
 /// Where the winding is above its limit all the same (a restart, hotter air than declared) the current fades out instead of chattering.
 constexpr double kFadeOut_K = 1.0;
-
-using Signals = std::array<double, firmware::kSignalCount>;
-
-/// What signals may be that a table has no axis for.
-std::vector<Signals> hot_cases(const Observer& observer, const BarrierRules& rules) {
-  const auto variants = [&](firmware::Signal signal, std::vector<double> values) {
-    return observer.uses(signal) ? values : std::vector<double>{values.front()};
-  };
-  std::vector<Signals> cases;
-  for (const double neighbour_C : {rules.limits.winding_C}) {
-    for (const double age_h : variants(firmware::age, {0.0, 10.0, 100.0, 1e6})) {
-      for (const double acceleration_rad_per_s2 : variants(firmware::acceleration, {0.0, 1e2, 1e3, 1e4, 1e5, 1e6})) {
-        for (const double direction : {1.0, -1.0}) {
-          for (const double drives : {1.0, -1.0}) {
-            cases.push_back({direction * drives, direction, rules.hottest_ambient_C, 0.0, neighbour_C, age_h, acceleration_rad_per_s2});
-          }
-        }
-      }
-    }
-  }
-  return cases;
-}
+constexpr double kFirstStep_K = 1.0;  ///< of an axis, below its limit
 
 class Barrier {
  public:
@@ -63,10 +42,8 @@ class Barrier {
  private:
   bool holds(double current_A, double speed_rad_per_s, double stator_C, double winding_C) {
     const TemperatureLimits& limits = rules_.limits;
-    return std::ranges::all_of(cases_, [&](const Signals& each) {
-      Signals signals = each;
-      signals[firmware::current] *= current_A;
-      signals[firmware::speed] *= speed_rad_per_s;
+    return std::ranges::all_of(cases_, [&](const HotCase& each) {
+      const Signals signals = each.signals(rules_, current_A, speed_rad_per_s);
       find_rates(signals, stator_C, winding_C);
       const double winding_K_per_s = rate_[states::winding];
       if (!(winding_K_per_s <= (limits.winding_C - winding_C) / rules_.approach_s)) {
@@ -88,7 +65,7 @@ class Barrier {
   }
 
   const BarrierRules& rules_;
-  std::vector<Signals> cases_;
+  std::vector<HotCase> cases_;
   FormulaRun<double> rates_;
   std::vector<double> inputs_;
   std::vector<double> rate_;
@@ -102,15 +79,35 @@ std::vector<double> evenly(double first, double last, int count) {
   return points;
 }
 
-/// Close together where the current falls, near the limit.
-std::vector<double> winding_axis_C(const BarrierRules& rules) {
-  std::vector<double> points{rules.limits.winding_C, rules.limits.winding_C + kFadeOut_K};
-  for (double step_K = 1.0; rules.limits.winding_C - step_K > rules.hottest_ambient_C; step_K *= 2.0) {
-    points.push_back(rules.limits.winding_C - step_K);
+/// Close together where the current falls, near the limit; the last place is where it has faded out.
+std::vector<double> axis_C(double coldest_C, double limit_C) {
+  std::vector<double> points{limit_C, limit_C + kFadeOut_K};
+  for (double step_K = kFirstStep_K; limit_C - step_K > coldest_C; step_K *= 2.0) {
+    points.push_back(limit_C - step_K);
   }
-  points.push_back(std::min(rules.hottest_ambient_C, rules.limits.winding_C - 1.5));
+  points.push_back(std::min(coldest_C, limit_C - 2.0 * kFirstStep_K));
   std::ranges::sort(points);
   return points;
+}
+
+/// With a stator's limit the current may fall anywhere: where the winding is as hot as that stator bears.
+std::vector<double> winding_axis_C(const BarrierRules& rules) {
+  constexpr double kEven_K = 2.0;
+  if (!rules.limits.stator_C) {
+    return axis_C(rules.hottest_ambient_C, rules.limits.winding_C);
+  }
+  const double span_K = rules.limits.winding_C - rules.hottest_ambient_C;
+  std::vector<double> points =
+      evenly(rules.limits.winding_C - std::max(span_K, kEven_K), rules.limits.winding_C, 2 + static_cast<int>(span_K / kEven_K));
+  points.push_back(rules.limits.winding_C + kFadeOut_K);
+  return points;
+}
+
+/// Without a limit of its own the stator is never hotter than the winding's.
+std::vector<double> stator_axis_C(const BarrierRules& rules) {
+  constexpr int kStators = 8;
+  return rules.limits.stator_C ? axis_C(rules.hottest_ambient_C, std::min(*rules.limits.stator_C, rules.limits.winding_C))
+                               : evenly(std::min(rules.hottest_ambient_C, rules.limits.winding_C - 1.0), rules.limits.winding_C, kStators);
 }
 
 /// Two places of an axis and how far between them.
@@ -196,31 +193,35 @@ double barrier_current_A(const Observer& observer, const BarrierRules& rules, do
 
 CurrentTable current_table(const Observer& observer, const BarrierRules& rules) {
   constexpr int kSpeeds = 7;
-  constexpr int kStators = 8;
   CurrentTable table{.speed_rad_per_s = evenly(0.0, rules.most_speed_rad_per_s, kSpeeds),
-                     .stator_C = evenly(std::min(rules.hottest_ambient_C, rules.limits.winding_C - 1.0), rules.limits.winding_C, kStators),
+                     .stator_C = stator_axis_C(rules),
                      .winding_C = winding_axis_C(rules),
                      .current_A = {}};
   Barrier barrier(observer, rules);
   for (const double speed_rad_per_s : table.speed_rad_per_s) {
     for (const double stator_C : table.stator_C) {
       for (const double winding_C : table.winding_C) {
-        const bool is_above = winding_C > rules.limits.winding_C;
+        const bool is_above = winding_C > rules.limits.winding_C || (rules.limits.stator_C && stator_C > *rules.limits.stator_C);
         table.current_A.push_back(is_above ? 0.0 : barrier.current_A(speed_rad_per_s, stator_C, winding_C));
       }
     }
   }
+  const std::size_t stators_end = rules.limits.stator_C ? 2 : 1;  // what fades out is no cell of the barrier
   constexpr int kMostPasses = 20;
   bool changed = true;
   for (int pass = 0; changed && pass < kMostPasses; ++pass) {
     changed = false;
     for (std::size_t i = 0; i + 1 < table.speed_rad_per_s.size(); ++i) {
-      for (std::size_t j = 0; j + 1 < table.stator_C.size(); ++j) {
+      for (std::size_t j = 0; j + stators_end < table.stator_C.size(); ++j) {
         for (std::size_t k = 0; k + 2 < table.winding_C.size(); ++k) {
           changed = keep_below_barrier(table, barrier, i, j, k) || changed;
         }
       }
     }
+  }
+  for (double& current_A : table.current_A) {
+    const auto nearest = static_cast<float>(current_A);
+    current_A = nearest > current_A ? std::nextafter(nearest, 0.0F) : nearest;
   }
   return table;
 }

@@ -4,32 +4,14 @@
 #include <optional>
 #include <vector>
 
+#include "derate/hot_cases.h"
 #include "derate/observer.h"
 
 namespace heatsoak {
 
-struct TemperatureLimits {
-  double winding_C = 0.0;
-  std::optional<double> stator_C = {};
-};
-
-/// A control barrier (Ames et al., Control barrier function based quadratic programs for safety critical systems, IEEE Trans. Autom.
-/// Control 62 (2017)): at the allowed current the winding gets hotter by no more than (limit − T)/approach_s per second, so it comes near
-/// its limit and never passes it, in Euler steps up to approach_s too. The stator, which the current reaches through the winding only,
-/// has the same with stator_approach_s, looked at one approach_s ahead.
-struct BarrierRules {
-  TemperatureLimits limits;
-  double approach_s = 1.0;
-  double stator_approach_s = 10.0;
-  double hottest_ambient_C = 40.0;
-  double most_current_A = 0.0;        ///< that the driver can let through
-  double most_speed_rad_per_s = 0.0;  ///< of the motor
-};
-
-/// Ascending axes; between the points straight, below the first of an axis as at it, above the last no current. The winding's last two
-/// places are its limit and 1 K above it, where the current has faded out. Whatever law a signal
-/// belongs to that a table cannot hold (vehicle, neighbour, age, signs of current and speed), its hottest case counts, and every node but
-/// the winding is as hot as the stator's axis says.
+/// Ascending axes; between the points straight, below the first of an axis as at it, above the last no current. The last two places of
+/// winding and stator are their limits and 1 K above them, where the current has faded out. The least of all hot cases stands in it, and
+/// every node but the winding is as hot as the stator's axis says. Currents are whole numbers of single precision.
 struct CurrentTable {
   std::vector<double> speed_rad_per_s;
   std::vector<double> stator_C;

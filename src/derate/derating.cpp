@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
@@ -18,7 +19,9 @@ constexpr double kReserveTolerance = 0.01;
 /// Streams of chance of the search and of each check, apart from each other.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
-BarrierRules rules_of(const Motor& motor, const Robot& robot, const DerateOptions& options) {
+}  // namespace
+
+BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options) {
   const MotorValues& values = motor.nominal;
   const double loop_ohm = values.terminal_resistance_ohm + robot.series_resistance_ohm();
   BarrierRules rules;
@@ -38,6 +41,8 @@ BarrierRules rules_of(const Motor& motor, const Robot& robot, const DerateOption
   return rules;
 }
 
+namespace {
+
 void require_short_period(const Network& network, const BarrierRules& rules, const DerateOptions& options) {
   std::vector<Lanes> parameters;
   for (const double value : network.values()) {
@@ -46,7 +51,8 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   OperatingPoint<Lanes> at;
   at.ambient_C = Lanes::Constant(options.hottest_ambient_C);
   at.current_rms_A = Lanes::Constant(rules.most_current_A);
-  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(rules.most_speed_rad_per_s);
+  // A speed is believed up to twice the most.
+  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(2.0 * rules.most_speed_rad_per_s);
   const double longest_s = 0.2 * longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
   if (options.period_s > longest_s || options.period_s > 0.1 * options.approach_s) {
     throw Failure(ExitCode::bad_input,
@@ -65,41 +71,54 @@ void require_samples(const GuaranteeOptions& options) {
   }
 }
 
+/// One reserve with what follows from it.
+struct Attempt {
+  Observer observer;
+  BarrierRules rules;
+  CurrentTable table;
+  std::vector<UsePlayed> uses;
+};
+
 class Search {
  public:
-  Search(const Motor& motor, const Robot& robot, const DerateOptions& options, const BarrierRules& rules, const Progress& progress)
+  Search(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress)
       : motor_(motor),
         robot_(robot),
         options_(options),
-        rules_(rules),
+        reachable_(barrier_rules(motor, robot, options)),
         progress_(progress),
-        network_(datasheet_network(motor, nominal_sample(motor))) {}
-
-  [[nodiscard]] const Network& network() const { return network_; }
-  [[nodiscard]] Observer observer(double reserve) const { return {network_, motor_.nominal, robot_, reserve}; }
-
-  [[nodiscard]] std::vector<UsePlayed> play_all(const Observer& observer, const CurrentTable& table, double period_s) const {
-    std::vector<UsePlayed> uses(hardest_uses().size());
-    in_parallel(uses.size(), options_.guarantee.threads,
-                [&](std::size_t i) { uses[i] = play(observer, table, rules_, motor_, robot_, hardest_uses()[i], period_s); });
-    return uses;
+        network_(datasheet_network(motor, nominal_sample(motor))) {
+    require_short_period(network_, reachable_, options);
   }
 
-  /// Whether enough of the search's motors keep their limits with it.
-  [[nodiscard]] bool is_enough(double reserve) {
-    const Observer with_reserve = observer(reserve);
-    const CurrentTable table = current_table(with_reserve, rules_);
-    const std::vector<UsePlayed> uses = play_all(with_reserve, table, options_.period_s);
-    const Guarantee found = check(motor_, rules_.limits, uses, options_.guarantee, 0);
-    if (progress_) {
-      progress_(std::min(++rounds_, kRounds), kRounds + 2);
+  [[nodiscard]] const Network& network() const { return network_; }
+  [[nodiscard]] const BarrierRules& reachable() const { return reachable_; }
+
+  /// Nothing where limits are passed without current at most of the speeds.
+  [[nodiscard]] std::optional<Attempt> attempt(double reserve) const {
+    Observer observer(network_, motor_.nominal, robot_, reserve);
+    BarrierRules rules = reachable_;
+    rules.most_speed_rad_per_s = bearable_speed_rad_per_s(observer, reachable_);
+    constexpr double kLeastShare = 0.2;
+    if (rules.most_speed_rad_per_s < kLeastShare * reachable_.most_speed_rad_per_s) {
+      return std::nullopt;
     }
-    return keeps(found);
+    CurrentTable table = current_table(observer, rules);
+    const std::vector<Use> patterns = hardest_uses(observer, rules);
+    std::vector<UsePlayed> uses(patterns.size());
+    in_parallel(uses.size(), options_.guarantee.threads,
+                [&](std::size_t i) { uses[i] = play(observer, table, rules, motor_, robot_, patterns[i], options_.period_s); });
+    return Attempt{std::move(observer), rules, std::move(table), std::move(uses)};
+  }
+
+  /// Of motors from that stream of chance on.
+  [[nodiscard]] Guarantee checked(const Attempt& attempt, std::uint64_t first_stream) const {
+    return check(motor_, reachable_.limits, attempt.uses, options_.guarantee, first_stream);
   }
 
   [[nodiscard]] bool keeps(const Guarantee& found) const { return found.over <= (1.0 - options_.guarantee.confidence) * found.samples; }
 
-  /// The smallest that is enough.
+  /// The smallest reserve with which enough of the search's motors keep their limits.
   double reserve() {
     if (is_enough(1.0)) {
       return 1.0;
@@ -110,11 +129,7 @@ class Search {
       low = high;
       high *= 1.5;
       if (high > kLargestReserve) {
-        throw Failure(
-            ExitCode::limit_exceeded,
-            fmt::format("{}: fewer than {:.0f} % of the motors with the declared tolerances keep below {:.0f} °C in air of {:.0f} °C, "
-                        "however little current is allowed; use a lower --confidence or --ambient, or calibrate the motor",
-                        motor_.id, 100.0 * options_.guarantee.confidence, rules_.limits.winding_C, rules_.hottest_ambient_C));
+        throw too_hot();
       }
     }
     while (high > low * (1.0 + kReserveTolerance)) {
@@ -124,13 +139,33 @@ class Search {
     return high;
   }
 
+  [[nodiscard]] Failure too_hot() const {
+    return {
+        ExitCode::limit_exceeded,
+        fmt::format("{}: fewer than {:.0f} % of the motors with the declared tolerances keep below {:.0f} °C in air of {:.0f} °C, however "
+                    "little current is allowed; use a lower --confidence or --ambient, or calibrate the motor",
+                    motor_.id, 100.0 * options_.guarantee.confidence, reachable_.limits.winding_C, reachable_.hottest_ambient_C)};
+  }
+
  private:
+  /// A reserve with which the motor passes its limits by itself is none.
+  bool is_enough(double reserve) {
+    const std::optional<Attempt> tried = attempt(reserve);
+    if (progress_) {
+      progress_(std::min(++rounds_, kRounds), kRounds + 2);
+    }
+    if (!tried) {
+      throw too_hot();
+    }
+    return keeps(checked(*tried, 0));
+  }
+
   static constexpr std::size_t kRounds = 10;
 
   const Motor& motor_;
   const Robot& robot_;
   const DerateOptions& options_;
-  const BarrierRules& rules_;
+  BarrierRules reachable_;
   const Progress& progress_;
   Network network_;
   std::size_t rounds_ = 0;
@@ -140,17 +175,16 @@ class Search {
 
 Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress) {
   require_samples(options.guarantee);
-  const BarrierRules rules = rules_of(motor, robot, options);
-  Search search(motor, robot, options, rules, progress);
-  require_short_period(search.network(), rules, options);
+  Search search(motor, robot, options, progress);
   double reserve = search.reserve();
   constexpr double kRaise = 1.005;
   constexpr int kMostRaises = 20;
-  for (int attempt = 1; attempt <= kMostRaises; ++attempt, reserve *= kRaise) {
-    Observer observer = search.observer(reserve);
-    CurrentTable table = current_table(observer, rules);
-    std::vector<UsePlayed> uses = search.play_all(observer, table, options.period_s);
-    const Guarantee guarantee = check(motor, rules.limits, uses, options.guarantee, static_cast<std::uint64_t>(attempt) * kStreamsApart);
+  for (int number = 1; number <= kMostRaises; ++number, reserve *= kRaise) {
+    std::optional<Attempt> tried = search.attempt(reserve);
+    if (!tried) {
+      throw search.too_hot();
+    }
+    const Guarantee guarantee = search.checked(*tried, static_cast<std::uint64_t>(number) * kStreamsApart);
     if (!search.keeps(guarantee)) {
       continue;
     }
@@ -158,13 +192,14 @@ Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& opt
                     .robot_id = robot.id,
                     .data_quality = std::string(data_quality(motor)),
                     .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
-                    .observer = std::move(observer),
-                    .rules = rules,
-                    .table = std::move(table),
+                    .observer = std::move(tried->observer),
+                    .rules = tried->rules,
+                    .table = std::move(tried->table),
                     .options = options,
                     .effects = {},
                     .guarantee = guarantee,
-                    .uses = std::move(uses)};
+                    .uses = std::move(tried->uses),
+                    .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s};
     for (const EffectInPlace& effect : search.network().effects()) {
       result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation)});
     }

@@ -10,10 +10,14 @@ namespace heatsoak {
 
 struct DerateOptions {
   double hottest_ambient_C = 40.0;
-  double period_s = 0.01;   ///< between two calls of the firmware
-  double approach_s = 0.5;  ///< over which the winding may come near its limit: shorter lets peaks through for longer
+  double coldest_ambient_C = 0.0;  ///< a sensor that shows less is taken for broken
+  double period_s = 0.01;          ///< between two calls of the firmware
+  double approach_s = 0.5;         ///< over which the winding may come near its limit: shorter lets peaks through for longer
   GuaranteeOptions guarantee;
 };
+
+/// What follows from motor, robot and options alone: before any reserve.
+BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options);
 
 /// An effect that the observer reckons with.
 struct ActingEffect {
@@ -34,6 +38,7 @@ struct Derating {
   std::vector<ActingEffect> effects;
   Guarantee guarantee;
   std::vector<UsePlayed> uses;
+  double reachable_speed_rad_per_s = 0.0;  ///< more than the table's most speed where beyond it the motor passes a limit without current
 };
 
 /// Finds the smallest reserve of heat with which the share of motors that is asked for keeps every limit in every use, and checks it on

@@ -34,25 +34,6 @@ constexpr double kSettled = 4.0;  ///< slowest time constants
 constexpr double kShortest_s = 600.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
 
-/// What the firmware would be told while the motor is used that way, in air as hot as declared.
-std::array<float, firmware::kSignalCount> signals_at(const BarrierRules& rules, float current_A, double speed_rad_per_s) {
-  const auto ambient_C = static_cast<float>(rules.hottest_ambient_C);
-  return {current_A, static_cast<float>(speed_rad_per_s), ambient_C, 0.0F, ambient_C, 0.0F, 0.0F};
-}
-
-OperatingPoint<double> point(const MotorValues& motor, const Robot& robot, const BarrierRules& rules, double current_rms_A,
-                             double speed_rad_per_s) {
-  const double shaft_power_W = motor.torque_constant_Nm_per_A * current_rms_A * speed_rad_per_s - drag_torque_Nm(motor) * speed_rad_per_s;
-  OperatingPoint<double> at = machine_point(motor, robot, current_rms_A, speed_rad_per_s, shaft_power_W);
-  at.ambient_C = rules.hottest_ambient_C;
-  at.neighbour_C = rules.hottest_ambient_C;
-  at.neighbour_share = 1.0;
-  if (!std::isnan(robot.battery_full_V)) {
-    at.bus_V = robot.battery_full_V;
-  }
-  return at;
-}
-
 double duration_s(const MotorValues& motor) { return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s); }
 
 struct SamplePeak {
@@ -101,10 +82,23 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
 
 }  // namespace
 
-std::span<const Use> hardest_uses() {
-  static constexpr std::array<Use, 8> kUses{
+std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules) {
+  static constexpr std::array<Use, 8> kPlain{
       {{0.0}, {0.3}, {0.6}, {0.9}, {0.0, 2.0, 4.0}, {0.6, 2.0, 4.0}, {0.0, 60.0, 120.0}, {0.6, 60.0, 120.0}}};
-  return kUses;
+  static constexpr std::array<Use, 4> kOther{{{0.0}, {0.3}, {0.9}, {0.6, 2.0, 4.0}}};
+  const std::vector<HotCase> cases = hot_cases(observer, rules);
+  std::vector<Use> uses;
+  const auto add = [&uses](std::span<const Use> patterns, const HotCase& hot_case) {
+    for (Use use : patterns) {
+      use.hot_case = hot_case;
+      uses.push_back(use);
+    }
+  };
+  add(kPlain, cases.front());
+  for (std::size_t i = 1; i < cases.size(); ++i) {
+    add(kOther, cases[i]);
+  }
+  return uses;
 }
 
 UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
@@ -117,7 +111,8 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
   Stretch stretch;
   const auto end_stretch = [&](double time_s) {
     const double current_rms_A = std::sqrt(stretch.current2_A2_s / stretch.duration_s);
-    result.intervals.push_back({stretch.duration_s, point(motor.nominal, robot, rules, current_rms_A, speed_rad_per_s)});
+    const Signals signals = use.hot_case.signals(rules, current_rms_A, speed_rad_per_s);
+    result.intervals.push_back({stretch.duration_s, operating_point<double>(motor.nominal, robot, signals)});
     result.time_s.push_back(time_s);
     result.current_A.push_back(current_rms_A);
     stretch = {};
@@ -131,7 +126,10 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
       end_stretch(time_s);
     }
     stretch.take(allowed_A, period_s);
-    run.step(signals_at(rules, allowed_A, speed_rad_per_s));
+    std::array<float, firmware::kSignalCount> told{};
+    std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), told.begin(),
+                           [](double value) { return static_cast<float>(value); });
+    run.step(told);
     result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
     result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[states::stator]);
   }
@@ -160,6 +158,7 @@ Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<c
   std::ranges::sort(winding_C);
   result.winding_p50_C = quantile(winding_C, 0.5);
   result.winding_p95_C = quantile(winding_C, 0.95);
+  result.winding_most_C = winding_C.back();
   return result;
 }
 

@@ -15,13 +15,15 @@
 
 namespace heatsoak {
 
-/// Always all that is allowed, at one share of the highest speed: held, or in pulses.
+/// Always all that is allowed, at one share of the highest speed, in one of the hot cases: held, or in pulses.
 struct Use {
   double speed_share = 0.0;
   double on_s = 0.0;  ///< of a pulse; 0: held
   double off_s = 0.0;
+  HotCase hot_case = {};
 };
-std::span<const Use> hardest_uses();
+/// Held and pulsed at several speeds in the plain case, and some of it in every other one.
+std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules);
 
 /// What the firmware lets through in one use, and what its observer saw.
 struct UsePlayed {
@@ -51,6 +53,7 @@ struct Guarantee {
   Interval95 over_share;
   double winding_p50_C = 0.0;  ///< of the hottest moment of the hottest use
   double winding_p95_C = 0.0;
+  double winding_most_C = 0.0;
 };
 
 /// Peaks of drawn motors under what was let through; streams of chance from `first_stream` on.

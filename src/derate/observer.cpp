@@ -3,10 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-
-#include "motor/datasheet_network.h"
-#include "robot/motor_drive.h"
 
 namespace heatsoak {
 
@@ -14,7 +10,7 @@ namespace firmware {
 
 std::span<const SignalSpec> signals() {
   static constexpr std::array<SignalSpec, kSignalCount> kSignals{{
-      {"current_A", "equivalent DC current (torque per torque constant), mean over the period; the sign of the speed where it drives"},
+      {"current_A", "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed where it drives"},
       {"speed_rad_per_s", "of the motor's shaft, signed"},
       {"ambient_C", "air around the motor; the hottest declared where it is not measured"},
       {"vehicle_speed_m_per_s", "of the robot through the air, not of its wheels; 0 where it is not known"},
@@ -29,33 +25,20 @@ std::span<const SignalSpec> signals() {
 
 namespace {
 
-OperatingPoint<Traced> traced_point(Formula& formula, const MotorValues& motor, const Robot& robot) {
-  std::array<Traced, firmware::kSignalCount> of;
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    of[i] = Traced(formula, formula.input(std::string(firmware::signals()[i].name)));
+std::array<Traced, firmware::kSignalCount> traced_signals(Formula& formula) {
+  std::array<Traced, firmware::kSignalCount> traced;
+  for (std::size_t i = 0; i < traced.size(); ++i) {
+    traced[i] = Traced(formula, formula.input(std::string(firmware::signals()[i].name)));
   }
-  const Traced& current_A = of[firmware::current];
-  const Traced& speed_rad_per_s = of[firmware::speed];
-  const Traced shaft_power_W =
-      motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - drag_torque_Nm(motor) * magnitude(speed_rad_per_s);
-  OperatingPoint<Traced> at = machine_point(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
-  at.ambient_C = of[firmware::ambient];
-  at.vehicle_speed_m_per_s = of[firmware::vehicle_speed];
-  at.neighbour_C = of[firmware::neighbour];
-  at.neighbour_share = 1.0;
-  at.age_h = of[firmware::age];
-  at.acceleration_rad_per_s2 = of[firmware::acceleration];
-  if (!std::isnan(robot.battery_full_V)) {
-    at.bus_V = robot.battery_full_V;
-  }
-  return at;
+  return traced;
 }
 
 }  // namespace
 
 Observer::Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_reserve_ratio)
     : heat_reserve_ratio_(heat_reserve_ratio) {
-  const OperatingPoint<Traced> at = traced_point(formula_, motor, robot);
+  const std::array<Traced, firmware::kSignalCount> signals = traced_signals(formula_);
+  const OperatingPoint<Traced> at = operating_point<Traced>(motor, robot, signals);
   std::vector<Traced> temperature_C;
   for (int node = 0; node < network.state_count(); ++node) {
     state_names_.emplace_back(network.node_name(node));

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "motor/motor.h"
+#include "robot/motor_drive.h"
 #include "robot/robot.h"
 #include "thermal/network.h"
 #include "thermal/traced.h"
@@ -24,6 +26,25 @@ struct SignalSpec {
 std::span<const SignalSpec> signals();
 inline constexpr std::size_t kSignalCount = 7;
 }  // namespace firmware
+
+/// What the motor's network sees of the signals, for numbers and for formulas: the battery is full.
+template <class S>
+OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, firmware::kSignalCount> signals) {
+  const S& current_A = signals[firmware::current];
+  const S& speed_rad_per_s = signals[firmware::speed];
+  const S shaft_power_W = motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - drag_torque_Nm(motor) * magnitude(speed_rad_per_s);
+  OperatingPoint<S> at = machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
+  at.ambient_C = signals[firmware::ambient];
+  at.vehicle_speed_m_per_s = signals[firmware::vehicle_speed];
+  at.neighbour_C = signals[firmware::neighbour];
+  at.neighbour_share = 1.0;
+  at.age_h = signals[firmware::age];
+  at.acceleration_rad_per_s2 = signals[firmware::acceleration];
+  if (!std::isnan(robot.battery_full_V)) {
+    at.bus_V = robot.battery_full_V;
+  }
+  return at;
+}
 
 /// Heat that is made counts `heat_reserve_ratio` times (≥ 1), so that a motor worse than its nominal figures is covered; heat that
 /// moves does not. Winding and stator are the first states, as in every motor's network.

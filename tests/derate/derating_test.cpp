@@ -64,7 +64,7 @@ TEST(Derate, NominalFiguresAloneWouldNotDo) {
   EXPECT_GT(derating.observer.heat_reserve_ratio(), 1.2);
   const GuardedMotor bare(motor, derating.rules, 1.0);
   std::vector<UsePlayed> uses;
-  for (const Use& use : hardest_uses()) {
+  for (const Use& use : hardest_uses(bare.observer, bare.rules)) {
     uses.push_back(play(bare.observer, bare.table, bare.rules, motor, twente(), use, 0.01));
   }
   EXPECT_GT(check(motor, derating.rules.limits, uses, {}, 0).over, 100) << "of 400";
@@ -89,17 +89,9 @@ TEST(Derate, SameSeedSameBytesOnAnyNumberOfThreads) {
   EXPECT_EQ(all_exporters().front().write(derate(ecx_32(), twente(), {})), with_one);
 }
 
-/// The motor with effects as a diagnosis writes them into its file.
-Motor with_effects(const std::string& lines) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "heatsoak_guarded.toml";
-  std::ifstream sheet(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
-  std::ofstream(file) << sheet.rdbuf() << "\n" << lines;
-  return read_motor(file);
-}
-
 TEST(Derate, EffectThatWasFoundActsInObserverAndTable) {
   const Motor plain = ecx_32();
-  const Motor soaked = with_effects(R"([effects.chassis]
+  const Motor soaked = ecx_32_with(R"([effects.chassis]
 type = "third_node"
 heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" }
 conductance = { value = "0.3 W/K", origin = "estimated", derivation = "a test" }
@@ -110,7 +102,7 @@ leak_ratio = { value = "0.2", origin = "estimated", derivation = "a test" }
   EXPECT_EQ(bare.observer.state_count(), 2U);
   EXPECT_THAT(std::vector<std::string>(with_chassis.observer.state_names().begin(), with_chassis.observer.state_names().end()),
               ElementsAre("winding", "stator", "chassis"));
-  const Motor lossy = with_effects(R"([effects.eddy]
+  const Motor lossy = ecx_32_with(R"([effects.eddy]
 type = "iron_loss_eddy"
 loss = { value = "8 W", origin = "estimated", derivation = "a test" }
 exponent = { value = "2", origin = "estimated", derivation = "a test" }
@@ -131,7 +123,7 @@ exponent = { value = "2", origin = "estimated", derivation = "a test" }
 
 TEST(Derate, FirmwareIsAskedForWhatALawLooksAt) {
   const Motor plain = ecx_32();
-  const Motor blown = with_effects(R"([effects.drive_wind]
+  const Motor blown = ecx_32_with(R"([effects.drive_wind]
 type = "vehicle_airflow"
 conductance = { value = "0.2 W/K", origin = "estimated", derivation = "a test" }
 exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
@@ -148,10 +140,81 @@ exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
   EXPECT_NEAR(with_wind.table.allowed_A(100.0, 100.0, 150.0), without.table.allowed_A(100.0, 100.0, 150.0), 1e-3);
 }
 
+// What only braking, only a hot neighbour or only an aged contact shows is among the uses.
+TEST(Derate, UsesCoverEveryCaseThatALawTellsApart) {
+  const auto cases_of = [](const std::string& lines) {
+    const Motor motor = lines.empty() ? ecx_32() : ecx_32_with(lines);
+    const GuardedMotor guarded(motor, rules_for(motor), 1.0);
+    return hot_cases(guarded.observer, guarded.rules);
+  };
+  EXPECT_EQ(cases_of("").size(), 1U);
+  const std::vector<HotCase> brake = cases_of(R"([effects.brake]
+type = "braking_heat"
+share = { value = "0.3", origin = "estimated", derivation = "a test" }
+)");
+  EXPECT_TRUE(std::ranges::any_of(brake, [](const HotCase& each) { return each.current_sign * each.speed_sign < 0.0; }));
+  const std::vector<HotCase> neighbour = cases_of(R"([effects.next]
+type = "neighbour_coupling"
+conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
+)");
+  EXPECT_TRUE(std::ranges::any_of(neighbour, [](const HotCase& each) { return each.neighbour_C == 155.0; }));
+  const std::vector<HotCase> hump = cases_of(R"([effects.hump]
+type = "tabulated"
+driver = "acceleration"
+form = "heat"
+first_knot = { value = "0 rad/s2", origin = "estimated", derivation = "a test" }
+last_knot = { value = "600 rad/s2", origin = "estimated", derivation = "a test" }
+value_1 = { value = "0 W", origin = "estimated", derivation = "a test" }
+value_2 = { value = "0 W", origin = "estimated", derivation = "a test" }
+value_3 = { value = "0 W", origin = "estimated", derivation = "a test" }
+value_4 = { value = "5 W", origin = "estimated", derivation = "a test" }
+value_5 = { value = "0 W", origin = "estimated", derivation = "a test" }
+value_6 = { value = "0 W", origin = "estimated", derivation = "a test" }
+value_7 = { value = "0 W", origin = "estimated", derivation = "a test" }
+)");
+  EXPECT_TRUE(std::ranges::any_of(hump, [](const HotCase& each) { return std::abs(each.acceleration_rad_per_s2 - 300.0) < 20.0; }));
+}
+
+// A reserve for driving alone would let a braking motor pass its limit.
+TEST(Derate, BrakingThatHeatsNeedsMoreOfAReserve) {
+  const std::string range = R"(range = ["0.1", "0.8"])";
+  const Motor braking = ecx_32_with(fmt::format(R"([effects.brake]
+type = "braking_heat"
+heated = "winding"
+share = {{ value = "0.3", origin = "estimated", derivation = "a test", {} }}
+)",
+                                                range));
+  const Derating derating = derate(braking, twente(), {});
+  const auto braked = std::ranges::find_if(
+      derating.uses, [](const UsePlayed& each) { return each.use.hot_case.current_sign < 0.0 && each.use.speed_share > 0.5; });
+  ASSERT_NE(braked, derating.uses.end());
+  int over = 0;
+  constexpr int kMotors = 60;
+  for (int i = 0; i < kMotors; ++i) {
+    Random random(99, static_cast<std::uint64_t>(i));
+    const Network real = datasheet_network(braking, draw_sample(braking, random));
+    over += run_transient(real, real.values(), braked->intervals, {}).peak_C[states::winding] > 155.0 ? 1 : 0;
+  }
+  EXPECT_LE(over, 8);
+}
+
+TEST(Derate, SaysBeyondWhichSpeedNoTableHelps) {
+  const Motor windy = ecx_32_with(R"([effects.fan]
+type = "windage"
+loss = { value = "70 W", origin = "estimated", derivation = "a test" }
+)");
+  const Derating derating = derate(windy, twente(), {});
+  EXPECT_LT(derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s);
+  EXPECT_GT(derating.rules.most_speed_rad_per_s, 0.5 * derating.reachable_speed_rad_per_s);
+  for (const UsePlayed& each : derating.uses) {
+    EXPECT_LE(each.winding_peak_C, 155.01);
+  }
+}
+
 TEST(Derate, SaysWhereNoCurrentIsLittleEnough) {
   DerateOptions hot;
   hot.hottest_ambient_C = 154.0;
-  Motor motor = with_effects(R"([effects.standby]
+  Motor motor = ecx_32_with(R"([effects.standby]
 type = "constant_heat"
 power = { value = "20 W", origin = "estimated", derivation = "a test" }
 )");

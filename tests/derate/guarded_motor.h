@@ -1,24 +1,37 @@
 // A motor with its observer and its table, made as `derate` makes them but with a reserve that the test names.
 #pragma once
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <string>
 #include <vector>
 
-#include "derate/current_table.h"
+#include "derate/derating.h"
 #include "motor/datasheet_network.h"
 #include "support/shipped.h"
 
 namespace heatsoak {
 
+/// The paper's motor with effects behind its data sheet, as a diagnosis writes them.
+inline Motor ecx_32_with(const std::string& lines) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_guarded_{}.toml", static_cast<int>(getpid()));
+  std::ifstream sheet(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  std::ofstream(file) << sheet.rdbuf() << "\n" << lines;
+  Motor motor = read_motor(file);
+  std::filesystem::remove(file);
+  return motor;
+}
+
 inline BarrierRules rules_for(const Motor& motor, double approach_s = 0.5) {
-  BarrierRules rules;
-  rules.limits.winding_C = motor.nominal.winding_limit_C;
-  rules.approach_s = approach_s;
-  rules.stator_approach_s = std::max(approach_s, 3.0 * motor.nominal.thermal_time_constant_winding_s);
-  rules.hottest_ambient_C = 40.0;
-  rules.most_current_A = 24.0;
-  rules.most_speed_rad_per_s = 400.0;
-  return rules;
+  DerateOptions options;
+  options.approach_s = approach_s;
+  return barrier_rules(motor, twente(), options);
 }
 
 struct GuardedMotor {

@@ -45,7 +45,8 @@ const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "pole_pairs",
                                                       "relative",
                                                       "confidence",
-                                                      "weight"};
+                                                      "weight",
+                                                      "sign"};
 
 /// The unit is not known where the name is written, but stands beside it.
 const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit
@@ -57,7 +58,7 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      // of a chart: its axis label has the unit; of an ODE: the system has it
                                                      "x", "y", "dydt", "event_values", "written",
                                                      // mixed units, place by place
-                                                     "parameters", "effect_parameters", "integrals", "variants",
+                                                     "parameters", "effect_parameters", "integrals", "variants", "signals",
                                                      // of a power: its exponent takes the unit away
                                                      "base", "b", "e",
                                                      // of a function for any argument: in the argument's unit

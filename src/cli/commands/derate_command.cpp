@@ -54,9 +54,10 @@ Motor motor_of(const Options& options, NamedFiles& named) {
   const std::optional<std::filesystem::path> file = options.motor.empty() ? std::nullopt : named.motor_file(options.motor);
   const std::optional<Motor> motor = named.motor(options.model.empty() ? options.motor : options.model);
   named.throw_if_any();
-  if (file && !options.model.empty() && motor->fit && motor->fit->motor != file->stem()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--model {} was fitted from {}, not from {}", options.model, motor->fit->motor, file->stem().string()));
+  if (file && !options.model.empty() && motor->id != file->stem() && (!motor->fit || motor->fit->motor != file->stem())) {
+    throw Failure(ExitCode::bad_input, fmt::format("--model {} is no model of {}: it {}", options.model, file->stem().string(),
+                                                   motor->fit ? fmt::format("was fitted from {}", motor->fit->motor)
+                                                              : std::string("has another name and no [fit]")));
   }
   return under(*motor, options.conditions);
 }
@@ -77,7 +78,7 @@ std::string table_text(const Derating& derating) {
   text += "   lasting\n";
   for (const UsePlayed& played : derating.uses) {
     if (played.use.on_s > 0.0) {
-      continue;
+      break;  // what is held in the plain case comes first
     }
     text += fmt::format("  {:11.0f}", played.use.speed_share * derating.rules.most_speed_rad_per_s);
     for (const double time_s : kMoments_s) {
@@ -104,12 +105,25 @@ std::string report(const Derating& derating) {
   }
   text += own.empty() ? "" : fmt::format("effects of the file that act: {}\n", own);
   text += fmt::format(
-      "heat counts {:.2f} times: of {} motors drawn from the declared tolerances {} passed a limit in the hardest use ({:.1f} %; other "
-      "draws: "
-      "{:.1f} to {:.1f} %), their windings reached {:.0f} °C (median), {:.0f} °C (95th percentile)\n\n",
-      derating.observer.heat_reserve_ratio(), checked.samples, checked.over, 100.0 * checked.over / checked.samples,
-      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_p50_C, checked.winding_p95_C);
-  return text + table_text(derating);
+      "heat counts {:.2f} times: of {} motors drawn from the declared tolerances {} passed a limit in one of the {} hardest uses ({:.1f} "
+      "%; "
+      "other draws: {:.1f} to {:.1f} %)\ntheir windings reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the "
+      "hottest)\n\n",
+      derating.observer.heat_reserve_ratio(), checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / checked.samples,
+      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_p50_C, checked.winding_p95_C,
+      checked.winding_most_C);
+  text += table_text(derating);
+  if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
+    text += fmt::format("beyond {:.0f} of {:.0f} rad/s the motor may pass a limit without any current: none is allowed there\n",
+                        derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s);
+  }
+  std::string asked;
+  for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
+      asked += fmt::format("{}{}", asked.empty() ? "" : ", ", firmware::signals()[i].name);
+    }
+  }
+  return text + (asked.empty() ? "" : fmt::format("besides current, speed and air the firmware is asked for {}\n", asked));
 }
 
 Json json(const Derating& derating, const Options& options) {
@@ -146,19 +160,29 @@ Json json(const Derating& derating, const Options& options) {
         {"samples", checked.samples},
         {"over", checked.over},
         {"over_share_ci95", {rounded(checked.over_share.low, 4), rounded(checked.over_share.high, 4)}},
-        {"winding_peak_C", {{"p50", rounded(checked.winding_p50_C, 2)}, {"p95", rounded(checked.winding_p95_C, 2)}}}}},
+        {"winding_peak_C",
+         {{"p50", rounded(checked.winding_p50_C, 2)},
+          {"p95", rounded(checked.winding_p95_C, 2)},
+          {"most", rounded(checked.winding_most_C, 2)}}}}},
       {"table",
        {{"speed_rad_per_s", table.speed_rad_per_s}, {"stator_C", table.stator_C}, {"winding_C", table.winding_C}, {"current_A", current}}}};
 }
 
 ExitCode run(const Options& options, Session& session) {
   const ExporterType& exporter = exporter_named(options.to);
+  if (options.out == "-") {
+    throw Failure(ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
+  }
+  if (options.derate.coldest_ambient_C >= options.derate.hottest_ambient_C) {
+    throw Failure(ExitCode::bad_input, fmt::format("--coldest {:.4g} °C is not below --ambient {:.4g} °C", options.derate.coldest_ambient_C,
+                                                   options.derate.hottest_ambient_C));
+  }
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
   const Motor motor = motor_of(options, named);
   const Derating derating = derate(motor, *robot, options.derate, progress_bar("looking for the reserve"));
   session.write(options.out, exporter.write(derating));
-  session.say(report(derating) + silent_effects({&motor, 1}) + fmt::format("\n{}: {}\n", exporter.name, options.out));
+  session.say(report(derating) + columns_at_their_hottest({&motor, 1}) + fmt::format("\n{}: {}\n", exporter.name, options.out));
   session.answer(json(derating, options));
   return ExitCode::done;
 }
@@ -182,8 +206,11 @@ Command derate_command() {
         app.add_option("--out", options->out, "file to write")->required()->type_name("FILE");
         add_quantity(app, "--ambient", options->derate.hottest_ambient_C,
                      {"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"});
+        add_quantity(app, "--coldest", options->derate.coldest_ambient_C,
+                     {"coldest", "degC", Range::between(-60.0, 120.0),
+                      "coldest air; a sensor that shows less is taken for broken; 0degC unless given"});
         add_quantity(app, "--period", options->derate.period_s,
-                     {"period", "s", Range::between(1e-4, 1.0), "between two calls of the firmware; 10 ms unless given"});
+                     {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
         add_quantity(app, "--approach", options->derate.approach_s,
                      {"approach", "s", Range::between(0.01, 100.0),
                       "in which the winding may come near its limit: shorter lets peaks through for longer; 0.5 s unless given"});

@@ -1,0 +1,178 @@
+#include "derate/hot_cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+/// The rates at a place, nodes but the winding all equally hot.
+class Rates {
+ public:
+  explicit Rates(const Observer& observer)
+      : run_(observer.formula(), observer.rate_steps()),
+        inputs_(firmware::kSignalCount + observer.state_count()),
+        rate_(observer.state_count()) {}
+
+  std::span<const double> at(const Signals& signals, double winding_C, double body_C) {
+    std::ranges::copy(signals, inputs_.begin());
+    std::fill(inputs_.begin() + firmware::kSignalCount, inputs_.end(), body_C);
+    inputs_[firmware::kSignalCount + states::winding] = winding_C;
+    run_.run(inputs_, rate_);
+    return rate_;
+  }
+
+ private:
+  FormulaRun<double> run_;
+  std::vector<double> inputs_;
+  std::vector<double> rate_;
+};
+
+HotCase plain_case(const BarrierRules& rules) {
+  HotCase plain;
+  plain.neighbour_C = rules.hottest_ambient_C;
+  return plain;
+}
+
+/// Directions that no law can tell apart count once.
+std::vector<HotCase> directions(const Observer& observer, const BarrierRules& rules) {
+  Rates rates(observer);
+  const auto fingerprint = [&](const HotCase& each) {
+    std::vector<double> print;
+    for (const double share : {0.02, 0.1, 0.37, 0.9}) {
+      const Signals signals = each.signals(rules, (1.1 - share) * rules.most_current_A, share * rules.most_speed_rad_per_s);
+      const std::span<const double> found =
+          rates.at(signals, rules.limits.winding_C, 0.5 * (rules.limits.winding_C + rules.hottest_ambient_C));
+      print.insert(print.end(), found.begin(), found.end());
+    }
+    return print;
+  };
+  std::vector<HotCase> distinct;
+  std::vector<std::vector<double>> prints;
+  for (const double speed_sign : {1.0, -1.0}) {
+    for (const double current_sign : {1.0, -1.0}) {
+      HotCase each = plain_case(rules);
+      each.speed_sign = speed_sign;
+      each.current_sign = speed_sign * current_sign;
+      const std::vector<double> print = fingerprint(each);
+      if (std::ranges::find(prints, print) == prints.end()) {
+        prints.push_back(print);
+        distinct.push_back(each);
+      }
+    }
+  }
+  return distinct;
+}
+
+std::vector<double> by_ratio(double first, double last, int count) {
+  std::vector<double> values{0.0};
+  for (int i = 0; i < count; ++i) {
+    values.push_back(first * std::pow(last / first, static_cast<double>(i) / (count - 1)));
+  }
+  return values;
+}
+
+struct Scan {
+  firmware::Signal signal;
+  double HotCase::*value;
+  std::vector<double> values;
+};
+
+std::vector<Scan> scans(const BarrierRules& rules) {
+  constexpr double kFastest_m_per_s = 10.0;
+  std::vector<double> speeds_m_per_s;
+  for (int i = 0; i <= 100; ++i) {
+    speeds_m_per_s.push_back(kFastest_m_per_s * i / 100.0);
+  }
+  return {{firmware::vehicle_speed, &HotCase::vehicle_speed_m_per_s, speeds_m_per_s},
+          {firmware::neighbour, &HotCase::neighbour_C, {rules.hottest_ambient_C, rules.limits.winding_C}},
+          {firmware::age, &HotCase::age_h, by_ratio(1e-2, 1e5, 141)},
+          {firmware::acceleration, &HotCase::acceleration_rad_per_s2, by_ratio(1.0, 1e6, 241)}};
+}
+
+/// The plain case, the one that heats the winding most, the one that heats the bodies most.
+std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& rules) {
+  HotCase for_winding = plain_case(rules);
+  HotCase for_bodies = for_winding;
+  Rates rates(observer);
+  bool is_any = false;
+  for (const Scan& scan : scans(rules)) {
+    if (!observer.uses(scan.signal)) {
+      continue;
+    }
+    is_any = true;
+    double most_winding = -std::numeric_limits<double>::infinity();
+    double most_bodies = most_winding;
+    for (const double value : scan.values) {
+      HotCase each = plain_case(rules);
+      each.*scan.value = value;
+      const Signals signals = each.signals(rules, 0.3 * rules.most_current_A, 0.5 * rules.most_speed_rad_per_s);
+      const std::span<const double> found =
+          rates.at(signals, rules.limits.winding_C - 1.0, 0.5 * (rules.limits.winding_C + rules.hottest_ambient_C));
+      const double bodies = *std::max_element(found.begin() + 1, found.end());
+      if (found[states::winding] > most_winding) {
+        most_winding = found[states::winding];
+        for_winding.*scan.value = value;
+      }
+      if (bodies > most_bodies) {
+        most_bodies = bodies;
+        for_bodies.*scan.value = value;
+      }
+    }
+  }
+  return is_any ? std::vector{plain_case(rules), for_winding, for_bodies} : std::vector{plain_case(rules)};
+}
+
+}  // namespace
+
+Signals HotCase::signals(const BarrierRules& rules, double current_A, double speed_rad_per_s) const {
+  return {current_sign * current_A, speed_sign * speed_rad_per_s, rules.hottest_ambient_C, vehicle_speed_m_per_s, neighbour_C, age_h,
+          acceleration_rad_per_s2};
+}
+
+std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules) {
+  std::vector<HotCase> cases;
+  for (const HotCase& around : surroundings(observer, rules)) {
+    for (const HotCase& direction : directions(observer, rules)) {
+      cases.push_back(around);
+      cases.back().current_sign = direction.current_sign;
+      cases.back().speed_sign = direction.speed_sign;
+    }
+  }
+  return cases;
+}
+
+double bearable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules) {
+  constexpr int kPlaces = 200;
+  const std::vector<HotCase> cases = hot_cases(observer, rules);
+  Rates rates(observer);
+  const double winding_C = rules.limits.winding_C;
+  const double hottest_body_C = std::min(winding_C, rules.limits.stator_C.value_or(winding_C));
+  const auto cools = [&](const HotCase& each, double speed_rad_per_s) {
+    constexpr int kBodies = 40;
+    const Signals signals = each.signals(rules, 0.0, speed_rad_per_s);
+    for (int i = 1; i <= kBodies; ++i) {
+      const double body_C = std::lerp(rules.hottest_ambient_C, hottest_body_C, static_cast<double>(i) / kBodies);
+      // A stator with a limit of its own keeps the winding colder than the winding's.
+      const std::span<const double> found = rates.at(signals, rules.limits.stator_C ? body_C : winding_C, body_C);
+      if (std::ranges::all_of(found, [](double rate) { return rate <= 0.0; })) {
+        return true;
+      }
+    }
+    return false;
+  };
+  double bearable_rad_per_s = 0.0;
+  for (int i = 0; i <= kPlaces; ++i) {
+    const double speed_rad_per_s = rules.most_speed_rad_per_s * i / kPlaces;
+    if (!std::ranges::all_of(cases, [&](const HotCase& each) { return cools(each, speed_rad_per_s); })) {
+      break;
+    }
+    bearable_rad_per_s = speed_rad_per_s;
+  }
+  return bearable_rad_per_s;
+}
+
+}  // namespace heatsoak
