@@ -61,8 +61,12 @@ struct Family {
   double usual = 1.0;
 };
 
-/// Losses go with two signals of the operation; what goes with a temperature besides is cooling.
+/// Losses go with two signals of the operation; what goes with a temperature besides is cooling. A temperature alone makes no heat: it says
+/// how much moves, or how much of the copper's there is.
 bool goes_with(const Driver& driver, Multiplier multiplier) {
+  if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
+    return false;
+  }
   const std::string_view second = second_signal(multiplier);
   return second.empty() || (driver.kind == DriverKind::operating_point && driver.name != second);
 }
