@@ -141,6 +141,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
   json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(diagnosis.before_holdout)}};
   json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(diagnosis.after_holdout)}};
   json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(diagnosis.refitted_holdout)}};
+  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(diagnosis.file_holdout)}};
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = diagnosis.description;
   json["figures_contradicted"] = Json::array();

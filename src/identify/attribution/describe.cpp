@@ -1,8 +1,10 @@
 // A diagnosis in words: what was looked for, what was found, how sure, what it does to the error, what to do next.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <span>
 
 #include "base/quantity.h"
@@ -196,6 +198,25 @@ void add_unexplained(const Diagnosis& diagnosis, std::vector<std::string>& all) 
   }
 }
 
+/// Where some runs have more or less of something, the motor's file cannot follow them as well as was said.
+std::string file_alone_in_words(const Diagnosis& diagnosis) {
+  const std::vector<RunDeviation>& deviations = diagnosis.selection.after.model.deviations;
+  if (deviations.empty()) {
+    return {};
+  }
+  std::set<std::string> names;
+  for (const RunDeviation& each : deviations) {
+    names.insert(fmt::format("{} in {}", each.type->name, each.condition.begin()->second));
+  }
+  const bool is_held_out = !diagnosis.file_holdout.empty();
+  std::vector<std::string> errors;
+  for (const auto& [signal, error] : is_held_out ? diagnosis.file_holdout : diagnosis.file_train) {
+    errors.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(error.rmse_K, 2)));
+  }
+  return fmt::format("{} is of those runs, not of the motor, so the motor file has it as a note only: the file alone follows {} to {}.",
+                     fmt::join(names, " and "), is_held_out ? "the runs the fit never saw" : "the training runs", fmt::join(errors, ", "));
+}
+
 }  // namespace
 
 std::vector<std::string> describe(const Diagnosis& diagnosis) {
@@ -227,6 +248,9 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
                                 is_held_out ? diagnosis.after_holdout : diagnosis.after_train,
                                 is_held_out ? "runs the fit never saw" : "the training runs") +
                 doubts_in_words(diagnosis));
+  if (const std::string alone = file_alone_in_words(diagnosis); !alone.empty()) {
+    all.push_back(alone);
+  }
   all.insert(all.end(), diagnosis.beyond_training.begin(), diagnosis.beyond_training.end());
   for (const Refusal& refused : diagnosis.selection.refused) {
     all.push_back(fmt::format("Not named: {}.", refused.words));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 
@@ -144,6 +145,13 @@ class Teller {
     out_.before_holdout = open_loop_errors(input_.model, input_.holdout, input_.train);
     out_.refitted_holdout = open_loop_errors(out_.selection.own.model, input_.holdout, input_.train);
     out_.after_holdout = open_loop_errors(after().model, input_.holdout, input_.train);
+    out_.file_train = out_.after_train;
+    out_.file_holdout = out_.after_holdout;
+    if (ExtendedModel alone = after().model; !alone.deviations.empty()) {
+      alone.deviations.clear();
+      out_.file_train = open_loop_errors(alone, input_.train, {});
+      out_.file_holdout = open_loop_errors(alone, input_.holdout, input_.train);
+    }
   }
 
   [[nodiscard]] LatentFlux flux_at(const RefitResult& fit) const { return out_.selection.grid.at(fit.place); }
@@ -184,28 +192,59 @@ class Teller {
   }
 
   void tell_balance() {
-    const Network& network = after().model.model.network;
+    const ExtendedModel& model = after().model;
+    const Network& network = model.model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
-    std::vector<double> energy_J(network.effects().size() * nodes, 0.0);
+    const std::size_t effects = network.effects().size();
+    std::vector<double> energy_J((effects + model.deviations.size()) * nodes, 0.0);  // of effects, then of deviations
     double time_s = 0.0;
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
       const MeasuredRun& run = input_.train[r];
+      std::vector<double> in_run_J(effects * nodes, 0.0);
       heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
         const double duration_s = run.time_s[k + 1] - run.time_s[k];
         time_s += duration_s;
-        for (std::size_t i = 0; i < energy_J.size(); ++i) {
-          energy_J[i] += duration_s * heat_W[i];
+        for (std::size_t i = 0; i < in_run_J.size(); ++i) {
+          in_run_J[i] += duration_s * heat_W[i];
         }
       });
+      std::ranges::transform(in_run_J, energy_J, energy_J.begin(), std::plus<>());
+      for (std::size_t d = 0; d < model.deviations.size(); ++d) {
+        add_part(model.deviations[d], run, in_run_J, energy_J, (effects + d) * nodes);
+      }
     }
-    for (std::size_t e = 0; e < network.effects().size(); ++e) {
-      BalanceRow row{network.effects()[e].name, {}};
+    for (std::size_t row_of = 0; row_of * nodes < energy_J.size(); ++row_of) {
+      BalanceRow row{row_of < effects ? network.effects()[row_of].name : name_of(model.deviations[row_of - effects]), {}};
       for (std::size_t n = 0; n < nodes; ++n) {
-        if (energy_J[e * nodes + n] != 0.0) {
-          row.heat_W[std::string(network.node_name(static_cast<int>(n)))] = energy_J[e * nodes + n] / time_s;
+        if (energy_J[row_of * nodes + n] != 0.0) {
+          row.heat_W[std::string(network.node_name(static_cast<int>(n)))] = energy_J[row_of * nodes + n] / time_s;
         }
       }
       out_.balance.push_back(std::move(row));
+    }
+  }
+
+  static std::string name_of(const RunDeviation& deviation) {
+    return fmt::format("{} in {}", deviation.type->name, deviation.condition.begin()->second);
+  }
+
+  /// What a deviation adds in a run goes from the rows of the effects that it concerns into its own, which begins at `own`.
+  void add_part(const RunDeviation& deviation, const MeasuredRun& run, std::span<const double> in_run_J, std::span<double> energy_J,
+                std::size_t own) const {
+    const Network& network = after().model.model.network;
+    const auto nodes = static_cast<std::size_t>(network.node_count());
+    if (!has_condition(run, deviation.condition)) {
+      return;
+    }
+    for (std::size_t e = 0; e < network.effects().size(); ++e) {
+      if (!deviation.type->concerns(network, network.effects()[e])) {
+        continue;
+      }
+      for (std::size_t n = 0; n < nodes; ++n) {
+        const double part_J = deviation.type->part_ratio(deviation.deviation_share) * in_run_J[e * nodes + n];
+        energy_J[e * nodes + n] -= part_J;
+        energy_J[own + n] += part_J;
+      }
     }
   }
 

@@ -47,7 +47,7 @@ struct FluxTrace {
   std::vector<double> after_sd_W;  ///< posterior, given the model
 };
 
-/// Mean heat in W that an effect brings into a node over the training runs.
+/// Mean heat in W that an effect, or what some runs have more or less of, brings into a node over the training runs.
 struct BalanceRow {
   std::string effect;
   std::map<std::string, double> heat_W;
@@ -66,7 +66,9 @@ struct Diagnosis {
   std::vector<Unexplained> unexplained;
   Errors before_train, before_holdout, after_train, after_holdout;
   Errors refitted_train, refitted_holdout;  ///< the model's own figures fitted to the training runs, nothing added
-  std::vector<MeasuredRun> runs;            ///< of the training
+  /// Of the written model alone: without what some runs have more or less of, which is no property of the motor.
+  Errors file_train, file_holdout;
+  std::vector<MeasuredRun> runs;  ///< of the training
   std::vector<InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;
   std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< by node

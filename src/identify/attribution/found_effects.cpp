@@ -91,8 +91,8 @@ class EffectTeller {
     const Network& network = after().model.model.network;
     const HeatOfEffect heat = heat_of(
         after(), runs_, [&](const EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);
-    effect.mean_W = type.missing_ratio(value) * heat.mean_W;
-    effect.peak_W = type.missing_ratio(value) * heat.peak_W;
+    effect.mean_W = std::abs(type.part_ratio(value)) * heat.mean_W;
+    effect.peak_W = std::abs(type.part_ratio(value)) * heat.peak_W;
   }
 
   static double p_of(double value, double sd) {

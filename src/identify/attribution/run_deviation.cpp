@@ -34,7 +34,7 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .experiment =
            "current and voltage measured at the motor's own terminals, with the rotor turned by a sixth of an electrical turn between runs",
        .concerns = turns_input_into_heat,
-       .missing_ratio = [](double d_share) { return std::abs(d_share) / std::max(0.01, 1.0 + d_share); }},
+       .part_ratio = [](double d_share) { return d_share / std::max(0.01, 1.0 + d_share); }},
       {.name = "hindered_cooling",
        .size = {"resistance_rise", "", Range::between(0.0, 20.0), "of the resistance to ambient, as a share of it"},
        .usual = 0.3,
@@ -45,7 +45,7 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .look_alike = "airflow in all the other runs.",
        .experiment = "the same load twice, with the mount and the cover as they were and as they should be",
        .concerns = is_resistance_to_ambient,
-       .missing_ratio = [](double d_share) { return d_share; }},
+       .part_ratio = [](double d_share) { return -d_share; }},
       {.name = "changed_contact",
        .size = {"resistance_change", "", Range::between(-0.9, 20.0), "of the resistance between winding and stator, as a share of it"},
        .usual = 0.2,
@@ -58,7 +58,7 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .look_alike = "contact_ageing, contact_temperature_dependence where that run was another time or temperature.",
        .experiment = "the same locked-rotor run once more, from equal temperatures",
        .concerns = is_contact,
-       .missing_ratio = [](double d_share) { return std::abs(d_share); }},
+       .part_ratio = [](double d_share) { return -d_share; }},
   };
   return all;
 }

@@ -30,8 +30,8 @@ struct RunDeviationType {
   std::string_view experiment;
   /// Effects whose first parameter it is.
   bool (*concerns)(const Network& network, const EffectInPlace& effect) = nullptr;
-  /// Heat that is more or less than without it, as a share of what those effects book with it.
-  double (*missing_ratio)(double deviation_share) = nullptr;
+  /// Heat that is more (or, negative, less) than without it, as a share of what those effects book with it.
+  double (*part_ratio)(double deviation_share) = nullptr;
 
   [[nodiscard]] std::vector<int> places_in(const Network& network) const;
 };
