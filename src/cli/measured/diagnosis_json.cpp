@@ -126,7 +126,7 @@ Json ladder_json(const Selection& selection) {
                         {"per", to_string(each.term.multiplier)},
                         {"nats", rounded(each.gain_nats, 2)}});
     }
-    rounds.push_back({{"effects", candidates}, {"curves", curves}});
+    rounds.push_back({{"effects", candidates}, {"curves", curves}, {"taken", round.taken}, {"taken_nats", rounded(round.taken_nats, 2)}});
   }
   return rounds;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 
@@ -93,6 +94,14 @@ std::string effect_table(const Diagnosis& diagnosis) {
   return text;
 }
 
+std::string outcome_of(const Round& round) {
+  if (round.taken.empty()) {
+    return "Nothing was taken in: none of these may be named.";
+  }
+  return fmt::format("Taken in{}: {}; {:.0f} nats.", round.taken.size() > 1 ? ", none without the rest" : "", fmt::join(round.taken, ", "),
+                     round.taken_nats);
+}
+
 std::string ladder_table(const Diagnosis& diagnosis) {
   std::string text;
   int number = 1;
@@ -109,7 +118,7 @@ std::string ladder_table(const Diagnosis& diagnosis) {
                                each.term.other.empty() ? "" : "→" + each.term.other),
                    fmt::format("{:.1f}", each.gain_nats), fmt::format("{} W mean", significant(each.mean_W, 2)), "", ""});
     }
-    text += "</table>\n";
+    text += "</table>\n" + fmt::format("<p>{}</p>\n", escaped(outcome_of(round)));
   }
   return text;
 }
@@ -121,7 +130,7 @@ std::string balance_table(const Diagnosis& diagnosis) {
     for (const auto& [node, heat_W] : each.heat_W) {
       heats += fmt::format("{}{} {:+.3g}", heats.empty() ? "" : ", ", node, heat_W);
     }
-    text += row({each.effect, heats});
+    text += row({each.effect, heats.empty() ? "none in these runs" : heats});
   }
   return text + "</table>\n";
 }
@@ -172,6 +181,20 @@ std::vector<std::string> names_of(const std::vector<MeasuredRun>& runs, const st
     names.push_back(is_split ? fmt::format("{} ({:.0f} to {:.0f} s)", run.name, run.time_s.front(), run.time_s.back()) : run.name);
   }
   return names;
+}
+
+/// "windage: no log has speed" for each effect, as one remark for each reason.
+std::vector<std::string> by_reason(const std::vector<std::string>& not_judged) {
+  std::map<std::string, std::vector<std::string>> effects;
+  for (const std::string& each : not_judged) {
+    const std::size_t colon = each.find(": ");
+    effects[each.substr(colon + 2)].push_back(each.substr(0, colon));
+  }
+  std::vector<std::string> remarks;
+  for (const auto& [reason, names] : effects) {
+    remarks.push_back(fmt::format("{}: {} cannot be judged", reason, fmt::join(names, ", ")));
+  }
+  return remarks;
 }
 
 std::string_view heading_of(DiagnosisVerdict verdict) {
@@ -240,7 +263,7 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
         fmt::format("at their usual size these would not show in these runs: {}", fmt::join(diagnosis.selection.unseen, ", ")));
   }
   std::ranges::transform(diagnosis.selection.refused, std::back_inserter(remarks), &Refusal::words);
-  remarks.insert(remarks.end(), diagnosis.selection.not_judged.begin(), diagnosis.selection.not_judged.end());
+  std::ranges::move(by_reason(diagnosis.selection.not_judged), std::back_inserter(remarks));
   text += "<h2>What was not judged, and what is taken for granted</h2><ul>";
   for (const std::string& remark : remarks) {
     text += "<li>" + escaped(remark) + "</li>";

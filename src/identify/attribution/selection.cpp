@@ -135,8 +135,10 @@ class Selector {
     if (input_.scans_drivers) {
       round.scan = scan(table, base);
     }
+    const std::size_t terms_before = out_.terms.size();
+    const std::size_t changed_before = out_.changed.size();
     const bool taken = input_.adds_terms && take_best(round, candidates, table, base);
-    out_.rounds.push_back(std::move(round));
+    out_.close(std::move(round), terms_before, changed_before);
     return taken;
   }
 

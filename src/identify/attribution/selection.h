@@ -47,6 +47,9 @@ struct Round {
   std::vector<JudgedCandidate> ladder;  ///< best first
   std::vector<ScanResult> scan;         ///< best first
   double evidence_nats = 0.0;           ///< of the model at the beginning of the round
+  /// Effects, curves and doubts in figures that were taken in, all of them together for so much evidence; the backward check may drop some.
+  std::vector<std::string> taken;
+  double taken_nats = 0.0;
 };
 
 /// A term that the selection took in.
@@ -103,6 +106,8 @@ struct Selection {
   [[nodiscard]] bool is_known(const ScanResult& curve) const;
   /// Place of the driver of that name in the list, which then has this one.
   int place_of(Driver driver);
+  /// Adds a round that began with so many terms and changed figures.
+  void close(Round round, std::size_t terms_before, std::size_t changed_before);
   /// A curve of the other selection, its driver by this one's list.
   ScanResult with_drivers_of(const Selection& other, ScanResult curve);
   /// To a curve those of the scan that explain as much within the ambiguity.

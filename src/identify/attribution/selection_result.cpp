@@ -37,6 +37,17 @@ int Selection::place_of(Driver driver) {
   return place;
 }
 
+void Selection::close(Round round, std::size_t terms_before, std::size_t changed_before) {
+  for (std::size_t i = changed_before; i < changed.size(); ++i) {
+    round.taken.push_back("doubt in " + changed[i].name);
+  }
+  for (std::size_t i = terms_before; i < terms.size(); ++i) {
+    round.taken.push_back(terms[i].candidate ? terms[i].what(drivers) : "curve over " + terms[i].what(drivers));
+  }
+  round.taken_nats = round.taken.empty() ? 0.0 : after.evidence_nats - round.evidence_nats;
+  rounds.push_back(std::move(round));
+}
+
 ScanResult Selection::with_drivers_of(const Selection& other, ScanResult curve) {
   curve.term.driver = place_of(other.drivers[static_cast<std::size_t>(curve.term.driver)]);
   return curve;
