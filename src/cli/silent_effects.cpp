@@ -1,10 +1,13 @@
 #include "cli/silent_effects.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
 #include <vector>
+
+#include "motor/conditions.h"
 
 namespace heatsoak {
 
@@ -21,13 +24,29 @@ std::string columns_at_their_hottest(std::span<const Motor> motors) {
   return text;
 }
 
-std::string silent_effects(std::span<const Motor> motors) {
-  std::string text = columns_at_their_hottest(motors);
+std::string effects_under_conditions(std::span<const Motor> motors) {
+  std::string text;
   for (const Motor& motor : motors) {
     for (const MotorEffect& effect : motor.effects) {
-      std::vector<double> values;
-      std::ranges::transform(effect.parameters, std::back_inserter(values), &Figure::value);
-      const std::vector<Signal> needed = effect.type->needed_with(values);
+      if (effect.condition.empty()) {
+        continue;
+      }
+      std::vector<std::string> where;
+      std::ranges::transform(effect.condition, std::back_inserter(where),
+                             [](const auto& part) { return fmt::format("{}={}", part.first, part.second); });
+      text += fmt::format("{}: {}, known where {}, {}\n", motor.id, effect.name, fmt::join(where, " "),
+                          acts_by_default(effect, effect.values()) ? "is reckoned with everywhere unless --condition says otherwise"
+                                                                   : "cools and is reckoned with only where --condition says so");
+    }
+  }
+  return text;
+}
+
+std::string silent_effects(std::span<const Motor> motors) {
+  std::string text = columns_at_their_hottest(motors) + effects_under_conditions(motors);
+  for (const Motor& motor : motors) {
+    for (const MotorEffect& effect : motor.effects) {
+      const std::vector<Signal> needed = effect.type->needed_with(effect.values());
       const auto needs = [&](Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
       const bool needs_neighbour = needs(Signal::neighbour_temperature);
       if (needs_neighbour || needs(Signal::age)) {

@@ -14,7 +14,7 @@ namespace heatsoak {
 bool acts_by_default(const MotorEffect& effect, std::span<const double> parameters);
 
 /// The motor where "cooling" -> "fan" and the like are known to hold: effects under one of them act, those under another value of a key
-/// do not. Throws Failure (bad_input) where a key or value is none of the motor's, with what it has.
+/// do not. Throws Failure (bad_input) where a key is none of the motor's, with what it has.
 Motor under(Motor motor, const std::map<std::string, std::string>& conditions);
 
 }  // namespace heatsoak

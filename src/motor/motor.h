@@ -77,9 +77,12 @@ struct MotorEffect {
   std::vector<std::string> nodes;
   std::vector<Figure> parameters;  ///< in the type's declared order
   /// Where it acts: "cooling" -> "fan" as logs name their conditions. Empty: everywhere. An effect with a condition was seen in
-  /// some runs only, so predictions leave it out.
+  /// some runs only: what predictions do with it stands in conditions.h.
   std::map<std::string, std::string> condition = {};
   std::string column = {};  ///< of logs, that a curve is drawn over; empty where it is over another signal
+
+  /// Of the parameters, in the type's declared order.
+  [[nodiscard]] std::vector<double> values() const;
 };
 
 /// A fault that the file states for a sensor at the motor: it moves what is shown, not the temperature.

@@ -136,6 +136,12 @@ std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& tabl
 
 }  // namespace
 
+std::vector<double> MotorEffect::values() const {
+  std::vector<double> all;
+  std::ranges::transform(parameters, std::back_inserter(all), &Figure::value);
+  return all;
+}
+
 void read_effects(Reader& top, Motor& motor) {
   std::optional<Reader> table = top.table("effects", Need::optional);
   if (!table) {

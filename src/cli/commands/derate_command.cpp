@@ -182,7 +182,8 @@ ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_of(options, named);
   const Derating derating = derate(motor, *robot, options.derate, progress_bar("looking for the reserve"));
   session.write(options.out, exporter.write(derating));
-  session.say(report(derating) + columns_at_their_hottest({&motor, 1}) + fmt::format("\n{}: {}\n", exporter.name, options.out));
+  session.say(report(derating) + columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}) +
+              fmt::format("\n{}: {}\n", exporter.name, options.out));
   session.answer(json(derating, options));
   return ExitCode::done;
 }

@@ -67,6 +67,27 @@ std::string figure_text(std::string_view key, std::string_view unit, const Figur
   return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
 }
 
+/// What the file has beside the laws that every motor has.
+void describe_own_effects(const Motor& motor, Description& result) {
+  result.text += motor.effects.empty() ? "" : "\neffects that the file adds\n";
+  for (const MotorEffect& effect : motor.effects) {
+    Json json = {{"name", effect.name}, {"type", effect.type->name}, {"nodes", effect.nodes}, {"condition", effect.condition}};
+    std::string where;
+    for (const auto& [key, value] : effect.condition) {
+      where += fmt::format(", known where {}={}", key, value);
+    }
+    result.text += fmt::format("  {} ({}) at {}{}\n", effect.name, effect.type->name, fmt::join(effect.nodes, ", "), where);
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (effect.type->parameters[i].choices.empty()) {
+        const std::string_view unit = unit_of(effect.type->parameters, i, effect.values());
+        result.text += figure_text(effect.type->parameters[i].key, unit, effect.parameters[i]);
+        json["figures"].push_back(figure_json(effect.type->parameters[i].key, unit, effect.parameters[i]));
+      }
+    }
+    result.json["effects"].push_back(std::move(json));
+  }
+}
+
 Description describe_motor(const Motor& motor) {
   Description result{fmt::format("{}: {} {}{}{}\n{} thermal data; file {}\n", motor.id, motor.manufacturer, motor.name,
                                  motor.part_number.empty() ? "" : ", ", motor.part_number, data_quality(motor), motor.file.string()),
@@ -97,6 +118,7 @@ Description describe_motor(const Motor& motor) {
       result.json["network"].push_back({{"name", effect.name + ".column"}, {"value", effect.column}, {"unit", ""}});
     }
   }
+  describe_own_effects(motor, result);
   result.text += motor.sensors.empty() ? "" : "\nsensors: errors that they have\n";
   for (const MotorSensor& sensor : motor.sensors) {
     result.text += fmt::format("  {} ({})\n", sensor.name, sensor.type->name) +

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,9 +9,11 @@
 
 #include "base/quantity.h"
 #include "cli/command.h"
+#include "cli/condition_option.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
+#include "motor/conditions.h"
 #include "motor/datasheet_network.h"
 #include "motor/motor.h"
 #include "thermal/periodic_state.h"
@@ -21,6 +24,7 @@ namespace {
 
 struct Options {
   std::string motor;
+  std::map<std::string, std::string> conditions;
   OnOffCurrent current;
 };
 
@@ -80,7 +84,7 @@ std::string in_words(const MotorValues& values, const OnOffSteadyState& rms, boo
 }
 
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = motor_named(session.folders(), options.motor);
+  const Motor motor = under(motor_named(session.folders(), options.motor), options.conditions);
   const MotorValues& values = motor.nominal;
   const Network network = datasheet_network(motor, nominal_sample(motor));
   const bool is_bare = network.effects().size() == kDatasheetEffects.size();
@@ -121,6 +125,7 @@ Command steady() {
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
+            add_conditions(app, options->conditions);
             add_quantity(app, "--current-on", options->current.current_on_A,
                          {"current-on", "A", Range::between(0.0, 1e5), "current while on"})
                 ->required();

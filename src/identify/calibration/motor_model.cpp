@@ -146,8 +146,7 @@ class ModelBuilder {
 
   void effects() {
     for (const MotorEffect& effect : motor_.effects) {
-      std::vector<double> values;
-      std::ranges::transform(effect.parameters, std::back_inserter(values), &Figure::value);
+      const std::vector<double> values = effect.values();
       std::vector<std::string_view> held;
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
         const ParameterSpec& spec = effect.type->parameters[i];
