@@ -28,11 +28,11 @@ Played play(const MatchSimulation& wanted, Planner planner) {
   Played played{planner, {}, {}, {}};
   const double ambient_C = wanted.duty.ambient_C.value;
   const auto wheels = static_cast<int>(wanted.robot.wheel_axis_rad.size());
-  const MatchSensors sensors = sensors_of(wanted.motor);
+  const MatchAdditions added = additions_of(wanted.motor);
   if (!wanted.out.empty()) {
-    played.csv = csv_header(wheels, sensors);
+    played.csv = csv_header(wheels, added);
   }
-  MatchRows csv(wanted.every_s, ambient_C, sensors, [&](const MatchRow& row) { append_csv(played.csv, row, wheels, ambient_C, sensors); });
+  MatchRows csv(wanted.every_s, ambient_C, added, [&](const MatchRow& row) { append_csv(played.csv, row, wheels, ambient_C, added); });
   MatchRows picture(kPictureStep_s, ambient_C, {}, [&](const MatchRow& row) { played.rows.push_back(row); });
   const MatchRunOptions options{planner, wanted.seed, ambient_C, progress_bar(fmt::format("driving, {}", to_string(planner)))};
   played.run = run_match(wanted.inputs, wanted.robot, wanted.motor, options, [&](const LoopMoment& moment) {

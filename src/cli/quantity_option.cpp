@@ -30,7 +30,8 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value,
       throw CLI::ValidationError(flag, parsed.problem);
     }
     if (!spec.range.contains(parsed.value)) {
-      throw CLI::ValidationError(flag, fmt::format("{} is out of range; expected {}", text, to_string(spec.range, spec.unit)));
+      throw CLI::ValidationError(flag, fmt::format("{} is out of range; expected {}", bare ? fmt::format("{} {}", text, spec.unit) : text,
+                                                   to_string(spec.range, spec.unit)));
     }
     value = parsed.value;
   };

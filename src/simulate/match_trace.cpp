@@ -6,23 +6,37 @@
 #include <cmath>
 #include <iterator>
 
+#include "motor/datasheet_network.h"
+
 namespace heatsoak {
 
-MatchSensors sensors_of(const Motor& motor) { return {faults_of(motor, "winding_C"), faults_of(motor, "stator_C")}; }
+MatchAdditions additions_of(const Motor& motor) {
+  MatchAdditions added{faults_of(motor, "winding_C"), faults_of(motor, "stator_C"), {}};
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  for (int body = states::first_own; body < network.state_count(); ++body) {
+    added.bodies.emplace_back(network.node_name(body));
+  }
+  return added;
+}
 
-MatchRows::MatchRows(double every_s, double ambient_C, const MatchSensors& sensors, std::function<void(const MatchRow&)> row)
+MatchRows::MatchRows(double every_s, double ambient_C, const MatchAdditions& added, std::function<void(const MatchRow&)> row)
     : every_s_(every_s), row_(std::move(row)) {
-  winding_.fill(Reading(sensors.winding, ambient_C));
-  stator_.fill(Reading(sensors.stator, ambient_C));
+  winding_.fill(Reading(added.winding, ambient_C));
+  stator_.fill(Reading(added.stator, ambient_C));
   open_.winding_C.fill(ambient_C);
   open_.winding_peak_C.fill(ambient_C);
   open_.stator_C.fill(ambient_C);
+  PerWheel cold_C{};
+  cold_C.fill(ambient_C);
+  open_.bodies_C.assign(added.bodies.size(), cold_C);
   open_.winding_shown_C.fill(winding_.front().shown_C());
   open_.stator_shown_C.fill(stator_.front().shown_C());
 }
 
 void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& plan, Phase phase, bool duel) {
+  std::vector<PerWheel> bodies_C = std::move(open_.bodies_C);
   open_ = {};
+  open_.bodies_C = std::move(bodies_C);
   open_.time_s = time_s;
   open_.phase = phase;
   open_.duel = duel;
@@ -35,6 +49,9 @@ void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& pl
     open_.winding_C[i] = robot.winding_C(i);
     open_.winding_peak_C[i] = open_.winding_C[i];
     open_.stator_C[i] = robot.stator_C(i);
+    for (std::size_t body = 0; body < open_.bodies_C.size(); ++body) {
+      open_.bodies_C[body][static_cast<std::size_t>(i)] = robot.body_C(states::first_own + body, i);
+    }
     open_.winding_shown_C[i] = winding_.at(static_cast<std::size_t>(i)).shown_C();
     open_.stator_shown_C[i] = stator_.at(static_cast<std::size_t>(i)).shown_C();
   }
@@ -94,7 +111,7 @@ void MatchRows::finish() {
   periods_ = 0;
 }
 
-std::string csv_header(int wheel_count, const MatchSensors& sensors) {
+std::string csv_header(int wheel_count, const MatchAdditions& added) {
   std::string text =
       "time_s,phase,duel,plan_x_m,plan_y_m,plan_yaw_rad,x_m,y_m,yaw_rad,velocity_x_m_per_s,velocity_y_m_per_s,yaw_rate_rad_per_s,"
       "battery_V,battery_A,battery_charge_A_s,ambient_C";
@@ -103,13 +120,16 @@ std::string csv_header(int wheel_count, const MatchSensors& sensors) {
                    ",winding_{0}_C,stator_{0}_C,current_{0}_A,motor_{0}_V,speed_{0}_rad_per_s,torque_{0}_Nm,slip_{0}_m_per_s,normal_{0}_N,"
                    "copper_{0}_W",
                    i);
-    text += sensors.winding.empty() ? "" : fmt::format(",winding_shown_{}_C", i);
-    text += sensors.stator.empty() ? "" : fmt::format(",stator_shown_{}_C", i);
+    for (const std::string& body : added.bodies) {
+      text += fmt::format(",{}_{}_C", body, i);
+    }
+    text += added.winding.empty() ? "" : fmt::format(",winding_shown_{}_C", i);
+    text += added.stator.empty() ? "" : fmt::format(",stator_shown_{}_C", i);
   }
   return text + "\n";
 }
 
-void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchSensors& sensors) {
+void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchAdditions& added) {
   const auto to = std::back_inserter(text);
   fmt::format_to(to, "{:.10g},{},{:d},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.2f}",
                  row.time_s, kPhaseNames.at(static_cast<std::size_t>(row.phase)), row.duel, row.plan.x_m, row.plan.y_m, row.plan.yaw_rad,
@@ -119,10 +139,13 @@ void append_csv(std::string& text, const MatchRow& row, int wheel_count, double 
     fmt::format_to(to, ",{:.4f},{:.4f},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g}", row.winding_C[i], row.stator_C[i],
                    row.current_A[i], row.motor_V[i], row.speed_rad_per_s[i], row.torque_Nm[i], row.slip_m_per_s[i], row.normal_N[i],
                    row.copper_W[i]);
-    if (!sensors.winding.empty()) {
+    for (const PerWheel& body_C : row.bodies_C) {
+      fmt::format_to(to, ",{:.4f}", body_C[static_cast<std::size_t>(i)]);
+    }
+    if (!added.winding.empty()) {
       fmt::format_to(to, ",{:.4f}", row.winding_shown_C[i]);
     }
-    if (!sensors.stator.empty()) {
+    if (!added.stator.empty()) {
       fmt::format_to(to, ",{:.4f}", row.stator_shown_C[i]);
     }
   }

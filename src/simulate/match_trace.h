@@ -22,7 +22,8 @@ struct MatchRow {
   PerWheel winding_C{};
   PerWheel winding_peak_C{};  ///< the highest from time_s to the next row, for pictures: a duel heats for less than a row
   PerWheel stator_C{};
-  PerWheel winding_shown_C{};  ///< by a sensor with the faults that are stated for it
+  std::vector<PerWheel> bodies_C;  ///< as MatchAdditions::bodies
+  PerWheel winding_shown_C{};      ///< by a sensor with the faults that are stated for it
   PerWheel stator_shown_C{};
   PerWheel current_A{};
   PerWheel motor_V{};
@@ -37,17 +38,18 @@ struct MatchRow {
   double tracking_error_m = 0.0;
 };
 
-/// The faults that the motor's file states for its sensors.
-struct MatchSensors {
-  std::vector<SensorFault> winding;
+/// What the motor's file adds to a trace.
+struct MatchAdditions {
+  std::vector<SensorFault> winding;  ///< stated for the sensor there
   std::vector<SensorFault> stator;
+  std::vector<std::string> bodies;  ///< with a temperature, beside winding and stator; in the order of the network
 };
-MatchSensors sensors_of(const Motor& motor);
+MatchAdditions additions_of(const Motor& motor);
 
 /// Gives `row` a row every `every_s`, of a run that begins at time 0 with everything at ambient temperature.
 class MatchRows {
  public:
-  MatchRows(double every_s, double ambient_C, const MatchSensors& sensors, std::function<void(const MatchRow&)> row);
+  MatchRows(double every_s, double ambient_C, const MatchAdditions& added, std::function<void(const MatchRow&)> row);
 
   void take(const LoopMoment& moment);
   /// The last row, which may be shorter than the others.
@@ -66,9 +68,9 @@ class MatchRows {
   bool begun_ = false;
 };
 
-/// What sensors show has a column where they have faults.
-std::string csv_header(int wheel_count, const MatchSensors& sensors);
+/// What sensors show has a column where they have faults, as have bodies that the motor's file adds.
+std::string csv_header(int wheel_count, const MatchAdditions& added);
 /// One line, with its end.
-void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchSensors& sensors);
+void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchAdditions& added);
 
 }  // namespace heatsoak

@@ -52,6 +52,8 @@ class SimulatedRobot {
   [[nodiscard]] int wheel_count() const { return plant_.body.kinematics.wheel_count; }
   [[nodiscard]] double winding_C(int wheel) const { return thermal_.state_C()[kWinding][wheel]; }
   [[nodiscard]] double stator_C(int wheel) const { return thermal_.state_C()[kStator][wheel]; }
+  /// Of the state of that place in the motor's network.
+  [[nodiscard]] double body_C(std::size_t state, int wheel) const { return thermal_.state_C()[state][wheel]; }
   [[nodiscard]] double winding_peak_C(int wheel) const { return thermal_.peak_C()[kWinding][wheel]; }
   [[nodiscard]] double stator_peak_C(int wheel) const { return thermal_.peak_C()[kStator][wheel]; }
   [[nodiscard]] EnergyAccount energy() const;

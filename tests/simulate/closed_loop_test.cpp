@@ -60,8 +60,8 @@ Driven drive(const Robot& robot, const Motor& motor, const std::vector<Scheduled
   const int wheels = simulated.wheel_count();
   Driven driven;
   DriveScorer scorer;
-  const MatchSensors sensors = sensors_of(motor);
-  MatchRows rows(0.1, kAmbient_C, sensors, [&](const MatchRow& row) { append_csv(driven.csv, row, wheels, kAmbient_C, sensors); });
+  const MatchAdditions added = additions_of(motor);
+  MatchRows rows(0.1, kAmbient_C, added, [&](const MatchRow& row) { append_csv(driven.csv, row, wheels, kAmbient_C, added); });
   MatchRows coarse_rows(2.0, kAmbient_C, {}, [&](const MatchRow& row) {
     driven.peak_of_rows_C = std::max(driven.peak_of_rows_C, *std::ranges::max_element(row.winding_peak_C));
   });
@@ -117,7 +117,7 @@ double last_cell(const std::string& header, const std::string& rows, const std::
 // Each period by itself and not row by row: a row of a tenth of a second is long for a quick winding.
 TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
   Motor motor = ecx_32();
-  const std::string bare = csv_header(4, sensors_of(motor));
+  const std::string bare = csv_header(4, additions_of(motor));
   EXPECT_EQ(bare.find("shown"), std::string::npos);
   Figure lag;
   lag.value = 1.5;
@@ -129,12 +129,36 @@ TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
     const double mean_C = 0.5 * (true_C.back() + true_C[true_C.size() - 2]);
     shown_C.push_back(shown_C.back() + SimulatedRobot::kPeriod_s / 1.5 * (mean_C - shown_C.back()));
   });
-  const std::string header = csv_header(4, sensors_of(motor));
+  const std::string header = csv_header(4, additions_of(motor));
   EXPECT_EQ(header.find("stator_shown"), std::string::npos);
   const auto period = static_cast<std::size_t>(std::lround(last_cell(header, driven.csv, "time_s") / SimulatedRobot::kPeriod_s));
   EXPECT_NEAR(last_cell(header, driven.csv, "winding_3_C"), true_C.at(period), 1e-4);
   EXPECT_NEAR(last_cell(header, driven.csv, "winding_shown_3_C"), shown_C.at(period), 2e-3);
   EXPECT_GT(std::abs(true_C.at(period) - shown_C.at(period)), 0.05);
+}
+
+// A mount of 4 J/K at 0.8 W/K from the stator and 0.4 W/K from the air, driven by the stator's temperature alone.
+TEST(ClosedLoop, a_body_of_the_motors_file_has_its_temperature_in_the_trace) {
+  Motor motor = ecx_32();
+  EXPECT_EQ(csv_header(4, additions_of(motor)).find("mount"), std::string::npos);
+  std::vector<Figure> figures(3);
+  figures[0].value = 0.8;
+  figures[1].value = 0.5;
+  figures[2].value = 4.0;
+  motor.effects.push_back({"mount", find_effect("third_node"), {"stator", "mount", "ambient"}, figures});
+  std::vector<double> mount_C{25.0};  // after each period
+  double stator_C = 25.0;
+  const Driven driven = drive(twente(), motor, lively(), kLively_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
+    const double mean_C = 0.5 * (stator_C + moment.robot->stator_C(2));
+    stator_C = moment.robot->stator_C(2);
+    const double heat_W = 0.8 * (mean_C - mount_C.back()) - 0.4 * (mount_C.back() - 25.0);
+    mount_C.push_back(mount_C.back() + SimulatedRobot::kPeriod_s * heat_W / 4.0);
+  });
+  const std::string header = csv_header(4, additions_of(motor));
+  const auto period = static_cast<std::size_t>(std::lround(last_cell(header, driven.csv, "time_s") / SimulatedRobot::kPeriod_s));
+  EXPECT_NEAR(last_cell(header, driven.csv, "mount_3_C"), mount_C.at(period), 2e-3);
+  EXPECT_GT(mount_C.at(period), 25.05);
+  EXPECT_LT(mount_C.at(period), last_cell(header, driven.csv, "stator_3_C"));
 }
 
 // The losses of the plant arrive in the thermal network: stored there or gone into the air.

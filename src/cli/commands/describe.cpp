@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -49,16 +50,21 @@ Json figure_json(std::string_view key, std::string_view unit, const Figure& figu
   return json;
 }
 
+/// "+9"; a bound within one percent with one digit.
+std::string percent_off(double bound, double value) {
+  const double percent = 100.0 * (bound - value) / std::abs(value);
+  return (percent < 0.0 ? "" : "+") + (std::abs(percent) < 1.0 ? significant(percent, 1) : fmt::format("{:.0f}", percent));
+}
+
 std::string figure_text(std::string_view key, std::string_view unit, const Figure& figure) {
   std::string text = fmt::format("  {:36} {:>22}  {:12}", key, figure.printed, to_string(figure.origin));
   if (figure.spread && unit == "rad") {
     text += fmt::format(" {} … {} °", significant(convert(figure.spread->low, "rad", "deg"), 3),
                         significant(convert(figure.spread->high, "rad", "deg"), 3));
-  } else if (figure.spread && unit != "degC") {
-    text += fmt::format(" {:+.0f} … {:+.0f} %", 100.0 * (figure.spread->low / figure.value - 1.0),
-                        100.0 * (figure.spread->high / figure.value - 1.0));
+  } else if (figure.spread && unit != "degC" && figure.value != 0.0) {
+    text += fmt::format(" {} … {} %", percent_off(figure.spread->low, figure.value), percent_off(figure.spread->high, figure.value));
   } else if (figure.spread) {
-    text += fmt::format(" {} … {} °C", significant(figure.spread->low, 3), significant(figure.spread->high, 3));
+    text += fmt::format(" {} … {} {}", significant(figure.spread->low, 3), significant(figure.spread->high, 3), unit_for_display(unit));
   }
   text += figure.source.empty() ? "\n" : fmt::format("  [{}]\n", figure.source);
   for (const Confirmation& each : figure.confirmed_by) {
