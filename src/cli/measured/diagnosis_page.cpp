@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -80,7 +81,9 @@ std::string effect_table(const Diagnosis& diagnosis) {
                              : (parameter.is_at_bound ? "at its bound" : "not fitted"),
                    is_first ? heat_in_words(effect) : "", is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "",
                    is_first && effect.is_from_catalogue ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
-                   is_first ? fmt::format("{}", fmt::join(effect.confusable_with, ", ")) : ""});
+                   !is_first                        ? ""
+                   : effect.confusable_with.empty() ? "none comes close"
+                                                    : fmt::format("{}", fmt::join(effect.confusable_with, ", "))});
       is_first = false;
     }
   }
@@ -102,16 +105,25 @@ std::string outcome_of(const Round& round) {
                      round.taken_nats);
 }
 
+/// Variants of an effect differ in where their refit begins.
+std::vector<JudgedCandidate> best_of_each(std::vector<JudgedCandidate> ladder) {
+  std::ranges::stable_sort(ladder, std::greater(), &JudgedCandidate::gain_nats);
+  std::set<std::string> told;
+  std::erase_if(ladder, [&](const JudgedCandidate& each) { return !told.insert(each.candidate.id).second; });
+  return ladder;
+}
+
 std::string ladder_table(const Diagnosis& diagnosis) {
   std::string text;
   int number = 1;
   for (const Round& round : diagnosis.selection.rounds) {
     text += fmt::format("<h3>Round {}</h3><table>", number++) +
             row({"candidate", "evidence / nats", "size in typical sizes", "visibility", "gain on runs left out / nats"}, "th");
-    for (const JudgedCandidate& each : round.ladder) {
+    for (const JudgedCandidate& each : best_of_each(round.ladder)) {
       text += row({each.candidate.id, fmt::format("{:.1f}", each.gain_nats), fmt::format("{:.2f}", each.size_share),
                    fmt::format("{:.3f}", each.visibility_ratio), fmt::format("{:.1f}", each.left_out_gain_nats)});
     }
+    text += round.ladder.empty() ? row({"no effect of the catalogue makes the runs more probable", "", "", "", ""}) : "";
     for (const ScanResult& each : round.scan) {
       const std::string& driver = diagnosis.selection.drivers[static_cast<std::size_t>(each.term.driver)].name;
       text += row({fmt::format("curve over {} × {} at {}{}", driver, to_string(each.term.multiplier), each.term.node,
@@ -125,13 +137,22 @@ std::string ladder_table(const Diagnosis& diagnosis) {
 
 std::string balance_table(const Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"effect", "mean heat into nodes / W (training runs)"}, "th");
+  std::map<std::string, double> kept_W;
   for (const BalanceRow& each : diagnosis.balance) {
     std::string heats;
     for (const auto& [node, heat_W] : each.heat_W) {
       heats += fmt::format("{}{} {:+.3g}", heats.empty() ? "" : ", ", node, heat_W);
     }
     text += row({each.effect, heats.empty() ? "none in these runs" : heats});
+    for (const auto& [node, heat_W] : each.heat_W) {
+      kept_W[node] += heat_W;
+    }
   }
+  std::string kept;
+  for (const auto& [node, heat_W] : kept_W) {
+    kept += node == Network::kAmbient ? "" : fmt::format("{}{} {:+.3g}", kept.empty() ? "" : ", ", node, heat_W);
+  }
+  text += row({"all together: what warms it", kept});
   return text + "</table>\n";
 }
 
@@ -243,10 +264,13 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     // Each picture has its own title.
     text += fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
-  text +=
-      "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown heat; "
-      "7 nats are asked for.</p>" +
-      ladder_table(diagnosis);
+  text += fmt::format(
+              "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown "
+              "heat; {:.0f} nats are asked for (the table of effects above has what the finished model loses without each). Visibility is "
+              "the share of an effect that no change of the model's own figures could pass for; of what has less than {} nothing is named "
+              "but what the runs cannot be followed without.</p>",
+              SelectionRules{}.least_gain_nats, SelectionRules{}.least_visibility_ratio) +
+          ladder_table(diagnosis);
   text += "<h2>Power balance</h2>" + balance_table(diagnosis);
   text += "<h2>Residual tests</h2>" + test_table(diagnosis);
   if (!diagnosis.experiments.empty()) {
