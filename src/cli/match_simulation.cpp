@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/silent_effects.h"
 #include "cli/verdict_words.h"
 #include "report/chart.h"
 #include "simulate/match_trace.h"
@@ -296,6 +297,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
       session.say(fmt::format("{}: {}\n", to_string(each.planner), why));
     }
   }
+  session.say(silent_effects({&wanted.motor, 1}));
   for (const std::string& file : {wanted.out, wanted.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }
@@ -305,6 +307,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
   }
   session.answer({{"schema", "heatsoak.simulate/1"},
                   {"motor", wanted.motor.id},
+                  {"conditions", wanted.motor.assumed},
                   {"robot", wanted.robot.id},
                   {"duty", wanted.duty.id},
                   {"duty_origin", wanted.duty.origin},

@@ -27,6 +27,9 @@ std::string columns_at_their_hottest(std::span<const Motor> motors) {
 std::string effects_under_conditions(std::span<const Motor> motors) {
   std::string text;
   for (const Motor& motor : motors) {
+    for (const auto& [key, value] : motor.assumed) {
+      text += fmt::format("{}: all this only where {} is {}, as --condition says\n", motor.id, key, value);
+    }
     for (const MotorEffect& effect : motor.effects) {
       if (effect.condition.empty()) {
         continue;

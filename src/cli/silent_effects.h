@@ -14,7 +14,8 @@ std::string silent_effects(std::span<const Motor> motors);
 /// Of those the ones that go with a column of logs, which no prediction knows.
 std::string columns_at_their_hottest(std::span<const Motor> motors);
 
-/// A line for each effect that was seen under a condition of which nothing is said: heat is reckoned with, cooling is not.
+/// A line for each condition that was stated, and for each effect that was seen under one of which nothing is said: heat is reckoned
+/// with, cooling is not.
 std::string effects_under_conditions(std::span<const Motor> motors);
 
 }  // namespace heatsoak

@@ -80,6 +80,7 @@ Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
   for (MotorEffect& effect : motor.effects) {
     std::erase_if(effect.condition, [&](const auto& part) { return conditions.contains(part.first); });
   }
+  motor.assumed = conditions;
   return motor;
 }
 

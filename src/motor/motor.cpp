@@ -281,10 +281,7 @@ Motor read_motor(const std::filesystem::path& path) {
 MotorSample nominal_sample(const Motor& motor) {
   MotorSample sample{motor.nominal, {}};
   for (const MotorEffect& effect : motor.effects) {
-    std::vector<double>& values = sample.effect_parameters.emplace_back();
-    for (const Figure& figure : effect.parameters) {
-      values.push_back(figure.value);
-    }
+    sample.effect_parameters.push_back(effect.values());
   }
   return sample;
 }

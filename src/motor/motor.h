@@ -98,8 +98,9 @@ struct Motor {
   std::string manufacturer;
   std::string name;
   std::string part_number;
-  std::string type;   ///< "brushless", "brushed"
-  std::string rotor;  ///< "external" around the stator, "internal"; empty where the file does not say
+  std::string type;                            ///< "brushless", "brushed"
+  std::string rotor;                           ///< "external" around the stator, "internal"; empty where the file does not say
+  std::map<std::string, std::string> assumed;  ///< conditions that were stated to hold (conditions.h); no part of the file
   std::vector<std::string> notes;
   std::map<std::string, std::string, std::less<>> sources;
   bool stall_includes_saturation = false;

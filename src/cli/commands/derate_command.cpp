@@ -153,6 +153,7 @@ Json json(const Derating& derating, const Options& options) {
       {"period_s", derating.options.period_s},
       {"approach_s", derating.options.approach_s},
       {"heat_reserve_ratio", rounded(derating.observer.heat_reserve_ratio(), 4)},
+      {"conditions", derating.assumed},
       {"nodes", nodes},
       {"effects", effects},
       {"guarantee",

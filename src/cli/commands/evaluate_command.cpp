@@ -226,13 +226,10 @@ ExitCode run(Options& options, Session& session) {
   if (!options.plot.empty()) {
     session.say(fmt::format("picture: {}\n", options.plot));
   }
-  nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"},
-                                {"robot", robot.id},
-                                {"duty", duty.id},
-                                {"duty_origin", duty.origin},
-                                {"seed", options.evaluate.seed},
-                                {"samples", options.evaluate.samples},
-                                {"duty_draws", draws.size()}};
+  nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"},     {"robot", robot.id},
+                                {"conditions", options.conditions},    {"duty", duty.id},
+                                {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
+                                {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
   for (const MotorEvaluation& each : results) {

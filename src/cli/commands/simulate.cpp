@@ -92,6 +92,7 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
   }
   session.answer({{"schema", "heatsoak.simulate/1"},
                   {"motor", motor.id},
+                  {"conditions", motor.assumed},
                   {"robot", robot.id},
                   {"duty", duty.id},
                   {"duty_origin", duty.origin},

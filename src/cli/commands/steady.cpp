@@ -101,6 +101,7 @@ ExitCode run(const Options& options, Session& session) {
   const auto of_winding = [&](const std::vector<double>& value_C) { return runaway ? Json() : Json(value_C[states::winding]); };
   session.answer({{"schema", "heatsoak.steady/1"},
                   {"motor", motor.id},
+                  {"conditions", motor.assumed},
                   {"ambient_C", options.current.ambient_C},
                   {"current_rms_A", rms.current_rms_A},
                   {"winding_C", rest(rms.winding_C)},
