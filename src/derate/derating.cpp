@@ -38,6 +38,7 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
   rules.most_current_A = std::min(robot.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
   constexpr double kPushed = 1.1;  // a robot that is pushed may turn its motors faster than its battery can
   rules.most_speed_rad_per_s = kPushed * robot.available_V() / values.torque_constant_Nm_per_A;
+  rules.most_vehicle_speed_m_per_s = rules.most_speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m;
   return rules;
 }
 
@@ -108,6 +109,11 @@ class Search {
     std::vector<UsePlayed> uses(patterns.size());
     in_parallel(uses.size(), options_.guarantee.threads,
                 [&](std::size_t i) { uses[i] = play(observer, table, rules, motor_, robot_, patterns[i], options_.period_s); });
+    // A law over the temperature of a body may heat it again before it is as hot as it would have to be to cool.
+    constexpr double kRounding_K = 0.5;
+    if (std::ranges::any_of(uses, [&](const UsePlayed& use) { return use.winding_peak_C > rules.limits.winding_C + kRounding_K; })) {
+      return std::nullopt;
+    }
     return Attempt{std::move(observer), rules, std::move(table), std::move(uses)};
   }
 
@@ -196,12 +202,15 @@ Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& opt
                     .rules = tried->rules,
                     .table = std::move(tried->table),
                     .options = options,
+                    .assumed = motor.assumed,
                     .effects = {},
                     .guarantee = guarantee,
                     .uses = std::move(tried->uses),
                     .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s};
     for (const EffectInPlace& effect : search.network().effects()) {
-      result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation)});
+      const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
+      result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
+                                own == motor.effects.end() ? std::string() : own->column});
     }
     return result;
   }

@@ -1,6 +1,7 @@
 // Everything that firmware gets about one motor: its observer, its table, and how far both can be trusted.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct ActingEffect {
   std::string name;
   std::string type;
   std::string equation;
+  std::string column;  ///< of logs, that the effect goes with: its hottest value counts
 };
 
 struct Derating {
@@ -35,6 +37,7 @@ struct Derating {
   BarrierRules rules;
   CurrentTable table;
   DerateOptions options;
+  std::map<std::string, std::string> assumed;  ///< Motor::assumed: where that does not hold, nothing here does
   std::vector<ActingEffect> effects;
   Guarantee guarantee;
   std::vector<UsePlayed> uses;

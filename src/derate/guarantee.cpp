@@ -18,20 +18,23 @@ struct Stretch {
   double duration_s = 0.0;
   double current2_A2_s = 0.0;
   double first_A = 0.0;
+  double speed_rad_per_s = 0.0;
 
-  [[nodiscard]] bool is_over(double current_A) const {
+  [[nodiscard]] bool is_over(double current_A, double at_rad_per_s) const {
     constexpr double kLongest_s = 1.0;
     constexpr double kLittle = 0.02;
-    return duration_s > 0.0 && (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A);
+    return duration_s > 0.0 &&
+           (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A || at_rad_per_s != speed_rad_per_s);
   }
-  void take(double current_A, double period_s) {
+  void take(double current_A, double at_rad_per_s, double period_s) {
+    speed_rad_per_s = at_rad_per_s;
     first_A = duration_s > 0.0 ? first_A : current_A;
     duration_s += period_s;
     current2_A2_s += current_A * current_A * period_s;
   }
 };
 constexpr double kSettled = 4.0;  ///< slowest time constants
-constexpr double kShortest_s = 600.0;
+constexpr double kShortest_s = 900.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
 
 double duration_s(const MotorValues& motor) { return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s); }
@@ -83,9 +86,25 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
 }  // namespace
 
 std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules) {
-  static constexpr std::array<Use, 8> kPlain{
-      {{0.0}, {0.3}, {0.6}, {0.9}, {0.0, 2.0, 4.0}, {0.6, 2.0, 4.0}, {0.0, 60.0, 120.0}, {0.6, 60.0, 120.0}}};
-  static constexpr std::array<Use, 4> kOther{{{0.0}, {0.3}, {0.9}, {0.6, 2.0, 4.0}}};
+  static constexpr std::array<Use, 11> kPlain{{{0.0},
+                                               {0.3},
+                                               {0.6},
+                                               {0.98},
+                                               {0.0, 2.0, 4.0, 0.0},
+                                               {0.6, 2.0, 4.0, 0.6},
+                                               {0.6, 30.0, 30.0, 0.6},
+                                               {0.0, 30.0, 90.0, 0.98},
+                                               {0.0, 60.0, 240.0, 0.98},
+                                               {0.0, 60.0, 120.0, 0.0},
+                                               {0.6, 60.0, 120.0, 0.6}}};
+  static constexpr std::array<Use, 8> kOther{{{0.0},
+                                              {0.3},
+                                              {0.98},
+                                              {0.6, 2.0, 4.0, 0.6},
+                                              {0.6, 30.0, 30.0, 0.6},
+                                              {0.0, 30.0, 90.0, 0.98},
+                                              {0.0, 60.0, 240.0, 0.0},
+                                              {0.0, 60.0, 240.0, 0.98}}};
   const std::vector<HotCase> cases = hot_cases(observer, rules);
   std::vector<Use> uses;
   const auto add = [&uses](std::span<const Use> patterns, const HotCase& hot_case) {
@@ -105,13 +124,12 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
                const Use& use, double period_s) {
   UsePlayed result;
   result.use = use;
-  const double speed_rad_per_s = use.speed_share * rules.most_speed_rad_per_s;
   ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));
   const auto periods = static_cast<std::int64_t>(duration_s(motor.nominal) / period_s);
   Stretch stretch;
   const auto end_stretch = [&](double time_s) {
     const double current_rms_A = std::sqrt(stretch.current2_A2_s / stretch.duration_s);
-    const Signals signals = use.hot_case.signals(rules, current_rms_A, speed_rad_per_s);
+    const Signals signals = use.hot_case.signals(rules, current_rms_A, stretch.speed_rad_per_s);
     result.intervals.push_back({stretch.duration_s, operating_point<double>(motor.nominal, robot, signals)});
     result.time_s.push_back(time_s);
     result.current_A.push_back(current_rms_A);
@@ -120,12 +138,13 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
   for (std::int64_t i = 0; i < periods; ++i) {
     const double time_s = static_cast<double>(i) * period_s;
     const bool is_on = use.on_s <= 0.0 || std::fmod(time_s, use.on_s + use.off_s) < use.on_s;
+    const double speed_rad_per_s = (is_on ? use.speed_share : use.off_speed_share) * rules.most_speed_rad_per_s;
     const float allowed_A =
         is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]) : 0.0F;
-    if (stretch.is_over(allowed_A)) {
+    if (stretch.is_over(allowed_A, speed_rad_per_s)) {
       end_stretch(time_s);
     }
-    stretch.take(allowed_A, period_s);
+    stretch.take(allowed_A, speed_rad_per_s, period_s);
     std::array<float, firmware::kSignalCount> told{};
     std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), told.begin(),
                            [](double value) { return static_cast<float>(value); });

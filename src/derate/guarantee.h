@@ -20,6 +20,7 @@ struct Use {
   double speed_share = 0.0;
   double on_s = 0.0;  ///< of a pulse; 0: held
   double off_s = 0.0;
+  double off_speed_share = 0.0;  ///< coasting between pulses
   HotCase hot_case = {};
 };
 /// Held and pulsed at several speeds in the plain case, and some of it in every other one.

@@ -67,6 +67,14 @@ std::vector<HotCase> directions(const Observer& observer, const BarrierRules& ru
   return distinct;
 }
 
+std::vector<double> evenly(double first, double last, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    values.push_back(std::lerp(first, last, static_cast<double>(i) / (count - 1)));
+  }
+  return values;
+}
+
 std::vector<double> by_ratio(double first, double last, int count) {
   std::vector<double> values{0.0};
   for (int i = 0; i < count; ++i) {
@@ -82,13 +90,8 @@ struct Scan {
 };
 
 std::vector<Scan> scans(const BarrierRules& rules) {
-  constexpr double kFastest_m_per_s = 10.0;
-  std::vector<double> speeds_m_per_s;
-  for (int i = 0; i <= 100; ++i) {
-    speeds_m_per_s.push_back(kFastest_m_per_s * i / 100.0);
-  }
-  return {{firmware::vehicle_speed, &HotCase::vehicle_speed_m_per_s, speeds_m_per_s},
-          {firmware::neighbour, &HotCase::neighbour_C, {rules.hottest_ambient_C, rules.limits.winding_C}},
+  return {{firmware::vehicle_speed, &HotCase::vehicle_speed_m_per_s, evenly(0.0, rules.most_vehicle_speed_m_per_s, 101)},
+          {firmware::neighbour, &HotCase::neighbour_C, evenly(rules.hottest_ambient_C, rules.limits.winding_C, 33)},
           {firmware::age, &HotCase::age_h, by_ratio(1e-2, 1e5, 141)},
           {firmware::acceleration, &HotCase::acceleration_rad_per_s2, by_ratio(1.0, 1e6, 241)}};
 }
@@ -126,11 +129,65 @@ std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& 
   return is_any ? std::vector{plain_case(rules), for_winding, for_bodies} : std::vector{plain_case(rules)};
 }
 
+/// With the two between the first and the last that heat winding and bodies most, found on a fine grid.
+std::vector<double> with_hottest(std::vector<double> values, const Observer& observer, const BarrierRules& rules, firmware::Signal signal) {
+  constexpr int kFine = 2001;
+  Rates rates(observer);
+  Signals signals = plain_case(rules).signals(rules, 0.3 * rules.most_current_A, 0.5 * rules.most_speed_rad_per_s);
+  double for_winding = values.front();
+  double for_bodies = values.front();
+  double most_winding = -std::numeric_limits<double>::infinity();
+  double most_bodies = most_winding;
+  for (const double value : evenly(values.front(), values.back(), kFine)) {
+    signals[signal] = value;
+    const std::span<const double> found =
+        rates.at(signals, rules.limits.winding_C - 1.0, 0.5 * (rules.limits.winding_C + rules.hottest_ambient_C));
+    const double bodies = *std::max_element(found.begin() + 1, found.end());
+    for_winding = found[states::winding] > most_winding ? value : for_winding;
+    most_winding = std::max(most_winding, found[states::winding]);
+    for_bodies = bodies > most_bodies ? value : for_bodies;
+    most_bodies = std::max(most_bodies, bodies);
+  }
+  values.insert(values.end(), {for_winding, for_bodies});
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
 }  // namespace
 
 Signals HotCase::signals(const BarrierRules& rules, double current_A, double speed_rad_per_s) const {
   return {current_sign * current_A, speed_sign * speed_rad_per_s, rules.hottest_ambient_C, vehicle_speed_m_per_s, neighbour_C, age_h,
           acceleration_rad_per_s2};
+}
+
+std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, firmware::Signal signal) {
+  constexpr int kFew = 17;
+  constexpr int kMany = 33;
+  switch (signal) {
+    case firmware::current:
+      return with_hottest(evenly(-rules.most_current_A, rules.most_current_A, kMany), observer, rules, signal);
+    case firmware::speed:
+      return with_hottest(evenly(-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s, kMany), observer, rules, signal);
+    case firmware::ambient:
+      return {rules.hottest_ambient_C};
+    default:
+      break;
+  }
+  const std::vector<Scan> all = scans(rules);
+  const Scan& scan = *std::ranges::find(all, signal, &Scan::signal);
+  std::vector<double> values;
+  for (const HotCase& each : surroundings(observer, rules)) {
+    values.push_back(each.*scan.value);
+  }
+  const std::size_t apart = (scan.values.size() + kFew - 1) / kFew;
+  for (std::size_t i = 0; i < scan.values.size(); i += apart) {
+    values.push_back(scan.values[i]);
+  }
+  values.push_back(scan.values.back());
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
 }
 
 std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules) {

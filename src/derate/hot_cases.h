@@ -25,6 +25,7 @@ struct BarrierRules {
   double hottest_ambient_C = 40.0;
   double most_current_A = 0.0;        ///< that the driver can let through
   double most_speed_rad_per_s = 0.0;  ///< of the motor
+  double most_vehicle_speed_m_per_s = 0.0;
 };
 
 using Signals = std::array<double, firmware::kSignalCount>;
@@ -45,6 +46,10 @@ struct HotCase {
 /// The plain case first (driving, no wind, a new motor beside one as cold as the air), then those that the laws can tell from it: other
 /// directions, and of each signal what heats the winding most and what heats the bodies most, found by a scan over all it may be.
 std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules);
+
+/// What a signal may be where nothing is known of it, over all its range and with what heats the most; currents and speeds in both
+/// directions up to the rules' most.
+std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, firmware::Signal signal);
 
 /// The speed up to which, in every case, a winding at its limit cools without current and the bodies it heats stay below a temperature
 /// towards which it does; beyond it no table can help. At most the rules' most speed, 0 where it is so at rest.

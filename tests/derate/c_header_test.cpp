@@ -1,7 +1,9 @@
 // The header as a firmware's compiler takes it, and what it does when things go wrong.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstdio>
@@ -177,8 +179,8 @@ TEST_P(CHeader, counts_as_hot_what_was_never_started) {
 
 TEST_P(CHeader, takes_the_hottest_case_for_what_is_no_number) {
   const std::vector<Answer> known = ask("start 80\nin 0 0 25\nin 0 0 25\n");
-  for (const char* const in :
-       {"in nan 0 25\n", "in inf 0 25\n", "in -inf 0 25\n", "in 0 nan 25\n", "in 0 0 nan\n", "in 0 0 -273\n", "in 0 0 1e30\n"}) {
+  for (const char* const in : {"in nan 0 25\n", "in inf 0 25\n", "in -inf 0 25\n", "in 0 nan 25\n", "in 0 0 nan\n", "in 0 0 -273\n",
+                               "in 0 0 1e30\n", "in 0 0 0\n", "in 0 0 1e-30\n"}) {
     const std::vector<Answer> answers = ask(fmt::format("start 80\n{}in 0 0 25\n", in));
     ASSERT_EQ(answers.size(), 2U);
     EXPECT_EQ(answers[0].reason, input_unknown) << in;
@@ -227,10 +229,51 @@ TEST_P(CHeader, does_not_believe_air_colder_than_declared) {
 }
 
 TEST_P(CHeader, gives_no_current_beyond_its_table) {
-  EXPECT_EQ(ask("start 30\nin 0 600 25\n")[0].reason, no_current);
-  EXPECT_EQ(ask("start 30\nin 0 -600 25\n")[0].allowed_A, 0.0F);
+  const double most_rad_per_s = rules_for(ecx_32()).most_speed_rad_per_s;
+  EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", 1.1 * most_rad_per_s))[0].reason, no_current);
+  EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", -1.1 * most_rad_per_s))[0].allowed_A, 0.0F);
   EXPECT_EQ(ask("start 170\nin 0 0 25\n")[0].allowed_A, 0.0F);
   EXPECT_GT(ask("start 30\nin 0 -300 25\n")[0].allowed_A, 5.0F);
+}
+
+// A law with its most in the middle: neither standing nor the highest speed heats most.
+TEST_P(CHeader, takes_the_hottest_of_all_that_an_unknown_signal_may_be) {
+  std::string law = R"([effects.hump]
+type = "tabulated"
+driver = "speed"
+form = "heat"
+hot = "stator"
+first_knot = { value = "0 rad/s", origin = "estimated", derivation = "made up" }
+last_knot = { value = "360 rad/s", origin = "estimated", derivation = "made up" }
+)";
+  for (const int knot : {1, 2, 3, 4, 5, 6, 7}) {
+    law += fmt::format("value_{} = {{ value = \"{} W\", origin = \"estimated\", derivation = \"made up\" }}\n", knot, knot == 4 ? 9 : 0);
+  }
+  build(law);
+  const auto after = [&](const char* speed_rad_per_s) {
+    std::string lines = "start 60\n";
+    for (int i = 0; i < 2000; ++i) {
+      lines += fmt::format("in 1 {} 30\n", speed_rad_per_s);
+    }
+    return ask(lines).back();
+  };
+  const Answer unknown = after("nan");
+  EXPECT_EQ(unknown.reason, input_unknown);
+  EXPECT_EQ(unknown.allowed_A, 0.0F);
+  for (const char* const known : {"0", "100", "-150", "180", "300", "400"}) {
+    EXPECT_GE(unknown.stator_C, after(known).stator_C - 0.2F) << known;
+  }
+  EXPECT_GT(after("180").stator_C, std::max(after("0").stator_C, after("400").stator_C) + 2.0F);
+}
+
+TEST(CHeaderText, SaysWhatWasAssumed) {
+  Derating derating = guarded_ecx_32();
+  const auto text = [&] { return std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating); };
+  EXPECT_THAT(text(), testing::Not(HasSubstr("ONLY WHERE")));
+  derating.assumed = {{"cooling", "fan"}};
+  derating.effects.push_back({"gripper", "tabulated", "P = curve", "gripper_ratio"});
+  EXPECT_THAT(text(), HasSubstr("ONLY WHERE cooling is fan"));
+  EXPECT_THAT(text(), HasSubstr("over gripper_ratio of the logs, at its hottest"));
 }
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {

@@ -1,4 +1,5 @@
 // Whether drawn motors keep their limits: in driving that the search never saw, through the reference solver.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -208,6 +209,28 @@ loss = { value = "70 W", origin = "estimated", derivation = "a test" }
   EXPECT_GT(derating.rules.most_speed_rad_per_s, 0.5 * derating.reachable_speed_rad_per_s);
   for (const UsePlayed& each : derating.uses) {
     EXPECT_LE(each.winding_peak_C, 155.01);
+  }
+}
+
+// Hot enough a body cools again, but on the way there its own heat carries the winding over the limit without any current.
+TEST(Derate, GuardsNoMotorThatHeatsItselfOnTheWay) {
+  std::string law = R"([effects.hump]
+type = "tabulated"
+driver = "temperature"
+form = "heat"
+hot = "winding"
+watched = "stator"
+first_knot = { value = "20 degC", origin = "estimated", derivation = "a test" }
+last_knot = { value = "155 degC", origin = "estimated", derivation = "a test" }
+)";
+  for (const int knot : {1, 2, 3, 4, 5, 6, 7}) {
+    law += fmt::format("value_{} = {{ value = \"{} W\", origin = \"estimated\", derivation = \"a test\" }}\n", knot, knot == 4 ? 20 : 0);
+  }
+  try {
+    derate(ecx_32_with(law), twente(), {});
+    FAIL() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::limit_exceeded) << failure.what();
   }
 }
 

@@ -108,6 +108,15 @@ class Lines {
   bool calls_library_ = false;
 };
 
+std::string assumptions(const Derating& derating) {
+  std::string text;
+  for (const auto& [key, value] : derating.assumed) {
+    text += fmt::format(" * ONLY WHERE {} is {}: that was stated (--condition), and effects of the motor's file were taken by it.\n",
+                        in_comment(key), in_comment(value));
+  }
+  return text;
+}
+
 std::string head_comment(const Derating& derating, const std::string& prefix) {
   const Guarantee& checked = derating.guarantee;
   std::string text = fmt::format(
@@ -119,17 +128,19 @@ std::string head_comment(const Derating& derating, const std::string& prefix) {
       " * counts {:.3g} times, so that motors worse than their nominal figures are covered: of {} drawn from the declared tolerances {} "
       "passed a\n"
       " * limit in one of the {} hardest uses ({:.1f} %, with other draws {:.1f} to {:.1f} %), the hottest winding reached {:.0f} degC.\n"
-      " * Computed, not measured; a current sensor that shows too little is not covered.\n"
+      " * Computed, not measured; a sensor that shows what could be and is not is not covered.\n"
+      "{}"
       " *\n"
       " * What it reckons with:\n",
       in_comment(derating.motor_id), in_comment(derating.robot_id), derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(),
       checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / std::max(1, checked.samples),
-      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_most_C);
+      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_most_C, assumptions(derating));
   for (const ActingEffect& effect : derating.effects) {
-    text += fmt::format(" *   {}{}: {}\n", in_comment(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
-                        in_comment(effect.equation));
+    text += fmt::format(" *   {}{}: {}{}\n", in_comment(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
+                        in_comment(effect.equation),
+                        effect.column.empty() ? "" : fmt::format("; over {} of the logs, at its hottest", in_comment(effect.column)));
   }
   text += fmt::format(
       " *\n"
@@ -231,23 +242,45 @@ static inline void @_start(@_state *state, float body_C) {
   state->started = @CAP@_STARTED;
 }
 
+/* Every node warms as fast as with the hottest of the possible values; the input takes the one that heats the winding most. */
+static inline void @_sweep(const @_input *in, float *input, const float *possible, int count, const float *state_C, float *most_K_per_s) {
+  float rate_K_per_s[@NODES@], hottest = possible[0], hottest_K_per_s = -1e30f;
+  int i, node;
+  for (i = 0; i < count; ++i) {
+    *input = possible[i];
+    @_rates(in, state_C, rate_K_per_s);
+    for (node = 0; node < @NODES@; ++node) {
+      most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
+    }
+    if (rate_K_per_s[0] > hottest_K_per_s) {
+      hottest_K_per_s = rate_K_per_s[0];
+      hottest = possible[i];
+    }
+  }
+  *input = hottest;
+}
+
 static inline @_output @_step(@_state *state, const @_input *measured) {
   @_output out;
-  @_input in = *measured, other;
-  float rate_K_per_s[@NODES@], other_K_per_s[@NODES@], hottest_body_C, speed_rad_per_s;
-  int node, is_speed_known, is_started = state->started == @CAP@_STARTED, is_known = 1;
+  @_input in = *measured;
+  float rate_K_per_s[@NODES@], most_K_per_s[@NODES@], hottest_body_C, speed_rad_per_s;
+  int node, pass, is_started = state->started == @CAP@_STARTED;
+  unsigned unknown = 0u;
   for (node = 0; node < @NODES@; ++node) {
     is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_between(-1.0f, state->carry_K[node], 1.0f);
   }
   if (!is_started) {
     @_start(state, @CAP@_WINDING_LIMIT_C);
   }
-  other = in;
 @UNKNOWN@  @_rates(&in, state->state_C, rate_K_per_s);
-  if (!is_known) {
-    @_rates(&other, state->state_C, other_K_per_s);
+  if (unknown) {
     for (node = 0; node < @NODES@; ++node) {
-      rate_K_per_s[node] = other_K_per_s[node] > rate_K_per_s[node] ? other_K_per_s[node] : rate_K_per_s[node];
+      most_K_per_s[node] = rate_K_per_s[node];
+    }
+    for (pass = 0; pass < 2; ++pass) {
+@SWEEPS@    }
+    for (node = 0; node < @NODES@; ++node) {
+      rate_K_per_s[node] = most_K_per_s[node];
     }
   }
   for (node = 0; node < @NODES@; ++node) {
@@ -262,9 +295,9 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
   }
   speed_rad_per_s = in.speed_rad_per_s < 0.0f ? -in.speed_rad_per_s : in.speed_rad_per_s;
   out.winding_C = state->state_C[0];
-  out.allowed_current_A = is_speed_known ? @_allowed_A(speed_rad_per_s, hottest_body_C, out.winding_C) : 0.0f;
+  out.allowed_current_A = unknown & @SPEED_BIT@u ? 0.0f : @_allowed_A(speed_rad_per_s, hottest_body_C, out.winding_C);
   out.reason = !is_started                                       ? @_not_started
-               : !is_known                                       ? @_input_unknown
+               : unknown                                         ? @_input_unknown
                : out.allowed_current_A >= @CAP@_MOST_CURRENT_A ? @_full
                : out.allowed_current_A > 0.0f                    ? @_derated
                                                                  : @_no_current;
@@ -272,57 +305,72 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
 }
 )";
 
-/// Between which values a signal is believed, and the two of which the hotter one counts where it is not.
-struct Belief {
-  std::string least;
-  std::string most;
-  std::string one;
-  std::string other;
-};
-
-Belief belief(const Derating& derating, firmware::Signal signal, const std::string& capital) {
+/// Between which values a signal is believed.
+std::pair<std::string, std::string> belief(const Derating& derating, firmware::Signal signal, const std::string& capital) {
   const auto defined = [&](std::string_view name) { return fmt::format("{}_{}", capital, name); };
-  const auto among_cases = [&](double HotCase::*value, double most) -> Belief {
-    const std::vector<HotCase> cases = hot_cases(derating.observer, derating.rules);
-    const auto [low, high] = std::ranges::minmax_element(cases, {}, value);
-    return {"0.0f", literal(most), literal((*low).*value), literal((*high).*value)};
-  };
   switch (signal) {
     case firmware::current:
-      return {"-10.0f * " + defined("MOST_CURRENT_A"), "10.0f * " + defined("MOST_CURRENT_A"), defined("MOST_CURRENT_A"),
-              "-" + defined("MOST_CURRENT_A")};
+      return {"-10.0f * " + defined("MOST_CURRENT_A"), "10.0f * " + defined("MOST_CURRENT_A")};
     case firmware::speed:
-      return {"-2.0f * " + defined("REACHABLE_SPEED_RAD_PER_S"), "2.0f * " + defined("REACHABLE_SPEED_RAD_PER_S"), "0.0f",
-              defined("REACHABLE_SPEED_RAD_PER_S")};
+      return {"-1.25f * " + defined("REACHABLE_SPEED_RAD_PER_S"), "1.25f * " + defined("REACHABLE_SPEED_RAD_PER_S")};
     case firmware::ambient:
-      return {defined("COLDEST_AMBIENT_C"), "300.0f", defined("HOTTEST_AMBIENT_C"), defined("HOTTEST_AMBIENT_C")};
+      // A dead sensor, or a structure that nobody filled in, shows just 0.
+      return {defined("COLDEST_AMBIENT_C") + " + 0.05f", "300.0f"};
     case firmware::neighbour:
-      return {defined("COLDEST_AMBIENT_C"), "1000.0f", defined("WINDING_LIMIT_C"), defined("WINDING_LIMIT_C")};
+      return {"in.ambient_C - 5.0f", "1000.0f"};
     case firmware::vehicle_speed:
-      return among_cases(&HotCase::vehicle_speed_m_per_s, 50.0);
+      return {"0.0f", literal(derating.rules.most_vehicle_speed_m_per_s)};
     case firmware::age:
-      return among_cases(&HotCase::age_h, 1e6);
+      return {"0.0f", "1e6f"};
     default:
-      return among_cases(&HotCase::acceleration_rad_per_s2, 1e7);
+      return {"0.0f", fmt::format("2.0f * {} / {}", defined("REACHABLE_SPEED_RAD_PER_S"), defined("PERIOD_S"))};
   }
 }
 
-/// A signal that is not believed is replaced in both inputs; the speed decides over the current besides.
+std::vector<firmware::Signal> used_signals(const Observer& observer) {
+  std::vector<firmware::Signal> used;
+  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
+    if (observer.uses(static_cast<firmware::Signal>(i))) {
+      used.push_back(static_cast<firmware::Signal>(i));
+    }
+  }
+  return used;
+}
+
+std::string_view name_of(firmware::Signal signal) { return firmware::signals()[static_cast<std::size_t>(signal)].name; }
+
+std::vector<double> values_if_unknown(const Derating& derating, firmware::Signal signal) {
+  BarrierRules reachable = derating.rules;
+  reachable.most_speed_rad_per_s = derating.reachable_speed_rad_per_s;
+  return heatsoak::values_if_unknown(derating.observer, reachable, signal);
+}
+
+/// What every signal may be where it is not believed.
+std::string possibilities(const Derating& derating, const std::string& prefix) {
+  std::string text = "/* what an input may be of which nothing is known */\n";
+  for (const firmware::Signal signal : used_signals(derating.observer)) {
+    text += array(fmt::format("{}_possible_{}", prefix, name_of(signal)), values_if_unknown(derating, signal));
+  }
+  return text + "\n";
+}
+
+/// First every signal that is not believed gets some value, for a rate of what is no number is none.
 std::string doubts(const Derating& derating, const std::string& prefix, const std::string& capital) {
   std::string text;
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    const auto signal = static_cast<firmware::Signal>(i);
-    if (!derating.observer.uses(signal)) {
-      continue;
-    }
-    const std::string_view name = firmware::signals()[i].name;
-    const Belief believed = belief(derating, signal, capital);
-    const std::string test = fmt::format("{}_is_between({}, in.{}, {})", prefix, believed.least, name, believed.most);
-    if (signal == firmware::speed) {
-      text += fmt::format("  is_speed_known = {};\n", test);
-    }
-    text += fmt::format("  if (!{}) {{\n    in.{} = {};\n    other.{} = {};\n    is_known = 0;\n  }}\n",
-                        signal == firmware::speed ? "is_speed_known" : test, name, believed.one, name, believed.other);
+  for (const firmware::Signal signal : used_signals(derating.observer)) {
+    const auto [least, most] = belief(derating, signal, capital);
+    text += fmt::format("  if (!{0}_is_between({1}, in.{2}, {3})) {{\n    in.{2} = {0}_possible_{2}[0];\n    unknown |= {4}u;\n  }}\n",
+                        prefix, least, name_of(signal), most, 1U << static_cast<unsigned>(signal));
+  }
+  return text;
+}
+
+std::string sweeps(const Derating& derating, const std::string& prefix) {
+  std::string text;
+  for (const firmware::Signal signal : used_signals(derating.observer)) {
+    text += fmt::format(
+        "      if (unknown & {}u) {{\n        {}_sweep(&in, &in.{}, {}_possible_{}, {}, state->state_C, most_K_per_s);\n      }}\n",
+        1U << static_cast<unsigned>(signal), prefix, name_of(signal), prefix, name_of(signal), values_if_unknown(derating, signal).size());
   }
   return text;
 }
@@ -352,6 +400,8 @@ std::string write(const Derating& derating) {
   const Lines lines(derating.observer);
   const auto define = [&](std::string_view name, double value) { return fmt::format("#define {}_{} {}\n", capital, name, literal(value)); };
   const std::vector<std::pair<std::string, std::string>> words{{"@UNKNOWN@", doubts(derating, prefix, capital)},
+                                                               {"@SWEEPS@", sweeps(derating, prefix)},
+                                                               {"@SPEED_BIT@", std::to_string(1U << unsigned{firmware::speed})},
                                                                {"@CAP@", capital},
                                                                {"@NODES@", std::to_string(derating.observer.state_count())},
                                                                {"@SPEEDS@", std::to_string(derating.table.speed_rad_per_s.size())},
@@ -372,7 +422,7 @@ std::string write(const Derating& derating) {
              "/* dT/dt of every node */\nstatic inline void {0}_rates(const {0}_input *input, const float *state_C, float *rate_K_per_s) "
              "{{\n",
              prefix) +
-         lines.text() + "}\n\n" + replaced(kAllowed, words) + replaced(kStep, words) + "\n#endif\n";
+         lines.text() + "}\n\n" + possibilities(derating, prefix) + replaced(kAllowed, words) + replaced(kStep, words) + "\n#endif\n";
 }
 
 }  // namespace
