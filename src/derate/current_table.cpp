@@ -71,14 +71,6 @@ class Barrier {
   std::vector<double> rate_;
 };
 
-std::vector<double> evenly(double first, double last, int count) {
-  std::vector<double> points;
-  for (int i = 0; i < count; ++i) {
-    points.push_back(std::lerp(first, last, static_cast<double>(i) / (count - 1)));
-  }
-  return points;
-}
-
 /// Close together where the current falls, near the limit; the last place is where it has faded out.
 std::vector<double> axis_C(double coldest_C, double limit_C) {
   std::vector<double> points{limit_C, limit_C + kFadeOut_K};

@@ -7,6 +7,15 @@
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
+
+std::vector<double> evenly(double low, double high, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    values.push_back(std::lerp(low, high, static_cast<double>(i) / (count - 1)));
+  }
+  return values;
+}
+
 namespace {
 
 /// The rates at a place, nodes but the winding all equally hot.
@@ -67,14 +76,6 @@ std::vector<HotCase> directions(const Observer& observer, const BarrierRules& ru
   return distinct;
 }
 
-std::vector<double> evenly(double first, double last, int count) {
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    values.push_back(std::lerp(first, last, static_cast<double>(i) / (count - 1)));
-  }
-  return values;
-}
-
 std::vector<double> by_ratio(double first, double last, int count) {
   std::vector<double> values{0.0};
   for (int i = 0; i < count; ++i) {
@@ -96,34 +97,45 @@ std::vector<Scan> scans(const BarrierRules& rules) {
           {firmware::acceleration, &HotCase::acceleration_rad_per_s2, by_ratio(1.0, 1e6, 241)}};
 }
 
+struct Hottest {
+  double for_winding = 0.0;
+  double for_bodies = 0.0;
+};
+
+/// Of a signal's values the one that heats the winding most and the one that heats the bodies most, at work with all else plain.
+Hottest hottest(const Observer& observer, const BarrierRules& rules, firmware::Signal signal, std::span<const double> values) {
+  Rates rates(observer);
+  Signals signals = plain_case(rules).signals(rules, 0.3 * rules.most_current_A, 0.5 * rules.most_speed_rad_per_s);
+  Hottest found;
+  double most_winding = -std::numeric_limits<double>::infinity();
+  double most_bodies = most_winding;
+  for (const double value : values) {
+    signals[signal] = value;
+    const std::span<const double> rate =
+        rates.at(signals, rules.limits.winding_C - 1.0, 0.5 * (rules.limits.winding_C + rules.hottest_ambient_C));
+    if (rate[states::winding] > most_winding) {
+      most_winding = rate[states::winding];
+      found.for_winding = value;
+    }
+    if (const double bodies = *std::max_element(rate.begin() + 1, rate.end()); bodies > most_bodies) {
+      most_bodies = bodies;
+      found.for_bodies = value;
+    }
+  }
+  return found;
+}
+
 /// The plain case, the one that heats the winding most, the one that heats the bodies most.
 std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& rules) {
   HotCase for_winding = plain_case(rules);
   HotCase for_bodies = for_winding;
-  Rates rates(observer);
   bool is_any = false;
   for (const Scan& scan : scans(rules)) {
-    if (!observer.uses(scan.signal)) {
-      continue;
-    }
-    is_any = true;
-    double most_winding = -std::numeric_limits<double>::infinity();
-    double most_bodies = most_winding;
-    for (const double value : scan.values) {
-      HotCase each = plain_case(rules);
-      each.*scan.value = value;
-      const Signals signals = each.signals(rules, 0.3 * rules.most_current_A, 0.5 * rules.most_speed_rad_per_s);
-      const std::span<const double> found =
-          rates.at(signals, rules.limits.winding_C - 1.0, 0.5 * (rules.limits.winding_C + rules.hottest_ambient_C));
-      const double bodies = *std::max_element(found.begin() + 1, found.end());
-      if (found[states::winding] > most_winding) {
-        most_winding = found[states::winding];
-        for_winding.*scan.value = value;
-      }
-      if (bodies > most_bodies) {
-        most_bodies = bodies;
-        for_bodies.*scan.value = value;
-      }
+    if (observer.uses(scan.signal)) {
+      is_any = true;
+      const Hottest found = hottest(observer, rules, scan.signal, scan.values);
+      for_winding.*scan.value = found.for_winding;
+      for_bodies.*scan.value = found.for_bodies;
     }
   }
   return is_any ? std::vector{plain_case(rules), for_winding, for_bodies} : std::vector{plain_case(rules)};
@@ -132,23 +144,8 @@ std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& 
 /// With the two between the first and the last that heat winding and bodies most, found on a fine grid.
 std::vector<double> with_hottest(std::vector<double> values, const Observer& observer, const BarrierRules& rules, firmware::Signal signal) {
   constexpr int kFine = 2001;
-  Rates rates(observer);
-  Signals signals = plain_case(rules).signals(rules, 0.3 * rules.most_current_A, 0.5 * rules.most_speed_rad_per_s);
-  double for_winding = values.front();
-  double for_bodies = values.front();
-  double most_winding = -std::numeric_limits<double>::infinity();
-  double most_bodies = most_winding;
-  for (const double value : evenly(values.front(), values.back(), kFine)) {
-    signals[signal] = value;
-    const std::span<const double> found =
-        rates.at(signals, rules.limits.winding_C - 1.0, 0.5 * (rules.limits.winding_C + rules.hottest_ambient_C));
-    const double bodies = *std::max_element(found.begin() + 1, found.end());
-    for_winding = found[states::winding] > most_winding ? value : for_winding;
-    most_winding = std::max(most_winding, found[states::winding]);
-    for_bodies = bodies > most_bodies ? value : for_bodies;
-    most_bodies = std::max(most_bodies, bodies);
-  }
-  values.insert(values.end(), {for_winding, for_bodies});
+  const Hottest found = hottest(observer, rules, signal, evenly(values.front(), values.back(), kFine));
+  values.insert(values.end(), {found.for_winding, found.for_bodies});
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;

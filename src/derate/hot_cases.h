@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "derate/observer.h"
@@ -27,6 +28,9 @@ struct BarrierRules {
   double most_speed_rad_per_s = 0.0;  ///< of the motor
   double most_vehicle_speed_m_per_s = 0.0;
 };
+
+/// Both ends and what lies between at equal distances; two or more.
+std::vector<double> evenly(double low, double high, int count);
 
 using Signals = std::array<double, firmware::kSignalCount>;
 

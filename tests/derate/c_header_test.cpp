@@ -238,18 +238,12 @@ TEST_P(CHeader, gives_no_current_beyond_its_table) {
 
 // A law with its most in the middle: neither standing nor the highest speed heats most.
 TEST_P(CHeader, takes_the_hottest_of_all_that_an_unknown_signal_may_be) {
-  std::string law = R"([effects.hump]
-type = "tabulated"
-driver = "speed"
-form = "heat"
+  build(hump(R"(driver = "speed"
 hot = "stator"
-first_knot = { value = "0 rad/s", origin = "estimated", derivation = "made up" }
-last_knot = { value = "360 rad/s", origin = "estimated", derivation = "made up" }
-)";
-  for (const int knot : {1, 2, 3, 4, 5, 6, 7}) {
-    law += fmt::format("value_{} = {{ value = \"{} W\", origin = \"estimated\", derivation = \"made up\" }}\n", knot, knot == 4 ? 9 : 0);
-  }
-  build(law);
+first_knot = { value = "0 rad/s", origin = "estimated", derivation = "a test" }
+last_knot = { value = "360 rad/s", origin = "estimated", derivation = "a test" }
+)",
+             9.0));
   const auto after = [&](const char* speed_rad_per_s) {
     std::string lines = "start 60\n";
     for (int i = 0; i < 2000; ++i) {

@@ -1,5 +1,4 @@
 // Whether drawn motors keep their limits: in driving that the search never saw, through the reference solver.
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -214,18 +213,13 @@ loss = { value = "70 W", origin = "estimated", derivation = "a test" }
 
 // Hot enough a body cools again, but on the way there its own heat carries the winding over the limit without any current.
 TEST(Derate, GuardsNoMotorThatHeatsItselfOnTheWay) {
-  std::string law = R"([effects.hump]
-type = "tabulated"
-driver = "temperature"
-form = "heat"
+  const std::string law = hump(R"(driver = "temperature"
 hot = "winding"
 watched = "stator"
 first_knot = { value = "20 degC", origin = "estimated", derivation = "a test" }
 last_knot = { value = "155 degC", origin = "estimated", derivation = "a test" }
-)";
-  for (const int knot : {1, 2, 3, 4, 5, 6, 7}) {
-    law += fmt::format("value_{} = {{ value = \"{} W\", origin = \"estimated\", derivation = \"a test\" }}\n", knot, knot == 4 ? 20 : 0);
-  }
+)",
+                               20.0);
   try {
     derate(ecx_32_with(law), twente(), {});
     FAIL() << "no failure";

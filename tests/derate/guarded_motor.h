@@ -28,6 +28,16 @@ inline Motor ecx_32_with(const std::string& lines) {
   return motor;
 }
 
+/// A curve that heats over the temperature or speed that `lines` name, with all of it at its middle knot.
+inline std::string hump(const std::string& lines, double most_W) {
+  std::string law = "[effects.hump]\ntype = \"tabulated\"\nform = \"heat\"\n" + lines;
+  for (int knot = 1; knot <= 7; ++knot) {
+    law +=
+        fmt::format("value_{} = {{ value = \"{} W\", origin = \"estimated\", derivation = \"a test\" }}\n", knot, knot == 4 ? most_W : 0.0);
+  }
+  return law;
+}
+
 inline BarrierRules rules_for(const Motor& motor, double approach_s = 0.5) {
   DerateOptions options;
   options.approach_s = approach_s;

@@ -151,12 +151,22 @@ std::string head_comment(const Derating& derating, const std::string& prefix) {
   return text;
 }
 
+std::vector<firmware::Signal> used_signals(const Observer& observer) {
+  std::vector<firmware::Signal> used;
+  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
+    if (observer.uses(static_cast<firmware::Signal>(i))) {
+      used.push_back(static_cast<firmware::Signal>(i));
+    }
+  }
+  return used;
+}
+
+std::string_view name_of(firmware::Signal signal) { return firmware::signals()[static_cast<std::size_t>(signal)].name; }
+
 std::string structures(const Derating& derating, const std::string& prefix) {
   std::string text = "typedef struct {\n";
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      text += fmt::format("  float {}; /* {} */\n", firmware::signals()[i].name, firmware::signals()[i].meaning);
-    }
+  for (const firmware::Signal signal : used_signals(derating.observer)) {
+    text += fmt::format("  float {}; /* {} */\n", name_of(signal), firmware::signals()[static_cast<std::size_t>(signal)].meaning);
   }
   text += fmt::format("}} {}_input;\n\ntypedef struct {{\n  uint32_t started;\n  float state_C[{}]; /*", prefix,
                       derating.observer.state_count());
@@ -326,18 +336,6 @@ std::pair<std::string, std::string> belief(const Derating& derating, firmware::S
       return {"0.0f", fmt::format("2.0f * {} / {}", defined("REACHABLE_SPEED_RAD_PER_S"), defined("PERIOD_S"))};
   }
 }
-
-std::vector<firmware::Signal> used_signals(const Observer& observer) {
-  std::vector<firmware::Signal> used;
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (observer.uses(static_cast<firmware::Signal>(i))) {
-      used.push_back(static_cast<firmware::Signal>(i));
-    }
-  }
-  return used;
-}
-
-std::string_view name_of(firmware::Signal signal) { return firmware::signals()[static_cast<std::size_t>(signal)].name; }
 
 std::vector<double> values_if_unknown(const Derating& derating, firmware::Signal signal) {
   BarrierRules reachable = derating.rules;
