@@ -1,0 +1,128 @@
+// Stage 2: from the command to the motion that the body is to have now.
+#include "robot_core/drive_stages.h"
+
+namespace robot_core {
+namespace {
+
+constexpr float kStanding_m_per_s = 0.03F;
+constexpr float kStanding_rad_per_s = 0.3F;
+// A command that jumps is approached with this multiple of the acceleration limit: more than a planned motion needs.
+constexpr float kApproach_ratio = 2.0F;
+constexpr float kMostYawIntegral_rad = 0.5F;
+// How fast the reference follows a robot that its limits hold back, and how far ahead of it the reference stays.
+constexpr float kHoldBack_s = 0.1F;
+constexpr float kLead_share = 0.2F;
+constexpr float kRecovery_s = 0.3F;
+
+Vector3 turned(const Vector3& v, float angle_rad) {
+  const SineCosine turn = sine_cosine(angle_rad);
+  return {v.x * turn.cosine - v.y * turn.sine, v.x * turn.sine + v.y * turn.cosine, v.yaw};
+}
+
+float length(const Vector3& v) { return square_root(v.x * v.x + v.y * v.y); }
+
+Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, v.y * plane, v.yaw * yaw}; }
+
+/// Length of the plane part and size of the yaw part at most as given, directions kept.
+Vector3 limited(const Vector3& v, float most_plane, float most_yaw) {
+  const float plane = length(v);
+  return scaled(v, plane > most_plane ? most_plane / plane : 1.0F, absolute(v.yaw) > most_yaw ? most_yaw / absolute(v.yaw) : 1.0F);
+}
+
+/// What the command asks for now: continued by its acceleration, seen from a robot that has turned since.
+BodyReference commanded(const Config& config, State& state, const Input& input, const Believed& believed) {
+  BodyReference body;
+  if (believed.mode == Mode::body_velocity) {
+    const Command& command = input.command;
+    const float age_s = input.command_age_s;
+    const Vector3 continued{command.velocity.x + command.acceleration.x * age_s, command.velocity.y + command.acceleration.y * age_s,
+                            command.velocity.yaw + command.acceleration.yaw * age_s};
+    const float turned_rad = -believed.yaw_rate_rad_per_s * age_s;
+    body.velocity = turned(continued, turned_rad);
+    body.acceleration = turned(command.acceleration, turned_rad);
+    body.push = turned(command.push, turned_rad);
+  } else if (believed.mode == Mode::pose_target) {
+    if (config.plan_step(config, input.pose, input.command.pose, state.plan_velocity, state.plan_acceleration)) {
+      body.velocity = turned(state.plan_velocity, -input.pose.yaw);
+      body.acceleration = turned(state.plan_acceleration, -input.pose.yaw);
+    } else {
+      state.plan_velocity = state.plan_acceleration = {};
+    }
+  }
+  return body;
+}
+
+/// Where limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction, so that the
+/// wheels' errors keep the ratios of that direction.
+void hold_back(State& state, const Vector3& wanted, const Believed& believed) {
+  const float square = wanted.x * wanted.x + wanted.y * wanted.y + 1e-6F;
+  const float reached = (wanted.x * believed.velocity.x + wanted.y * believed.velocity.y) / square;
+  const float target = clamped(reached + kLead_share, 0.0F, 1.0F);
+  if (target < state.speed_share && state.is_limited != 0) {
+    state.speed_share += (target - state.speed_share) * smaller(1.0F, believed.elapsed_s / kHoldBack_s);
+  } else {
+    state.speed_share = smaller(1.0F, state.speed_share + believed.elapsed_s / kRecovery_s);
+  }
+}
+
+/// The reference of the last period seen from the robot's present heading, moved towards the wanted one.
+void approach(const Config& config, State& state, const Believed& believed, BodyReference& body) {
+  const Vector3 last = turned(state.velocity_reference, -believed.yaw_rate_rad_per_s * believed.elapsed_s);
+  const Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
+  const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * believed.elapsed_s;
+  const float most_rad_per_s = kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2 * believed.elapsed_s;
+  const Vector3 taken = limited(change, most_m_per_s, most_rad_per_s);
+  body.velocity = {last.x + taken.x, last.y + taken.y, last.yaw + taken.yaw};
+  const bool is_jump = taken.x != change.x || taken.y != change.y || taken.yaw != change.yaw;
+  if (is_jump) {
+    const float rate_per_s = 1.0F / (kApproach_ratio * believed.elapsed_s);
+    body.acceleration = scaled(taken, rate_per_s, rate_per_s);
+  }
+}
+
+void close_loop(const Config& config, State& state, const Believed& believed, BodyReference& body) {
+  const float yaw_error_rad_per_s = body.velocity.yaw - believed.yaw_rate_rad_per_s;
+  state.yaw_integral_rad =
+      clamped(state.yaw_integral_rad + yaw_error_rad_per_s * believed.elapsed_s, -kMostYawIntegral_rad, kMostYawIntegral_rad);
+  body.acceleration.x += config.body_gain_per_s * (body.velocity.x - believed.velocity.x);
+  body.acceleration.y += config.body_gain_per_s * (body.velocity.y - believed.velocity.y);
+  body.acceleration.yaw += config.yaw_gain_per_s * yaw_error_rad_per_s + config.yaw_integral_per_s2 * state.yaw_integral_rad;
+  const float most_m_per_s2 = kApproach_ratio * config.acceleration_limit_m_per_s2;
+  body.acceleration = limited(body.acceleration, most_m_per_s2, kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2);
+  // The wheels follow their speeds; what they slip in yaw only the gyro sees.
+  if (config.yaw_gain_per_s > 0.0F) {
+    body.velocity.yaw += config.yaw_integral_per_s2 / config.yaw_gain_per_s * state.yaw_integral_rad;
+  }
+}
+
+}  // namespace
+
+BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Believed& believed) {
+  BodyReference body;
+  if (believed.robot_fault == Reason::time_jump) {
+    state.velocity_reference = believed.velocity;
+    state.yaw_integral_rad = 0.0F;
+  }
+  body.is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
+  const bool is_standing = length(believed.velocity) < kStanding_m_per_s && absolute(believed.velocity.yaw) < kStanding_rad_per_s;
+  body.is_open = believed.mode == Mode::coast || (believed.command_fault != Reason::none && is_standing);
+  if (body.is_open || body.is_wheelwise) {
+    state.velocity_reference = believed.velocity;
+    state.yaw_integral_rad = 0.0F;
+    state.speed_share = 1.0F;
+    return body;
+  }
+  if (believed.mode != Mode::pose_target) {
+    state.plan_velocity = state.plan_acceleration = {};
+  }
+  BodyReference wanted = commanded(config, state, input, believed);
+  wanted.velocity = limited(wanted.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
+  hold_back(state, wanted.velocity, believed);
+  wanted.velocity = scaled(wanted.velocity, state.speed_share, state.speed_share);
+  approach(config, state, believed, wanted);
+  state.velocity_reference = wanted.velocity;
+  close_loop(config, state, believed, wanted);
+  return wanted;
+}
+
+}  // namespace robot_core

@@ -1,0 +1,91 @@
+// Whether a Config can be driven with.
+#include "robot_core/drive_core.h"
+
+namespace robot_core {
+namespace {
+
+bool is_positive(float x) { return is_finite(x) && x > 0.0F; }
+bool is_not_negative(float x) { return is_finite(x) && x >= 0.0F; }
+
+template <int count>
+bool all(bool (*holds)(float), const float (&values)[count]) {
+  bool all_hold = true;
+  for (const float value : values) {
+    all_hold = all_hold && holds(value);
+  }
+  return all_hold;
+}
+
+bool is_possible(const WheelConfig& wheel) {
+  const float values[] = {wheel.rolling_x_share,   wheel.rolling_y_share, wheel.inverse_x_factor,   wheel.inverse_y_factor,
+                          wheel.inverse_yaw_per_m, wheel.sine_V,          wheel.phase_cosine_ratio, wheel.phase_sine_ratio};
+  const float positive[] = {wheel.slip_factor, wheel.damping_V_s_per_rad};
+  const float not_negative[] = {wheel.level_load_share, wheel.sign_V};
+  return all(is_finite<float>, values) && all(is_positive, positive) && all(is_not_negative, not_negative);
+}
+
+/// Whole guard periods per control period, and a table.
+bool is_possible(const GuardModel& guard, float period_s) {
+  const float periods = guard.period_s / period_s;
+  const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, 1e6F) + 0.5F));
+  return guard.node_count >= 2 && guard.node_count <= kMostGuardNodes && is_positive(guard.period_s) && whole >= 1.0F &&
+         absolute(periods - whole) < 1e-3F * whole && guard.rates != nullptr && guard.current_A != nullptr &&
+         guard.speed_rad_per_s.count >= 2 && guard.stator_C.count >= 2 && guard.winding_C.count >= 2 && is_finite(guard.winding_limit_C) &&
+         is_finite(guard.coldest_ambient_C) && guard.hottest_ambient_C < guard.winding_limit_C;
+}
+
+}  // namespace
+
+bool is_possible(const Config& config) {
+  if (config.wheel_count != 3 && config.wheel_count != 4) {
+    return false;
+  }
+  const float positive[] = {config.period_s,
+                            config.wheel_radius_m,
+                            config.contact_radius_m,
+                            config.mass_kg,
+                            config.yaw_inertia_kg_m2,
+                            config.wheel_inertia_kg_m2,
+                            config.torque_constant_Nm_per_A,
+                            config.resistance_ohm,
+                            config.lowest_resistance_ohm,
+                            config.gear_ratio,
+                            config.gear_efficiency,
+                            config.fastest_wheel_rad_per_s,
+                            config.largest_acceleration_rad_per_s2,
+                            config.battery_full_V,
+                            config.battery_lowest_V,
+                            config.voltage_limit_V,
+                            config.current_limit_A,
+                            config.tracking_time_s,
+                            config.speed_limit_m_per_s,
+                            config.yaw_rate_limit_rad_per_s,
+                            config.acceleration_limit_m_per_s2,
+                            config.yaw_acceleration_limit_rad_per_s2,
+                            config.command_timeout_s};
+  const float not_negative[] = {config.battery_resistance_ohm, config.rotation_friction_V,      config.friction_smoothing_m_per_s,
+                                config.body_gain_per_s,        config.yaw_gain_per_s,           config.yaw_integral_per_s2,
+                                config.wheel_gain_V_s_per_rad, config.wheel_integral_V_per_rad, config.jerk_limit_m_per_s3,
+                                config.traction_ratio,         config.braking_reserve_K,        config.limp_current_A,
+                                config.warning_time_s};
+  bool possible = all(is_positive, positive) && all(is_not_negative, not_negative) && config.battery_lowest_V <= config.battery_full_V;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    possible = possible && is_possible(config.wheel[i]);
+  }
+  return possible && (config.guard == nullptr || is_possible(*config.guard, config.period_s));
+}
+
+std::uint32_t config_check_sum(const Config& config) {
+  // FNV-1a by words (Fowler, Noll, Vo): every change of one word changes it.
+  using Word = std::uint32_t __attribute__((may_alias));
+  static_assert(__builtin_offsetof(Config, unused) % sizeof(Word) == 2, "flags and padding fill the last word");
+  constexpr unsigned kWords = (__builtin_offsetof(Config, unused) + sizeof(Config::unused)) / sizeof(Word);
+  const auto* const word = reinterpret_cast<const Word*>(&config);
+  std::uint32_t sum = 2166136261U;
+  for (unsigned i = 1; i < kWords; ++i) {
+    sum = (sum ^ word[i]) * 16777619U;
+  }
+  return sum;
+}
+
+}  // namespace robot_core

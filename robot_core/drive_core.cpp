@@ -1,0 +1,100 @@
+#include "robot_core/drive_core.h"
+
+#include "robot_core/drive_stages.h"
+
+namespace robot_core {
+namespace {
+
+constexpr std::uint32_t kStarted = 0x4452564EU;
+// So that a state of zeros is none.
+constexpr std::uint32_t kSeed = 0x9E3779B9U;
+
+using Word = std::uint32_t __attribute__((may_alias));
+
+/// Sum of the words after the first: every flip of a single bit changes it.
+std::uint32_t state_check_sum(const State& state) {
+  static_assert(sizeof(State) % sizeof(Word) == 0);
+  const auto* const word = reinterpret_cast<const Word*>(&state);
+  std::uint32_t sum = kSeed;
+  for (unsigned i = 1; i < sizeof(State) / sizeof(Word); ++i) {
+    sum += word[i];
+  }
+  return sum;
+}
+
+/// Guard steps of the wheels are spread over the guard period.
+void spread_guards(const Config& config, State& state) {
+  if (config.guard == nullptr) {
+    return;
+  }
+  const int periods = static_cast<int>(config.guard->period_s / config.period_s + 0.5F);
+  for (int i = 0; i < config.wheel_count; ++i) {
+    state.wheel[i].guard_steps = i * periods / config.wheel_count;
+  }
+}
+
+void reset(const Config& config, State& state, float body_C) {
+  state = {};
+  for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
+    WheelState& wheel = state.wheel[i];
+    start_guard(*config.guard, wheel.guard, body_C);
+    wheel.winding_C = wheel.body_C = wheel.guard.state_C[0];
+    const bool is_at_limit = !(wheel.winding_C < config.guard->winding_limit_C);
+    wheel.guard_fault = is_at_limit ? static_cast<std::uint8_t>(Reason::guard_unknown) : 0;
+    // Until its first step, at standstill, as the table says.
+    wheel.allowed_A = wheel.allowed_braking_A =
+        allowed_current_A(*config.guard, 0.0F, wheel.body_C, wheel.winding_C + config.braking_reserve_K);
+    wheel.time_to_limit_s = kLongTime_s;
+  }
+  spread_guards(config, state);
+  state.battery_V = config.battery_lowest_V;
+}
+
+Output all_open(Reason reason) {
+  Output out;
+  out.robot_reason = reason;
+  for (Reason& each : out.reason) {
+    each = reason;
+  }
+  return out;
+}
+
+}  // namespace
+
+bool start(const Config& config, State& state, const StartUp& start_up) {
+  state = {};
+  const bool is_valid = is_possible(config) && config.check_sum == config_check_sum(config);
+  if (!is_valid) {
+    state.check_sum = state_check_sum(state);
+    return false;
+  }
+  reset(config, state, start_up.is_rested ? start_up.body_C : kNoSample);
+  state.is_valid = kStarted;
+  state.check_sum = state_check_sum(state);
+  return true;
+}
+
+Output step(const Config& config, State& state, const Input& input) {
+  bool is_corrupted = state.check_sum != state_check_sum(state);
+  if (is_corrupted) {
+    start(config, state, {});
+  }
+  if (state.is_valid != kStarted) {
+    return all_open(Reason::config_invalid);
+  }
+  Believed believed = validate_input(config, state, input);
+  if (is_corrupted) {
+    believed.robot_fault = Reason::state_corrupted;
+  }
+  run_guards(config, state, input, believed);
+  const BodyReference body = control_body_velocity(config, state, input, believed);
+  const WheelReference wheels = find_wheel_speeds(config, input, body);
+  WheelVoltage voltage = feed_forward(config, input, believed, body, wheels);
+  control_wheel_speeds(config, state, believed, wheels, voltage);
+  const LimitedVoltage limited = apply_limits(config, state, believed, body, voltage);
+  const Output out = make_output(config, state, believed, limited);
+  state.check_sum = state_check_sum(state);
+  return out;
+}
+
+}  // namespace robot_core

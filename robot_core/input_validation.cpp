@@ -1,0 +1,352 @@
+// Stage 1: which samples are believed, and what stands in for the others.
+#include "robot_core/drive_stages.h"
+
+namespace robot_core {
+namespace {
+
+// A sample that is exactly the same for so long while other evidence says that it should have changed is stuck.
+constexpr float kStuck_s = 0.05F;
+// Sliding contacts make wheels disagree with each other for a while; beyond this share of the fastest speed it is no sliding.
+constexpr float kDisagreement_share = 0.06F;
+constexpr float kJump_share = 0.03F;
+// Time constant of the comparison of wheels with each other's voltages.
+constexpr float kSwap_s = 0.3F;
+constexpr float kFastestYaw_rad_per_s = 60.0F;
+constexpr float kYawJump_rad_per_s = 10.0F;
+constexpr float kYawDisagreement_rad_per_s = 2.0F;
+constexpr float kHottestAir_C = 120.0F;
+// A winding is never this many times its coldest resistance: 2 is copper at 280 degC.
+constexpr float kHotResistance_ratio = 2.0F;
+
+constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
+
+void validate_time(const Config& config, const Input& input, Believed& believed) {
+  believed.elapsed_periods = 1;
+  believed.elapsed_s = config.period_s;
+  const float elapsed_s = input.elapsed_s;
+  if (elapsed_s != elapsed_s) {
+    return;  // not measured
+  }
+  if (!is_finite(elapsed_s) || elapsed_s <= 0.0F) {
+    believed.robot_fault = Reason::period_invalid;
+  } else if (elapsed_s > kLongestGap_periods * config.period_s) {
+    believed.robot_fault = Reason::time_jump;
+    believed.elapsed_s = elapsed_s;
+  } else {
+    believed.elapsed_periods = static_cast<int>(clamped(elapsed_s / config.period_s + 0.5F, 1.0F, kLongestGap_periods));
+    believed.elapsed_s = static_cast<float>(believed.elapsed_periods) * config.period_s;
+  }
+}
+
+bool is_finite(const Vector3& v) { return robot_core::is_finite(v.x) && robot_core::is_finite(v.y) && robot_core::is_finite(v.yaw); }
+
+bool has_finite_values(const Config& config, const Command& command) {
+  bool finite = true;
+  switch (command.mode) {
+    case Mode::coast:
+    case Mode::brake:
+      return true;
+    case Mode::body_velocity:
+      return is_finite(command.velocity) && is_finite(command.acceleration) && is_finite(command.push);
+    case Mode::pose_target:
+      return is_finite(command.pose);
+    case Mode::wheel_speed:
+      for (int i = 0; i < config.wheel_count; ++i) {
+        finite = finite && robot_core::is_finite(command.wheel_speed_rad_per_s[i]);
+      }
+      return finite;
+    case Mode::wheel_torque:
+      for (int i = 0; i < config.wheel_count; ++i) {
+        finite = finite && robot_core::is_finite(command.wheel_torque_Nm[i]);
+      }
+      return finite;
+  }
+  return false;
+}
+
+void validate_command(const Config& config, const Input& input, Believed& believed) {
+  believed.mode = input.command.mode;
+  if (!has_finite_values(config, input.command)) {
+    believed.command_fault = Reason::command_invalid;
+  } else if (!(input.command_age_s >= 0.0F && input.command_age_s <= config.command_timeout_s)) {
+    believed.command_fault = Reason::command_stale;
+  } else if (input.command.mode == Mode::pose_target && (config.plan_step == nullptr || !is_finite(input.pose))) {
+    believed.command_fault = Reason::pose_invalid;
+  }
+  if (believed.command_fault != Reason::none && believed.mode != Mode::coast) {
+    believed.mode = Mode::brake;
+  }
+}
+
+void validate_battery(const Config& config, State& state, const Input& input, Believed& believed) {
+  const float sample_V = input.battery_V;
+  if (sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V) {
+    believed.battery_V = believed.pwm_battery_V = state.battery_V = sample_V;
+  } else {
+    believed.battery_V = config.battery_lowest_V;
+    believed.pwm_battery_V = config.battery_full_V;
+    believed.robot_fault = believed.robot_fault == Reason::none ? Reason::battery_voltage_missing : believed.robot_fault;
+  }
+}
+
+void validate_ambient(const Config& config, State& state, const Input& input, Believed& believed) {
+  const float coldest_C = config.guard != nullptr ? config.guard->coldest_ambient_C : -40.0F;
+  // A dead sensor shows just 0.
+  const bool is_believed = input.ambient_C >= coldest_C + 0.05F && input.ambient_C <= kHottestAir_C;
+  believed.ambient_C = is_believed ? input.ambient_C : kNoSample;
+  if (is_believed) {
+    state.has_ambient = 1;
+  } else if (state.has_ambient != 0 && believed.robot_fault == Reason::none) {
+    believed.robot_fault = Reason::ambient_missing;
+  }
+}
+
+/// Normal equations of the body's velocity: Σ t·tᵀ·v = Σ t·(r·ω/slip − R·yaw rate) over the wheels that count.
+struct PlaneFit {
+  float xx = 0.0F;
+  float xy = 0.0F;
+  float yy = 0.0F;
+  float x_m_per_s = 0.0F;
+  float y_m_per_s = 0.0F;
+
+  void add(const WheelConfig& wheel, float rim_m_per_s, float sign) {
+    const float t_x = sign * wheel.rolling_x_share;
+    const float t_y = sign * wheel.rolling_y_share;
+    xx += t_x * wheel.rolling_x_share;
+    xy += t_x * wheel.rolling_y_share;
+    yy += t_y * wheel.rolling_y_share;
+    x_m_per_s += t_x * rim_m_per_s;
+    y_m_per_s += t_y * rim_m_per_s;
+  }
+  /// False where the wheels leave a direction open.
+  bool solve(float& x, float& y) const {
+    constexpr float kLeastDeterminant = 0.02F;  // two wheels whose rolling directions are 8 degrees apart
+    const float determinant = xx * yy - xy * xy;
+    if (!(determinant > kLeastDeterminant)) {
+      return false;
+    }
+    const float inverse = 1.0F / determinant;
+    x = (x_m_per_s * yy - y_m_per_s * xy) * inverse;
+    y = (y_m_per_s * xx - x_m_per_s * xy) * inverse;
+    return true;
+  }
+};
+
+float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) {
+  return speed_rad_per_s * config.wheel_radius_m / config.wheel[i].slip_factor;
+}
+
+/// Body velocity from the wheels whose sensors are believed, and each wheel's speed as the others imply it.
+void find_body_velocity(const Config& config, const State& state, Believed& believed) {
+  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  PlaneFit all;
+  PerWheel rim_m_per_s = {};
+  for (int i = 0; i < config.wheel_count; ++i) {
+    if (believed.is_speed_sensed[i]) {
+      rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]) - turning_m_per_s;
+      all.add(config.wheel[i], rim_m_per_s[i], 1.0F);
+    }
+  }
+  believed.velocity = state.velocity_reference;
+  believed.velocity.yaw = believed.yaw_rate_rad_per_s;
+  const bool is_known = all.solve(believed.velocity.x, believed.velocity.y);
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const WheelConfig& wheel = config.wheel[i];
+    Vector3 others = believed.velocity;
+    bool is_implied = is_known;
+    if (believed.is_speed_sensed[i]) {
+      PlaneFit rest = all;
+      rest.add(wheel, rim_m_per_s[i], -1.0F);
+      is_implied = rest.solve(others.x, others.y);
+    }
+    const float implied_m_per_s = wheel.rolling_x_share * others.x + wheel.rolling_y_share * others.y + turning_m_per_s;
+    if (is_implied) {
+      believed.implied_speed_rad_per_s[i] = implied_m_per_s * wheel.slip_factor / config.wheel_radius_m;
+    } else {
+      believed.implied_speed_rad_per_s[i] = believed.wheel_speed_rad_per_s[i];
+    }
+    believed.is_speed_known[i] = believed.is_speed_sensed[i] || is_implied;
+    if (!believed.is_speed_sensed[i]) {
+      believed.wheel_speed_rad_per_s[i] = is_implied ? believed.implied_speed_rad_per_s[i] : 0.0F;
+    }
+  }
+}
+
+void validate_yaw_rate(const Config& config, State& state, const Input& input, Believed& believed) {
+  const float sample = input.yaw_rate_rad_per_s;
+  float from_wheels = 0.0F;
+  bool are_all_sensed = true;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    from_wheels += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]);
+    are_all_sensed = are_all_sensed && believed.is_speed_sensed[i];
+  }
+  const bool is_possible = absolute(sample) <= kFastestYaw_rad_per_s;  // false for what is no number
+  const bool is_jump = is_possible && absolute(sample - state.raw_yaw_rate_rad_per_s) > kYawJump_rad_per_s;
+  const bool is_same = is_possible && sample == state.raw_yaw_rate_rad_per_s;
+  const bool disagrees = are_all_sensed && absolute(sample - from_wheels) > kYawDisagreement_rad_per_s;
+  state.yaw_disagreement_s = is_same && disagrees ? state.yaw_disagreement_s + believed.elapsed_s : 0.0F;
+  state.yaw_agreement_s = is_possible && !is_jump && !disagrees ? state.yaw_agreement_s + believed.elapsed_s : 0.0F;
+  if (!is_possible || is_jump) {
+    state.yaw_fault = code(Reason::yaw_rate_missing);
+  } else if (state.yaw_disagreement_s > kStuck_s) {
+    state.yaw_fault = code(Reason::yaw_rate_stuck);
+  } else if (state.yaw_fault != 0 && state.yaw_agreement_s >= kSteadyAgain_s) {
+    state.yaw_fault = 0;
+  }
+  state.raw_yaw_rate_rad_per_s = is_possible ? sample : 0.0F;
+  if (state.yaw_fault == 0) {
+    state.yaw_rate_rad_per_s = sample;
+  } else {
+    state.yaw_rate_rad_per_s =
+        are_all_sensed ? clamped(from_wheels, -kFastestYaw_rad_per_s, kFastestYaw_rad_per_s) : state.velocity_reference.yaw;
+    believed.robot_fault = believed.robot_fault == Reason::none ? static_cast<Reason>(state.yaw_fault) : believed.robot_fault;
+  }
+  believed.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
+}
+
+/// What speaks against a sample by itself: no number, out of range, a jump.
+Reason immediate_fault(const Config& config, const WheelState& wheel, float sample, float elapsed_s) {
+  if (!(absolute(sample) <= 1.05F * config.fastest_wheel_rad_per_s)) {
+    return Reason::wheel_speed_missing;
+  }
+  const float most_change_rad_per_s = config.largest_acceleration_rad_per_s2 * elapsed_s + kJump_share * config.fastest_wheel_rad_per_s;
+  return absolute(sample - wheel.raw_speed_rad_per_s) > most_change_rad_per_s ? Reason::wheel_speed_jump : Reason::none;
+}
+
+void take_samples(const Config& config, State& state, const Input& input, Believed& believed) {
+  for (int i = 0; i < config.wheel_count; ++i) {
+    WheelState& wheel = state.wheel[i];
+    const float sample = input.wheel_speed_rad_per_s[i];
+    const Reason fault = immediate_fault(config, wheel, sample, believed.elapsed_s);
+    wheel.same_steps = sample == wheel.raw_speed_rad_per_s ? wheel.same_steps + 1 : 0;
+    if (fault != Reason::none) {
+      wheel.agreement_s = 0.0F;
+      wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;
+    }
+    wheel.raw_speed_rad_per_s = fault == Reason::wheel_speed_missing ? 0.0F : sample;
+    believed.is_speed_sensed[i] = wheel.speed_fault == 0;
+    believed.wheel_speed_rad_per_s[i] = believed.is_speed_sensed[i] ? sample : 0.0F;
+  }
+}
+
+/// Largest and smallest current that voltage and speed explain, whatever the winding's temperature.
+struct CurrentRange {
+  float low_A = 0.0F;
+  float high_A = 0.0F;
+};
+CurrentRange explained_current(const Config& config, const WheelState& wheel, float speed_rad_per_s) {
+  if (wheel.is_open != 0) {
+    return {};
+  }
+  const float cold_A =
+      (wheel.voltage_V - config.torque_constant_Nm_per_A * config.gear_ratio * speed_rad_per_s) / config.lowest_resistance_ohm;
+  const float hot_A = cold_A / kHotResistance_ratio;
+  return {smaller(cold_A, hot_A), larger(cold_A, hot_A)};
+}
+
+/// Stuck samples, and sensors that are believed again.
+void compare_with_others(const Config& config, State& state, const Input& input, Believed& believed) {
+  const float most_apart_rad_per_s = kDisagreement_share * config.fastest_wheel_rad_per_s;
+  const auto stuck_steps = static_cast<std::uint32_t>(kStuck_s / config.period_s);
+  const float margin_A = 0.15F * config.current_limit_A;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    WheelState& wheel = state.wheel[i];
+    const float sample = wheel.raw_speed_rad_per_s;
+    const bool agrees = absolute(sample - believed.implied_speed_rad_per_s[i]) <= most_apart_rad_per_s;
+    const float sensed_A = input.motor_current_A[i];
+    const CurrentRange explained = explained_current(config, wheel, sample);
+    const bool current_contradicts = absolute(sensed_A) <= 2.0F * config.current_limit_A &&
+                                     !(sensed_A >= explained.low_A - margin_A && sensed_A <= explained.high_A + margin_A);
+    if (wheel.speed_fault == 0) {
+      wheel.disagreement_s = !agrees || current_contradicts ? wheel.disagreement_s + believed.elapsed_s : 0.0F;
+      if (wheel.same_steps > stuck_steps && wheel.disagreement_s > kStuck_s) {
+        wheel.speed_fault = code(Reason::wheel_speed_stuck);
+        wheel.agreement_s = 0.0F;
+      }
+    } else if (wheel.speed_fault != code(Reason::wheel_speed_swapped)) {
+      wheel.agreement_s = agrees && !current_contradicts && believed.is_speed_known[i] ? wheel.agreement_s + believed.elapsed_s : 0.0F;
+      if (wheel.agreement_s >= kSteadyAgain_s && wheel.same_steps < stuck_steps) {
+        wheel.speed_fault = 0;
+        wheel.disagreement_s = 0.0F;
+      }
+    }
+  }
+}
+
+/// Swapped sensors: each wheel's sample follows the other's voltage. Leaky integrals of the distance to the speed that the own and the
+/// other's voltage explain.
+void compare_pairs(const Config& config, State& state, const Believed& believed) {
+  const float forget = believed.elapsed_s / kSwap_s;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    WheelState& wheel = state.wheel[i];
+    const float explained = wheel.is_open != 0 ? 0.0F : wheel.voltage_V / config.wheel[i].damping_V_s_per_rad;
+    wheel.modelled_rad_per_s += forget * (explained - wheel.modelled_rad_per_s);
+    state.own_error_rad[i] +=
+        believed.elapsed_s * absolute(wheel.raw_speed_rad_per_s - wheel.modelled_rad_per_s) - forget * state.own_error_rad[i];
+  }
+  const float least_rad = kSwap_s * kDisagreement_share * config.fastest_wheel_rad_per_s;
+  int pair = 0;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    for (int j = i + 1; j < config.wheel_count; ++j, ++pair) {
+      WheelState& a = state.wheel[i];
+      WheelState& b = state.wheel[j];
+      state.swap_error_rad[pair] += believed.elapsed_s * (absolute(a.raw_speed_rad_per_s - b.modelled_rad_per_s) +
+                                                          absolute(b.raw_speed_rad_per_s - a.modelled_rad_per_s)) -
+                                    forget * state.swap_error_rad[pair];
+      constexpr float kMuchBetter_ratio = 0.3F;
+      if (smaller(state.own_error_rad[i], state.own_error_rad[j]) > least_rad &&
+          state.swap_error_rad[pair] < kMuchBetter_ratio * (state.own_error_rad[i] + state.own_error_rad[j])) {
+        a.speed_fault = b.speed_fault = code(Reason::wheel_speed_swapped);
+      }
+    }
+  }
+}
+
+void validate_currents(const Config& config, State& state, const Input& input, Believed& believed) {
+  const float most_A = 2.5F * config.battery_full_V / config.lowest_resistance_ohm;
+  const float margin_A = 0.15F * config.current_limit_A;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    WheelState& wheel = state.wheel[i];
+    const float sample_A = input.motor_current_A[i];
+    const CurrentRange explained = explained_current(config, wheel, believed.wheel_speed_rad_per_s[i]);
+    const float largest_A = -explained.low_A > explained.high_A ? explained.low_A : explained.high_A;
+    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(i));
+    wheel.current_fault = 0;
+    believed.motor_current_A[i] = largest_A;
+    if (!(absolute(sample_A) <= most_A)) {
+      wheel.current_fault = (state.has_current & bit) != 0 ? code(Reason::current_missing) : 0;
+      continue;
+    }
+    state.has_current = static_cast<std::uint8_t>(state.has_current | bit);
+    const bool agrees = sample_A >= explained.low_A - margin_A && sample_A <= explained.high_A + margin_A;
+    // Up to kSteadyAgain_s beyond the threshold are kept, so that the sensor has to agree for that long before it is believed again.
+    wheel.current_error_s = agrees ? larger(0.0F, wheel.current_error_s - believed.elapsed_s)
+                                   : smaller(wheel.current_error_s + believed.elapsed_s, kStuck_s + kSteadyAgain_s);
+    believed.is_current_sensed[i] = wheel.current_error_s < kStuck_s;
+    if (believed.is_current_sensed[i]) {
+      believed.motor_current_A[i] = sample_A;
+    } else {
+      wheel.current_fault = code(Reason::current_implausible);
+      believed.motor_current_A[i] = absolute(sample_A) > absolute(largest_A) ? sample_A : largest_A;
+    }
+  }
+}
+
+}  // namespace
+
+Believed validate_input(const Config& config, State& state, const Input& input) {
+  Believed believed;
+  validate_time(config, input, believed);
+  validate_command(config, input, believed);
+  validate_battery(config, state, input, believed);
+  validate_ambient(config, state, input, believed);
+  take_samples(config, state, input, believed);
+  validate_yaw_rate(config, state, input, believed);
+  find_body_velocity(config, state, believed);
+  compare_with_others(config, state, input, believed);
+  compare_pairs(config, state, believed);
+  validate_currents(config, state, input, believed);
+  return believed;
+}
+
+}  // namespace robot_core

@@ -1,0 +1,26 @@
+// Stage 7: what the firmware gets.
+#include "robot_core/drive_stages.h"
+
+namespace robot_core {
+
+Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltage& limited) {
+  Output out;
+  out.time_to_guard_limit_s = kLongTime_s;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const WheelState& wheel = state.wheel[i];
+    out.is_open[i] = limited.is_open[i];
+    out.voltage_V[i] = limited.voltage_V[i];
+    out.pwm_ratio[i] = clamped(limited.voltage_V[i] / believed.pwm_battery_V, -1.0F, 1.0F);
+    out.reason[i] = limited.reason[i];
+    out.allowed_current_A[i] = limited.allowed_A[i];
+    out.winding_C[i] = wheel.winding_C;
+    if (config.guard != nullptr) {
+      out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, wheel.time_to_limit_s);
+    }
+  }
+  out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;
+  out.robot_reason = believed.robot_fault != Reason::none ? believed.robot_fault : believed.command_fault;
+  return out;
+}
+
+}  // namespace robot_core

@@ -1,0 +1,156 @@
+#include "robot_core/thermal_guard.h"
+
+namespace robot_core {
+namespace {
+
+constexpr std::uint32_t kStarted = 0x48454154U;
+constexpr float kMostTemperature_C = 1000.0F;
+
+/// False for what is no number.
+bool is_between(float low, float x, float high) { return x >= low && x <= high; }
+
+bool is_temperature(const GuardModel& model, float x_C) { return is_between(model.coldest_ambient_C - 1.0F, x_C, kMostTemperature_C); }
+
+/// Segment of an axis and the place in it.
+struct Place {
+  int below = 0;
+  float share = 0.0F;
+};
+
+bool find(const GuardAxis& axis, float x, Place& place) {
+  if (!(x <= axis.points[axis.count - 1])) {
+    return false;
+  }
+  int above = 1;
+  while (above + 1 < axis.count && x > axis.points[above]) {
+    ++above;
+  }
+  const float low = axis.points[above - 1];
+  place = {above - 1, x > low ? (x - low) / (axis.points[above] - low) : 0.0F};
+  return true;
+}
+
+/// Replaces what is not believed by some possible value; a bit per signal that was replaced.
+unsigned replace_unbelieved(const GuardModel& model, float* signal) {
+  unsigned unknown = 0;
+  for (int i = 0; i < kGuardSignals; ++i) {
+    const GuardBelief& belief = model.belief[i];
+    // A neighbour that is colder than the air has no working sensor.
+    const float least = i == guard_neighbour_C ? signal[guard_ambient_C] - 5.0F : belief.least;
+    if (belief.is_used && !is_between(least, signal[i], belief.most)) {
+      signal[i] = belief.possible[0];
+      unknown |= 1U << static_cast<unsigned>(i);
+    }
+  }
+  return unknown;
+}
+
+/// Every node heats as fast as with the worst of the possible values; the signal keeps the value that heats the winding most.
+void take_hottest(const GuardModel& model, float* signal, int which, const float* state_C, float* most_K_per_s) {
+  const GuardBelief& belief = model.belief[which];
+  float hottest = belief.possible[0];
+  float hottest_K_per_s = -1e30F;
+  for (int i = 0; i < belief.possible_count; ++i) {
+    float rate_K_per_s[kMostGuardNodes];
+    signal[which] = belief.possible[i];
+    model.rates(model.context, signal, state_C, rate_K_per_s);
+    for (int node = 0; node < model.node_count; ++node) {
+      most_K_per_s[node] = larger(most_K_per_s[node], rate_K_per_s[node]);
+    }
+    if (rate_K_per_s[0] > hottest_K_per_s) {
+      hottest_K_per_s = rate_K_per_s[0];
+      hottest = belief.possible[i];
+    }
+  }
+  signal[which] = hottest;
+}
+
+/// Two passes: a signal's hottest value may depend on another's.
+void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C, float* rate_K_per_s) {
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int i = 0; i < kGuardSignals; ++i) {
+      if ((unknown & (1U << static_cast<unsigned>(i))) != 0) {
+        take_hottest(model, signal, i, state_C, rate_K_per_s);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void start_guard(const GuardModel& model, GuardState& state, float body_C) {
+  const float start_C = is_temperature(model, body_C) ? body_C : model.winding_limit_C;
+  state = {};
+  for (int node = 0; node < model.node_count; ++node) {
+    state.state_C[node] = start_C;
+  }
+  state.started = kStarted;
+}
+
+bool is_started(const GuardModel& model, const GuardState& state) {
+  bool started = state.started == kStarted;
+  for (int node = 0; node < model.node_count; ++node) {
+    started = started && is_temperature(model, state.state_C[node]) && is_between(-1.0F, state.carry_K[node], 1.0F);
+  }
+  return started;
+}
+
+float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
+  Place speed;
+  Place stator;
+  Place winding;
+  if (!find(model.speed_rad_per_s, speed_rad_per_s, speed) || !find(model.stator_C, stator_C, stator) ||
+      !find(model.winding_C, winding_C, winding)) {
+    return 0.0F;
+  }
+  const int row = model.winding_C.count;
+  const int layer = model.stator_C.count * row;
+  const float* corner = model.current_A + speed.below * layer + stator.below * row + winding.below;
+  const auto along_winding = [&](int offset) { return corner[offset] + winding.share * (corner[offset + 1] - corner[offset]); };
+  const auto along_stator = [&](int offset) {
+    const float low = along_winding(offset);
+    return low + stator.share * (along_winding(offset + row) - low);
+  };
+  const float low = along_stator(0);
+  return low + speed.share * (along_stator(layer) - low);
+}
+
+GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
+  GuardOutput out;
+  out.was_started = is_started(model, state);
+  if (!out.was_started) {
+    start_guard(model, state, model.winding_limit_C);
+  }
+  float believed[kGuardSignals];
+  for (int i = 0; i < kGuardSignals; ++i) {
+    believed[i] = signal[i];
+  }
+  const unsigned unknown = replace_unbelieved(model, believed);
+  float rate_K_per_s[kMostGuardNodes];
+  model.rates(model.context, believed, state.state_C, rate_K_per_s);
+  if (unknown != 0) {
+    find_hottest_rates(model, unknown, believed, state.state_C, rate_K_per_s);
+  }
+  for (int node = 0; node < model.node_count; ++node) {
+    const float change_K = model.period_s * rate_K_per_s[node] - state.carry_K[node];
+    const float next_C = state.state_C[node] + change_K;
+    state.carry_K[node] = (next_C - state.state_C[node]) - change_K;
+    state.state_C[node] = next_C > model.coldest_ambient_C ? next_C : model.coldest_ambient_C;
+  }
+  out.winding_C = state.state_C[0];
+  out.winding_rate_K_per_s = rate_K_per_s[0];
+  out.hottest_body_C = state.state_C[1];
+  for (int node = 2; node < model.node_count; ++node) {
+    out.hottest_body_C = larger(out.hottest_body_C, state.state_C[node]);
+  }
+  out.is_unknown_input = unknown != 0;
+  if ((unknown & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
+    const float speed_rad_per_s = absolute(believed[guard_speed_rad_per_s]);
+    out.allowed_braking_A = allowed_current_A(model, speed_rad_per_s, out.hottest_body_C, out.winding_C);
+    out.allowed_A =
+        smaller(out.allowed_braking_A, allowed_current_A(model, speed_rad_per_s, out.hottest_body_C, out.winding_C + braking_reserve_K));
+  }
+  return out;
+}
+
+}  // namespace robot_core

@@ -1,0 +1,90 @@
+// The thermal guard of one motor: an observer of its temperatures and the current that it may still carry.
+//
+// The motor's thermal law and the table come from `heatsoak derate`; this file is how they are run, the same text on the host and on
+// the controller. Method: explicit Euler steps of one guard period with compensated summation (Kahan 1965), because in single precision
+// a step of a slow stator is smaller than the last digit of its temperature.
+#pragma once
+
+#include <cstdint>
+
+#include "robot_core/math.h"
+
+namespace robot_core {
+
+/// Signals that a thermal law may depend on, in the order of the generated code.
+enum GuardSignal : int {
+  guard_current_A,              ///< equivalent DC current, RMS over the guard period, > 0 drives
+  guard_speed_rad_per_s,        ///< motor shaft, signed
+  guard_ambient_C,              ///< air around the motor
+  guard_vehicle_speed_m_per_s,  ///< robot through the air
+  guard_neighbour_C,            ///< hottest motor next to this one
+  guard_age_h,                  ///< operating hours of the motor
+  guard_acceleration_rad_per_s2,
+  kGuardSignals
+};
+
+inline constexpr int kMostGuardNodes = 6;
+
+/// Range in which a signal is believed, and what it may be where it is not.
+struct GuardBelief {
+  bool is_used = false;  ///< false: no law of this motor depends on it
+  float least = 0.0F;
+  float most = 0.0F;
+  const float* possible = nullptr;  ///< `possible_count` values that contain the one that heats most
+  int possible_count = 0;
+};
+
+/// Ascending axis points of a table.
+struct GuardAxis {
+  const float* points = nullptr;
+  int count = 0;
+};
+
+/// One motor's guard as data. Generated on the target; on the host it points into the result of `derate`.
+struct GuardModel {
+  int node_count = 0;  ///< winding first, then stator
+  float period_s = 0.01F;
+  float winding_limit_C = 0.0F;
+  float coldest_ambient_C = 0.0F;
+  float hottest_ambient_C = 0.0F;
+  float most_current_A = 0.0F;  ///< the table's largest current
+  GuardAxis speed_rad_per_s;
+  GuardAxis stator_C;
+  GuardAxis winding_C;
+  const float* current_A = nullptr;  ///< [speed][stator][winding]
+  GuardBelief belief[kGuardSignals];
+  /// dT/dt of every node in K/s. `context` is handed through.
+  void (*rates)(const void* context, const float* signal, const float* state_C, float* rate_K_per_s) = nullptr;
+  const void* context = nullptr;
+};
+
+struct GuardState {
+  std::uint32_t started = 0;
+  float state_C[kMostGuardNodes] = {};
+  float carry_K[kMostGuardNodes] = {};
+};
+
+struct GuardOutput {
+  float allowed_A = 0.0F;          ///< magnitude, until the next call
+  float allowed_braking_A = 0.0F;  ///< magnitude where the current brakes; at least allowed_A
+  float winding_C = 0.0F;          ///< of the observer, which counts heat more than once: hotter than the nominal motor
+  float hottest_body_C = 0.0F;     ///< of the nodes other than the winding
+  float winding_rate_K_per_s = 0.0F;
+  bool is_unknown_input = false;  ///< a signal was not believed and its hottest case was taken
+  bool was_started = true;        ///< false: the state was none, and the guard began as hot as its limit
+};
+
+/// All nodes at `body_C`. Anything that cannot be a temperature counts as the winding's limit.
+void start_guard(const GuardModel& model, GuardState& state, float body_C);
+
+/// True if the state has been started and holds temperatures.
+bool is_started(const GuardModel& model, const GuardState& state);
+
+/// One guard period. `signal` has kGuardSignals values; the current is what flowed since the last call.
+/// `braking_reserve_K` is kept free below the limit for braking: driving current is read from the table at a winding that much hotter.
+GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K);
+
+/// The table. 0 where an argument is not a number or above its axis; below the axis its first point counts.
+float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C);
+
+}  // namespace robot_core
