@@ -14,8 +14,7 @@ constexpr float kHoldBack_s = 0.1F;
 constexpr float kLead_share = 0.2F;
 constexpr float kRecovery_s = 0.3F;
 
-Vector3 turned(const Vector3& v, float angle_rad) {
-  const SineCosine turn = sine_cosine(angle_rad);
+Vector3 turned(const Vector3& v, const SineCosine& turn) {
   return {v.x * turn.cosine - v.y * turn.sine, v.x * turn.sine + v.y * turn.cosine, v.yaw};
 }
 
@@ -37,14 +36,15 @@ BodyReference commanded(const Config& config, State& state, const Input& input, 
     const float age_s = input.command_age_s;
     const Vector3 continued{command.velocity.x + command.acceleration.x * age_s, command.velocity.y + command.acceleration.y * age_s,
                             command.velocity.yaw + command.acceleration.yaw * age_s};
-    const float turned_rad = -believed.yaw_rate_rad_per_s * age_s;
-    body.velocity = turned(continued, turned_rad);
-    body.acceleration = turned(command.acceleration, turned_rad);
-    body.push = turned(command.push, turned_rad);
+    const SineCosine turn = sine_cosine(-believed.yaw_rate_rad_per_s * age_s);
+    body.velocity = turned(continued, turn);
+    body.acceleration = turned(command.acceleration, turn);
+    body.push = turned(command.push, turn);
   } else if (believed.mode == Mode::pose_target) {
     if (config.plan_step(config, input.pose, input.command.pose, state.plan_velocity, state.plan_acceleration)) {
-      body.velocity = turned(state.plan_velocity, -input.pose.yaw);
-      body.acceleration = turned(state.plan_acceleration, -input.pose.yaw);
+      const SineCosine turn = sine_cosine(-input.pose.yaw);
+      body.velocity = turned(state.plan_velocity, turn);
+      body.acceleration = turned(state.plan_acceleration, turn);
     } else {
       state.plan_velocity = state.plan_acceleration = {};
     }
@@ -67,7 +67,9 @@ void hold_back(State& state, const Vector3& wanted, const Believed& believed) {
 
 /// The reference of the last period seen from the robot's present heading, moved towards the wanted one.
 void approach(const Config& config, State& state, const Believed& believed, BodyReference& body) {
-  const Vector3 last = turned(state.velocity_reference, -believed.yaw_rate_rad_per_s * believed.elapsed_s);
+  // Within a period the robot turns by a tenth of a radian at most, in a gap the reference has been set anew.
+  const float angle_rad = clamped(-believed.yaw_rate_rad_per_s * believed.elapsed_s, -0.3F, 0.3F);
+  const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
   const Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
   const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * believed.elapsed_s;
   const float most_rad_per_s = kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2 * believed.elapsed_s;

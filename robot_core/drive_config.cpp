@@ -4,6 +4,8 @@
 namespace robot_core {
 namespace {
 
+constexpr float kGravity_m_per_s2 = 9.80665F;
+
 bool is_positive(float x) { return is_finite(x) && x > 0.0F; }
 bool is_not_negative(float x) { return is_finite(x) && x >= 0.0F; }
 
@@ -69,21 +71,59 @@ bool is_possible(const Config& config) {
                                 config.traction_ratio,         config.braking_reserve_K,        config.limp_current_A,
                                 config.warning_time_s};
   bool possible = all(is_positive, positive) && all(is_not_negative, not_negative) && config.battery_lowest_V <= config.battery_full_V;
+  const DerivedConfig& derived = config.derived;
+  const float plane[] = {derived.plane_xx, derived.plane_xy, derived.plane_yy, derived.geared_constant_V_s_per_rad};
+  possible = possible && all(is_finite<float>, plane) && is_positive(derived.geared_constant_V_s_per_rad);
   for (int i = 0; i < config.wheel_count; ++i) {
-    possible = possible && is_possible(config.wheel[i]);
+    possible = possible && is_possible(config.wheel[i]) && is_finite(derived.others_factor[i]);
   }
   return possible && (config.guard == nullptr || is_possible(*config.guard, config.period_s));
 }
 
+void complete(Config& config) {
+  DerivedConfig& derived = config.derived;
+  derived = {};
+  derived.geared_constant_V_s_per_rad = config.torque_constant_Nm_per_A * config.gear_ratio;
+  derived.per_lowest_resistance_A_per_V = 1.0F / config.lowest_resistance_ohm;
+  derived.volt_per_Nm = config.resistance_ohm / (derived.geared_constant_V_s_per_rad * config.gear_efficiency);
+  derived.most_battery_sag_A = config.battery_resistance_ohm > 0.0F ? 1.0F / config.battery_resistance_ohm : 0.0F;
+  float xx = 0.0F;
+  float xy = 0.0F;
+  float yy = 0.0F;
+  for (int i = 0; i < config.wheel_count && i < kMostWheels; ++i) {
+    const WheelConfig& wheel = config.wheel[i];
+    xx += wheel.rolling_x_share * wheel.rolling_x_share;
+    xy += wheel.rolling_x_share * wheel.rolling_y_share;
+    yy += wheel.rolling_y_share * wheel.rolling_y_share;
+  }
+  const float per_determinant = 1.0F / (xx * yy - xy * xy);
+  derived.plane_xx = yy * per_determinant;
+  derived.plane_xy = -xy * per_determinant;
+  derived.plane_yy = xx * per_determinant;
+  for (int i = 0; i < config.wheel_count && i < kMostWheels; ++i) {
+    const WheelConfig& wheel = config.wheel[i];
+    const float t_x = wheel.rolling_x_share;
+    const float t_y = wheel.rolling_y_share;
+    derived.rim_per_speed_m[i] = config.wheel_radius_m / wheel.slip_factor;
+    derived.speed_per_rim_per_m[i] = wheel.slip_factor / config.wheel_radius_m;
+    derived.per_damping_rad_per_V_s[i] = 1.0F / wheel.damping_V_s_per_rad;
+    const float leverage = derived.plane_xx * t_x * t_x + 2.0F * derived.plane_xy * t_x * t_y + derived.plane_yy * t_y * t_y;
+    constexpr float kMostLeverage = 0.98F;  // else the other wheels say next to nothing of this one's direction
+    derived.others_factor[i] = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
+    const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
+    derived.grip_A[i] = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
+                        absolute(wheel.sign_V) / config.resistance_ohm;
+  }
+  config.check_sum = config_check_sum(config);
+}
+
 std::uint32_t config_check_sum(const Config& config) {
   // FNV-1a by words (Fowler, Noll, Vo): every change of one word changes it.
-  using Word = std::uint32_t __attribute__((may_alias));
-  static_assert(__builtin_offsetof(Config, unused) % sizeof(Word) == 2, "flags and padding fill the last word");
-  constexpr unsigned kWords = (__builtin_offsetof(Config, unused) + sizeof(Config::unused)) / sizeof(Word);
-  const auto* const word = reinterpret_cast<const Word*>(&config);
+  static_assert(__builtin_offsetof(Config, unused) % sizeof(std::uint32_t) == 2, "flags and padding fill the last word");
+  constexpr unsigned kWords = (__builtin_offsetof(Config, unused) + sizeof(Config::unused)) / sizeof(std::uint32_t);
   std::uint32_t sum = 2166136261U;
   for (unsigned i = 1; i < kWords; ++i) {
-    sum = (sum ^ word[i]) * 16777619U;
+    sum = (sum ^ word_of(&config, i)) * 16777619U;
   }
   return sum;
 }

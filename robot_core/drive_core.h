@@ -52,6 +52,23 @@ struct WheelConfig {
   float phase_sine_ratio = 0.0F;
 };
 
+/// What follows from the rest of a Config; complete() fills it in, so that no step calculates it again.
+struct DerivedConfig {
+  float geared_constant_V_s_per_rad = 0.0F;  ///< K_t·n: back-EMF per wheel speed, torque per current at the wheel without loss
+  float per_lowest_resistance_A_per_V = 0.0F;
+  float volt_per_Nm = 0.0F;         ///< at the wheel, driving
+  float most_battery_sag_A = 0.0F;  ///< per V of sag: 1/R of the battery; 0 without one
+  // Inverse of Σ t·tᵀ over all wheels: body velocity in the plane from rim speeds, the yaw rate being known.
+  float plane_xx = 0.0F;
+  float plane_xy = 0.0F;
+  float plane_yy = 0.0F;
+  PerWheel rim_per_speed_m = {};  ///< r/slip factor
+  PerWheel speed_per_rim_per_m = {};
+  PerWheel others_factor = {};  ///< 1/(1 − tᵀ·P·t): residual against the other wheels per residual against all; 0: cannot be had
+  PerWheel grip_A = {};         ///< current that the contact on level ground passes on
+  PerWheel per_damping_rad_per_V_s = {};
+};
+
 /// What does not change while the robot runs. Written by `heatsoak generate core`, or by make_core_config() on the host.
 struct Config {
   std::uint32_t check_sum = 0;  ///< config_check_sum(); start() refuses a Config without it
@@ -100,8 +117,9 @@ struct Config {
   float braking_reserve_K = 0.0F;  ///< heating by one full stop, kept free for braking
   float limp_current_A = 0.0F;     ///< of a wheel without speed sensor; see make_core_config() for its derivation
   float warning_time_s = 10.0F;    ///< Output::is_warning when the guard will limit within this time
-  bool has_friction = false;       ///< false: the robot file has no friction, and d·ω is the back-EMF alone
-  bool shadow_mode = false;        ///< the guard computes and counts what it would limit, and limits nothing
+  DerivedConfig derived;
+  bool has_friction = false;  ///< false: the robot file has no friction, and d·ω is the back-EMF alone
+  bool shadow_mode = false;   ///< the guard computes and counts what it would limit, and limits nothing
   std::uint8_t unused[2] = {};
   // Pointers stay last: the check sum covers what stands before them, which has the same layout on host and target.
   const GuardModel* guard = nullptr;  ///< none: no thermal limit
@@ -165,7 +183,6 @@ struct WheelState {
   std::uint8_t speed_fault = 0;  ///< Reason, or 0
   std::uint8_t current_fault = 0;
   std::uint8_t guard_fault = 0;
-  GuardState guard;
 };
 
 /// What evolves. Only start() and step() write it; a copy can be logged.
@@ -181,6 +198,7 @@ struct State {
   float raw_yaw_rate_rad_per_s = 0.0F;
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
+  std::uint32_t steps = 0;       ///< since the start
   float swap_error_rad[6] = {};  ///< one per pair of wheels, see input_validation.cpp
   float own_error_rad[kMostWheels] = {};
   float battery_V = 0.0F;
@@ -195,6 +213,8 @@ struct State {
   std::uint8_t has_ambient = 0;  ///< a sample has been seen: its absence is a fault from then on
   std::uint8_t has_current = 0;  ///< the same, a bit per wheel
   std::uint8_t has_stator = 0;
+  // Last: each has a check sum of its own, looked at when the guard is stepped.
+  GuardState guard[kMostWheels];
 };
 
 struct Output {
@@ -227,6 +247,8 @@ bool start(const Config& config, State& state, const StartUp& start_up);
 /// One period.
 Output step(const Config& config, State& state, const Input& input);
 
+/// Fills in Config::derived and Config::check_sum. Call it last when a Config is made.
+void complete(Config& config);
 /// Over all values of the Config but the check sum itself and the pointers.
 std::uint32_t config_check_sum(const Config& config);
 /// Whether all values are finite and possible; the check sum is not looked at.

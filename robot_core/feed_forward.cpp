@@ -9,11 +9,11 @@ namespace robot_core {
 namespace {
 
 /// Of one wheel over the motion of the body.
-float friction_V(const Config& config, const WheelConfig& wheel, const Vector3& velocity, float speed_m_per_s, float rotation_share,
+float friction_V(const Config& config, const WheelConfig& wheel, const Vector3& velocity, float per_speed_s_per_m, float rotation_share,
                  float wheel_rad_per_s) {
   const float smoothing = config.friction_smoothing_m_per_s;
   const float along_m_per_s = velocity.y * wheel.phase_cosine_ratio + velocity.x * wheel.phase_sine_ratio;
-  const float sine = along_m_per_s / square_root(speed_m_per_s * speed_m_per_s + smoothing * smoothing);
+  const float sine = along_m_per_s * per_speed_s_per_m;
   const float translation_V = wheel.sine_V * sine + wheel.sign_V * smooth_sign(along_m_per_s, smoothing);
   const float rotation_V = config.rotation_friction_V * smooth_sign(wheel_rad_per_s * config.wheel_radius_m, smoothing);
   return translation_V + rotation_share * (rotation_V - translation_V);
@@ -31,20 +31,22 @@ WheelVoltage feed_forward(const Config& config, const Input& input, const Believ
   const float force_x_N = config.mass_kg * body.acceleration.x + body.push.x;
   const float force_y_N = config.mass_kg * body.acceleration.y + body.push.y;
   const float moment_Nm = config.yaw_inertia_kg_m2 * body.acceleration.yaw + body.push.yaw;
-  const float geared_constant = config.torque_constant_Nm_per_A * config.gear_ratio;
-  const float volt_per_Nm = config.resistance_ohm / (geared_constant * config.gear_efficiency);
+  const float smoothing = config.friction_smoothing_m_per_s;
+  const float smoothed_m_per_s = square_root(speed_m_per_s * speed_m_per_s + smoothing * smoothing);
+  const float per_speed_s_per_m = smoothed_m_per_s > 0.0F ? 1.0F / smoothed_m_per_s : 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
     const float reference = wheels.speed_rad_per_s[i];
     if (believed.mode == Mode::wheel_torque) {
-      voltage.feed_forward_V[i] = geared_constant * believed.wheel_speed_rad_per_s[i] + volt_per_Nm * input.command.wheel_torque_Nm[i];
+      voltage.feed_forward_V[i] = config.derived.geared_constant_V_s_per_rad * believed.wheel_speed_rad_per_s[i] +
+                                  config.derived.volt_per_Nm * input.command.wheel_torque_Nm[i];
       continue;
     }
     const float force_N = wheel.inverse_x_factor * force_x_N + wheel.inverse_y_factor * force_y_N + wheel.inverse_yaw_per_m * moment_Nm;
     const float torque_Nm = config.wheel_radius_m * force_N + config.wheel_inertia_kg_m2 * wheels.acceleration_rad_per_s2[i];
-    voltage.feed_forward_V[i] = wheel.damping_V_s_per_rad * reference + volt_per_Nm * torque_Nm;
+    voltage.feed_forward_V[i] = wheel.damping_V_s_per_rad * reference + config.derived.volt_per_Nm * torque_Nm;
     if (config.has_friction) {
-      voltage.feed_forward_V[i] += friction_V(config, wheel, body.velocity, speed_m_per_s, rotation_share, reference);
+      voltage.feed_forward_V[i] += friction_V(config, wheel, body.velocity, per_speed_s_per_m, rotation_share, reference);
     }
   }
   return voltage;

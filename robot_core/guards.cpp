@@ -67,7 +67,7 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   signal[guard_neighbour_C] = hottest_neighbour_C(config, state, i);
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - wheel.guard_speed_rad_per_s) / model.period_s;
-  const GuardOutput guard = step_guard(model, wheel.guard, signal, config.braking_reserve_K);
+  const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
   const bool is_limping = !believed.is_speed_known[i];
   wheel.allowed_A = is_limping ? config.limp_current_A : guard.allowed_A;
   wheel.allowed_braking_A = is_limping ? config.limp_current_A : guard.allowed_braking_A;
@@ -86,13 +86,16 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
 }
 
 /// A stator that is hotter than the observer says is believed, a colder one is not.
-void take_stator_sample(State& state, const Input& input, int i) {
+void take_stator_sample(const GuardModel& model, State& state, const Input& input, int i) {
   WheelState& wheel = state.wheel[i];
   const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(i));
   const float sample_C = input.stator_C[i];
   if (sample_C > -50.0F && sample_C < 400.0F) {
     state.has_stator = static_cast<std::uint8_t>(state.has_stator | bit);
-    wheel.guard.state_C[1] = larger(wheel.guard.state_C[1], sample_C);
+    if (GuardState& guard = state.guard[i]; sample_C > guard.state_C[1] && is_started(model, guard)) {
+      guard.state_C[1] = sample_C;
+      seal(guard);
+    }
     wheel.guard_fault = wheel.guard_fault == static_cast<std::uint8_t>(Reason::stator_missing) ? 0 : wheel.guard_fault;
   } else if ((state.has_stator & bit) != 0 && wheel.guard_fault == 0) {
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::stator_missing);
@@ -100,10 +103,10 @@ void take_stator_sample(State& state, const Input& input, int i) {
 }
 
 /// Nobody knows what flowed in a gap: the largest current heats a standing winding for all of it, up to the limit.
-void heat_for_gap(const Config& config, WheelState& wheel, float gap_s) {
+void heat_for_gap(const Config& config, WheelState& wheel, GuardState& guard, float gap_s) {
   const GuardModel& model = *config.guard;
-  if (!(gap_s <= kLongestGap_s) || !is_started(model, wheel.guard)) {
-    start_guard(model, wheel.guard, model.winding_limit_C);
+  if (!(gap_s <= kLongestGap_s) || !is_started(model, guard)) {
+    start_guard(model, guard, model.winding_limit_C);
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
     return;
   }
@@ -112,11 +115,12 @@ void heat_for_gap(const Config& config, WheelState& wheel, float gap_s) {
   signal[guard_ambient_C] = model.hottest_ambient_C;
   signal[guard_neighbour_C] = model.winding_limit_C;
   float rate_K_per_s[kMostGuardNodes];
-  model.rates(model.context, signal, wheel.guard.state_C, rate_K_per_s);
+  model.rates(model.context, signal, guard.state_C, rate_K_per_s);
   for (int node = 0; node < model.node_count; ++node) {
-    const float heated_C = wheel.guard.state_C[node] + gap_s * larger(0.0F, rate_K_per_s[node]);
-    wheel.guard.state_C[node] = larger(wheel.guard.state_C[node], smaller(heated_C, model.winding_limit_C));
+    const float heated_C = guard.state_C[node] + gap_s * larger(0.0F, rate_K_per_s[node]);
+    guard.state_C[node] = larger(guard.state_C[node], smaller(heated_C, model.winding_limit_C));
   }
+  seal(guard);
 }
 
 }  // namespace
@@ -130,7 +134,7 @@ void run_guards(const Config& config, State& state, const Input& input, const Be
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     if (believed.robot_fault == Reason::time_jump) {
-      heat_for_gap(config, wheel, believed.elapsed_s);
+      heat_for_gap(config, wheel, state.guard[i], believed.elapsed_s);
     }
     const float current_A = believed.motor_current_A[i];
     wheel.current_squared_A2 += weight * current_A * current_A;
@@ -138,7 +142,7 @@ void run_guards(const Config& config, State& state, const Input& input, const Be
     wheel.speed_sum_rad_per_s += weight * believed.wheel_speed_rad_per_s[i];
     wheel.guard_steps += believed.elapsed_periods;
     if (wheel.guard_steps >= periods) {
-      take_stator_sample(state, input, i);
+      take_stator_sample(*config.guard, state, input, i);
       // Sums over a period or two more than the guard's count for its own length: their surplus is kept for the next step.
       const auto summed = static_cast<float>(wheel.guard_steps);
       step_wheel_guard(config, state, believed, i, summed);

@@ -11,6 +11,7 @@ constexpr float kDisagreement_share = 0.06F;
 constexpr float kJump_share = 0.03F;
 // Time constant of the comparison of wheels with each other's voltages.
 constexpr float kSwap_s = 0.3F;
+constexpr std::uint32_t kStepsPerComparison = 16;
 constexpr float kFastestYaw_rad_per_s = 60.0F;
 constexpr float kYawJump_rad_per_s = 10.0F;
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
@@ -132,12 +133,34 @@ struct PlaneFit {
   }
 };
 
-float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) {
-  return speed_rad_per_s * config.wheel_radius_m / config.wheel[i].slip_factor;
+float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) { return speed_rad_per_s * config.derived.rim_per_speed_m[i]; }
+
+/// All sensors are believed: least squares with a matrix that never changes. Leaving one wheel out multiplies its residual by
+/// 1/(1 − leverage) (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
+void find_from_all(const Config& config, Believed& believed) {
+  const DerivedConfig& derived = config.derived;
+  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  PerWheel rim_m_per_s = {};
+  float x_m_per_s = 0.0F;
+  float y_m_per_s = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]) - turning_m_per_s;
+    x_m_per_s += config.wheel[i].rolling_x_share * rim_m_per_s[i];
+    y_m_per_s += config.wheel[i].rolling_y_share * rim_m_per_s[i];
+  }
+  believed.velocity = {derived.plane_xx * x_m_per_s + derived.plane_xy * y_m_per_s,
+                       derived.plane_xy * x_m_per_s + derived.plane_yy * y_m_per_s, believed.yaw_rate_rad_per_s};
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const float residual_m_per_s =
+        rim_m_per_s[i] - config.wheel[i].rolling_x_share * believed.velocity.x - config.wheel[i].rolling_y_share * believed.velocity.y;
+    believed.implied_speed_rad_per_s[i] =
+        believed.wheel_speed_rad_per_s[i] - residual_m_per_s * derived.others_factor[i] * derived.speed_per_rim_per_m[i];
+    believed.is_speed_known[i] = true;
+  }
 }
 
-/// Body velocity from the wheels whose sensors are believed, and each wheel's speed as the others imply it.
-void find_body_velocity(const Config& config, const State& state, Believed& believed) {
+/// Some sensors are missing: from those that are left.
+void find_from_some(const Config& config, const State& state, Believed& believed) {
   const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
   PlaneFit all;
   PerWheel rim_m_per_s = {};
@@ -160,15 +183,25 @@ void find_body_velocity(const Config& config, const State& state, Believed& beli
       is_implied = rest.solve(others.x, others.y);
     }
     const float implied_m_per_s = wheel.rolling_x_share * others.x + wheel.rolling_y_share * others.y + turning_m_per_s;
-    if (is_implied) {
-      believed.implied_speed_rad_per_s[i] = implied_m_per_s * wheel.slip_factor / config.wheel_radius_m;
-    } else {
-      believed.implied_speed_rad_per_s[i] = believed.wheel_speed_rad_per_s[i];
-    }
+    believed.implied_speed_rad_per_s[i] =
+        is_implied ? implied_m_per_s * config.derived.speed_per_rim_per_m[i] : believed.wheel_speed_rad_per_s[i];
     believed.is_speed_known[i] = believed.is_speed_sensed[i] || is_implied;
     if (!believed.is_speed_sensed[i]) {
       believed.wheel_speed_rad_per_s[i] = is_implied ? believed.implied_speed_rad_per_s[i] : 0.0F;
     }
+  }
+}
+
+/// Body velocity, and each wheel's speed as the other wheels and the gyro imply it.
+void find_body_velocity(const Config& config, const State& state, Believed& believed) {
+  bool are_all_sensed = true;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    are_all_sensed = are_all_sensed && believed.is_speed_sensed[i];
+  }
+  if (are_all_sensed) {
+    find_from_all(config, believed);
+  } else {
+    find_from_some(config, state, believed);
   }
 }
 
@@ -239,50 +272,49 @@ CurrentRange explained_current(const Config& config, const WheelState& wheel, fl
     return {};
   }
   const float cold_A =
-      (wheel.voltage_V - config.torque_constant_Nm_per_A * config.gear_ratio * speed_rad_per_s) / config.lowest_resistance_ohm;
-  const float hot_A = cold_A / kHotResistance_ratio;
+      (wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * config.derived.per_lowest_resistance_A_per_V;
+  constexpr float kHot_share = 1.0F / kHotResistance_ratio;
+  const float hot_A = cold_A * kHot_share;
   return {smaller(cold_A, hot_A), larger(cold_A, hot_A)};
 }
 
-/// Stuck samples, and sensors that are believed again.
-void compare_with_others(const Config& config, State& state, const Input& input, Believed& believed) {
+/// Stuck samples, and sensors that are believed again. One wheel per step: these tests are about tens of milliseconds.
+void compare_with_others(const Config& config, State& state, const Input& input, const Believed& believed, int i) {
   const float most_apart_rad_per_s = kDisagreement_share * config.fastest_wheel_rad_per_s;
   const auto stuck_steps = static_cast<std::uint32_t>(kStuck_s / config.period_s);
   const float margin_A = 0.15F * config.current_limit_A;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    WheelState& wheel = state.wheel[i];
-    const float sample = wheel.raw_speed_rad_per_s;
-    const bool agrees = absolute(sample - believed.implied_speed_rad_per_s[i]) <= most_apart_rad_per_s;
-    const float sensed_A = input.motor_current_A[i];
-    const CurrentRange explained = explained_current(config, wheel, sample);
-    const bool current_contradicts = absolute(sensed_A) <= 2.0F * config.current_limit_A &&
-                                     !(sensed_A >= explained.low_A - margin_A && sensed_A <= explained.high_A + margin_A);
-    if (wheel.speed_fault == 0) {
-      wheel.disagreement_s = !agrees || current_contradicts ? wheel.disagreement_s + believed.elapsed_s : 0.0F;
-      if (wheel.same_steps > stuck_steps && wheel.disagreement_s > kStuck_s) {
-        wheel.speed_fault = code(Reason::wheel_speed_stuck);
-        wheel.agreement_s = 0.0F;
-      }
-    } else if (wheel.speed_fault != code(Reason::wheel_speed_swapped)) {
-      wheel.agreement_s = agrees && !current_contradicts && believed.is_speed_known[i] ? wheel.agreement_s + believed.elapsed_s : 0.0F;
-      if (wheel.agreement_s >= kSteadyAgain_s && wheel.same_steps < stuck_steps) {
-        wheel.speed_fault = 0;
-        wheel.disagreement_s = 0.0F;
-      }
+  const float since_s = believed.elapsed_s * static_cast<float>(config.wheel_count);
+  WheelState& wheel = state.wheel[i];
+  const float sample = wheel.raw_speed_rad_per_s;
+  const bool agrees = absolute(sample - believed.implied_speed_rad_per_s[i]) <= most_apart_rad_per_s;
+  const float sensed_A = input.motor_current_A[i];
+  const CurrentRange explained = explained_current(config, wheel, sample);
+  const bool current_contradicts = absolute(sensed_A) <= 2.0F * config.current_limit_A &&
+                                   !(sensed_A >= explained.low_A - margin_A && sensed_A <= explained.high_A + margin_A);
+  if (wheel.speed_fault == 0) {
+    wheel.disagreement_s = !agrees || current_contradicts ? wheel.disagreement_s + since_s : 0.0F;
+    if (wheel.same_steps > stuck_steps && wheel.disagreement_s > kStuck_s) {
+      wheel.speed_fault = code(Reason::wheel_speed_stuck);
+      wheel.agreement_s = 0.0F;
+    }
+  } else if (wheel.speed_fault != code(Reason::wheel_speed_swapped)) {
+    wheel.agreement_s = agrees && !current_contradicts && believed.is_speed_known[i] ? wheel.agreement_s + since_s : 0.0F;
+    if (wheel.agreement_s >= kSteadyAgain_s && wheel.same_steps < stuck_steps) {
+      wheel.speed_fault = 0;
+      wheel.disagreement_s = 0.0F;
     }
   }
 }
 
 /// Swapped sensors: each wheel's sample follows the other's voltage. Leaky integrals of the distance to the speed that the own and the
 /// other's voltage explain.
-void compare_pairs(const Config& config, State& state, const Believed& believed) {
-  const float forget = believed.elapsed_s / kSwap_s;
+void compare_pairs(const Config& config, State& state, float elapsed_s) {
+  const float forget = smaller(1.0F, elapsed_s / kSwap_s);
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
-    const float explained = wheel.is_open != 0 ? 0.0F : wheel.voltage_V / config.wheel[i].damping_V_s_per_rad;
+    const float explained = wheel.is_open != 0 ? 0.0F : wheel.voltage_V * config.derived.per_damping_rad_per_V_s[i];
     wheel.modelled_rad_per_s += forget * (explained - wheel.modelled_rad_per_s);
-    state.own_error_rad[i] +=
-        believed.elapsed_s * absolute(wheel.raw_speed_rad_per_s - wheel.modelled_rad_per_s) - forget * state.own_error_rad[i];
+    state.own_error_rad[i] += elapsed_s * absolute(wheel.raw_speed_rad_per_s - wheel.modelled_rad_per_s) - forget * state.own_error_rad[i];
   }
   const float least_rad = kSwap_s * kDisagreement_share * config.fastest_wheel_rad_per_s;
   int pair = 0;
@@ -290,9 +322,9 @@ void compare_pairs(const Config& config, State& state, const Believed& believed)
     for (int j = i + 1; j < config.wheel_count; ++j, ++pair) {
       WheelState& a = state.wheel[i];
       WheelState& b = state.wheel[j];
-      state.swap_error_rad[pair] += believed.elapsed_s * (absolute(a.raw_speed_rad_per_s - b.modelled_rad_per_s) +
-                                                          absolute(b.raw_speed_rad_per_s - a.modelled_rad_per_s)) -
-                                    forget * state.swap_error_rad[pair];
+      state.swap_error_rad[pair] +=
+          elapsed_s * (absolute(a.raw_speed_rad_per_s - b.modelled_rad_per_s) + absolute(b.raw_speed_rad_per_s - a.modelled_rad_per_s)) -
+          forget * state.swap_error_rad[pair];
       constexpr float kMuchBetter_ratio = 0.3F;
       if (smaller(state.own_error_rad[i], state.own_error_rad[j]) > least_rad &&
           state.swap_error_rad[pair] < kMuchBetter_ratio * (state.own_error_rad[i] + state.own_error_rad[j])) {
@@ -343,8 +375,10 @@ Believed validate_input(const Config& config, State& state, const Input& input) 
   take_samples(config, state, input, believed);
   validate_yaw_rate(config, state, input, believed);
   find_body_velocity(config, state, believed);
-  compare_with_others(config, state, input, believed);
-  compare_pairs(config, state, believed);
+  compare_with_others(config, state, input, believed, static_cast<int>(state.steps % static_cast<std::uint32_t>(config.wheel_count)));
+  if (state.steps % kStepsPerComparison == 0) {
+    compare_pairs(config, state, believed.elapsed_s * kStepsPerComparison);
+  }
   validate_currents(config, state, input, believed);
   return believed;
 }

@@ -9,7 +9,6 @@
 namespace robot_core {
 namespace {
 
-constexpr float kGravity_m_per_s2 = 9.80665F;
 // A sensed current this far above the limit is no noise and no settling.
 constexpr float kOvercurrent_ratio = 1.3F;
 constexpr float kOvercurrent_share = 0.15F;  // of the driver's limit
@@ -28,21 +27,13 @@ struct CurrentLimit {
   }
 };
 
-float back_emf_V(const Config& config, float wheel_rad_per_s) {
-  return config.torque_constant_Nm_per_A * config.gear_ratio * wheel_rad_per_s;
-}
-
-float grip_current_A(const Config& config, const WheelConfig& wheel) {
-  const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
-  return force_N * config.wheel_radius_m / (config.torque_constant_Nm_per_A * config.gear_ratio * config.gear_efficiency) +
-         absolute(wheel.sign_V) / config.resistance_ohm;
-}
+float back_emf_V(const Config& config, float wheel_rad_per_s) { return config.derived.geared_constant_V_s_per_rad * wheel_rad_per_s; }
 
 /// Without the guard.
 CurrentLimit find_limit(const Config& config, const WheelState& state, const Believed& believed, const BodyReference& body, int i) {
   CurrentLimit limit{config.current_limit_A, Reason::driver_current};
   if (config.traction_ratio > 0.0F && !body.is_wheelwise) {
-    limit.lower(grip_current_A(config, config.wheel[i]), Reason::traction);
+    limit.lower(config.derived.grip_A[i], Reason::traction);
   }
   if (!believed.is_speed_sensed[i]) {
     limit.lower(config.limp_current_A, static_cast<Reason>(state.speed_fault));
@@ -106,7 +97,7 @@ float share_of_battery(const Config& config, const State& state, const Believed&
   // A battery that is nearly empty still has to carry the robot home.
   constexpr float kLeastSag_share = 0.03F;
   const float sag_V = larger(source_V - config.battery_lowest_V, kLeastSag_share * config.battery_full_V);
-  const float most_W = (source_V - sag_V) * sag_V / config.battery_resistance_ohm;
+  const float most_W = (source_V - sag_V) * sag_V * config.derived.most_battery_sag_A;
   return power_W > most_W ? most_W / power_W : 1.0F;
 }
 
@@ -190,13 +181,14 @@ LimitedVoltage apply_limits(const Config& config, State& state, const Believed& 
   PerWheel current_A = {};
   for (int i = 0; i < config.wheel_count; ++i) {
     limit[i] = find_limit(config, state.wheel[i], believed, body, i);
-    current_A[i] = (voltage.wanted_V[i] - back_emf_V(config, believed.wheel_speed_rad_per_s[i])) / config.lowest_resistance_ohm;
+    current_A[i] =
+        (voltage.wanted_V[i] - back_emf_V(config, believed.wheel_speed_rad_per_s[i])) * config.derived.per_lowest_resistance_A_per_V;
   }
   apply_guard(config, state, believed, current_A, limit);
   const bool is_all_open = body.is_open || believed.robot_fault == Reason::period_invalid;
   const float share = scale_currents(config, state, believed, body, limit, current_A, limited.reason);
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
-  state.battery_current_A = 0.0F;
+  float power_W = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     float& voltage_V = limited.voltage_V[i];
@@ -213,11 +205,12 @@ LimitedVoltage apply_limits(const Config& config, State& state, const Believed& 
       wheel.integral_V = 0.0F;
     }
     limited.reason[i] = strongest(wheel, limited.reason[i]);
-    state.battery_current_A += voltage_V * current_A[i] / believed.pwm_battery_V;
+    power_W += voltage_V * current_A[i];
     wheel.is_open = limited.is_open[i] ? 1 : 0;
     wheel.voltage_V = voltage_V;
     feed_back(config, believed, wheel, voltage.wanted_V[i]);
   }
+  state.battery_current_A = power_W / believed.pwm_battery_V;
   return limited;
 }
 

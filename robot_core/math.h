@@ -1,6 +1,7 @@
 // The few functions of <cmath> that the drive core needs: a freestanding build has no <cmath>.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 namespace robot_core {
@@ -48,6 +49,13 @@ inline Real square_root(Real x) {
 
 /// x with the sign's jump at zero spread over `width`: x/√(x² + width²).
 inline float smooth_sign(float x, float width) { return width > 0.0F ? x / square_root(x * x + width * width) : 0.0F; }
+
+/// Word number `i` of an object, for check sums.
+inline std::uint32_t word_of(const void* object, unsigned i) {
+  std::uint32_t word = 0;
+  __builtin_memcpy(&word, static_cast<const unsigned char*>(object) + i * sizeof(word), sizeof(word));
+  return word;
+}
 
 struct SineCosine {
   float sine = 0.0F;

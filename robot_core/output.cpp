@@ -6,11 +6,12 @@ namespace robot_core {
 Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltage& limited) {
   Output out;
   out.time_to_guard_limit_s = kLongTime_s;
+  const float per_battery = 1.0F / believed.pwm_battery_V;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelState& wheel = state.wheel[i];
     out.is_open[i] = limited.is_open[i];
     out.voltage_V[i] = limited.voltage_V[i];
-    out.pwm_ratio[i] = clamped(limited.voltage_V[i] / believed.pwm_battery_V, -1.0F, 1.0F);
+    out.pwm_ratio[i] = clamped(limited.voltage_V[i] * per_battery, -1.0F, 1.0F);
     out.reason[i] = limited.reason[i];
     out.allowed_current_A[i] = limited.allowed_A[i];
     out.winding_C[i] = wheel.winding_C;

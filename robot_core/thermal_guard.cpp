@@ -3,6 +3,7 @@
 namespace robot_core {
 namespace {
 
+// So that a state of zeros is none.
 constexpr std::uint32_t kStarted = 0x48454154U;
 constexpr float kMostTemperature_C = 1000.0F;
 
@@ -10,6 +11,15 @@ constexpr float kMostTemperature_C = 1000.0F;
 bool is_between(float low, float x, float high) { return x >= low && x <= high; }
 
 bool is_temperature(const GuardModel& model, float x_C) { return is_between(model.coldest_ambient_C - 1.0F, x_C, kMostTemperature_C); }
+
+/// Sum of all words after the first: every flip of a single bit changes it.
+std::uint32_t check_sum_of(const GuardState& state) {
+  std::uint32_t sum = kStarted;
+  for (unsigned i = 1; i < sizeof(GuardState) / sizeof(std::uint32_t); ++i) {
+    sum += word_of(&state, i);
+  }
+  return sum;
+}
 
 /// Segment of an axis and the place in it.
 struct Place {
@@ -84,11 +94,13 @@ void start_guard(const GuardModel& model, GuardState& state, float body_C) {
   for (int node = 0; node < model.node_count; ++node) {
     state.state_C[node] = start_C;
   }
-  state.started = kStarted;
+  seal(state);
 }
 
+void seal(GuardState& state) { state.check_sum = check_sum_of(state); }
+
 bool is_started(const GuardModel& model, const GuardState& state) {
-  bool started = state.started == kStarted;
+  bool started = state.check_sum == check_sum_of(state);
   for (int node = 0; node < model.node_count; ++node) {
     started = started && is_temperature(model, state.state_C[node]) && is_between(-1.0F, state.carry_K[node], 1.0F);
   }
@@ -137,6 +149,7 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
     state.carry_K[node] = (next_C - state.state_C[node]) - change_K;
     state.state_C[node] = next_C > model.coldest_ambient_C ? next_C : model.coldest_ambient_C;
   }
+  seal(state);
   out.winding_C = state.state_C[0];
   out.winding_rate_K_per_s = rate_K_per_s[0];
   out.hottest_body_C = state.state_C[1];

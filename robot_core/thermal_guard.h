@@ -59,7 +59,7 @@ struct GuardModel {
 };
 
 struct GuardState {
-  std::uint32_t started = 0;
+  std::uint32_t check_sum = 0;
   float state_C[kMostGuardNodes] = {};
   float carry_K[kMostGuardNodes] = {};
 };
@@ -77,8 +77,11 @@ struct GuardOutput {
 /// All nodes at `body_C`. Anything that cannot be a temperature counts as the winding's limit.
 void start_guard(const GuardModel& model, GuardState& state, float body_C);
 
-/// True if the state has been started and holds temperatures.
+/// True if the state has been started, has its check sum and holds temperatures.
 bool is_started(const GuardModel& model, const GuardState& state);
+
+/// After a change of the temperatures from outside.
+void seal(GuardState& state);
 
 /// One guard period. `signal` has kGuardSignals values; the current is what flowed since the last call.
 /// `braking_reserve_K` is kept free below the limit for braking: driving current is read from the table at a winding that much hotter.

@@ -10,7 +10,7 @@ WheelReference find_wheel_speeds(const Config& config, const Input& input, const
   const float rate_y = body.acceleration.y - body.velocity.yaw * body.velocity.x;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
-    const float per_rim = wheel.slip_factor / config.wheel_radius_m;
+    const float per_rim = config.derived.speed_per_rim_per_m[i];
     if (body.is_wheelwise) {
       wheels.speed_rad_per_s[i] =
           input.command.mode == Mode::wheel_speed
