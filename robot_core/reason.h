@@ -1,34 +1,35 @@
 // Why a wheel gets less than was asked for: limits, which are normal, and faults, which are not.
 //
-// Fault table. `W` concerns one wheel, `R` the whole robot. Every reaction leads to less current than without the fault.
+// Fault table. W concerns one wheel, R the whole robot. Every reaction leads to less current than without the fault.
+// clang-format off
 //
-// | code | condition                                                   | reaction                                         | clears |
-// |------|-------------------------------------------------------------|--------------------------------------------------|--------------------------------|
-// | 100 R| Config fails its check sum or holds an impossible value     | all bridges open                                 | start() with a
-// valid Config    | | 101 R| State fails its check sum (bit flip, never started)         | State is started anew, guard as hot as its limit
-// | next step; the guard cools down| | 102 R| Input::elapsed_s is zero, negative or infinite              | all bridges open for this step
-// | next valid step                | | 103 R| Input::elapsed_s above kLongestGap_periods periods          | integrators and references
-// start anew; the guard | next valid step                | |      |                                                             | heats for
-// the gap with the largest current       |                                | | 104 R| command with a value that is not finite, or unknown
-// mode    | brake to a stand, then open                      | next valid command             | | 105 R| Input::command_age_s above
-// Config::command_timeout_s, or    | brake to a stand, then open                      | next fresh command             | |      | not a
-// number, or negative                                   |                                                  | | | 106 R| pose not finite, or
-// no planner, in a pose target            | brake to a stand, then open                      | next valid pose                | | 110 W|
-// wheel speed not finite or beyond what the motor reaches     | speed from the other wheels and the gyro,        | kSteadyAgain_s of
-// agreement    | |      |                                                             | current at most Config::limp_current_A           |
-// | | 111 W| wheel speed jumps by more than the motor can accelerate     | as 110                                           | as 110 | |
-// 112 W| wheel speed stays at one value against all other evidence   | as 110                                           | as 110 | | 113 W|
-// wheel speed follows another wheel's voltage (swapped)       | as 110, both wheels                              | start() | | 114 W| speed
-// unknown: too few other wheels to estimate it          | voltage that drives at most limp_current_A into a| as 110 | |      | | standing
-// motor, none where current is not sensed |                                | | 120 W| motor current not finite or beyond what the battery
-// drives  | current from voltage and speed, at its largest   | next valid sample              | | 121 W| motor current contradicts voltage
-// and speed (stuck sensor)  | as 120; the guard takes the larger of both       | kSteadyAgain_s of agreement    | | 130 R| battery voltage
-// not finite or outside of the declared range | PWM as for a full battery, limits as for an empty| next valid sample              | | 140
-// R| yaw rate not finite, beyond the sensor, or jumping          | yaw rate from the wheels                         | kSteadyAgain_s of
-// agreement    | | 141 R| yaw rate stays at one value while the wheels turn the robot | as 140                                           |
-// as 140                         | | 150 R| air temperature not finite or out of range                  | hottest declared air | next valid
-// sample              | | 151 W| stator temperature fitted once, now not finite or impossible| model alone | next valid sample | | 160 W|
-// the guard's state is unknown: power returned, rest unknown  | guard as hot as its limit                        | the guard cools down |
+// | code   | condition                                                   | reaction                                          | clears                          |
+// |--------|-------------------------------------------------------------|---------------------------------------------------|---------------------------------|
+// | 100 R  | Config fails its check sum or holds an impossible value     | all bridges open                                  | start() with a valid Config     |
+// | 101 R  | State fails its check sum (bit flip, never started)         | State is started anew, guard as hot as its limit  | next step; the guard cools down |
+// | 102 R  | Input::elapsed_s is zero, negative or infinite              | all bridges open for this step                    | next valid step                 |
+// | 103 R  | Input::elapsed_s above kLongestGap_periods periods          | integrators and references start anew; the guard  | next valid step                 |
+// |        |                                                             | heats for the gap with the largest current        |                                 |
+// | 104 R  | command with a value that is not finite, or unknown mode    | brake to a stand, then open                       | next valid command              |
+// | 105 R  | Input::command_age_s above Config::command_timeout_s, or    | brake to a stand, then open                       | next fresh command              |
+// |        | not a number, or negative                                   |                                                   |                                 |
+// | 106 R  | pose not finite, or no planner, in a pose target            | brake to a stand, then open                       | next valid pose                 |
+// | 110 W  | wheel speed not finite or beyond what the motor reaches     | speed from the other wheels and the gyro,         | kSteadyAgain_s of agreement     |
+// |        |                                                             | current at most Config::limp_current_A            |                                 |
+// | 111 W  | wheel speed jumps by more than the motor can accelerate     | as 110                                            | as 110                          |
+// | 112 W  | wheel speed stays at one value against all other evidence   | as 110                                            | as 110                          |
+// | 113 W  | wheel speed follows another wheel's voltage (swapped)       | as 110, both wheels                               | start()                         |
+// | 114 W  | speed unknown: too few other wheels to estimate it          | voltage that drives at most limp_current_A into a | as 110                          |
+// |        |                                                             | standing motor; open where current is not sensed  |                                 |
+// | 120 W  | motor current not finite or beyond what the battery drives  | current from voltage and speed, at its largest    | next valid sample               |
+// | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard takes the larger of both        | kSteadyAgain_s of agreement     |
+// | 130 R  | battery voltage not finite or outside of the declared range | PWM as for a full battery, limits as for an empty | next valid sample               |
+// | 140 R  | yaw rate not finite, beyond the sensor, or jumping          | yaw rate from the wheels                          | kSteadyAgain_s of agreement     |
+// | 141 R  | yaw rate stays at one value while the wheels turn the robot | as 140                                            | as 140                          |
+// | 150 R  | air temperature seen once, now not finite or out of range   | hottest declared air                              | next valid sample               |
+// | 151 W  | stator temperature seen once, now not finite or impossible  | model alone                                       | next valid sample               |
+// | 160 W  | guard state unknown: power returned, rest unknown, bit flip | guard as hot as its limit                         | the guard cools down            |
+// clang-format on
 #pragma once
 
 #include <cstdint>
