@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/diagnostic.h"
@@ -178,6 +179,16 @@ class Search {
 };
 
 }  // namespace
+
+double limp_current_A(const Derating& derating) {
+  double least_A = std::numeric_limits<double>::infinity();
+  for (const UsePlayed& each : derating.uses) {
+    if (each.use.on_s == 0.0 && !each.current_A.empty()) {
+      least_A = std::min(least_A, each.current_A.back());
+    }
+  }
+  return std::isinf(least_A) ? 0.0 : least_A;
+}
 
 Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress) {
   require_samples(options.guarantee);

@@ -44,6 +44,12 @@ struct Derating {
   double reachable_speed_rad_per_s = 0.0;  ///< more than the table's most speed where beyond it the motor passes a limit without current
 };
 
+/// The current that the motor bears for good at every speed and in every hot case, in A ≥ 0: for a wheel whose speed nobody knows.
+/// Derivation: each held use draws all that the table allows, at one speed in one hot case, until the slowest body has settled (four
+/// slowest time constants, 900 s at least). The current that still flows at the end is the one at which the observer, which counts heat
+/// heat_reserve_ratio times, rests below its limits. The smallest of these over all held uses. 0 without held uses.
+double limp_current_A(const Derating& derating);
+
 /// Finds the smallest reserve of heat with which the share of motors that is asked for keeps every limit in every use, and checks it on
 /// motors that the search has not seen. Throws Failure: bad_input where the period is too long for the
 /// motor or the samples are too few for the confidence, limit_exceeded where no

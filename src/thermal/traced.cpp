@@ -4,8 +4,17 @@
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+
+#include "robot_core/thermal_math.h"
+
 namespace heatsoak {
 namespace {
+
+// In single precision the functions of the controller, so that host and controller have the same bits.
+double exponential_of(double x) { return std::exp(x); }
+float exponential_of(float x) { return heatsoak_exp(x); }
+double power_of(double base, double exponent) { return base > 0.0 ? std::pow(base, exponent) : 0.0; }
+float power_of(float base, float exponent) { return heatsoak_pow(base, exponent); }
 
 template <class Number>
 Number worked_out(Operation operation, Number a, Number b) {
@@ -26,9 +35,9 @@ Number worked_out(Operation operation, Number a, Number b) {
     case Operation::square_root:
       return std::sqrt(a);
     case Operation::power:
-      return a > kNone ? std::pow(a, b) : kNone;
+      return power_of(a, b);
     case Operation::exponential:
-      return std::exp(a);
+      return exponential_of(a);
     default:
       throw std::logic_error("no arithmetic");
   }

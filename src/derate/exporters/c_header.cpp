@@ -1,3 +1,4 @@
+#include <embedded/thermal_math_text.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "derate/belief.h"
 #include "derate/exporter.h"
 
 namespace heatsoak::exporters {
@@ -58,7 +60,10 @@ class Lines {
     }
   }
   [[nodiscard]] const std::string& text() const { return text_; }
+  /// Whether <math.h> is needed: for the square root, which is one instruction and has the same bits everywhere.
   [[nodiscard]] bool calls_library() const { return calls_library_; }
+  /// Whether a law needs the exponential or the power of thermal_math.h.
+  [[nodiscard]] bool calls_own() const { return calls_own_; }
 
  private:
   std::string operand(int place) const {
@@ -77,8 +82,8 @@ class Lines {
   std::string expression(const Formula::Step& step) {
     const std::string left = operand(step.left);
     const std::string right = step.right < 0 ? "" : operand(step.right);
-    const auto call = [&](std::string_view function) {
-      calls_library_ = true;
+    const auto own = [&](std::string_view function) {
+      calls_own_ = true;
       return step.right < 0 ? fmt::format("{}({})", function, left) : fmt::format("{}({}, {})", function, left, right);
     };
     switch (step.operation) {
@@ -95,17 +100,19 @@ class Lines {
       case Operation::positive_part:
         return fmt::format("{0} > 0.0f ? {0} : 0.0f", left);
       case Operation::square_root:
-        return call("sqrtf");
+        calls_library_ = true;
+        return fmt::format("sqrtf({})", left);
       case Operation::power:
-        return fmt::format("{} > 0.0f ? {} : 0.0f", left, call("powf"));
+        return own("heatsoak_pow");
       default:
-        return call("expf");
+        return own("heatsoak_exp");
     }
   }
 
   const Formula& formula_;
   std::string text_;
   bool calls_library_ = false;
+  bool calls_own_ = false;
 };
 
 std::string assumptions(const Derating& derating) {
@@ -188,7 +195,8 @@ std::string structures(const Derating& derating, const std::string& prefix) {
   return text;
 }
 
-std::string array(std::string_view declaration, const std::vector<double>& values) {
+template <class Number>
+std::string array(std::string_view declaration, const std::vector<Number>& values) {
   std::string text = fmt::format("static const float {}[{}] = {{", declaration, values.size());
   constexpr std::size_t kInLine = 10;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -315,48 +323,23 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
 }
 )";
 
-/// Between which values a signal is believed.
-std::pair<std::string, std::string> belief(const Derating& derating, firmware::Signal signal, const std::string& capital) {
-  const auto defined = [&](std::string_view name) { return fmt::format("{}_{}", capital, name); };
-  switch (signal) {
-    case firmware::current:
-      return {"-10.0f * " + defined("MOST_CURRENT_A"), "10.0f * " + defined("MOST_CURRENT_A")};
-    case firmware::speed:
-      return {"-1.25f * " + defined("REACHABLE_SPEED_RAD_PER_S"), "1.25f * " + defined("REACHABLE_SPEED_RAD_PER_S")};
-    case firmware::ambient:
-      // A dead sensor, or a structure that nobody filled in, shows just 0.
-      return {defined("COLDEST_AMBIENT_C") + " + 0.05f", "300.0f"};
-    case firmware::neighbour:
-      return {"in.ambient_C - 5.0f", "1000.0f"};
-    case firmware::vehicle_speed:
-      return {"0.0f", literal(derating.rules.most_vehicle_speed_m_per_s)};
-    case firmware::age:
-      return {"0.0f", "1e6f"};
-    default:
-      return {"0.0f", fmt::format("2.0f * {} / {}", defined("REACHABLE_SPEED_RAD_PER_S"), defined("PERIOD_S"))};
-  }
-}
-
-std::vector<double> values_if_unknown(const Derating& derating, firmware::Signal signal) {
-  BarrierRules reachable = derating.rules;
-  reachable.most_speed_rad_per_s = derating.reachable_speed_rad_per_s;
-  return heatsoak::values_if_unknown(derating.observer, reachable, signal);
-}
-
 /// What every signal may be where it is not believed.
 std::string possibilities(const Derating& derating, const std::string& prefix) {
   std::string text = "/* what an input may be of which nothing is known */\n";
   for (const firmware::Signal signal : used_signals(derating.observer)) {
-    text += array(fmt::format("{}_possible_{}", prefix, name_of(signal)), values_if_unknown(derating, signal));
+    text += array(fmt::format("{}_possible_{}", prefix, name_of(signal)), belief(derating, signal).values);
   }
   return text + "\n";
 }
 
 /// First every signal that is not believed gets some value, for a rate of what is no number is none.
-std::string doubts(const Derating& derating, const std::string& prefix, const std::string& capital) {
+std::string doubts(const Derating& derating, const std::string& prefix) {
   std::string text;
   for (const firmware::Signal signal : used_signals(derating.observer)) {
-    const auto [least, most] = belief(derating, signal, capital);
+    const Belief believed = belief(derating, signal);
+    const bool moves = signal == firmware::neighbour;
+    const std::string least = moves ? fmt::format("in.ambient_C - {}", literal(kNeighbourBelowAir_K)) : literal(believed.low);
+    const std::string most = literal(believed.high);
     text += fmt::format("  if (!{0}_is_between({1}, in.{2}, {3})) {{\n    in.{2} = {0}_possible_{2}[0];\n    unknown |= {4}u;\n  }}\n",
                         prefix, least, name_of(signal), most, 1U << static_cast<unsigned>(signal));
   }
@@ -368,7 +351,7 @@ std::string sweeps(const Derating& derating, const std::string& prefix) {
   for (const firmware::Signal signal : used_signals(derating.observer)) {
     text += fmt::format(
         "      if (unknown & {}u) {{\n        {}_sweep(&in, &in.{}, {}_possible_{}, {}, state->state_C, most_K_per_s);\n      }}\n",
-        1U << static_cast<unsigned>(signal), prefix, name_of(signal), prefix, name_of(signal), values_if_unknown(derating, signal).size());
+        1U << static_cast<unsigned>(signal), prefix, name_of(signal), prefix, name_of(signal), belief(derating, signal).values.size());
   }
   return text;
 }
@@ -397,7 +380,7 @@ std::string write(const Derating& derating) {
   const std::string capital = in_capitals(prefix);
   const Lines lines(derating.observer);
   const auto define = [&](std::string_view name, double value) { return fmt::format("#define {}_{} {}\n", capital, name, literal(value)); };
-  const std::vector<std::pair<std::string, std::string>> words{{"@UNKNOWN@", doubts(derating, prefix, capital)},
+  const std::vector<std::pair<std::string, std::string>> words{{"@UNKNOWN@", doubts(derating, prefix)},
                                                                {"@SWEEPS@", sweeps(derating, prefix)},
                                                                {"@SPEED_BIT@", std::to_string(1U << unsigned{firmware::speed})},
                                                                {"@CAP@", capital},
@@ -410,12 +393,16 @@ std::string write(const Derating& derating) {
          (lines.calls_library() ? "#include <math.h>\n" : "") + "#include <stdint.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"without -ffast-math: it takes away what tells a number from none, and the rounding that is "
          "carried\"\n#endif\n\n" +
+         (lines.calls_own() ? std::string(embedded::thermal_math_text().front().text) + "\n" : "") +
          define("PERIOD_S", derating.options.period_s) + define("WINDING_LIMIT_C", derating.rules.limits.winding_C) +
          define("HOTTEST_AMBIENT_C", derating.rules.hottest_ambient_C) + define("COLDEST_AMBIENT_C", derating.options.coldest_ambient_C) +
          define("MOST_CURRENT_A", derating.rules.most_current_A) + define("MOST_SPEED_RAD_PER_S", derating.rules.most_speed_rad_per_s) +
          define("REACHABLE_SPEED_RAD_PER_S", derating.reachable_speed_rad_per_s) +
          define("TORQUE_CONSTANT_NM_PER_A", derating.torque_constant_Nm_per_A) +
-         fmt::format("#define {}_STARTED 0x48454154u\n\n", capital) + structures(derating, prefix) + tables(derating, prefix) +
+         "/* What the motor bears for good at every speed and in every hot case, for a wheel whose speed nobody knows: the least of the "
+         "currents\n   that the table still gives, held at full allowance until everything has warmed up; 0 where none was played. */\n" +
+         define("LIMP_CURRENT_A", limp_current_A(derating)) + fmt::format("#define {}_STARTED 0x48454154u\n\n", capital) +
+         structures(derating, prefix) + tables(derating, prefix) +
          fmt::format(
              "/* dT/dt of every node */\nstatic inline void {0}_rates(const {0}_input *input, const float *state_C, float *rate_K_per_s) "
              "{{\n",

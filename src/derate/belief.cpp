@@ -1,0 +1,50 @@
+#include "derate/belief.h"
+
+namespace heatsoak {
+namespace {
+
+struct Bounds {
+  float low = 0.0F;
+  float high = 0.0F;
+};
+
+/// Wider than what the motor can reach: only a broken sensor leaves them.
+Bounds bounds(const Derating& derating, firmware::Signal signal) {
+  const auto most_current_A = static_cast<float>(derating.rules.most_current_A);
+  const auto reachable_rad_per_s = static_cast<float>(derating.reachable_speed_rad_per_s);
+  switch (signal) {
+    case firmware::current:
+      return {-10.0F * most_current_A, 10.0F * most_current_A};
+    case firmware::speed:
+      return {-1.25F * reachable_rad_per_s, 1.25F * reachable_rad_per_s};
+    case firmware::ambient:
+      // A dead sensor, or a structure that nobody filled in, shows just 0.
+      return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F, 300.0F};
+    case firmware::neighbour:
+      return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F - kNeighbourBelowAir_K, 1000.0F};
+    case firmware::vehicle_speed:
+      return {0.0F, static_cast<float>(derating.rules.most_vehicle_speed_m_per_s)};
+    case firmware::age:
+      return {0.0F, 1e6F};
+    default:
+      return {0.0F, 2.0F * reachable_rad_per_s / static_cast<float>(derating.options.period_s)};
+  }
+}
+
+}  // namespace
+
+Belief belief(const Derating& derating, firmware::Signal signal) {
+  if (!derating.observer.uses(signal)) {
+    return {};
+  }
+  BarrierRules reachable = derating.rules;
+  reachable.most_speed_rad_per_s = derating.reachable_speed_rad_per_s;
+  const Bounds believed = bounds(derating, signal);
+  Belief made{.is_used = true, .low = believed.low, .high = believed.high, .values = {}};
+  for (const double value : values_if_unknown(derating.observer, reachable, signal)) {
+    made.values.push_back(static_cast<float>(value));
+  }
+  return made;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,242 @@
+#include "firmware/core_config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "motor/datasheet_network.h"
+#include "robot/driver.h"
+#include "thermal/copper.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kPushed = 1.1;
+
+float single(double value) { return static_cast<float>(value); }
+
+void require_all(const Robot& robot, const MotorValues& motor) {
+  constexpr std::array<std::string_view, 6> kTables{"body", "wheels", "drive", "battery", "traction", "limits"};
+  std::vector<std::string_view> tables(kTables.begin(), kTables.end());
+  if (has_friction(robot)) {
+    tables.emplace_back("friction");
+  }
+  Diagnostics diagnostics;
+  try {
+    require_figures(robot, tables);
+  } catch (const Failure& failure) {
+    for (const Diagnostic& each : failure.diagnostics()) {
+      diagnostics.add(each.at, each.key, each.message);
+    }
+  }
+  if (std::isnan(motor.rotor_inertia_kg_m2)) {
+    diagnostics.add({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
+  }
+  diagnostics.throw_if_any();
+}
+
+void set_geometry(const BodyConfig& body, robot_core::Config& config) {
+  const Kinematics& kinematics = body.kinematics;
+  config.wheel_count = kinematics.wheel_count;
+  config.wheel_radius_m = single(kinematics.wheel_radius_m);
+  config.contact_radius_m = single(kinematics.contact_radius_m);
+  config.mass_kg = single(body.weight.mass_kg);
+  config.yaw_inertia_kg_m2 = single(body.yaw_inertia_kg_m2);
+  config.wheel_inertia_kg_m2 = single(body.wheel_inertia_kg_m2);
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    robot_core::WheelConfig& wheel = config.wheel[i];
+    wheel.rolling_x_share = single(kinematics.wheels[i].rolling_x_share);
+    wheel.rolling_y_share = single(kinematics.wheels[i].rolling_y_share);
+    wheel.inverse_x_factor = single(kinematics.inverse_x_factor[i]);
+    wheel.inverse_y_factor = single(kinematics.inverse_y_factor[i]);
+    wheel.inverse_yaw_per_m = single(kinematics.inverse_yaw_per_m[i]);
+    wheel.level_load_share = single(body.weight.level_share[i]);
+  }
+}
+
+void set_friction(const Robot& robot, const MotorValues& motor, const BodyConfig& body, robot_core::Config& config) {
+  const FrictionVoltage friction = friction_voltage(robot, motor);
+  config.has_friction = friction.is_known;
+  config.rotation_friction_V = single(friction.rotation_V);
+  config.friction_smoothing_m_per_s = single(body.friction.smoothing_rad_per_s * body.kinematics.wheel_radius_m);
+  for (int i = 0; i < config.wheel_count; ++i) {
+    robot_core::WheelConfig& wheel = config.wheel[i];
+    wheel.damping_V_s_per_rad = single(friction.damping_V_s_per_rad);
+    wheel.sine_V = single(friction.sine_V[i]);
+    wheel.sign_V = single(friction.sign_V[i]);
+    wheel.phase_cosine_ratio = single(std::cos(friction.phase_rad[i]));
+    wheel.phase_sine_ratio = single(std::sin(friction.phase_rad[i]));
+  }
+}
+
+double lowest_resistance_ohm(const Robot& robot, const MotorValues& motor, const CoreOptions& options) {
+  const MotorElectrics electrics = make_electrics(robot, motor);
+  const double cold_ratio = resistance_ratio(electrics.resistance_rise_per_K, options.coldest_ambient_C);
+  return electrics.heating_factor * electrics.resistance_25C_ohm * options.lowest_resistance_ratio * cold_ratio +
+         robot.series_resistance_ohm();
+}
+
+double current_limit_A(const Robot& robot, double geared_V_s_per_rad, double fastest_rad_per_s, double lowest_ohm) {
+  const double most_V = std::min(robot.battery_full_V, robot.voltage_limit_V) + geared_V_s_per_rad * fastest_rad_per_s;
+  return std::min(robot.current_limit_A, most_V / lowest_ohm);
+}
+
+void set_drive(const Robot& robot, const MotorValues& motor, const BodyConfig& body, const CoreOptions& options,
+               robot_core::Config& config) {
+  const DriveConstants drive = drive_constants(robot, motor);
+  const double geared = drive.torque_constant_Nm_per_A * drive.gear_ratio;
+  const double efficiency = drive.gear_efficiency * body.rolling_efficiency;
+  const double lowest_ohm = lowest_resistance_ohm(robot, motor, options);
+  const double fastest_rad_per_s = kPushed * robot.battery_full_V / geared;
+  const double most_A = current_limit_A(robot, geared, fastest_rad_per_s, lowest_ohm);
+  config.torque_constant_Nm_per_A = single(drive.torque_constant_Nm_per_A);
+  config.resistance_ohm = single(drive.resistance_ohm);
+  config.lowest_resistance_ohm = single(lowest_ohm);
+  config.gear_ratio = single(drive.gear_ratio);
+  config.gear_efficiency = single(efficiency);
+  config.fastest_wheel_rad_per_s = single(fastest_rad_per_s);
+  config.largest_acceleration_rad_per_s2 = single(geared * most_A / (drive.gear_efficiency * body.wheel_inertia_kg_m2));
+  config.battery_full_V = single(robot.battery_full_V);
+  config.battery_lowest_V = single(robot.battery_empty_V);
+  config.battery_resistance_ohm = single(robot.battery_resistance_ohm);
+  config.voltage_limit_V = single(std::min(robot.battery_full_V, robot.voltage_limit_V));
+  config.current_limit_A = single(most_A);
+}
+
+void set_gains(const WheelLoopGains& gains, robot_core::Config& config) {
+  config.body_gain_per_s = single(gains.body_gain_per_s);
+  config.yaw_gain_per_s = single(gains.yaw_gain_per_s);
+  config.yaw_integral_per_s2 = single(gains.yaw_integral_per_s2);
+  config.wheel_gain_V_s_per_rad = single(gains.wheel_gain_V_s_per_rad);
+  config.wheel_integral_V_per_rad = single(gains.wheel_integral_V_per_rad);
+  config.tracking_time_s = single(gains.tracking_time_s);
+}
+
+void set_limits(const Robot& robot, const BodyConfig& body, robot_core::Config& config) {
+  config.speed_limit_m_per_s = single(robot.speed_limit_m_per_s);
+  config.yaw_rate_limit_rad_per_s = single(robot.yaw_rate_limit_rad_per_s);
+  config.acceleration_limit_m_per_s2 = single(robot.acceleration_limit_m_per_s2);
+  config.yaw_acceleration_limit_rad_per_s2 = single(robot.yaw_acceleration_limit_rad_per_s2);
+  config.jerk_limit_m_per_s3 = single(robot.jerk_limit_m_per_s3);
+  const double mu = body.traction.traction_ratio;
+  const double c = body.traction.roller_drag_ratio;
+  config.traction_ratio = single(std::sqrt(std::max(0.0, mu * mu - c * c)));
+}
+
+/// Completed with its check sum, or a Failure where the core would refuse it.
+robot_core::Config finished(robot_core::Config config) {
+  robot_core::complete(config);
+  if (!robot_core::is_possible(config)) {
+    throw Failure(ExitCode::bad_input,
+                  "the drive core refuses the values of this robot and motor: expected finite values, three or four "
+                  "wheels and an empty battery below the full one");
+  }
+  robot_core::complete(config);
+  return config;
+}
+
+/// Largest current over the directions of travel and the wheels, and the motor's speed at the beginning of the stop.
+struct Stop {
+  double current_A = 0.0;
+  double speed_rad_per_s = 0.0;
+  double duration_s = 0.0;
+};
+
+/// Of one wheel for each direction of travel: the larger current decides, and for equal currents the faster motor.
+std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const BodyConfig& body) {
+  constexpr int kHeadings = 72;
+  const double most_A =
+      current_limit_A(robot, drive.torque_constant_Nm_per_A * drive.gear_ratio,
+                      kPushed * robot.battery_full_V / (drive.torque_constant_Nm_per_A * drive.gear_ratio), drive.resistance_ohm);
+  std::vector<Stop> all;
+  for (int h = 0; h < kHeadings; ++h) {
+    const double heading_rad = 2.0 * std::numbers::pi * h / kHeadings;
+    const Direction along = Direction::of(heading_rad);
+    const double a_m_per_s2 = robot.braking_limit_m_per_s2;
+    const double v_m_per_s = robot.speed_limit_m_per_s;
+    const Wrench wrench = wrench_of_acceleration(body, 0.0, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});
+    const PerWheel force_N = rolling_forces_N(body.kinematics, wrench);
+    const PerWheel per_s2 = wheel_speeds_rad_per_s(body.kinematics, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});
+    for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+      const double torque_Nm = force_N[i] * body.kinematics.wheel_radius_m + body.wheel_inertia_kg_m2 * per_s2[i];
+      const double current_A = std::abs(torque_Nm) / (drive.torque_constant_Nm_per_A * drive.gear_ratio);
+      all.push_back({std::min(current_A, most_A), std::abs(per_s2[i]) * v_m_per_s / a_m_per_s2 * drive.gear_ratio, v_m_per_s / a_m_per_s2});
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+CoreOptions with_tolerance(CoreOptions options, const Motor& motor) {
+  const auto found = motor.figures.find("terminal_resistance");
+  if (found != motor.figures.end() && found->second.spread) {
+    options.lowest_resistance_ratio = found->second.spread->low / found->second.value;
+  }
+  return options;
+}
+
+robot_core::Config make_core_config(const Robot& robot, const MotorValues& motor, const CoreOptions& options) {
+  require_all(robot, motor);
+  const BodyConfig body = make_body_with_known_friction(robot, motor);
+  robot_core::Config config;
+  config.period_s = single(options.period_s);
+  set_geometry(body, config);
+  set_drive(robot, motor, body, options, config);
+  set_friction(robot, motor, body, config);
+  set_gains(wheel_loop_gains(wheel_loop_plant(body, drive_constants(robot, motor)), options.period_s), config);
+  set_limits(robot, body, config);
+  config.plan_step = options.has_pose_targets ? &robot_core::plan_to_pose : nullptr;
+  return finished(config);
+}
+
+robot_core::Config make_core_config(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
+                                    const HostGuard& guard) {
+  CoreOptions with_cold = with_tolerance(options, motor);
+  with_cold.coldest_ambient_C = derating.options.coldest_ambient_C;
+  const double periods = derating.options.period_s / options.period_s;
+  if (std::round(periods) < 1.0 || std::abs(periods - std::round(periods)) > 1e-3 * periods) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("the guard's period of {:.6g} ms is no whole number of control periods of {:.6g} ms: choose one that is",
+                              1e3 * derating.options.period_s, 1e3 * options.period_s));
+  }
+  robot_core::Config config = make_core_config(robot, motor.nominal, with_cold);
+  config.guard = &guard.model();
+  config.limp_current_A = single(std::min(limp_current_A(derating), double{config.current_limit_A}));
+  config.braking_reserve_K = single(braking_reserve_K(robot, motor.nominal, derating));
+  return finished(config);
+}
+
+double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating) {
+  require_all(robot, motor);
+  const BodyConfig body = make_body_with_known_friction(robot, motor);
+  FormulaRun<double> law(derating.observer.formula(), derating.observer.rate_steps());
+  std::vector<double> inputs(firmware::kSignalCount + derating.observer.state_count(), derating.rules.limits.winding_C);
+  std::vector<double> rate_K_per_s(derating.observer.state_count());
+  double most_K = 0.0;
+  for (const HotCase& around : hot_cases(derating.observer, derating.rules)) {
+    for (const Stop& stop : stops(robot, drive_constants(robot, motor), body)) {
+      constexpr int kSteps = 16;
+      double heating_K = 0.0;
+      for (int step = 0; step < kSteps; ++step) {
+        // Midpoints: the speed falls evenly, the current stays.
+        const double speed_rad_per_s = stop.speed_rad_per_s * (step + 0.5) / kSteps;
+        Signals signals = around.signals(derating.rules, stop.current_A, speed_rad_per_s);
+        signals[firmware::current] = -stop.current_A;
+        signals[firmware::speed] = speed_rad_per_s;
+        signals[firmware::ambient] = derating.rules.limits.winding_C;
+        std::ranges::copy(signals, inputs.begin());
+        law.run(inputs, rate_K_per_s);
+        heating_K += std::max(0.0, rate_K_per_s[states::winding]) * stop.duration_s / kSteps;
+      }
+      most_K = std::max(most_K, heating_K);
+    }
+  }
+  return most_K;
+}
+
+}  // namespace heatsoak

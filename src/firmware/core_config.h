@@ -1,0 +1,52 @@
+// The drive core's configuration, from the files of robot and motor and from a derating.
+#pragma once
+
+#include <string>
+
+#include "derate/derating.h"
+#include "firmware/friction_voltage.h"
+#include "firmware/host_guard.h"
+#include "firmware/wheel_loop.h"
+#include "robot_core/drive_core.h"
+
+namespace heatsoak {
+
+struct CoreOptions {
+  double period_s = 0.001;               ///< between two calls of robot_core::step()
+  double coldest_ambient_C = 0.0;        ///< a winding is never colder
+  double lowest_resistance_ratio = 1.0;  ///< smallest terminal resistance of a motor within its tolerance, per nominal one
+  bool has_pose_targets = true;          ///< robot_core::plan_to_pose is linked
+};
+
+/// The options with the lower end of the declared tolerance or range of the motor's terminal_resistance; 1 where it declares none.
+CoreOptions with_tolerance(CoreOptions options, const Motor& motor);
+
+/// Without guard. Needs the tables body, wheels, drive, battery, traction and limits of the robot's file and the rotor inertia of the
+/// motor; [friction] may be missing as a whole (friction_note() tells the user). Throws Failure (bad_input) that names all figures that are
+/// missing, or the longest possible period where it is too long for the wheel-speed loop (wheel_loop.h).
+///
+///   resistance          R25·k + R_driver, k = 0.75·1.1² for a sinusoidal current, as the plant has it (make_electrics())
+///   lowest resistance   the same with R25·lowest_resistance_ratio·(1 + α·(coldest air − 25 °C))
+///   gear efficiency     gear times rolling efficiency: motor to ground
+///   fastest wheel       1.1·U_full/(K_t·n): the full battery, and 10 % by a push, as barrier_rules()
+///   current limit       of the driver; without one, what battery and back-EMF drive together: (U + K_t·n·fastest wheel)/lowest resistance,
+///                       U the smaller of full battery and voltage limit
+///   largest acceleration K_t·n·current limit/(η·J_wheel): a wheel in the air that brakes, where the gear's loss helps
+///   traction            √(μ² − c²) of coefficient μ and roller drag c, as inverse_dynamics() passes on
+///   friction smoothing  that of the plant (FrictionConfig::smoothing) at the rim
+///   gains               wheel_loop_gains()
+robot_core::Config make_core_config(const Robot& robot, const MotorValues& motor, const CoreOptions& options);
+
+/// With the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from the motor's tolerance and
+/// the derating's coldest air. Throws Failure (bad_input) as above, and where the guard period is no whole number of control periods.
+robot_core::Config make_core_config(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
+                                    const HostGuard& guard);
+
+/// Heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's dT_w/dt,
+/// where every body and the air are at the winding's limit. So it is adiabatic, ∫I²·R(T_limit) dt·(safety factor on heat)/C_w, plus what
+/// effects of the motor's file add. I is that of the wheel and direction of travel with the largest force, with friction, drag and gear
+/// losses counted as none, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit.
+/// Needs the tables that make_core_config() needs.
+double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating);
+
+}  // namespace heatsoak

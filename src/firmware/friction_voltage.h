@@ -1,0 +1,42 @@
+// The friction of a robot as the feed-forward of the drive core takes it: a voltage over the direction of travel, per wheel.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "robot/body.h"
+
+namespace heatsoak {
+
+/// V_i = d·ω_i + f_i(θ), f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)): equations (2) and (3) of RoboTeam Twente, ETDP 2025. Voltages
+/// are those of the driver; unlike the torques of a robot file they contain the drag of the motor, and d its back-EMF.
+struct FrictionVoltage {
+  bool is_known = false;             ///< false: the robot's file has no friction; d is the back-EMF alone, all else is 0
+  double damping_V_s_per_rad = 0.0;  ///< d, per wheel speed
+  PerWheel sine_V{};                 ///< a
+  PerWheel sign_V{};                 ///< b
+  PerWheel phase_rad{};              ///< φ
+  double rotation_V = 0.0;           ///< in pure rotation, in place of f
+  PerWheel residual_rms_V{};  ///< over the directions of travel: what this form cannot represent of the friction that the file states
+};
+
+/// Method:
+///   d = K_t·n + D·R/(K_t·n·η)            back-EMF, and the damping D of the file at the wheel (n gear ratio, η gear efficiency);
+///   V(T) = (T/(n·η) + K_t·I_0)·R/K_t     of a torque T at a turning wheel (steady_voltage_V() without back-EMF).
+/// A measured curve ([friction.heading]) without double angle has the form already: a and b are converted by V(T), with the phases of the
+/// file. A curve with double angle, and roller drag, do not have it: for these the steady torque of each wheel at 72 directions of travel
+/// follows from inverse_dynamics() without damping, and a_i and b_i from linear least squares, φ_i being the phase of the file or, where it
+/// has none, that of the wheel's rolling direction.
+/// Needs the figures that make_body() needs, [friction] apart; throws Failure (bad_input) that names those that are missing.
+FrictionVoltage friction_voltage(const Robot& robot, const MotorValues& motor);
+
+/// Whether the file has any figure of [friction] or [friction.heading].
+bool has_friction(const Robot& robot);
+
+/// The body with the friction of the file, or without any where the file has none.
+BodyConfig make_body_with_known_friction(const Robot& robot, const MotorValues& motor);
+
+/// For the user; empty where nothing is missing.
+std::string friction_note(const Robot& robot);
+
+}  // namespace heatsoak

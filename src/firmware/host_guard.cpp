@@ -1,0 +1,105 @@
+#include "firmware/host_guard.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace {
+
+static_assert(robot_core::kGuardSignals == int{firmware::kSignalCount});
+static_assert(robot_core::guard_current_A == int{firmware::current} && robot_core::guard_speed_rad_per_s == int{firmware::speed} &&
+              robot_core::guard_ambient_C == int{firmware::ambient} &&
+              robot_core::guard_vehicle_speed_m_per_s == int{firmware::vehicle_speed} &&
+              robot_core::guard_neighbour_C == int{firmware::neighbour} && robot_core::guard_age_h == int{firmware::age} &&
+              robot_core::guard_acceleration_rad_per_s2 == int{firmware::acceleration});
+
+std::vector<float> single(const std::vector<double>& values) {
+  std::vector<float> rounded(values.size());
+  std::ranges::transform(values, rounded.begin(), [](double value) { return static_cast<float>(value); });
+  return rounded;
+}
+
+robot_core::GuardAxis axis(const std::vector<float>& points) { return {points.data(), static_cast<int>(points.size())}; }
+
+}  // namespace
+
+HostGuard::Law::Law(const Observer& observer)
+    : run(observer.formula(), observer.rate_steps()),
+      values(firmware::kSignalCount + observer.state_count()),
+      rates_K_per_s(observer.state_count()) {}
+
+HostGuard::HostGuard(const Derating& derating)
+    : speed_rad_per_s_(single(derating.table.speed_rad_per_s)),
+      stator_C_(single(derating.table.stator_C)),
+      winding_C_(single(derating.table.winding_C)),
+      current_A_(single(derating.table.current_A)),
+      law_(derating.observer) {
+  if (derating.observer.state_count() > robot_core::kMostGuardNodes) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{}: the thermal network has {} nodes; the drive core's guard takes at most {}: remove nodes from the motor's file",
+                    derating.motor_id, derating.observer.state_count(), robot_core::kMostGuardNodes));
+  }
+  model_.node_count = static_cast<int>(derating.observer.state_count());
+  model_.period_s = static_cast<float>(derating.options.period_s);
+  model_.winding_limit_C = static_cast<float>(derating.rules.limits.winding_C);
+  model_.coldest_ambient_C = static_cast<float>(derating.options.coldest_ambient_C);
+  model_.hottest_ambient_C = static_cast<float>(derating.rules.hottest_ambient_C);
+  model_.most_current_A = static_cast<float>(derating.rules.most_current_A);
+  for (std::size_t i = 0; i < beliefs_.size(); ++i) {
+    beliefs_[i] = belief(derating, static_cast<firmware::Signal>(i));
+  }
+  model_.rates = &HostGuard::rates;
+  point_to_own();
+}
+
+HostGuard::HostGuard(const HostGuard& other)
+    : model_(other.model_),
+      speed_rad_per_s_(other.speed_rad_per_s_),
+      stator_C_(other.stator_C_),
+      winding_C_(other.winding_C_),
+      current_A_(other.current_A_),
+      beliefs_(other.beliefs_),
+      law_(other.law_) {
+  point_to_own();
+}
+
+HostGuard& HostGuard::operator=(const HostGuard& other) {
+  if (this != &other) {
+    model_ = other.model_;
+    speed_rad_per_s_ = other.speed_rad_per_s_;
+    stator_C_ = other.stator_C_;
+    winding_C_ = other.winding_C_;
+    current_A_ = other.current_A_;
+    beliefs_ = other.beliefs_;
+    law_ = other.law_;
+    point_to_own();
+  }
+  return *this;
+}
+
+void HostGuard::point_to_own() {
+  model_.speed_rad_per_s = axis(speed_rad_per_s_);
+  model_.stator_C = axis(stator_C_);
+  model_.winding_C = axis(winding_C_);
+  model_.current_A = current_A_.data();
+  for (std::size_t i = 0; i < beliefs_.size(); ++i) {
+    const Belief& from = beliefs_[i];
+    model_.belief[i] = {from.is_used, from.low, from.high, from.values.data(), static_cast<int>(from.values.size())};
+  }
+  model_.context = &law_;
+}
+
+void HostGuard::rates(const void* context, const float* signals, const float* state_C, float* rate_K_per_s) {
+  // The context is the `mutable` law of a HostGuard, never a constant.
+  Law& law = *const_cast<Law*>(static_cast<const Law*>(context));
+  std::copy_n(signals, firmware::kSignalCount, law.values.begin());
+  std::copy_n(state_C, law.rates_K_per_s.size(), law.values.begin() + firmware::kSignalCount);
+  law.run.run(law.values, law.rates_K_per_s);
+  std::ranges::copy(law.rates_K_per_s, rate_K_per_s);
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,44 @@
+// The thermal guard on the host: what a robot_core::GuardModel points to, made from a derating.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "derate/belief.h"
+#include "robot_core/thermal_guard.h"
+
+namespace heatsoak {
+
+/// Owns the tables of one motor's guard and runs the observer's formula in single precision, with the bits of the code generated for the
+/// controller. Steps of one HostGuard must not run in two threads at once, because the formula has scratch memory: give each thread a
+/// copy. A model() is valid as long as its HostGuard is.
+class HostGuard {
+ public:
+  /// Throws Failure (bad_input) where the motor has more nodes than robot_core::kMostGuardNodes.
+  explicit HostGuard(const Derating& derating);
+  HostGuard(const HostGuard& other);
+  HostGuard& operator=(const HostGuard& other);
+  ~HostGuard() = default;
+
+  [[nodiscard]] const robot_core::GuardModel& model() const { return model_; }
+
+ private:
+  struct Law {
+    explicit Law(const Observer& observer);
+    FormulaRun<float> run;
+    std::vector<float> values;  ///< of the formula's inputs: signals, then temperatures
+    std::vector<float> rates_K_per_s;
+  };
+  static void rates(const void* context, const float* signals, const float* state_C, float* rate_K_per_s);
+  void point_to_own();
+
+  robot_core::GuardModel model_;
+  std::vector<float> speed_rad_per_s_;
+  std::vector<float> stator_C_;
+  std::vector<float> winding_C_;
+  std::vector<float> current_A_;
+  std::array<Belief, firmware::kSignalCount> beliefs_;
+  mutable Law law_;
+};
+
+}  // namespace heatsoak
