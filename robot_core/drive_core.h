@@ -186,7 +186,7 @@ struct WheelState {
 };
 
 /// What evolves. Only start() and step() write it; a copy can be logged.
-struct State {
+struct alignas(8) State {
   std::uint32_t check_sum = 0;
   std::uint32_t is_valid = 0;  ///< kStarted after start() with a valid Config
   WheelState wheel[kMostWheels];

@@ -12,13 +12,10 @@ bool is_between(float low, float x, float high) { return x >= low && x <= high; 
 
 bool is_temperature(const GuardModel& model, float x_C) { return is_between(model.coldest_ambient_C - 1.0F, x_C, kMostTemperature_C); }
 
-/// Sum of all words after the first: every flip of a single bit changes it.
 std::uint32_t check_sum_of(const GuardState& state) {
-  std::uint32_t sum = kStarted;
-  for (unsigned i = 1; i < sizeof(GuardState) / sizeof(std::uint32_t); ++i) {
-    sum += word_of(&state, i);
-  }
-  return sum;
+  constexpr unsigned kWords = sizeof(GuardState) / sizeof(std::uint32_t);
+  static_assert(kWords % 2 == 0);
+  return kStarted + sum_of_words(&state, kWords) - state.check_sum;
 }
 
 /// Segment of an axis and the place in it.

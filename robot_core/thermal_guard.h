@@ -58,8 +58,9 @@ struct GuardModel {
   const void* context = nullptr;
 };
 
-struct GuardState {
+struct alignas(8) GuardState {
   std::uint32_t check_sum = 0;
+  std::uint32_t unused = 0;
   float state_C[kMostGuardNodes] = {};
   float carry_K[kMostGuardNodes] = {};
 };
