@@ -96,6 +96,11 @@ void complete(Config& config) {
     xy += wheel.rolling_x_share * wheel.rolling_y_share;
     yy += wheel.rolling_y_share * wheel.rolling_y_share;
   }
+  constexpr float kJump_share = 0.03F;     // of the fastest speed: encoder steps and noise
+  constexpr float kCurrent_share = 0.15F;  // of the driver's limit: noise, delay and settling of the current
+  derived.jump_rad_per_s = config.largest_acceleration_rad_per_s2 * config.period_s + kJump_share * config.fastest_wheel_rad_per_s;
+  derived.current_margin_A = kCurrent_share * config.current_limit_A;
+  derived.most_sensed_A = 2.5F * config.battery_full_V / config.lowest_resistance_ohm;  // braking, the back-EMF adds to the battery
   const float per_determinant = 1.0F / (xx * yy - xy * xy);
   derived.plane_xx = yy * per_determinant;
   derived.plane_xy = -xy * per_determinant;
@@ -111,8 +116,10 @@ void complete(Config& config) {
     constexpr float kMostLeverage = 0.98F;  // else the other wheels say next to nothing of this one's direction
     derived.others_factor[i] = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
     const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
-    derived.grip_A[i] = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
-                        absolute(wheel.sign_V) / config.resistance_ohm;
+    const float grip_A = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
+                         absolute(wheel.sign_V) / config.resistance_ohm;
+    derived.is_grip_limit[i] = config.traction_ratio > 0.0F && grip_A < config.current_limit_A;
+    derived.body_limit_A[i] = derived.is_grip_limit[i] ? grip_A : config.current_limit_A;
   }
   config.check_sum = config_check_sum(config);
 }

@@ -10,10 +10,9 @@ constexpr std::uint32_t kStarted = 0x4452564EU;
 constexpr std::uint32_t kSeed = 0x9E3779B9U;
 
 /// Of what stands before the guards, the sum itself left out.
-std::uint32_t state_check_sum(const State& state) {
+[[gnu::noinline]] std::uint32_t state_check_sum(const State& state) {
   constexpr unsigned kWords = __builtin_offsetof(State, guard) / sizeof(std::uint32_t);
-  static_assert(kWords % 2 == 0);
-  return kSeed + sum_of_words(&state, kWords) - state.check_sum;
+  return kSeed + sum_of_words<kWords>(&state) - state.check_sum;
 }
 
 /// Guard steps of the wheels are spread over the guard period.

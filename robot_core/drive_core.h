@@ -64,8 +64,12 @@ struct DerivedConfig {
   float plane_yy = 0.0F;
   PerWheel rim_per_speed_m = {};  ///< r/slip factor
   PerWheel speed_per_rim_per_m = {};
+  PerWheel body_limit_A = {};            ///< smaller of driver and grip on level ground
+  bool is_grip_limit[kMostWheels] = {};  ///< grip is the smaller one
+  float jump_rad_per_s = 0.0F;           ///< change of a wheel speed within a period that no motor can make
+  float current_margin_A = 0.0F;         ///< by which current sensor and motor equation may differ
+  float most_sensed_A = 0.0F;            ///< more no battery can drive
   PerWheel others_factor = {};  ///< 1/(1 − tᵀ·P·t): residual against the other wheels per residual against all; 0: cannot be had
-  PerWheel grip_A = {};         ///< current that the contact on level ground passes on
   PerWheel per_damping_rad_per_V_s = {};
 };
 
@@ -178,7 +182,10 @@ struct WheelState {
   float time_to_limit_s = 0.0F;
   float current_bound_A = 0.0F;  ///< limit of the last steps, decaying: a sensed current far above it opens the bridge
   std::int32_t guard_steps = 0;  ///< periods since the guard's last step
+  std::uint32_t guard_calls = 0;
   std::uint32_t same_steps = 0;  ///< periods in which the sample has not changed by a bit
+  std::uint8_t has_current = 0;  ///< a sample of the current has been seen: its absence is a fault from then on
+  std::uint8_t unused[3] = {};
   std::uint8_t is_open = 1;      ///< the bridge was open over the last period
   std::uint8_t speed_fault = 0;  ///< Reason, or 0
   std::uint8_t current_fault = 0;
@@ -208,11 +215,10 @@ struct alignas(8) State {
   std::uint32_t shadow_steps = 0;   ///< in which the guard would have limited
   float shadow_deficit_A_s = 0.0F;  ///< current time integral that it would have taken away
   std::uint8_t is_limited = 0;      ///< a limit scaled the wheels in the last period
-  std::uint8_t unused[3] = {};
+  std::uint8_t unused[4] = {};
   std::uint8_t yaw_fault = 0;
   std::uint8_t has_ambient = 0;  ///< a sample has been seen: its absence is a fault from then on
-  std::uint8_t has_current = 0;  ///< the same, a bit per wheel
-  std::uint8_t has_stator = 0;
+  std::uint8_t has_stator = 0;   ///< the same, a bit per wheel
   // Last: each has a check sum of its own, looked at when the guard is stepped.
   GuardState guard[kMostWheels];
 };

@@ -18,6 +18,7 @@ struct Believed {
   float ambient_C = 0.0F;
   float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
   int elapsed_periods = 1;
+  bool are_all_sensed = true;
   bool is_speed_known[kMostWheels] = {};  ///< sensed or implied
   bool is_speed_sensed[kMostWheels] = {};
   bool is_current_sensed[kMostWheels] = {};

@@ -7,30 +7,31 @@ namespace {
 // Over which the heating of a winding and the wanted current are smoothed for the time until the guard limits.
 constexpr float kSmoothing_s = 3.0F;
 constexpr float kLongestGap_s = 1.0F;
+constexpr std::uint32_t kCallsPerEstimate = 50;
 
 int periods_per_guard_step(const Config& config) { return static_cast<int>(config.guard->period_s / config.period_s + 0.5F); }
 
 /// Temperature at which the table allows no more than `current_A`: between the axis points the table falls in a straight line.
-float limiting_temperature_C(const GuardModel& model, float speed_rad_per_s, float body_C, float current_A) {
+float limiting_temperature_C(const GuardModel& model, const GuardRow& row, float current_A) {
   const GuardAxis& axis = model.winding_C;
   int low = 0;
   int high = axis.count - 1;
   while (high - low > 1) {
     const int middle = (low + high) / 2;
-    if (allowed_current_A(model, speed_rad_per_s, body_C, axis.points[middle]) >= current_A) {
+    if (allowed_current_A(model, row, axis.points[middle]) >= current_A) {
       low = middle;
     } else {
       high = middle;
     }
   }
-  const float at_low_A = allowed_current_A(model, speed_rad_per_s, body_C, axis.points[low]);
-  const float at_high_A = allowed_current_A(model, speed_rad_per_s, body_C, axis.points[high]);
+  const float at_low_A = allowed_current_A(model, row, axis.points[low]);
+  const float at_high_A = allowed_current_A(model, row, axis.points[high]);
   const float share = at_low_A > at_high_A ? clamped((at_low_A - current_A) / (at_low_A - at_high_A), 0.0F, 1.0F) : 0.0F;
   return axis.points[low] + share * (axis.points[high] - axis.points[low]);
 }
 
 /// If the load goes on: straight extrapolation of the smoothed heating, an estimate that is early while the winding approaches balance.
-float time_to_limit_s(const Config& config, const WheelState& wheel, const GuardOutput& guard, float speed_rad_per_s) {
+float time_to_limit_s(const Config& config, const WheelState& wheel, const GuardOutput& guard) {
   const float wanted_A = square_root(wheel.wanted_squared_A2);
   if (wanted_A > guard.allowed_A) {
     return 0.0F;
@@ -39,8 +40,7 @@ float time_to_limit_s(const Config& config, const WheelState& wheel, const Guard
   if (!(wheel.rate_K_per_s > kLeastHeating_K_per_s)) {
     return kLongTime_s;
   }
-  const float limiting_C =
-      limiting_temperature_C(*config.guard, speed_rad_per_s, guard.hottest_body_C, wanted_A) - config.braking_reserve_K;
+  const float limiting_C = limiting_temperature_C(*config.guard, guard.row, wanted_A) - config.braking_reserve_K;
   return clamped((limiting_C - guard.winding_C) / wheel.rate_K_per_s, 0.0F, kLongTime_s);
 }
 
@@ -82,7 +82,11 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   const float smoothing = model.period_s / kSmoothing_s;
   wheel.rate_K_per_s += smoothing * (guard.winding_rate_K_per_s - wheel.rate_K_per_s);
   wheel.wanted_squared_A2 += smoothing * (rms_A * rms_A - wheel.wanted_squared_A2);
-  wheel.time_to_limit_s = time_to_limit_s(config, wheel, guard, absolute(speed_rad_per_s));
+  // An estimate over seconds is made anew twice a second.
+  if (wheel.guard_calls % kCallsPerEstimate == 0) {
+    wheel.time_to_limit_s = time_to_limit_s(config, wheel, guard);
+  }
+  ++wheel.guard_calls;
 }
 
 /// A stator that is hotter than the observer says is believed, a colder one is not.

@@ -8,7 +8,6 @@ namespace {
 constexpr float kStuck_s = 0.05F;
 // Sliding contacts make wheels disagree with each other for a while; beyond this share of the fastest speed it is no sliding.
 constexpr float kDisagreement_share = 0.06F;
-constexpr float kJump_share = 0.03F;
 // Time constant of the comparison of wheels with each other's voltages.
 constexpr float kSwap_s = 0.3F;
 constexpr std::uint32_t kStepsPerComparison = 16;
@@ -39,28 +38,29 @@ void validate_time(const Config& config, const Input& input, Believed& believed)
   }
 }
 
-bool is_finite(const Vector3& v) { return robot_core::is_finite(v.x) && robot_core::is_finite(v.y) && robot_core::is_finite(v.yaw); }
+/// Not finite if one of the components is not.
+float sum(const Vector3& v) { return v.x + v.y + v.yaw; }
 
 bool has_finite_values(const Config& config, const Command& command) {
-  bool finite = true;
+  float all = 0.0F;
   switch (command.mode) {
     case Mode::coast:
     case Mode::brake:
       return true;
     case Mode::body_velocity:
-      return is_finite(command.velocity) && is_finite(command.acceleration) && is_finite(command.push);
+      return is_finite(sum(command.velocity) + sum(command.acceleration) + sum(command.push));
     case Mode::pose_target:
-      return is_finite(command.pose);
+      return is_finite(sum(command.pose));
     case Mode::wheel_speed:
       for (int i = 0; i < config.wheel_count; ++i) {
-        finite = finite && robot_core::is_finite(command.wheel_speed_rad_per_s[i]);
+        all += command.wheel_speed_rad_per_s[i];
       }
-      return finite;
+      return is_finite(all);
     case Mode::wheel_torque:
       for (int i = 0; i < config.wheel_count; ++i) {
-        finite = finite && robot_core::is_finite(command.wheel_torque_Nm[i]);
+        all += command.wheel_torque_Nm[i];
       }
-      return finite;
+      return is_finite(all);
   }
   return false;
 }
@@ -71,7 +71,7 @@ void validate_command(const Config& config, const Input& input, Believed& believ
     believed.command_fault = Reason::command_invalid;
   } else if (!(input.command_age_s >= 0.0F && input.command_age_s <= config.command_timeout_s)) {
     believed.command_fault = Reason::command_stale;
-  } else if (input.command.mode == Mode::pose_target && (config.plan_step == nullptr || !is_finite(input.pose))) {
+  } else if (input.command.mode == Mode::pose_target && (config.plan_step == nullptr || !is_finite(sum(input.pose)))) {
     believed.command_fault = Reason::pose_invalid;
   }
   if (believed.command_fault != Reason::none && believed.mode != Mode::coast) {
@@ -192,73 +192,76 @@ void find_from_some(const Config& config, const State& state, Believed& believed
   }
 }
 
-/// Body velocity, and each wheel's speed as the other wheels and the gyro imply it.
-void find_body_velocity(const Config& config, const State& state, Believed& believed) {
+/// Yaw rate that the wheels imply; only where all of them are sensed.
+bool find_yaw_rate_of_wheels(const Config& config, const Believed& believed, float& yaw_rate_rad_per_s) {
+  yaw_rate_rad_per_s = 0.0F;
   bool are_all_sensed = true;
   for (int i = 0; i < config.wheel_count; ++i) {
+    yaw_rate_rad_per_s += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]);
     are_all_sensed = are_all_sensed && believed.is_speed_sensed[i];
   }
-  if (are_all_sensed) {
-    find_from_all(config, believed);
-  } else {
-    find_from_some(config, state, believed);
+  return are_all_sensed;
+}
+
+/// Stuck samples, and a gyro that is believed again: once in a while, for these tests are about tens of milliseconds.
+void compare_yaw_rate(const Config& config, State& state, float sample, bool is_possible, bool is_same, const Believed& believed) {
+  float from_wheels = 0.0F;
+  const bool is_known = find_yaw_rate_of_wheels(config, believed, from_wheels);
+  const bool disagrees = is_known && absolute(sample - from_wheels) > kYawDisagreement_rad_per_s;
+  const float since_s = believed.elapsed_s * static_cast<float>(kStepsPerComparison);
+  state.yaw_disagreement_s = is_same && disagrees ? state.yaw_disagreement_s + since_s : 0.0F;
+  state.yaw_agreement_s = is_possible && !disagrees ? state.yaw_agreement_s + since_s : 0.0F;
+  if (state.yaw_disagreement_s > kStuck_s && state.yaw_fault == 0) {
+    state.yaw_fault = code(Reason::yaw_rate_stuck);
+  } else if (state.yaw_agreement_s >= kSteadyAgain_s) {
+    state.yaw_fault = 0;
   }
 }
 
 void validate_yaw_rate(const Config& config, State& state, const Input& input, Believed& believed) {
   const float sample = input.yaw_rate_rad_per_s;
-  float from_wheels = 0.0F;
-  bool are_all_sensed = true;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    from_wheels += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]);
-    are_all_sensed = are_all_sensed && believed.is_speed_sensed[i];
-  }
   const bool is_possible = absolute(sample) <= kFastestYaw_rad_per_s;  // false for what is no number
-  const bool is_jump = is_possible && absolute(sample - state.raw_yaw_rate_rad_per_s) > kYawJump_rad_per_s;
-  const bool is_same = is_possible && sample == state.raw_yaw_rate_rad_per_s;
-  const bool disagrees = are_all_sensed && absolute(sample - from_wheels) > kYawDisagreement_rad_per_s;
-  state.yaw_disagreement_s = is_same && disagrees ? state.yaw_disagreement_s + believed.elapsed_s : 0.0F;
-  state.yaw_agreement_s = is_possible && !is_jump && !disagrees ? state.yaw_agreement_s + believed.elapsed_s : 0.0F;
-  if (!is_possible || is_jump) {
+  const float change_rad_per_s = sample - state.raw_yaw_rate_rad_per_s;
+  if (!is_possible || absolute(change_rad_per_s) > kYawJump_rad_per_s) {
     state.yaw_fault = code(Reason::yaw_rate_missing);
-  } else if (state.yaw_disagreement_s > kStuck_s) {
-    state.yaw_fault = code(Reason::yaw_rate_stuck);
-  } else if (state.yaw_fault != 0 && state.yaw_agreement_s >= kSteadyAgain_s) {
-    state.yaw_fault = 0;
+    state.yaw_agreement_s = 0.0F;
+  }
+  if (state.steps % kStepsPerComparison == 1) {
+    compare_yaw_rate(config, state, sample, is_possible, change_rad_per_s == 0.0F, believed);
   }
   state.raw_yaw_rate_rad_per_s = is_possible ? sample : 0.0F;
-  if (state.yaw_fault == 0) {
-    state.yaw_rate_rad_per_s = sample;
-  } else {
+  state.yaw_rate_rad_per_s = sample;
+  if (state.yaw_fault != 0) {
+    float from_wheels = 0.0F;
+    const bool is_known = find_yaw_rate_of_wheels(config, believed, from_wheels);
     state.yaw_rate_rad_per_s =
-        are_all_sensed ? clamped(from_wheels, -kFastestYaw_rad_per_s, kFastestYaw_rad_per_s) : state.velocity_reference.yaw;
+        is_known ? clamped(from_wheels, -kFastestYaw_rad_per_s, kFastestYaw_rad_per_s) : state.velocity_reference.yaw;
     believed.robot_fault = believed.robot_fault == Reason::none ? static_cast<Reason>(state.yaw_fault) : believed.robot_fault;
   }
   believed.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
 }
 
-/// What speaks against a sample by itself: no number, out of range, a jump.
-Reason immediate_fault(const Config& config, const WheelState& wheel, float sample, float elapsed_s) {
-  if (!(absolute(sample) <= 1.05F * config.fastest_wheel_rad_per_s)) {
-    return Reason::wheel_speed_missing;
-  }
-  const float most_change_rad_per_s = config.largest_acceleration_rad_per_s2 * elapsed_s + kJump_share * config.fastest_wheel_rad_per_s;
-  return absolute(sample - wheel.raw_speed_rad_per_s) > most_change_rad_per_s ? Reason::wheel_speed_jump : Reason::none;
-}
-
+/// Samples that speak against themselves: no number, out of range, a jump.
 void take_samples(const Config& config, State& state, const Input& input, Believed& believed) {
+  const float most_rad_per_s = config.fastest_wheel_rad_per_s;
+  const float jump_rad_per_s =
+      config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (believed.elapsed_s - config.period_s);
+  believed.are_all_sensed = true;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float sample = input.wheel_speed_rad_per_s[i];
-    const Reason fault = immediate_fault(config, wheel, sample, believed.elapsed_s);
-    wheel.same_steps = sample == wheel.raw_speed_rad_per_s ? wheel.same_steps + 1 : 0;
-    if (fault != Reason::none) {
+    const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
+    wheel.same_steps = change_rad_per_s == 0.0F ? wheel.same_steps + 1 : 0;
+    const bool is_possible = absolute(sample) <= most_rad_per_s;  // false for what is no number
+    wheel.raw_speed_rad_per_s = is_possible ? sample : 0.0F;
+    if (!is_possible || absolute(change_rad_per_s) > jump_rad_per_s) {
       wheel.agreement_s = 0.0F;
+      const Reason fault = is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
       wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;
     }
-    wheel.raw_speed_rad_per_s = fault == Reason::wheel_speed_missing ? 0.0F : sample;
     believed.is_speed_sensed[i] = wheel.speed_fault == 0;
     believed.wheel_speed_rad_per_s[i] = believed.is_speed_sensed[i] ? sample : 0.0F;
+    believed.are_all_sensed = believed.are_all_sensed && believed.is_speed_sensed[i];
   }
 }
 
@@ -282,15 +285,19 @@ CurrentRange explained_current(const Config& config, const WheelState& wheel, fl
 void compare_with_others(const Config& config, State& state, const Input& input, const Believed& believed, int i) {
   const float most_apart_rad_per_s = kDisagreement_share * config.fastest_wheel_rad_per_s;
   const auto stuck_steps = static_cast<std::uint32_t>(kStuck_s / config.period_s);
-  const float margin_A = 0.15F * config.current_limit_A;
+  const float margin_A = config.derived.current_margin_A;
   const float since_s = believed.elapsed_s * static_cast<float>(config.wheel_count);
   WheelState& wheel = state.wheel[i];
   const float sample = wheel.raw_speed_rad_per_s;
   const bool agrees = absolute(sample - believed.implied_speed_rad_per_s[i]) <= most_apart_rad_per_s;
   const float sensed_A = input.motor_current_A[i];
   const CurrentRange explained = explained_current(config, wheel, sample);
-  const bool current_contradicts = absolute(sensed_A) <= 2.0F * config.current_limit_A &&
-                                   !(sensed_A >= explained.low_A - margin_A && sensed_A <= explained.high_A + margin_A);
+  const bool is_current = absolute(sensed_A) <= config.derived.most_sensed_A;
+  const bool current_agrees = sensed_A >= explained.low_A - margin_A && sensed_A <= explained.high_A + margin_A;
+  const bool current_contradicts = is_current && !current_agrees;
+  // Up to kSteadyAgain_s beyond the threshold are kept, so that the sensor has to agree for that long before it is believed again.
+  wheel.current_error_s = !current_contradicts ? larger(0.0F, wheel.current_error_s - since_s)
+                                               : smaller(wheel.current_error_s + since_s, kStuck_s + kSteadyAgain_s);
   if (wheel.speed_fault == 0) {
     wheel.disagreement_s = !agrees || current_contradicts ? wheel.disagreement_s + since_s : 0.0F;
     if (wheel.same_steps > stuck_steps && wheel.disagreement_s > kStuck_s) {
@@ -335,31 +342,24 @@ void compare_pairs(const Config& config, State& state, float elapsed_s) {
 }
 
 void validate_currents(const Config& config, State& state, const Input& input, Believed& believed) {
-  const float most_A = 2.5F * config.battery_full_V / config.lowest_resistance_ohm;
-  const float margin_A = 0.15F * config.current_limit_A;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float sample_A = input.motor_current_A[i];
-    const CurrentRange explained = explained_current(config, wheel, believed.wheel_speed_rad_per_s[i]);
-    const float largest_A = -explained.low_A > explained.high_A ? explained.low_A : explained.high_A;
-    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(i));
+    const bool is_sample = absolute(sample_A) <= config.derived.most_sensed_A;  // false for what is no number
     wheel.current_fault = 0;
-    believed.motor_current_A[i] = largest_A;
-    if (!(absolute(sample_A) <= most_A)) {
-      wheel.current_fault = (state.has_current & bit) != 0 ? code(Reason::current_missing) : 0;
-      continue;
+    believed.is_current_sensed[i] = is_sample && wheel.current_error_s < kStuck_s;
+    believed.motor_current_A[i] = sample_A;
+    if (is_sample) {
+      wheel.has_current = 1;
+    } else if (wheel.has_current != 0) {
+      wheel.current_fault = code(Reason::current_missing);
     }
-    state.has_current = static_cast<std::uint8_t>(state.has_current | bit);
-    const bool agrees = sample_A >= explained.low_A - margin_A && sample_A <= explained.high_A + margin_A;
-    // Up to kSteadyAgain_s beyond the threshold are kept, so that the sensor has to agree for that long before it is believed again.
-    wheel.current_error_s = agrees ? larger(0.0F, wheel.current_error_s - believed.elapsed_s)
-                                   : smaller(wheel.current_error_s + believed.elapsed_s, kStuck_s + kSteadyAgain_s);
-    believed.is_current_sensed[i] = wheel.current_error_s < kStuck_s;
-    if (believed.is_current_sensed[i]) {
-      believed.motor_current_A[i] = sample_A;
-    } else {
-      wheel.current_fault = code(Reason::current_implausible);
-      believed.motor_current_A[i] = absolute(sample_A) > absolute(largest_A) ? sample_A : largest_A;
+    if (!believed.is_current_sensed[i]) {
+      const CurrentRange explained = explained_current(config, wheel, believed.wheel_speed_rad_per_s[i]);
+      const float largest_A = -explained.low_A > explained.high_A ? explained.low_A : explained.high_A;
+      const bool is_larger = is_sample && absolute(sample_A) > absolute(largest_A);
+      believed.motor_current_A[i] = is_larger ? sample_A : largest_A;
+      wheel.current_fault = is_sample ? code(Reason::current_implausible) : wheel.current_fault;
     }
   }
 }
@@ -374,7 +374,11 @@ Believed validate_input(const Config& config, State& state, const Input& input) 
   validate_ambient(config, state, input, believed);
   take_samples(config, state, input, believed);
   validate_yaw_rate(config, state, input, believed);
-  find_body_velocity(config, state, believed);
+  if (believed.are_all_sensed) {
+    find_from_all(config, believed);
+  } else {
+    find_from_some(config, state, believed);
+  }
   compare_with_others(config, state, input, believed, static_cast<int>(state.steps % static_cast<std::uint32_t>(config.wheel_count)));
   if (state.steps % kStepsPerComparison == 0) {
     compare_pairs(config, state, believed.elapsed_s * kStepsPerComparison);

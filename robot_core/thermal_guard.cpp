@@ -14,8 +14,7 @@ bool is_temperature(const GuardModel& model, float x_C) { return is_between(mode
 
 std::uint32_t check_sum_of(const GuardState& state) {
   constexpr unsigned kWords = sizeof(GuardState) / sizeof(std::uint32_t);
-  static_assert(kWords % 2 == 0);
-  return kStarted + sum_of_words(&state, kWords) - state.check_sum;
+  return kStarted + sum_of_words<kWords>(&state) - state.check_sum;
 }
 
 /// Segment of an axis and the place in it.
@@ -104,24 +103,35 @@ bool is_started(const GuardModel& model, const GuardState& state) {
   return started;
 }
 
-float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
+GuardRow find_row(const GuardModel& model, float speed_rad_per_s, float stator_C) {
   Place speed;
   Place stator;
-  Place winding;
-  if (!find(model.speed_rad_per_s, speed_rad_per_s, speed) || !find(model.stator_C, stator_C, stator) ||
-      !find(model.winding_C, winding_C, winding)) {
-    return 0.0F;
+  if (!find(model.speed_rad_per_s, speed_rad_per_s, speed) || !find(model.stator_C, stator_C, stator)) {
+    return {};
   }
   const int row = model.winding_C.count;
-  const int layer = model.stator_C.count * row;
-  const float* corner = model.current_A + speed.below * layer + stator.below * row + winding.below;
+  return {model.current_A + (speed.below * model.stator_C.count + stator.below) * row, speed.share, stator.share};
+}
+
+float allowed_current_A(const GuardModel& model, const GuardRow& row, float winding_C) {
+  Place winding;
+  if (row.corner == nullptr || !find(model.winding_C, winding_C, winding)) {
+    return 0.0F;
+  }
+  const int next_stator = model.winding_C.count;
+  const int next_speed = model.stator_C.count * next_stator;
+  const float* corner = row.corner + winding.below;
   const auto along_winding = [&](int offset) { return corner[offset] + winding.share * (corner[offset + 1] - corner[offset]); };
   const auto along_stator = [&](int offset) {
     const float low = along_winding(offset);
-    return low + stator.share * (along_winding(offset + row) - low);
+    return low + row.stator_share * (along_winding(offset + next_stator) - low);
   };
   const float low = along_stator(0);
-  return low + speed.share * (along_stator(layer) - low);
+  return low + row.speed_share * (along_stator(next_speed) - low);
+}
+
+float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
+  return allowed_current_A(model, find_row(model, speed_rad_per_s, stator_C), winding_C);
 }
 
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
@@ -155,10 +165,9 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   }
   out.is_unknown_input = unknown != 0;
   if ((unknown & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
-    const float speed_rad_per_s = absolute(believed[guard_speed_rad_per_s]);
-    out.allowed_braking_A = allowed_current_A(model, speed_rad_per_s, out.hottest_body_C, out.winding_C);
-    out.allowed_A =
-        smaller(out.allowed_braking_A, allowed_current_A(model, speed_rad_per_s, out.hottest_body_C, out.winding_C + braking_reserve_K));
+    out.row = find_row(model, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
+    out.allowed_braking_A = allowed_current_A(model, out.row, out.winding_C);
+    out.allowed_A = smaller(out.allowed_braking_A, allowed_current_A(model, out.row, out.winding_C + braking_reserve_K));
   }
   return out;
 }

@@ -65,12 +65,20 @@ struct alignas(8) GuardState {
   float carry_K[kMostGuardNodes] = {};
 };
 
+/// Where a speed and a body temperature lie in the table: found once, used for several winding temperatures.
+struct GuardRow {
+  const float* corner = nullptr;  ///< of the row's cell at the first winding temperature; none outside of the table
+  float speed_share = 0.0F;
+  float stator_share = 0.0F;
+};
+
 struct GuardOutput {
   float allowed_A = 0.0F;          ///< magnitude, until the next call
   float allowed_braking_A = 0.0F;  ///< magnitude where the current brakes; at least allowed_A
   float winding_C = 0.0F;          ///< of the observer, which counts heat more than once: hotter than the nominal motor
   float hottest_body_C = 0.0F;     ///< of the nodes other than the winding
   float winding_rate_K_per_s = 0.0F;
+  GuardRow row;                   ///< of the table
   bool is_unknown_input = false;  ///< a signal was not believed and its hottest case was taken
   bool was_started = true;        ///< false: the state was none, and the guard began as hot as its limit
 };
@@ -87,6 +95,11 @@ void seal(GuardState& state);
 /// One guard period. `signal` has kGuardSignals values; the current is what flowed since the last call.
 /// `braking_reserve_K` is kept free below the limit for braking: driving current is read from the table at a winding that much hotter.
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K);
+
+/// No corner where an argument is not a number or above its axis; below the axis its first point counts.
+GuardRow find_row(const GuardModel& model, float speed_rad_per_s, float stator_C);
+/// Allowed current in a row; 0 outside of the table.
+float allowed_current_A(const GuardModel& model, const GuardRow& row, float winding_C);
 
 /// The table. 0 where an argument is not a number or above its axis; below the axis its first point counts.
 float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C);
