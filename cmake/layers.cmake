@@ -59,7 +59,7 @@ endfunction()
 
 # A library of the embedded core: freestanding, no exceptions, no run-time types, the same arithmetic everywhere; a
 # square root is an instruction, not a call that may set errno.
-set(HEATSOAK_CORE_OPTIONS -ffreestanding -fno-exceptions -fno-rtti -fno-math-errno -Wdouble-promotion)
+set(HEATSOAK_CORE_OPTIONS -ffreestanding -fno-exceptions -fno-rtti -fno-math-errno -ffp-contract=off -Wdouble-promotion)
 
 function(add_core name)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${name}/*.cpp" "${PROJECT_SOURCE_DIR}/${name}/*.h")

@@ -1,0 +1,46 @@
+#include "core_graph.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+namespace heatsoak::target {
+namespace {
+
+/// most_square() in trajectory_circle.h halves a segment up to kHalvings times.
+constexpr std::size_t kHalvings = 10;
+
+/// Without the empty name.
+std::set<std::string> named(const std::string& name) { return name.empty() ? std::set<std::string>{} : std::set<std::string>{name}; }
+
+}  // namespace
+
+CallGraph core_graph(const std::string& files, const std::string& rates, const std::string& planner) {
+  CallGraph graph = call_graph_of(files.empty() ? HEATSOAK_TARGET_CALL_GRAPHS : HEATSOAK_TARGET_CALL_GRAPHS ":" + files);
+  for (const std::string& caller : graph.names_with("most_square")) {
+    graph.bound_recursion_of(caller, kHalvings + 1);
+  }
+  for (const std::string& caller : graph.callers_through_pointers()) {
+    if (caller.find("replay") != std::string::npos) {
+      continue;  // of the test's own program, above the core
+    }
+    const bool is_planner = caller.find("control_body_velocity") != std::string::npos || caller.find("commanded") != std::string::npos;
+    const bool is_guard = caller.find("guard") != std::string::npos || caller.find("hottest") != std::string::npos ||
+                          caller.find("heat_for_gap") != std::string::npos;
+    EXPECT_TRUE(is_planner != is_guard) << caller << " calls through a pointer that this test does not know";
+    graph.resolve_pointers_of(caller, named(is_planner ? planner : rates));
+  }
+  return graph;
+}
+
+CallGraph::Depth depth_of_only(const CallGraph& graph, const std::string& part) {
+  const std::vector<std::string> names = graph.names_with(part);
+  EXPECT_EQ(names.size(), 1U) << part << ": " << testing::PrintToString(names);
+  const CallGraph::Depth depth = graph.depth_of(names.empty() ? part : names[0]);
+  EXPECT_THAT(depth.problems, testing::IsEmpty());
+  return depth;
+}
+
+}  // namespace heatsoak::target

@@ -1,0 +1,136 @@
+// The drive core under QEMU, byte for byte against the host's build of the same source, and what it occupies.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core_graph.h"
+#include "drive_stream.h"
+#include "emulator.h"
+
+namespace heatsoak::target {
+namespace {
+
+using robot_core::Input;
+using robot_core::Reason;
+
+// Budgets with the guard, planner left out.
+constexpr std::uint64_t kMostCode_bytes = 24 * 1024;
+constexpr std::uint32_t kMostMemory_bytes = 2 * 1024;
+constexpr std::size_t kMostStack_bytes = 1024;
+
+/// What the host's build makes of the same inputs.
+std::vector<DriveResult> on_host(const std::vector<Input>& inputs) {
+  DriveRun run{};
+  begin(run);
+  std::vector<DriveResult> results(inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    run.output = robot_core::step(run.config, run.state, inputs[i]);
+    copy_output(run, results[i]);
+  }
+  return results;
+}
+
+void expect_same(const Replay& target, const std::vector<Input>& inputs, const std::vector<DriveResult>& host) {
+  ASSERT_EQ(target.summary.record_count, inputs.size());
+  ASSERT_EQ(target.summary.record_size, sizeof(Input));
+  ASSERT_EQ(target.summary.result_size, sizeof(DriveResult));
+  ASSERT_EQ(target.summary.known_loop_instructions, kLoopInstructions);
+  const std::string expected = bytes_of(host);
+  ASSERT_EQ(target.output.size(), expected.size());
+  EXPECT_EQ(first_difference(target.output, expected, sizeof(DriveResult)), inputs.size());
+}
+
+std::set<Reason> reasons_of(const std::vector<DriveResult>& results) {
+  std::set<Reason> reasons;
+  for (const DriveResult& result : results) {
+    reasons.insert(static_cast<Reason>(result.robot_reason));
+    for (const std::uint8_t reason : result.reason) {
+      reasons.insert(static_cast<Reason>(reason));
+    }
+  }
+  return reasons;
+}
+
+std::string name_of_only(const CallGraph& graph, const std::string& part) {
+  const std::vector<std::string> names = graph.names_with(part);
+  EXPECT_EQ(names.size(), 1U) << part << ": " << testing::PrintToString(names);
+  return names.empty() ? part : names[0];
+}
+
+constexpr const char* kStep = "_ZN10robot_core4stepE";
+constexpr const char* kStepOfImage = "run_step";
+constexpr const char* kRates = "5ratesEPKv";
+
+/// Of robot_core::step(), or of the image's function that calls it; with or without what a pose target calls.
+CallGraph::Depth depth_of_step(const std::string& function, bool with_planner) {
+  const CallGraph names = call_graph_of(HEATSOAK_TARGET_CALL_GRAPHS ":" HEATSOAK_DRIVE_IMAGE_CALL_GRAPHS);
+  const std::string rates = name_of_only(names, kRates);
+  const std::string planner = with_planner ? name_of_only(names, "plan_to_pose") : "";
+  return depth_of_only(core_graph(HEATSOAK_DRIVE_IMAGE_CALL_GRAPHS, rates, planner), function);
+}
+
+TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
+  SKIP_WITHOUT_EMULATOR();
+  const std::vector<Input> inputs = minute_of_play(1, false);
+  const std::vector<DriveResult> host = on_host(inputs);
+  const std::set<Reason> reasons = reasons_of(host);
+  for (const Reason reason : {Reason::none, Reason::driver_current, Reason::traction, Reason::guard, Reason::other_wheel, Reason::time_jump,
+                              Reason::command_stale, Reason::wheel_speed_missing, Reason::battery_voltage_missing, Reason::yaw_rate_missing,
+                              Reason::ambient_missing}) {
+    EXPECT_TRUE(reasons.contains(reason)) << "the inputs never lead to " << static_cast<int>(reason);
+  }
+  const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
+  expect_same(target, inputs, host);
+  EXPECT_LE(target.summary.memory_bytes, kMostMemory_bytes);
+  const CallGraph::Depth depth = depth_of_step(kStepOfImage, false);
+  EXPECT_LE(target.summary.most_stack_bytes, depth.bytes) << testing::PrintToString(depth.path);
+  RecordProperty("memory_bytes", std::to_string(target.summary.memory_bytes));
+  RecordProperty("stack_bytes", std::to_string(target.summary.most_stack_bytes));
+}
+
+TEST(DriveCoreOnTarget, PoseTargetsAgreeBitForBit) {
+  SKIP_WITHOUT_EMULATOR();
+  std::vector<Input> inputs = minute_of_play(2, true);
+  inputs.resize(inputs.size() / 10);  // the planner takes its time
+  const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
+  expect_same(target, inputs, on_host(inputs));
+  const CallGraph::Depth depth = depth_of_step(kStepOfImage, true);
+  EXPECT_LE(target.summary.most_stack_bytes, depth.bytes) << testing::PrintToString(depth.path);
+  RecordProperty("mean_instructions", std::to_string(target.mean_instructions()));
+  RecordProperty("most_instructions", std::to_string(target.most_instructions()));
+  RecordProperty("stack_bytes", std::to_string(target.summary.most_stack_bytes));
+  RecordProperty("stack_bound_bytes", std::to_string(depth.bytes));
+}
+
+TEST(DriveCoreOnTarget, StackIsBounded) {
+  SKIP_WITHOUT_COMPILER();
+  const CallGraph::Depth depth = depth_of_step(kStep, false);
+  EXPECT_LE(depth.bytes, kMostStack_bytes) << testing::PrintToString(depth.path);
+  RecordProperty("stack_bound_bytes", std::to_string(depth.bytes));
+}
+
+TEST(DriveCoreOnTarget, CodeAndConstantsAreSmall) {
+  SKIP_WITHOUT_COMPILER();
+  const TemporaryFolder folder;
+  const CallGraph names = call_graph_of(HEATSOAK_TARGET_CALL_GRAPHS);
+  const Words roots{name_of_only(names, kStep), name_of_only(names, "_ZN10robot_core5startE")};
+  const std::string object = linked_object(folder, HEATSOAK_TARGET_LIBRARY, roots);
+  const std::string defined = output_of_tool("nm", {"-C", "--defined-only", object});
+  EXPECT_NE(defined.find("robot_core::step_guard"), std::string::npos);
+  EXPECT_EQ(defined.find("plan_plane"), std::string::npos) << "step() needs no planner";
+  EXPECT_THAT(undefined_names(object), testing::IsSubsetOf(std::vector<std::string>{"memcpy", "memset"}));
+  const std::uint64_t core_bytes = section_bytes(object, {".text", ".rodata", ".data"});
+  // The motor's law and its tables, which are made for each robot.
+  const std::uint64_t guard_bytes =
+      section_bytes(HEATSOAK_DRIVE_SETUP_OBJECT, {".rodata", ".text._ZN8heatsoak6target12_GLOBAL__N_15rates"});
+  EXPECT_GT(guard_bytes, 7U * 8U * 10U * sizeof(float));
+  EXPECT_LE(core_bytes + guard_bytes, kMostCode_bytes);
+  RecordProperty("core_bytes", std::to_string(core_bytes));
+  RecordProperty("guard_bytes", std::to_string(guard_bytes));
+}
+
+}  // namespace
+}  // namespace heatsoak::target
