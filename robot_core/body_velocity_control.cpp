@@ -20,6 +20,8 @@ Vector3 turned(const Vector3& v, const SineCosine& turn) {
 
 float length(const Vector3& v) { return square_root(v.x * v.x + v.y * v.y); }
 
+bool is_standing(const Vector3& v) { return length(v) < kStanding_m_per_s && absolute(v.yaw) < kStanding_rad_per_s; }
+
 Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, v.y * plane, v.yaw * yaw}; }
 
 /// Length of the plane part and size of the yaw part at most as given, directions kept.
@@ -29,8 +31,7 @@ Vector3 limited(const Vector3& v, float most_plane, float most_yaw) {
 }
 
 /// What the command asks for now: continued by its acceleration, seen from a robot that has turned since.
-BodyReference commanded(const Config& config, State& state, const Input& input, const Believed& believed) {
-  BodyReference body;
+void follow_command(const Config& config, State& state, const Input& input, const Believed& believed, BodyReference& body) {
   if (believed.mode == Mode::body_velocity) {
     const Command& command = input.command;
     const float age_s = input.command_age_s;
@@ -49,7 +50,6 @@ BodyReference commanded(const Config& config, State& state, const Input& input, 
       state.plan_velocity = state.plan_acceleration = {};
     }
   }
-  return body;
 }
 
 /// Where limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction, so that the
@@ -106,8 +106,7 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
     state.yaw_integral_rad = 0.0F;
   }
   body.is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
-  const bool is_standing = length(believed.velocity) < kStanding_m_per_s && absolute(believed.velocity.yaw) < kStanding_rad_per_s;
-  body.is_open = believed.mode == Mode::coast || (believed.command_fault != Reason::none && is_standing);
+  body.is_open = believed.mode == Mode::coast || (believed.command_fault != Reason::none && is_standing(believed.velocity));
   if (body.is_open || body.is_wheelwise) {
     state.velocity_reference = believed.velocity;
     state.yaw_integral_rad = 0.0F;
@@ -117,14 +116,14 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
   if (believed.mode != Mode::pose_target) {
     state.plan_velocity = state.plan_acceleration = {};
   }
-  BodyReference wanted = commanded(config, state, input, believed);
-  wanted.velocity = limited(wanted.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
-  hold_back(state, wanted.velocity, believed);
-  wanted.velocity = scaled(wanted.velocity, state.speed_share, state.speed_share);
-  approach(config, state, believed, wanted);
-  state.velocity_reference = wanted.velocity;
-  close_loop(config, state, believed, wanted);
-  return wanted;
+  follow_command(config, state, input, believed, body);
+  body.velocity = limited(body.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
+  hold_back(state, body.velocity, believed);
+  body.velocity = scaled(body.velocity, state.speed_share, state.speed_share);
+  approach(config, state, believed, body);
+  state.velocity_reference = body.velocity;
+  close_loop(config, state, believed, body);
+  return body;
 }
 
 }  // namespace robot_core

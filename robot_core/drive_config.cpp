@@ -75,7 +75,7 @@ bool is_possible(const Config& config) {
   const float plane[] = {derived.plane_xx, derived.plane_xy, derived.plane_yy, derived.geared_constant_V_s_per_rad};
   possible = possible && all(is_finite<float>, plane) && is_positive(derived.geared_constant_V_s_per_rad);
   for (int i = 0; i < config.wheel_count; ++i) {
-    possible = possible && is_possible(config.wheel[i]) && is_finite(derived.others_factor[i]);
+    possible = possible && is_possible(config.wheel[i]) && is_finite(config.wheel[i].others_factor);
   }
   return possible && (config.guard == nullptr || is_possible(*config.guard, config.period_s));
 }
@@ -86,6 +86,7 @@ void complete(Config& config) {
   derived.geared_constant_V_s_per_rad = config.torque_constant_Nm_per_A * config.gear_ratio;
   derived.per_lowest_resistance_A_per_V = 1.0F / config.lowest_resistance_ohm;
   derived.volt_per_Nm = config.resistance_ohm / (derived.geared_constant_V_s_per_rad * config.gear_efficiency);
+  derived.per_tracking_time_per_s = 1.0F / config.tracking_time_s;
   derived.most_battery_sag_A = config.battery_resistance_ohm > 0.0F ? 1.0F / config.battery_resistance_ohm : 0.0F;
   float xx = 0.0F;
   float xy = 0.0F;
@@ -106,20 +107,20 @@ void complete(Config& config) {
   derived.plane_xy = -xy * per_determinant;
   derived.plane_yy = xx * per_determinant;
   for (int i = 0; i < config.wheel_count && i < kMostWheels; ++i) {
-    const WheelConfig& wheel = config.wheel[i];
+    WheelConfig& wheel = config.wheel[i];
     const float t_x = wheel.rolling_x_share;
     const float t_y = wheel.rolling_y_share;
-    derived.rim_per_speed_m[i] = config.wheel_radius_m / wheel.slip_factor;
-    derived.speed_per_rim_per_m[i] = wheel.slip_factor / config.wheel_radius_m;
-    derived.per_damping_rad_per_V_s[i] = 1.0F / wheel.damping_V_s_per_rad;
+    wheel.rim_per_speed_m = config.wheel_radius_m / wheel.slip_factor;
+    wheel.speed_per_rim_per_m = wheel.slip_factor / config.wheel_radius_m;
+    wheel.per_damping_rad_per_V_s = 1.0F / wheel.damping_V_s_per_rad;
     const float leverage = derived.plane_xx * t_x * t_x + 2.0F * derived.plane_xy * t_x * t_y + derived.plane_yy * t_y * t_y;
     constexpr float kMostLeverage = 0.98F;  // else the other wheels say next to nothing of this one's direction
-    derived.others_factor[i] = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
+    wheel.others_factor = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
     const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
     const float grip_A = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
                          absolute(wheel.sign_V) / config.resistance_ohm;
-    derived.is_grip_limit[i] = config.traction_ratio > 0.0F && grip_A < config.current_limit_A;
-    derived.body_limit_A[i] = derived.is_grip_limit[i] ? grip_A : config.current_limit_A;
+    wheel.is_grip_limit = config.traction_ratio > 0.0F && grip_A < config.current_limit_A ? 1 : 0;
+    wheel.body_limit_A = wheel.is_grip_limit != 0 ? grip_A : config.current_limit_A;
   }
   config.check_sum = config_check_sum(config);
 }

@@ -7,12 +7,12 @@ namespace {
 
 constexpr std::uint32_t kStarted = 0x4452564EU;
 // So that a state of zeros is none.
-constexpr std::uint32_t kSeed = 0x9E3779B9U;
+constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
 
-/// Of what stands before the guards, the sum itself left out.
-[[gnu::noinline]] std::uint32_t state_check_sum(const State& state) {
-  constexpr unsigned kWords = __builtin_offsetof(State, guard) / sizeof(std::uint32_t);
-  return kSeed + sum_of_words<kWords>(&state) - state.check_sum;
+/// Of what stands between the sum and the guards.
+[[gnu::noinline]] std::uint64_t state_check_sum(const State& state) {
+  static_assert(__builtin_offsetof(State, guard) % sizeof(std::uint64_t) == 0);
+  return kSeed + sum_of_words<1, __builtin_offsetof(State, guard) / sizeof(std::uint64_t)>(&state);
 }
 
 /// Guard steps of the wheels are spread over the guard period.
@@ -31,12 +31,12 @@ void reset(const Config& config, State& state, float body_C) {
   for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
     WheelState& wheel = state.wheel[i];
     start_guard(*config.guard, state.guard[i], body_C);
-    wheel.winding_C = wheel.body_C = state.guard[i].state_C[0];
-    const bool is_at_limit = !(wheel.winding_C < config.guard->winding_limit_C);
+    wheel.body_C = state.guard[i].state_C[0];
+    const bool is_at_limit = !(wheel.body_C < config.guard->winding_limit_C);
     wheel.guard_fault = is_at_limit ? static_cast<std::uint8_t>(Reason::guard_unknown) : 0;
     // Until its first step, at standstill, as the table says.
     wheel.allowed_A = wheel.allowed_braking_A =
-        allowed_current_A(*config.guard, 0.0F, wheel.body_C, wheel.winding_C + config.braking_reserve_K);
+        allowed_current_A(*config.guard, 0.0F, wheel.body_C, wheel.body_C + config.braking_reserve_K);
     wheel.time_to_limit_s = kLongTime_s;
   }
   spread_guards(config, state);
@@ -81,10 +81,10 @@ Output step(const Config& config, State& state, const Input& input) {
   }
   run_guards(config, state, input, believed);
   const BodyReference body = control_body_velocity(config, state, input, believed);
-  const WheelReference wheels = find_wheel_speeds(config, input, body);
-  WheelVoltage voltage = feed_forward(config, input, believed, body, wheels);
+  const WheelReferences wheels = find_wheel_speeds(config, input, body);
+  WheelVoltages voltage = feed_forward(config, input, believed, body, wheels);
   control_wheel_speeds(config, state, believed, wheels, voltage);
-  const LimitedVoltage limited = apply_limits(config, state, believed, body, voltage);
+  const LimitedVoltages limited = apply_limits(config, state, believed, body, voltage);
   const Output out = make_output(config, state, believed, limited);
   ++state.steps;
   state.check_sum = state_check_sum(state);

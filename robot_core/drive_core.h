@@ -50,6 +50,13 @@ struct WheelConfig {
   float sign_V = 0.0F;               ///< b
   float phase_cosine_ratio = 1.0F;   ///< of φ
   float phase_sine_ratio = 0.0F;
+  // Filled in by complete().
+  float rim_per_speed_m = 0.0F;          ///< r/slip factor
+  float speed_per_rim_per_m = 0.0F;      ///< and back
+  float per_damping_rad_per_V_s = 0.0F;  ///< 1/d
+  float others_factor = 0.0F;       ///< 1/(1 − tᵀ·P·t): residual against the other wheels per residual against all; 0: cannot be had
+  float body_limit_A = 0.0F;        ///< smaller one of driver limit and grip on level ground
+  std::uint32_t is_grip_limit = 0;  ///< grip is the smaller one
 };
 
 /// What follows from the rest of a Config; complete() fills it in, so that no step calculates it again.
@@ -58,19 +65,14 @@ struct DerivedConfig {
   float per_lowest_resistance_A_per_V = 0.0F;
   float volt_per_Nm = 0.0F;         ///< at the wheel, driving
   float most_battery_sag_A = 0.0F;  ///< per V of sag: 1/R of the battery; 0 without one
-  // Inverse of Σ t·tᵀ over all wheels: body velocity in the plane from rim speeds, the yaw rate being known.
+  float per_tracking_time_per_s = 0.0F;
+  // P, inverse of Σ t·tᵀ over all wheels: body velocity in the plane from rim speeds, the yaw rate being known.
   float plane_xx = 0.0F;
   float plane_xy = 0.0F;
   float plane_yy = 0.0F;
-  PerWheel rim_per_speed_m = {};  ///< r/slip factor
-  PerWheel speed_per_rim_per_m = {};
-  PerWheel body_limit_A = {};            ///< smaller of driver and grip on level ground
-  bool is_grip_limit[kMostWheels] = {};  ///< grip is the smaller one
-  float jump_rad_per_s = 0.0F;           ///< change of a wheel speed within a period that no motor can make
-  float current_margin_A = 0.0F;         ///< by which current sensor and motor equation may differ
-  float most_sensed_A = 0.0F;            ///< more no battery can drive
-  PerWheel others_factor = {};  ///< 1/(1 − tᵀ·P·t): residual against the other wheels per residual against all; 0: cannot be had
-  PerWheel per_damping_rad_per_V_s = {};
+  float jump_rad_per_s = 0.0F;    ///< change of a wheel speed within a period that no motor can make
+  float current_margin_A = 0.0F;  ///< by which current sensor and motor equation may differ
+  float most_sensed_A = 0.0F;     ///< more no battery can drive
 };
 
 /// What does not change while the robot runs. Written by `heatsoak generate core`, or by make_core_config() on the host.
@@ -161,7 +163,6 @@ struct Input {
 };
 
 struct WheelState {
-  float speed_rad_per_s = 0.0F;      ///< last believed
   float raw_speed_rad_per_s = 0.0F;  ///< last sample
   float disagreement_s = 0.0F;       ///< how long the sample has contradicted the other evidence
   float agreement_s = 0.0F;          ///< how long it has agreed while the sensor counts as faulty
@@ -175,14 +176,12 @@ struct WheelState {
   float guard_speed_rad_per_s = 0.0F;  ///< mean of the guard period before
   float allowed_A = 0.0F;
   float allowed_braking_A = 0.0F;
-  float winding_C = 0.0F;
   float body_C = 0.0F;
   float rate_K_per_s = 0.0F;       ///< smoothed heating of the winding
   float wanted_squared_A2 = 0.0F;  ///< smoothed square of the current that was asked for
   float time_to_limit_s = 0.0F;
   float current_bound_A = 0.0F;  ///< limit of the last steps, decaying: a sensed current far above it opens the bridge
   std::int32_t guard_steps = 0;  ///< periods since the guard's last step
-  std::uint32_t guard_calls = 0;
   std::uint32_t same_steps = 0;  ///< periods in which the sample has not changed by a bit
   std::uint8_t has_current = 0;  ///< a sample of the current has been seen: its absence is a fault from then on
   std::uint8_t unused[3] = {};
@@ -194,7 +193,7 @@ struct WheelState {
 
 /// What evolves. Only start() and step() write it; a copy can be logged.
 struct alignas(8) State {
-  std::uint32_t check_sum = 0;
+  std::uint64_t check_sum = 0;
   std::uint32_t is_valid = 0;  ///< kStarted after start() with a valid Config
   WheelState wheel[kMostWheels];
   Vector3 velocity_reference;  ///< of the body, local frame

@@ -6,11 +6,20 @@
 
 namespace robot_core {
 
-/// Stage 1: what is believed.
+// Values per wheel are written by every stage for the wheels that the robot has, so they have no values before.
+
+/// Stage 1: what is believed of one wheel.
+struct BelievedWheel {
+  float speed_rad_per_s;    ///< sensed, else implied, else 0
+  float implied_rad_per_s;  ///< by the other wheels and the gyro; the sensed speed where they say nothing
+  float current_A;          ///< sensed, else the largest that voltage and speed allow
+  bool is_speed_known;      ///< sensed or implied
+  bool is_speed_sensed;
+  bool is_current_sensed;
+};
+
 struct Believed {
-  PerWheel wheel_speed_rad_per_s = {};
-  PerWheel implied_speed_rad_per_s = {};  ///< of each wheel, by the other wheels and the gyro; its own where that cannot be had
-  PerWheel motor_current_A = {};          ///< sensed, else the largest that voltage and speed allow
+  BelievedWheel wheel[kMostWheels];
   float yaw_rate_rad_per_s = 0.0F;
   Vector3 velocity;            ///< of the body, local frame
   float battery_V = 0.0F;      ///< for limits: never more than the true one is likely to be
@@ -19,9 +28,6 @@ struct Believed {
   float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
   int elapsed_periods = 1;
   bool are_all_sensed = true;
-  bool is_speed_known[kMostWheels] = {};  ///< sensed or implied
-  bool is_speed_sensed[kMostWheels] = {};
-  bool is_current_sensed[kMostWheels] = {};
   Mode mode = Mode::coast;  ///< after faults of the command
   Reason command_fault = Reason::none;
   Reason robot_fault = Reason::none;
@@ -38,34 +44,43 @@ struct BodyReference {
 
 /// Stage 3.
 struct WheelReference {
-  PerWheel speed_rad_per_s = {};
-  PerWheel acceleration_rad_per_s2 = {};
+  float speed_rad_per_s;
+  float acceleration_rad_per_s2;
+};
+struct WheelReferences {
+  WheelReference wheel[kMostWheels];
 };
 
-/// Stage 4 and 5: voltages that are asked for.
+/// Stages 4 and 5: voltages that are asked for.
 struct WheelVoltage {
-  PerWheel feed_forward_V = {};
-  PerWheel wanted_V = {};
+  float feed_forward_V;
+  float wanted_V;  ///< with the speed control's share
+};
+struct WheelVoltages {
+  WheelVoltage wheel[kMostWheels];
 };
 
 /// Stage 6.
-struct LimitedVoltage {
-  PerWheel voltage_V = {};
-  PerWheel allowed_A = {};
-  bool is_open[kMostWheels] = {};
-  Reason reason[kMostWheels] = {};
+struct LimitedWheel {
+  float voltage_V;
+  float allowed_A;
+  Reason reason;
+  bool is_open;
+};
+struct LimitedVoltages {
+  LimitedWheel wheel[kMostWheels];
 };
 
 Believed validate_input(const Config& config, State& state, const Input& input);
 BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Believed& believed);
-WheelReference find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body);
-WheelVoltage feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
-                          const WheelReference& wheels);
-void control_wheel_speeds(const Config& config, State& state, const Believed& believed, const WheelReference& wheels,
-                          WheelVoltage& voltage);
-LimitedVoltage apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,
-                            const WheelVoltage& voltage);
-Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltage& limited);
+WheelReferences find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body);
+WheelVoltages feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
+                           const WheelReferences& wheels);
+void control_wheel_speeds(const Config& config, State& state, const Believed& believed, const WheelReferences& wheels,
+                          WheelVoltages& voltage);
+LimitedVoltages apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,
+                             const WheelVoltages& voltage);
+Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited);
 
 /// Steps the thermal guards that are due: each wheel's once per guard period, spread over the period.
 void run_guards(const Config& config, State& state, const Input& input, const Believed& believed);

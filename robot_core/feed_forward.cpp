@@ -21,9 +21,9 @@ float friction_V(const Config& config, const WheelConfig& wheel, const Vector3& 
 
 }  // namespace
 
-WheelVoltage feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
-                          const WheelReference& wheels) {
-  WheelVoltage voltage;
+WheelVoltages feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
+                           const WheelReferences& wheels) {
+  WheelVoltages voltage;
   const float speed_m_per_s = square_root(body.velocity.x * body.velocity.x + body.velocity.y * body.velocity.y);
   const float turning_m_per_s = config.contact_radius_m * absolute(body.velocity.yaw);
   const float s = turning_m_per_s < speed_m_per_s ? turning_m_per_s / speed_m_per_s : 1.0F;
@@ -36,17 +36,17 @@ WheelVoltage feed_forward(const Config& config, const Input& input, const Believ
   const float per_speed_s_per_m = smoothed_m_per_s > 0.0F ? 1.0F / smoothed_m_per_s : 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
-    const float reference = wheels.speed_rad_per_s[i];
+    const float reference = wheels.wheel[i].speed_rad_per_s;
     if (believed.mode == Mode::wheel_torque) {
-      voltage.feed_forward_V[i] = config.derived.geared_constant_V_s_per_rad * believed.wheel_speed_rad_per_s[i] +
-                                  config.derived.volt_per_Nm * input.command.wheel_torque_Nm[i];
+      voltage.wheel[i].feed_forward_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].speed_rad_per_s +
+                                        config.derived.volt_per_Nm * input.command.wheel_torque_Nm[i];
       continue;
     }
     const float force_N = wheel.inverse_x_factor * force_x_N + wheel.inverse_y_factor * force_y_N + wheel.inverse_yaw_per_m * moment_Nm;
-    const float torque_Nm = config.wheel_radius_m * force_N + config.wheel_inertia_kg_m2 * wheels.acceleration_rad_per_s2[i];
-    voltage.feed_forward_V[i] = wheel.damping_V_s_per_rad * reference + config.derived.volt_per_Nm * torque_Nm;
+    const float torque_Nm = config.wheel_radius_m * force_N + config.wheel_inertia_kg_m2 * wheels.wheel[i].acceleration_rad_per_s2;
+    voltage.wheel[i].feed_forward_V = wheel.damping_V_s_per_rad * reference + config.derived.volt_per_Nm * torque_Nm;
     if (config.has_friction) {
-      voltage.feed_forward_V[i] += friction_V(config, wheel, body.velocity, per_speed_s_per_m, rotation_share, reference);
+      voltage.wheel[i].feed_forward_V += friction_V(config, wheel, body.velocity, per_speed_s_per_m, rotation_share, reference);
     }
   }
   return voltage;

@@ -7,7 +7,7 @@ namespace {
 // Over which the heating of a winding and the wanted current are smoothed for the time until the guard limits.
 constexpr float kSmoothing_s = 3.0F;
 constexpr float kLongestGap_s = 1.0F;
-constexpr std::uint32_t kCallsPerEstimate = 50;
+constexpr std::uint32_t kStepsPerEstimate = 500;
 
 int periods_per_guard_step(const Config& config) { return static_cast<int>(config.guard->period_s / config.period_s + 0.5F); }
 
@@ -61,17 +61,16 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   float signal[kGuardSignals];
   signal[guard_current_A] = mean_A < 0.0F ? -rms_A : rms_A;
   // Of a wheel without a speed nothing is known, but then the current is the limp current, which every speed bears.
-  signal[guard_speed_rad_per_s] = believed.is_speed_known[i] ? speed_rad_per_s : kNoSample;
+  signal[guard_speed_rad_per_s] = believed.wheel[i].is_speed_known ? speed_rad_per_s : kNoSample;
   signal[guard_ambient_C] = believed.ambient_C;
   signal[guard_vehicle_speed_m_per_s] = 0.0F;
   signal[guard_neighbour_C] = hottest_neighbour_C(config, state, i);
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - wheel.guard_speed_rad_per_s) / model.period_s;
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
-  const bool is_limping = !believed.is_speed_known[i];
+  const bool is_limping = !believed.wheel[i].is_speed_known;
   wheel.allowed_A = is_limping ? config.limp_current_A : guard.allowed_A;
   wheel.allowed_braking_A = is_limping ? config.limp_current_A : guard.allowed_braking_A;
-  wheel.winding_C = guard.winding_C;
   wheel.body_C = guard.hottest_body_C;
   wheel.guard_speed_rad_per_s = speed_rad_per_s;
   if (!guard.was_started) {
@@ -82,11 +81,10 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   const float smoothing = model.period_s / kSmoothing_s;
   wheel.rate_K_per_s += smoothing * (guard.winding_rate_K_per_s - wheel.rate_K_per_s);
   wheel.wanted_squared_A2 += smoothing * (rms_A * rms_A - wheel.wanted_squared_A2);
-  // An estimate over seconds is made anew twice a second.
-  if (wheel.guard_calls % kCallsPerEstimate == 0) {
+  // An estimate over seconds need not be made anew in every guard period.
+  if (state.steps % kStepsPerEstimate < static_cast<std::uint32_t>(periods)) {
     wheel.time_to_limit_s = time_to_limit_s(config, wheel, guard);
   }
-  ++wheel.guard_calls;
 }
 
 /// A stator that is hotter than the observer says is believed, a colder one is not.
@@ -140,10 +138,10 @@ void run_guards(const Config& config, State& state, const Input& input, const Be
     if (believed.robot_fault == Reason::time_jump) {
       heat_for_gap(config, wheel, state.guard[i], believed.elapsed_s);
     }
-    const float current_A = believed.motor_current_A[i];
+    const float current_A = believed.wheel[i].current_A;
     wheel.current_squared_A2 += weight * current_A * current_A;
     wheel.current_A += weight * current_A;
-    wheel.speed_sum_rad_per_s += weight * believed.wheel_speed_rad_per_s[i];
+    wheel.speed_sum_rad_per_s += weight * believed.wheel[i].speed_rad_per_s;
     wheel.guard_steps += believed.elapsed_periods;
     if (wheel.guard_steps >= periods) {
       take_stator_sample(*config.guard, state, input, i);

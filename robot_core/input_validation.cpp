@@ -133,7 +133,7 @@ struct PlaneFit {
   }
 };
 
-float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) { return speed_rad_per_s * config.derived.rim_per_speed_m[i]; }
+float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) { return speed_rad_per_s * config.wheel[i].rim_per_speed_m; }
 
 /// All sensors are believed: least squares with a matrix that never changes. Leaving one wheel out multiplies its residual by
 /// 1/(1 − leverage) (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
@@ -144,7 +144,7 @@ void find_from_all(const Config& config, Believed& believed) {
   float x_m_per_s = 0.0F;
   float y_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]) - turning_m_per_s;
+    rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s) - turning_m_per_s;
     x_m_per_s += config.wheel[i].rolling_x_share * rim_m_per_s[i];
     y_m_per_s += config.wheel[i].rolling_y_share * rim_m_per_s[i];
   }
@@ -153,9 +153,9 @@ void find_from_all(const Config& config, Believed& believed) {
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
         rim_m_per_s[i] - config.wheel[i].rolling_x_share * believed.velocity.x - config.wheel[i].rolling_y_share * believed.velocity.y;
-    believed.implied_speed_rad_per_s[i] =
-        believed.wheel_speed_rad_per_s[i] - residual_m_per_s * derived.others_factor[i] * derived.speed_per_rim_per_m[i];
-    believed.is_speed_known[i] = true;
+    believed.wheel[i].implied_rad_per_s =
+        believed.wheel[i].speed_rad_per_s - residual_m_per_s * config.wheel[i].others_factor * config.wheel[i].speed_per_rim_per_m;
+    believed.wheel[i].is_speed_known = true;
   }
 }
 
@@ -165,8 +165,8 @@ void find_from_some(const Config& config, const State& state, Believed& believed
   PlaneFit all;
   PerWheel rim_m_per_s = {};
   for (int i = 0; i < config.wheel_count; ++i) {
-    if (believed.is_speed_sensed[i]) {
-      rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]) - turning_m_per_s;
+    if (believed.wheel[i].is_speed_sensed) {
+      rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s) - turning_m_per_s;
       all.add(config.wheel[i], rim_m_per_s[i], 1.0F);
     }
   }
@@ -177,17 +177,17 @@ void find_from_some(const Config& config, const State& state, Believed& believed
     const WheelConfig& wheel = config.wheel[i];
     Vector3 others = believed.velocity;
     bool is_implied = is_known;
-    if (believed.is_speed_sensed[i]) {
+    if (believed.wheel[i].is_speed_sensed) {
       PlaneFit rest = all;
       rest.add(wheel, rim_m_per_s[i], -1.0F);
       is_implied = rest.solve(others.x, others.y);
     }
     const float implied_m_per_s = wheel.rolling_x_share * others.x + wheel.rolling_y_share * others.y + turning_m_per_s;
-    believed.implied_speed_rad_per_s[i] =
-        is_implied ? implied_m_per_s * config.derived.speed_per_rim_per_m[i] : believed.wheel_speed_rad_per_s[i];
-    believed.is_speed_known[i] = believed.is_speed_sensed[i] || is_implied;
-    if (!believed.is_speed_sensed[i]) {
-      believed.wheel_speed_rad_per_s[i] = is_implied ? believed.implied_speed_rad_per_s[i] : 0.0F;
+    believed.wheel[i].implied_rad_per_s =
+        is_implied ? implied_m_per_s * config.wheel[i].speed_per_rim_per_m : believed.wheel[i].speed_rad_per_s;
+    believed.wheel[i].is_speed_known = believed.wheel[i].is_speed_sensed || is_implied;
+    if (!believed.wheel[i].is_speed_sensed) {
+      believed.wheel[i].speed_rad_per_s = is_implied ? believed.wheel[i].implied_rad_per_s : 0.0F;
     }
   }
 }
@@ -197,8 +197,8 @@ bool find_yaw_rate_of_wheels(const Config& config, const Believed& believed, flo
   yaw_rate_rad_per_s = 0.0F;
   bool are_all_sensed = true;
   for (int i = 0; i < config.wheel_count; ++i) {
-    yaw_rate_rad_per_s += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel_speed_rad_per_s[i]);
-    are_all_sensed = are_all_sensed && believed.is_speed_sensed[i];
+    yaw_rate_rad_per_s += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s);
+    are_all_sensed = are_all_sensed && believed.wheel[i].is_speed_sensed;
   }
   return are_all_sensed;
 }
@@ -259,9 +259,9 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
       const Reason fault = is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
       wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;
     }
-    believed.is_speed_sensed[i] = wheel.speed_fault == 0;
-    believed.wheel_speed_rad_per_s[i] = believed.is_speed_sensed[i] ? sample : 0.0F;
-    believed.are_all_sensed = believed.are_all_sensed && believed.is_speed_sensed[i];
+    believed.wheel[i].is_speed_sensed = wheel.speed_fault == 0;
+    believed.wheel[i].speed_rad_per_s = believed.wheel[i].is_speed_sensed ? sample : 0.0F;
+    believed.are_all_sensed = believed.are_all_sensed && believed.wheel[i].is_speed_sensed;
   }
 }
 
@@ -289,7 +289,7 @@ void compare_with_others(const Config& config, State& state, const Input& input,
   const float since_s = believed.elapsed_s * static_cast<float>(config.wheel_count);
   WheelState& wheel = state.wheel[i];
   const float sample = wheel.raw_speed_rad_per_s;
-  const bool agrees = absolute(sample - believed.implied_speed_rad_per_s[i]) <= most_apart_rad_per_s;
+  const bool agrees = absolute(sample - believed.wheel[i].implied_rad_per_s) <= most_apart_rad_per_s;
   const float sensed_A = input.motor_current_A[i];
   const CurrentRange explained = explained_current(config, wheel, sample);
   const bool is_current = absolute(sensed_A) <= config.derived.most_sensed_A;
@@ -305,7 +305,7 @@ void compare_with_others(const Config& config, State& state, const Input& input,
       wheel.agreement_s = 0.0F;
     }
   } else if (wheel.speed_fault != code(Reason::wheel_speed_swapped)) {
-    wheel.agreement_s = agrees && !current_contradicts && believed.is_speed_known[i] ? wheel.agreement_s + since_s : 0.0F;
+    wheel.agreement_s = agrees && !current_contradicts && believed.wheel[i].is_speed_known ? wheel.agreement_s + since_s : 0.0F;
     if (wheel.agreement_s >= kSteadyAgain_s && wheel.same_steps < stuck_steps) {
       wheel.speed_fault = 0;
       wheel.disagreement_s = 0.0F;
@@ -319,7 +319,7 @@ void compare_pairs(const Config& config, State& state, float elapsed_s) {
   const float forget = smaller(1.0F, elapsed_s / kSwap_s);
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
-    const float explained = wheel.is_open != 0 ? 0.0F : wheel.voltage_V * config.derived.per_damping_rad_per_V_s[i];
+    const float explained = wheel.is_open != 0 ? 0.0F : wheel.voltage_V * config.wheel[i].per_damping_rad_per_V_s;
     wheel.modelled_rad_per_s += forget * (explained - wheel.modelled_rad_per_s);
     state.own_error_rad[i] += elapsed_s * absolute(wheel.raw_speed_rad_per_s - wheel.modelled_rad_per_s) - forget * state.own_error_rad[i];
   }
@@ -347,18 +347,18 @@ void validate_currents(const Config& config, State& state, const Input& input, B
     const float sample_A = input.motor_current_A[i];
     const bool is_sample = absolute(sample_A) <= config.derived.most_sensed_A;  // false for what is no number
     wheel.current_fault = 0;
-    believed.is_current_sensed[i] = is_sample && wheel.current_error_s < kStuck_s;
-    believed.motor_current_A[i] = sample_A;
+    believed.wheel[i].is_current_sensed = is_sample && wheel.current_error_s < kStuck_s;
+    believed.wheel[i].current_A = sample_A;
     if (is_sample) {
       wheel.has_current = 1;
     } else if (wheel.has_current != 0) {
       wheel.current_fault = code(Reason::current_missing);
     }
-    if (!believed.is_current_sensed[i]) {
-      const CurrentRange explained = explained_current(config, wheel, believed.wheel_speed_rad_per_s[i]);
+    if (!believed.wheel[i].is_current_sensed) {
+      const CurrentRange explained = explained_current(config, wheel, believed.wheel[i].speed_rad_per_s);
       const float largest_A = -explained.low_A > explained.high_A ? explained.low_A : explained.high_A;
       const bool is_larger = is_sample && absolute(sample_A) > absolute(largest_A);
-      believed.motor_current_A[i] = is_larger ? sample_A : largest_A;
+      believed.wheel[i].current_A = is_larger ? sample_A : largest_A;
       wheel.current_fault = is_sample ? code(Reason::current_implausible) : wheel.current_fault;
     }
   }

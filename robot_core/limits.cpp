@@ -15,22 +15,23 @@ constexpr float kBoundDecay = 0.8F;  // of the bound's memory, per period: sampl
 
 /// What one wheel wants and may have.
 struct WheelDemand {
-  float back_V = 0.0F;     ///< back-EMF at the sensed speed
-  float current_A = 0.0F;  ///< that the wanted voltage drives
-  float most_A = 0.0F;     ///< largest magnitude within driver, grip, guard
-  Reason reason = Reason::none;
+  float back_V;     ///< back-EMF at the sensed speed
+  float current_A;  ///< that the wanted voltage drives
+  float most_A;     ///< largest magnitude within driver, grip and guard
+  float share;      ///< of the wanted current that the wheel's own limits leave
+  Reason reason;    ///< of most_A
 };
 
 /// Without the guard.
 void limit_demand(const Config& config, const WheelState& state, const Believed& believed, const BodyReference& body, int i,
                   WheelDemand& demand) {
-  demand.most_A = config.derived.body_limit_A[i];
-  demand.reason = config.derived.is_grip_limit[i] ? Reason::traction : Reason::driver_current;
+  demand.most_A = config.wheel[i].body_limit_A;
+  demand.reason = config.wheel[i].is_grip_limit != 0 ? Reason::traction : Reason::driver_current;
   if (body.is_wheelwise) {
     demand.most_A = config.current_limit_A;
     demand.reason = Reason::driver_current;
   }
-  if (!believed.is_speed_sensed[i] && config.limp_current_A < demand.most_A) {
+  if (!believed.wheel[i].is_speed_sensed && config.limp_current_A < demand.most_A) {
     demand.most_A = config.limp_current_A;
     demand.reason = static_cast<Reason>(state.speed_fault);
   }
@@ -41,7 +42,7 @@ void apply_guard(const Config& config, State& state, const Believed& believed, W
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelState& wheel = state.wheel[i];
-    const bool brakes = demand[i].current_A * believed.wheel_speed_rad_per_s[i] < 0.0F;
+    const bool brakes = demand[i].current_A * believed.wheel[i].speed_rad_per_s < 0.0F;
     const float allowed_A = brakes ? wheel.allowed_braking_A : wheel.allowed_A;
     if (config.shadow_mode) {
       const float excess_A = smaller(absolute(demand[i].current_A), demand[i].most_A) - allowed_A;
@@ -86,7 +87,7 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
     return false;
   }
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.implied_speed_rad_per_s[i];
+  const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].implied_rad_per_s;
   voltage_V = clamped(voltage_V, implied_V - band_V, implied_V + band_V);
   constexpr float kRounding = 1.0001F;
   return absolute(voltage_V) <= kRounding * most_V && absolute(voltage_V - demand.back_V) <= kRounding * band_V;
@@ -96,35 +97,38 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
 bool limp_blindly(const Config& config, const Believed& believed, int i, float most_V, float& voltage_V) {
   const float limp_V = smaller(config.lowest_resistance_ohm * config.limp_current_A, most_V);
   voltage_V = clamped(voltage_V, -limp_V, limp_V);
-  return believed.is_current_sensed[i] && absolute(believed.motor_current_A[i]) <= config.limp_current_A;
+  return believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= config.limp_current_A;
 }
 
 bool is_overcurrent(const Config& config, const Believed& believed, WheelState& wheel, int i, float most_A) {
   wheel.current_bound_A = larger(most_A, kBoundDecay * wheel.current_bound_A);
-  return believed.is_current_sensed[i] &&
-         absolute(believed.motor_current_A[i]) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
+  return believed.wheel[i].is_current_sensed &&
+         absolute(believed.wheel[i].current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
 }
 
 /// One factor for all wheels that drive the body together.
 float scale_currents(const Config& config, const State& state, const Believed& believed, const BodyReference& body, float most_V,
-                     WheelDemand* demand, Reason* reason) {
-  float share[kMostWheels] = {1.0F, 1.0F, 1.0F, 1.0F};
+                     WheelDemand* demand, LimitedVoltages& limited) {
   float least = 1.0F;
   float power_W = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    if (believed.is_speed_known[i]) {
-      share[i] = share_of_wheel(config, demand[i], most_V, reason[i]);
-      least = smaller(least, share[i]);
+    WheelDemand& each = demand[i];
+    each.share = 1.0F;
+    limited.wheel[i].reason = Reason::none;
+    if (believed.wheel[i].is_speed_known) {
+      each.share = share_of_wheel(config, each, most_V, limited.wheel[i].reason);
+      least = smaller(least, each.share);
     }
-    power_W += (demand[i].back_V + config.lowest_resistance_ohm * demand[i].current_A) * demand[i].current_A;
+    power_W += (each.back_V + config.lowest_resistance_ohm * each.current_A) * each.current_A;
   }
   // The power of the scaled currents is at most as much smaller.
   const float of_battery = share_of_battery(config, state, believed, least * power_W);
   const float factor = least * of_battery;
   if (factor < 1.0F) {
     for (int i = 0; i < config.wheel_count; ++i) {
-      demand[i].current_A *= body.is_wheelwise ? share[i] * of_battery : factor;
-      reason[i] = of_battery < 1.0F ? Reason::battery_sag : reason[i] == Reason::none ? Reason::other_wheel : reason[i];
+      Reason& reason = limited.wheel[i].reason;
+      demand[i].current_A *= body.is_wheelwise ? demand[i].share * of_battery : factor;
+      reason = of_battery < 1.0F ? Reason::battery_sag : reason == Reason::none ? Reason::other_wheel : reason;
     }
   }
   return factor;
@@ -132,65 +136,62 @@ float scale_currents(const Config& config, const State& state, const Believed& b
 
 /// Strongest reason of a wheel: faults before limits.
 Reason strongest(const WheelState& wheel, Reason limit) {
-  const std::uint8_t faults[] = {wheel.speed_fault, wheel.current_fault, wheel.guard_fault};
-  for (const std::uint8_t fault : faults) {
-    if (fault != 0) {
-      return static_cast<Reason>(fault);
-    }
+  if ((wheel.speed_fault | wheel.current_fault | wheel.guard_fault) == 0) {
+    return limit;
   }
-  return limit;
+  const std::uint8_t later = wheel.current_fault != 0 ? wheel.current_fault : wheel.guard_fault;
+  return static_cast<Reason>(wheel.speed_fault != 0 ? wheel.speed_fault : later);
 }
 
 /// The integrator follows the voltage that the wheel really gets.
-void feed_back(const Config& config, const Believed& believed, WheelState& wheel, float wanted_V) {
-  wheel.integral_V += (wheel.voltage_V - wanted_V) * smaller(1.0F, believed.elapsed_s / config.tracking_time_s);
+void feed_back(const Config& config, const Believed& believed, WheelState& wheel, float excess_V) {
+  wheel.integral_V += excess_V * smaller(1.0F, believed.elapsed_s * config.derived.per_tracking_time_per_s);
 }
 
 /// What is left of the wanted voltage of one wheel; true if its bridge has to be opened.
 bool finish_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i, float most_V,
                   float& voltage_V) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
-  const bool is_held = believed.is_speed_known[i] ? hold_window(config, believed, demand, i, most_V, voltage_V)
-                                                  : limp_blindly(config, believed, i, most_V, voltage_V);
+  const bool is_held = believed.wheel[i].is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V)
+                                                        : limp_blindly(config, believed, i, most_V, voltage_V);
   return is_overcurrent(config, believed, wheel, i, demand.most_A) || !is_held || !is_finite(voltage_V);
 }
 
 }  // namespace
 
-LimitedVoltage apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,
-                            const WheelVoltage& voltage) {
-  LimitedVoltage limited;
+LimitedVoltages apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,
+                             const WheelVoltages& voltage) {
+  LimitedVoltages limited;
   WheelDemand demand[kMostWheels];
   for (int i = 0; i < config.wheel_count; ++i) {
-    demand[i].back_V = config.derived.geared_constant_V_s_per_rad * believed.wheel_speed_rad_per_s[i];
-    demand[i].current_A = (voltage.wanted_V[i] - demand[i].back_V) * config.derived.per_lowest_resistance_A_per_V;
+    demand[i].back_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].speed_rad_per_s;
+    demand[i].current_A = (voltage.wheel[i].wanted_V - demand[i].back_V) * config.derived.per_lowest_resistance_A_per_V;
     limit_demand(config, state.wheel[i], believed, body, i, demand[i]);
   }
   if (config.guard != nullptr) {
     apply_guard(config, state, believed, demand);
   }
   const float most_V = smaller(config.voltage_limit_V, believed.battery_V);
-  const float share = scale_currents(config, state, believed, body, most_V, demand, limited.reason);
+  const float share = scale_currents(config, state, believed, body, most_V, demand, limited);
   const bool is_all_open = body.is_open || believed.robot_fault == Reason::period_invalid;
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
   float power_W = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
-    float& voltage_V = limited.voltage_V[i];
-    limited.allowed_A[i] = demand[i].most_A;
-    limited.is_open[i] = finish_wheel(config, wheel, believed, demand[i], i, most_V, voltage_V) || is_all_open;
-    wheel.is_open = limited.is_open[i] ? 1 : 0;
-    if (limited.is_open[i]) {
-      voltage_V = 0.0F;
-      limited.reason[i] = is_all_open ? Reason::none : demand[i].reason;
+    LimitedWheel& end = limited.wheel[i];
+    end.allowed_A = demand[i].most_A;
+    end.is_open = finish_wheel(config, wheel, believed, demand[i], i, most_V, end.voltage_V) || is_all_open;
+    wheel.is_open = end.is_open ? 1 : 0;
+    if (end.is_open) {
+      end.voltage_V = 0.0F;
+      end.reason = is_all_open ? Reason::none : demand[i].reason;
       wheel.integral_V = 0.0F;
     } else {
-      wheel.voltage_V = voltage_V;
-      power_W += voltage_V * demand[i].current_A;
-      feed_back(config, believed, wheel, voltage.wanted_V[i]);
+      power_W += end.voltage_V * demand[i].current_A;
+      feed_back(config, believed, wheel, end.voltage_V - voltage.wheel[i].wanted_V);
     }
-    wheel.voltage_V = voltage_V;
-    limited.reason[i] = strongest(wheel, limited.reason[i]);
+    wheel.voltage_V = end.voltage_V;
+    end.reason = strongest(wheel, end.reason);
   }
   state.battery_current_A = power_W / believed.pwm_battery_V;
   return limited;

@@ -56,19 +56,17 @@ inline std::uint32_t word_of(const void* object, unsigned i) {
   return word;
 }
 
-/// Sum of all words of an object with an even number of them, at an address that 8 divides: every flip of a single bit changes it.
-template <unsigned words>
-std::uint32_t sum_of_words(const void* object) {
-  static_assert(words % 2 == 0);
+/// Sum of the 8-byte words `first` to `last` - 1 of an object at an address that 8 divides: every flip of a single bit changes it.
+template <unsigned first, unsigned last>
+std::uint64_t sum_of_words(const void* object) {
   const auto* const at = static_cast<const unsigned char*>(object);
-  std::uint32_t sum = 0;
+  std::uint64_t sum = 0;
   // Wholly unrolled: the drive core spends a good part of its time here.
-#pragma GCC unroll 256
-  for (unsigned i = 0; i < words; i += 2) {
-    std::uint32_t pair[2];
-    __builtin_memcpy(pair, __builtin_assume_aligned(at + i * sizeof(std::uint32_t), 8), sizeof(pair));
-    sum += pair[0];
-    sum += pair[1];
+#pragma GCC unroll 128
+  for (unsigned i = first; i < last; ++i) {
+    std::uint64_t word = 0;
+    __builtin_memcpy(&word, __builtin_assume_aligned(at + i * sizeof(word), sizeof(word)), sizeof(word));
+    sum += word;
   }
   return sum;
 }

@@ -3,18 +3,18 @@
 
 namespace robot_core {
 
-Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltage& limited) {
+Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited) {
   Output out;
   out.time_to_guard_limit_s = kLongTime_s;
   const float per_battery = 1.0F / believed.pwm_battery_V;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelState& wheel = state.wheel[i];
-    out.is_open[i] = limited.is_open[i];
-    out.voltage_V[i] = limited.voltage_V[i];
-    out.pwm_ratio[i] = clamped(limited.voltage_V[i] * per_battery, -1.0F, 1.0F);
-    out.reason[i] = limited.reason[i];
-    out.allowed_current_A[i] = limited.allowed_A[i];
-    out.winding_C[i] = wheel.winding_C;
+    out.is_open[i] = limited.wheel[i].is_open;
+    out.voltage_V[i] = limited.wheel[i].voltage_V;
+    out.pwm_ratio[i] = clamped(limited.wheel[i].voltage_V * per_battery, -1.0F, 1.0F);
+    out.reason[i] = limited.wheel[i].reason;
+    out.allowed_current_A[i] = limited.wheel[i].allowed_A;
+    out.winding_C[i] = state.guard[i].state_C[0];
     if (config.guard != nullptr) {
       out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, wheel.time_to_limit_s);
     }

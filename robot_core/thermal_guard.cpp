@@ -4,7 +4,7 @@ namespace robot_core {
 namespace {
 
 // So that a state of zeros is none.
-constexpr std::uint32_t kStarted = 0x48454154U;
+constexpr std::uint64_t kStarted = 0x4845415453544152U;
 constexpr float kMostTemperature_C = 1000.0F;
 
 /// False for what is no number.
@@ -12,9 +12,8 @@ bool is_between(float low, float x, float high) { return x >= low && x <= high; 
 
 bool is_temperature(const GuardModel& model, float x_C) { return is_between(model.coldest_ambient_C - 1.0F, x_C, kMostTemperature_C); }
 
-std::uint32_t check_sum_of(const GuardState& state) {
-  constexpr unsigned kWords = sizeof(GuardState) / sizeof(std::uint32_t);
-  return kStarted + sum_of_words<kWords>(&state) - state.check_sum;
+std::uint64_t check_sum_of(const GuardState& state) {
+  return kStarted + sum_of_words<1, sizeof(GuardState) / sizeof(std::uint64_t)>(&state);
 }
 
 /// Segment of an axis and the place in it.

@@ -59,8 +59,7 @@ struct GuardModel {
 };
 
 struct alignas(8) GuardState {
-  std::uint32_t check_sum = 0;
-  std::uint32_t unused = 0;
+  std::uint64_t check_sum = 0;
   float state_C[kMostGuardNodes] = {};
   float carry_K[kMostGuardNodes] = {};
 };

@@ -5,28 +5,32 @@
 namespace robot_core {
 namespace {
 
-constexpr float kStanding_rad_per_s = 1.0F;
-constexpr float kRelease_s = 0.3F;
+constexpr float kStanding_rad_per_s = 2.0F;  // sum of reference and speed
+constexpr float kRelease_per_s = 3.0F;
 
 }  // namespace
 
-void control_wheel_speeds(const Config& config, State& state, const Believed& believed, const WheelReference& wheels,
-                          WheelVoltage& voltage) {
+void control_wheel_speeds(const Config& config, State& state, const Believed& believed, const WheelReferences& wheels,
+                          WheelVoltages& voltage) {
+  const bool is_off = believed.mode == Mode::wheel_torque || believed.robot_fault == Reason::time_jump;
+  const float integral_gain_V_s_per_rad = config.wheel_integral_V_per_rad * believed.elapsed_s;
+  const float release_share = smaller(1.0F, believed.elapsed_s * kRelease_per_s);
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
-    voltage.wanted_V[i] = voltage.feed_forward_V[i];
-    if (believed.mode == Mode::wheel_torque || !believed.is_speed_sensed[i] || believed.robot_fault == Reason::time_jump) {
+    WheelVoltage& asked = voltage.wheel[i];
+    if (is_off || !believed.wheel[i].is_speed_sensed) {
+      asked.wanted_V = asked.feed_forward_V;
       wheel.integral_V = 0.0F;
       continue;
     }
-    const float error_rad_per_s = wheels.speed_rad_per_s[i] - believed.wheel_speed_rad_per_s[i];
-    wheel.integral_V = clamped(wheel.integral_V + config.wheel_integral_V_per_rad * error_rad_per_s * believed.elapsed_s,
-                               -config.battery_full_V, config.battery_full_V);
+    const float error_rad_per_s = wheels.wheel[i].speed_rad_per_s - believed.wheel[i].speed_rad_per_s;
+    const float fastest_rad_per_s = absolute(wheels.wheel[i].speed_rad_per_s) + absolute(believed.wheel[i].speed_rad_per_s);
+    wheel.integral_V += integral_gain_V_s_per_rad * error_rad_per_s;
     // Standing, integrators of wheels that hold each other back would heat motors for nothing.
-    if (absolute(wheels.speed_rad_per_s[i]) < kStanding_rad_per_s && absolute(believed.wheel_speed_rad_per_s[i]) < kStanding_rad_per_s) {
-      wheel.integral_V -= wheel.integral_V * smaller(1.0F, believed.elapsed_s / kRelease_s);
+    if (fastest_rad_per_s < kStanding_rad_per_s) {
+      wheel.integral_V -= wheel.integral_V * release_share;
     }
-    voltage.wanted_V[i] += config.wheel_gain_V_s_per_rad * error_rad_per_s + wheel.integral_V;
+    asked.wanted_V = asked.feed_forward_V + config.wheel_gain_V_s_per_rad * error_rad_per_s + wheel.integral_V;
   }
 }
 
