@@ -19,7 +19,7 @@ struct DriveResult {
   std::uint8_t is_warning;
   std::uint8_t robot_reason;
   std::uint8_t unused[2];
-  std::uint32_t state_check_sum;  ///< of all that evolves
+  std::uint32_t state_digest;  ///< of all that evolves
 };
 
 /// The core between two records.
@@ -32,6 +32,18 @@ struct DriveRun {
 inline void begin(DriveRun& run) {
   run.config = drive_setup();
   robot_core::start(run.config, run.state, {.is_rested = true, .body_C = 25.0F});
+}
+
+/// FNV-1a over words (Fowler, Noll, Vo).
+inline std::uint32_t digest(const robot_core::State& state) {
+  static_assert(sizeof(state) % sizeof(std::uint32_t) == 0);
+  std::uint32_t sum = 2166136261U;
+  for (unsigned i = 0; i < sizeof(state) / sizeof(std::uint32_t); ++i) {
+    std::uint32_t word = 0;
+    __builtin_memcpy(&word, reinterpret_cast<const unsigned char*>(&state) + i * sizeof(word), sizeof(word));
+    sum = (sum ^ word) * 16777619U;
+  }
+  return sum;
 }
 
 /// Without padding, whose bytes would be anything.
@@ -49,7 +61,7 @@ inline void copy_output(const DriveRun& run, DriveResult& result) {
   result.is_warning = output.is_warning ? 1 : 0;
   result.robot_reason = static_cast<std::uint8_t>(output.robot_reason);
   result.unused[0] = result.unused[1] = 0;
-  result.state_check_sum = run.state.check_sum;
+  result.state_digest = digest(run.state);
 }
 
 }  // namespace heatsoak::target
