@@ -67,16 +67,12 @@ bool start(const Config& config, State& state, const StartUp& start_up) {
   return true;
 }
 
-Output step(const Config& config, State& state, const Input& input) {
-  bool is_corrupted = state.check_sum != state_check_sum(state);
-  if (is_corrupted) {
-    start(config, state, {});
-  }
-  if (state.is_valid != kStarted) {
-    return all_open(Reason::config_invalid);
-  }
+namespace {
+
+/// On its own so that the result is made where the caller wants it.
+Output step_valid(const Config& config, State& state, const Input& input, bool was_corrupted) {
   Believed believed = validate_input(config, state, input);
-  if (is_corrupted) {
+  if (was_corrupted) {
     believed.robot_fault = Reason::state_corrupted;
   }
   run_guards(config, state, input, believed);
@@ -85,10 +81,20 @@ Output step(const Config& config, State& state, const Input& input) {
   WheelVoltages voltage = feed_forward(config, input, believed, body, wheels);
   control_wheel_speeds(config, state, believed, wheels, voltage);
   const LimitedVoltages limited = apply_limits(config, state, believed, body, voltage);
-  const Output out = make_output(config, state, believed, limited);
+  Output out = make_output(config, state, believed, limited);
   ++state.steps;
   state.check_sum = state_check_sum(state);
   return out;
+}
+
+}  // namespace
+
+Output step(const Config& config, State& state, const Input& input) {
+  const bool is_corrupted = state.check_sum != state_check_sum(state);
+  if (is_corrupted) {
+    start(config, state, {});
+  }
+  return state.is_valid == kStarted ? step_valid(config, state, input, is_corrupted) : all_open(Reason::config_invalid);
 }
 
 }  // namespace robot_core

@@ -37,23 +37,21 @@ void limit_demand(const Config& config, const WheelState& state, const Believed&
   }
 }
 
-/// What the guard leaves. In shadow mode it is counted instead.
-void apply_guard(const Config& config, State& state, const Believed& believed, WheelDemand* demand) {
-  bool would_limit = false;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    const WheelState& wheel = state.wheel[i];
-    const bool brakes = demand[i].current_A * believed.wheel[i].speed_rad_per_s < 0.0F;
-    const float allowed_A = brakes ? wheel.allowed_braking_A : wheel.allowed_A;
-    if (config.shadow_mode) {
-      const float excess_A = smaller(absolute(demand[i].current_A), demand[i].most_A) - allowed_A;
-      state.shadow_deficit_A_s += larger(0.0F, excess_A) * believed.elapsed_s;
-      would_limit = would_limit || excess_A > 0.0F;
-    } else if (allowed_A < demand[i].most_A) {
-      demand[i].most_A = allowed_A;
-      demand[i].reason = Reason::guard;
-    }
+/// What the guard leaves. In shadow mode it is counted instead; true if it would have limited.
+bool apply_guard(const Config& config, State& state, const WheelState& wheel, float speed_rad_per_s, float elapsed_s, WheelDemand& demand) {
+  const bool brakes = demand.current_A * speed_rad_per_s < 0.0F;
+  const float allowed_A = brakes ? wheel.allowed_braking_A : wheel.allowed_A;
+  if (allowed_A >= demand.most_A) {
+    return false;
   }
-  state.shadow_steps += would_limit ? 1U : 0U;
+  if (!config.shadow_mode) {
+    demand.most_A = allowed_A;
+    demand.reason = Reason::guard;
+    return false;
+  }
+  const float excess_A = smaller(absolute(demand.current_A), demand.most_A) - allowed_A;
+  state.shadow_deficit_A_s += larger(0.0F, excess_A) * elapsed_s;
+  return excess_A > 0.0F;
 }
 
 /// Share of the power that the battery gives before it sags below its lowest voltage. The power of scaled currents is convex in the
@@ -106,21 +104,30 @@ bool is_overcurrent(const Config& config, const Believed& believed, WheelState& 
          absolute(believed.wheel[i].current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
 }
 
-/// One factor for all wheels that drive the body together.
-float scale_currents(const Config& config, const State& state, const Believed& believed, const BodyReference& body, float most_V,
-                     WheelDemand* demand, LimitedVoltages& limited) {
+/// What every wheel wants and may have, and one factor for all of them, so that the direction of the force is kept.
+float find_demands(const Config& config, State& state, const Believed& believed, const BodyReference& body, const WheelVoltages& voltage,
+                   float most_V, WheelDemand* demand, LimitedVoltages& limited) {
   float least = 1.0F;
   float power_W = 0.0F;
+  bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
+    const BelievedWheel& sensed = believed.wheel[i];
     WheelDemand& each = demand[i];
+    each.back_V = config.derived.geared_constant_V_s_per_rad * sensed.speed_rad_per_s;
+    each.current_A = (voltage.wheel[i].wanted_V - each.back_V) * config.derived.per_lowest_resistance_A_per_V;
     each.share = 1.0F;
     limited.wheel[i].reason = Reason::none;
-    if (believed.wheel[i].is_speed_known) {
+    limit_demand(config, state.wheel[i], believed, body, i, each);
+    if (config.guard != nullptr) {
+      would_limit = apply_guard(config, state, state.wheel[i], sensed.speed_rad_per_s, believed.elapsed_s, each) || would_limit;
+    }
+    if (sensed.is_speed_known) {
       each.share = share_of_wheel(config, each, most_V, limited.wheel[i].reason);
       least = smaller(least, each.share);
     }
     power_W += (each.back_V + config.lowest_resistance_ohm * each.current_A) * each.current_A;
   }
+  state.shadow_steps += would_limit ? 1U : 0U;
   // The power of the scaled currents is at most as much smaller.
   const float of_battery = share_of_battery(config, state, believed, least * power_W);
   const float factor = least * of_battery;
@@ -163,16 +170,8 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
                              const WheelVoltages& voltage) {
   LimitedVoltages limited;
   WheelDemand demand[kMostWheels];
-  for (int i = 0; i < config.wheel_count; ++i) {
-    demand[i].back_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].speed_rad_per_s;
-    demand[i].current_A = (voltage.wheel[i].wanted_V - demand[i].back_V) * config.derived.per_lowest_resistance_A_per_V;
-    limit_demand(config, state.wheel[i], believed, body, i, demand[i]);
-  }
-  if (config.guard != nullptr) {
-    apply_guard(config, state, believed, demand);
-  }
   const float most_V = smaller(config.voltage_limit_V, believed.battery_V);
-  const float share = scale_currents(config, state, believed, body, most_V, demand, limited);
+  const float share = find_demands(config, state, believed, body, voltage, most_V, demand, limited);
   const bool is_all_open = body.is_open || believed.robot_fault == Reason::period_invalid;
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
   float power_W = 0.0F;
