@@ -1,14 +1,233 @@
+// What the drive core is told of a robot, against hand calculations, and what the guard's figures promise.
 #include "firmware/core_config.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "base/diagnostic.h"
+#include "motor/datasheet_network.h"
+#include "robot/inverse_dynamics.h"
 #include "support/shipped.h"
+
 namespace heatsoak {
 namespace {
-TEST(CoreConfig, OfShippedRobotStartsTheCore) {
-  const robot_core::Config config = make_core_config(twente(), ecx_32().nominal, {});
+
+using testing::HasSubstr;
+
+robot_core::Config twente_config() { return make_core_config(twente(), ecx_32().nominal, with_tolerance({}, ecx_32())); }
+
+TEST(CoreConfig, OfEveryShippedRobotStartsTheCore) {
+  for (const char* const id : {"roboteam_twente_v2024", "roboteam_twente_v2025", "tigers_v2020"}) {
+    const Robot robot = shipped_robot(id);
+    const Motor motor = shipped_motor(robot.drive_motor);
+    const robot_core::Config config = make_core_config(robot, motor.nominal, with_tolerance({}, motor));
+    robot_core::State state;
+    EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F})) << id;
+    EXPECT_EQ(config.check_sum, robot_core::config_check_sum(config)) << id;
+  }
+}
+
+// 1.07 ohm with a tolerance of 10 %, 10 mohm of the driver, 25.2 V, 32.8 mN m/A, J = 220 g cm² + 9.47 g cm².
+TEST(CoreConfig, HandCalculationOfTheMotor) {
+  const robot_core::Config config = twente_config();
+  const double lowest_ohm = 1.07 * 0.9 * (1.0 - 0.0039 * 25.0) + 0.01;
+  EXPECT_NEAR(config.resistance_ohm, 1.08, 1e-6);
+  EXPECT_NEAR(config.lowest_resistance_ohm, lowest_ohm, 1e-6);
+  EXPECT_NEAR(config.fastest_wheel_rad_per_s, 1.1 * 25.2 / 0.0328, 1e-3);
+  EXPECT_NEAR(config.current_limit_A, (12.5 + 1.1 * 25.2) / lowest_ohm, 1e-4);
+  EXPECT_NEAR(config.largest_acceleration_rad_per_s2, 0.0328 * (12.5 + 1.1 * 25.2) / lowest_ohm / 229.47e-7, 1.0);
+  EXPECT_FLOAT_EQ(config.voltage_limit_V, 12.5F);
+  EXPECT_FLOAT_EQ(config.battery_lowest_V, 19.8F);
+  EXPECT_FLOAT_EQ(config.traction_ratio, 0.7F);
+  EXPECT_FLOAT_EQ(config.command_timeout_s, 0.2F);
+  EXPECT_FLOAT_EQ(config.speed_limit_m_per_s, 2.0F);
+}
+
+TEST(CoreConfig, DriverWithACurrentLimitKeepsIt) {
+  const Robot robot = shipped_robot("tigers_v2020");
+  const Motor motor = shipped_motor(robot.drive_motor);
+  const robot_core::Config config = make_core_config(robot, motor.nominal, with_tolerance({}, motor));
+  EXPECT_FLOAT_EQ(config.current_limit_A, 8.16F);
+  EXPECT_FLOAT_EQ(config.gear_efficiency, 0.72F);
+  // Rollers take a part of the grip: √(0.7² − 0.11²).
+  EXPECT_NEAR(config.traction_ratio, 0.6913, 1e-4);
+}
+
+TEST(CoreConfig, RangeCountsByItsLowerEnd) {
+  Motor motor = ecx_32();
+  Figure& resistance = *find_figure(motor, "terminal_resistance");
+  resistance.spread = Spread{.kind = Spread::Kind::range, .low = 0.8, .high = 1.3};
+  EXPECT_NEAR(with_tolerance({}, motor).lowest_resistance_ratio, 0.8 / 1.07, 1e-12);
+  resistance.spread.reset();
+  EXPECT_EQ(with_tolerance({}, motor).lowest_resistance_ratio, 1.0);
+}
+
+/// The core's feed-forward and wheel columns against the plant's inverse dynamics: a steady drive needs the voltage that it plans.
+TEST(CoreConfig, FeedForwardIsWhatThePlantNeeds) {
+  Robot robot = twente();
+  robot.heading_double_angle_Nm = kAbsent;  // which the core's form of friction does not have
+  robot.heading_double_angle_phase_rad.clear();
+  const MotorValues motor = ecx_32().nominal;
+  const robot_core::Config config = make_core_config(robot, motor, {});
+  const BodyConfig body = make_body(robot, motor);
+  const DriveConstants drive = drive_constants(robot, motor);
+  BodyMotion motion;
+  motion.velocity = {1.2, 0.3, 0.0};
+  motion.acceleration = {1.0, -0.5, 3.0};
+  const WheelDemands wheels = inverse_dynamics(body, motion);
+  for (int i = 0; i < 4; ++i) {
+    const robot_core::WheelConfig& wheel = config.wheel[i];
+    const double rim_m_per_s = wheel.rolling_x_share * 1.2 + wheel.rolling_y_share * 0.3;
+    const double force_N = wheel.inverse_x_factor * config.mass_kg * 1.0 + wheel.inverse_y_factor * config.mass_kg * -0.5 +
+                           wheel.inverse_yaw_per_m * config.yaw_inertia_kg_m2 * 3.0;
+    const double per_s2 =
+        (wheel.rolling_x_share * 1.0 + wheel.rolling_y_share * -0.5 + config.contact_radius_m * 3.0) / config.wheel_radius_m;
+    const double sine = (0.3 * wheel.phase_cosine_ratio + 1.2 * wheel.phase_sine_ratio) / std::hypot(1.2, 0.3);
+    const double planned_V = wheel.damping_V_s_per_rad * rim_m_per_s / config.wheel_radius_m + wheel.sine_V * sine +
+                             std::copysign(wheel.sign_V, sine) +
+                             config.resistance_ohm / (config.torque_constant_Nm_per_A * config.gear_ratio * config.gear_efficiency) *
+                                 (config.wheel_radius_m * force_N + config.wheel_inertia_kg_m2 * per_s2);
+    EXPECT_NEAR(planned_V, steady_voltage_V(drive, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]), 0.01) << i;
+  }
+}
+
+TEST(CoreConfig, NamesEveryFigureThatIsMissing) {
+  Robot robot = twente();
+  robot.yaw_inertia_kg_m2 = kAbsent;
+  robot.traction_ratio = kAbsent;
+  robot.battery_full_V = kAbsent;
+  MotorValues motor = ecx_32().nominal;
+  motor.rotor_inertia_kg_m2 = kAbsent;
+  try {
+    make_core_config(robot, motor, {});
+    FAIL() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    std::string keys;
+    for (const Diagnostic& each : failure.diagnostics()) {
+      keys += each.key + " ";
+    }
+    for (const char* const key : {"body.yaw_inertia", "traction.coefficient", "battery.full_voltage", "figures.rotor_inertia"}) {
+      EXPECT_THAT(keys, HasSubstr(key));
+    }
+  }
+}
+
+TEST(CoreConfig, RobotWithoutFrictionIsDrivenWithoutItsFeedForward) {
+  Robot robot = twente();
+  for (const RobotFigureSpec& each : robot_figure_specs()) {
+    if (each.table.starts_with("friction")) {
+      robot.*each.value = kAbsent;
+    }
+  }
+  robot.heading_double_angle_phase_rad.clear();
+  const robot_core::Config config = make_core_config(robot, ecx_32().nominal, {});
+  EXPECT_FALSE(config.has_friction);
+  EXPECT_FLOAT_EQ(config.wheel[2].damping_V_s_per_rad, 0.0328F);
+  robot_core::State state;
+  EXPECT_TRUE(robot_core::start(config, state, {}));
+}
+
+TEST(CoreConfig, RefusesAPeriodThatItsWheelLoopCannotUse) {
+  EXPECT_THROW(make_core_config(twente(), ecx_32().nominal, {.period_s = 0.02}), Failure);
+}
+
+/// One derating for all that need one; few samples, because it is not the share of motors that is looked at.
+const Derating& derating() {
+  static const Derating made = [] {
+    DerateOptions options;
+    options.guarantee.confidence = 0.9;
+    options.guarantee.samples = 32;
+    return derate(ecx_32(), twente(), options);
+  }();
+  return made;
+}
+
+TEST(GuardedCoreConfig, StartsTheCoreAndCarriesTheGuard) {
+  const HostGuard guard(derating());
+  const robot_core::Config config = make_core_config(twente(), ecx_32(), {}, derating(), guard);
+  EXPECT_EQ(config.guard, &guard.model());
+  EXPECT_GT(config.limp_current_A, 0.0F);
+  EXPECT_LT(config.limp_current_A, config.current_limit_A);
+  EXPECT_GT(config.braking_reserve_K, 0.0F);
+  EXPECT_LT(config.lowest_resistance_ohm, 0.9 * 1.07);
   robot_core::State state;
   EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
 }
+
+TEST(GuardedCoreConfig, GuardPeriodIsAWholeNumberOfControlPeriods) {
+  const HostGuard guard(derating());
+  EXPECT_NO_THROW(make_core_config(twente(), ecx_32(), {.period_s = 0.002}, derating(), guard));
+  for (const double period_s : {0.0015, 0.0032}) {
+    try {
+      make_core_config(twente(), ecx_32(), {.period_s = period_s}, derating(), guard);
+      ADD_FAILURE() << "no failure";
+    } catch (const Failure& failure) {
+      EXPECT_EQ(failure.code(), ExitCode::bad_input);
+      EXPECT_THAT(failure.message(), HasSubstr("whole number"));
+    }
+  }
+}
+
+/// Highest temperature of the observer's winding with that current held at that speed for hours.
+double held_C(const HotCase& around, double current_A, double speed_rad_per_s) {
+  ObserverRun<double> run(derating().observer, derating().options.period_s, derating().rules.hottest_ambient_C);
+  const Signals signals = around.signals(derating().rules, current_A, speed_rad_per_s);
+  double most_C = 0.0;
+  for (int i = 0; i < 200'000; ++i) {
+    run.step(signals);
+    most_C = std::max(most_C, run.state_C()[states::winding]);
+  }
+  return most_C;
+}
+
+// For a wheel whose speed nobody knows it must hold at all of them.
+TEST(GuardedCoreConfig, LimpCurrentIsBorneForGoodAtEverySpeedInEveryHotCase) {
+  const double limp_A = limp_current_A(derating());
+  const BarrierRules& rules = derating().rules;
+  double hottest_C = 0.0;
+  for (const HotCase& around : hot_cases(derating().observer, rules)) {
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 0.98}) {
+      hottest_C = std::max(hottest_C, held_C(around, limp_A, share * rules.most_speed_rad_per_s));
+    }
+  }
+  EXPECT_LT(hottest_C, rules.limits.winding_C + 0.5);
+  // And it is no more than a little below what could be held.
+  EXPECT_GT(hottest_C, rules.limits.winding_C - 5.0);
+}
+
+// Without effects the observer's heating is that of copper alone: I²·R(155 °C)·reserve/C_w, C_w = 12 s/3.8 K/W.
+TEST(GuardedCoreConfig, BrakingReserveIsTheHeatOfOneStop) {
+  const double hot_ohm = 1.07 * (1.0 + 0.0039 * (155.0 - 25.0));
+  const BodyConfig body = make_body(twente(), ecx_32().nominal);
+  double most_A = 0.0;
+  for (int h = 0; h < 360; ++h) {
+    const BodyAcceleration braking{2.0 * std::cos(h * 0.0174533), 2.0 * std::sin(h * 0.0174533), 0.0};
+    const PerWheel force_N = rolling_forces_N(body.kinematics, wrench_of_acceleration(body, 0.0, braking));
+    const PerWheel per_s2 = wheel_speeds_rad_per_s(body.kinematics, {braking.x_m_per_s2, braking.y_m_per_s2, 0.0});
+    for (int i = 0; i < 4; ++i) {
+      most_A = std::max(most_A, std::abs(force_N[i] * 0.028 + body.wheel_inertia_kg_m2 * per_s2[i]) / 0.0328);
+    }
+  }
+  const double duration_s = 2.0 / 2.0;
+  const double expected_K = most_A * most_A * hot_ohm * duration_s * derating().observer.heat_reserve_ratio() / (12.0 / 3.8);
+  EXPECT_NEAR(braking_reserve_K(twente(), ecx_32().nominal, derating()), expected_K, 0.01 * expected_K);
+}
+
+TEST(LimpCurrent, IsTheLeastOfTheHeldUses) {
+  Derating made = derating();
+  made.uses = {{.use = {.speed_share = 0.3}, .intervals = {}, .time_s = {1.0, 2.0}, .current_A = {9.0, 4.0}},
+               {.use = {.speed_share = 0.6}, .intervals = {}, .time_s = {1.0, 2.0}, .current_A = {8.0, 3.0}},
+               {.use = {.speed_share = 0.6, .on_s = 2.0}, .intervals = {}, .time_s = {1.0}, .current_A = {1.0}}};
+  EXPECT_EQ(limp_current_A(made), 3.0);
+  made.uses.clear();
+  EXPECT_EQ(limp_current_A(made), 0.0);
+}
+
 }  // namespace
 }  // namespace heatsoak

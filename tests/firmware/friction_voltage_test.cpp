@@ -1,0 +1,188 @@
+// Friction of a robot's file as voltages, against the steady state of the plant's own equations.
+#include "firmware/friction_voltage.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/diagnostic.h"
+#include "robot/inverse_dynamics.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+namespace {
+
+/// A curve in the form of equation 3, with its own a and b for each wheel.
+Robot with_measured_curve(double phase_offset_rad = 0.0) {
+  Robot robot = twente();
+  robot.heading_constant_Nm = robot.heading_sine_Nm = robot.heading_double_angle_Nm = kAbsent;
+  robot.heading_double_angle_phase_rad.clear();
+  const Kinematics kinematics = make_kinematics(robot);
+  for (int i = 0; i < 4; ++i) {
+    robot.heading_wheels.push_back({0.020 + 0.002 * i, 0.005 - 0.003 * i, rolling_phase_rad(kinematics.wheels[i]) + phase_offset_rad});
+  }
+  return robot;
+}
+
+double form_V(const FrictionVoltage& friction, int wheel, double heading_rad) {
+  const double sine = std::sin(heading_rad + friction.phase_rad[wheel]);
+  return friction.sine_V[wheel] * sine + std::copysign(friction.sign_V[wheel], sine);
+}
+
+/// Voltage that keeps the wheel turning at that heading and speed, by the plant's own friction.
+double steady_V(const Robot& robot, const MotorValues& motor, int wheel, double heading_rad, double speed_m_per_s) {
+  const BodyConfig body = make_body(robot, motor);
+  BodyMotion motion;
+  motion.velocity = {speed_m_per_s * std::cos(heading_rad), speed_m_per_s * std::sin(heading_rad), 0.0};
+  const WheelDemands wheels = inverse_dynamics(body, motion);
+  return steady_voltage_V(drive_constants(robot, motor), wheels.torque_Nm[wheel], wheels.speed_rad_per_s[wheel]);
+}
+
+TEST(FrictionVoltage, RepresentsACurveOfItsFormExactly) {
+  const MotorValues motor = ecx_32().nominal;
+  const Robot robot = with_measured_curve();
+  const FrictionVoltage friction = friction_voltage(robot, motor);
+  ASSERT_TRUE(friction.is_known);
+  const Kinematics kinematics = make_kinematics(robot);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_LT(friction.residual_rms_V[i], 1e-9) << i;
+    for (const double heading_rad : {0.0, 1.3, 1.6, 3.1, 4.7}) {
+      // At 1 m/s and away from where a wheel stands the smoothing of the plant's sign takes less than 1 % of the friction.
+      ASSERT_GT(std::abs(std::sin(heading_rad + friction.phase_rad[i])), 0.15) << i << ", " << heading_rad;
+      const double speed_rad_per_s = wheel_speeds_rad_per_s(kinematics, {std::cos(heading_rad), std::sin(heading_rad), 0.0})[i];
+      const double expected_V = steady_V(robot, motor, i, heading_rad, 1.0) - friction.damping_V_s_per_rad * speed_rad_per_s;
+      EXPECT_NEAR(form_V(friction, i, heading_rad), expected_V, 0.01) << i << ", " << heading_rad;
+    }
+  }
+}
+
+TEST(FrictionVoltage, FitFindsACurveOfItsForm) {
+  // A double angle of nearly nothing takes the way over the fit.
+  const MotorValues motor = ecx_32().nominal;
+  const FrictionVoltage direct = friction_voltage(with_measured_curve(), motor);
+  Robot robot = with_measured_curve();
+  robot.heading_double_angle_Nm = 1e-12;
+  robot.heading_double_angle_phase_rad = {0.0, 0.0, 0.0, 0.0};
+  const FrictionVoltage fitted = friction_voltage(robot, motor);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(fitted.sine_V[i], direct.sine_V[i], 1e-8) << i;
+    EXPECT_NEAR(fitted.sign_V[i], direct.sign_V[i], 1e-8) << i;
+    EXPECT_NEAR(fitted.phase_rad[i], direct.phase_rad[i], 1e-12) << i;
+  }
+}
+
+// The firmware's own numbers: 1.23 V in translation, 0.3 V in rotation, 0.0375 V s/rad; its robot file rounds them.
+TEST(FrictionVoltage, GivesBackTheVoltagesOfTheTeam) {
+  Robot robot = twente();
+  robot.heading_double_angle_Nm = kAbsent;
+  robot.heading_double_angle_phase_rad.clear();
+  // The team counted without the driver's 10 mohm.
+  robot.driver_resistance_ohm = 0.0;
+  const FrictionVoltage friction = friction_voltage(robot, ecx_32().nominal);
+  EXPECT_NEAR(friction.damping_V_s_per_rad, 0.0375, 5e-5);
+  EXPECT_NEAR(friction.rotation_V, 0.3, 0.005);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(friction.sign_V[i], 1.23, 0.005) << i;
+    EXPECT_NEAR(friction.sine_V[i], 0.0, 1e-9) << i;
+  }
+}
+
+// sin(2θ + ψ)·sign is beyond the form: what is left is at most its rms, and the fit can do no better along a or b.
+TEST(FrictionVoltage, ReportsWhatADoubleAngleLeaves) {
+  const MotorValues motor = ecx_32().nominal;
+  const Robot robot = twente();
+  const FrictionVoltage friction = friction_voltage(robot, motor);
+  const DriveConstants drive = drive_constants(robot, motor);
+  const double amplitude_V = 0.0141 * drive.resistance_ohm / drive.torque_constant_Nm_per_A;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_GT(friction.residual_rms_V[i], 0.3 * amplitude_V) << i;
+    EXPECT_LE(friction.residual_rms_V[i], amplitude_V / std::sqrt(2.0) + 1e-9) << i;
+  }
+}
+
+// Rollers: by symmetry the mirrored wheels have the same curve, and the fit leaves less than half of the friction's own rms.
+TEST(FrictionVoltage, FitsTheDragOfRollers) {
+  const Robot robot = shipped_robot("tigers_v2020");
+  const MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
+  const FrictionVoltage friction = friction_voltage(robot, motor);
+  EXPECT_NEAR(friction.sine_V[0], friction.sine_V[1], 1e-9);
+  EXPECT_NEAR(friction.sign_V[2], friction.sign_V[3], 1e-9);
+  // In rotation the rollers stand: 4.2 mN m at the wheel and the motor's own drag are left.
+  const DriveConstants drive = drive_constants(robot, motor);
+  EXPECT_NEAR(friction.rotation_V, steady_voltage_V(drive, 0.0042, 1e-9), 1e-6);
+  for (int i = 0; i < 4; ++i) {
+    double squares_V2 = 0.0;
+    for (int h = 0; h < 72; ++h) {
+      squares_V2 += std::pow(form_V(friction, i, 2.0 * std::numbers::pi * (h + 0.5) / 72), 2.0) / 72.0;
+    }
+    EXPECT_LT(friction.residual_rms_V[i], 0.5 * std::sqrt(squares_V2)) << i;
+    EXPECT_GT(friction.residual_rms_V[i], 0.0) << i;
+  }
+}
+
+// The sum of squares has its minimum at what was fitted.
+TEST(FrictionVoltage, FitIsALeastSquaresOne) {
+  const Robot robot = shipped_robot("tigers_v2020");
+  const MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
+  const FrictionVoltage friction = friction_voltage(robot, motor);
+  Robot undamped = robot;
+  undamped.wheel_damping_Nm_s_per_rad = 0.0;
+  const Kinematics kinematics = make_kinematics(robot);
+  const auto misfit_V2 = [&](int wheel, double more_sine_V, double more_sign_V) {
+    FrictionVoltage other = friction;
+    other.sine_V[wheel] += more_sine_V;
+    other.sign_V[wheel] += more_sign_V;
+    double squares_V2 = 0.0;
+    for (int h = 0; h < 72; ++h) {
+      const double heading_rad = 2.0 * std::numbers::pi * (h + 0.5) / 72;
+      const double speed_rad_per_s =
+          wheel_speeds_rad_per_s(kinematics, {2.0 * std::cos(heading_rad), 2.0 * std::sin(heading_rad), 0.0})[wheel];
+      const double target_V =
+          steady_V(undamped, motor, wheel, heading_rad, 2.0) - drive_constants(robot, motor).torque_constant_Nm_per_A * speed_rad_per_s;
+      squares_V2 += std::pow(target_V - form_V(other, wheel, heading_rad), 2.0);
+    }
+    return squares_V2;
+  };
+  for (const double step_V : {-0.02, 0.02}) {
+    EXPECT_GT(misfit_V2(0, step_V, 0.0), misfit_V2(0, 0.0, 0.0));
+    EXPECT_GT(misfit_V2(2, 0.0, step_V), misfit_V2(2, 0.0, 0.0));
+  }
+}
+
+TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
+  Robot robot = twente();
+  for (const RobotFigureSpec& each : robot_figure_specs()) {
+    if (each.table.starts_with("friction")) {
+      robot.*each.value = kAbsent;
+    }
+  }
+  robot.heading_double_angle_phase_rad.clear();
+  const FrictionVoltage friction = friction_voltage(robot, ecx_32().nominal);
+  EXPECT_FALSE(friction.is_known);
+  EXPECT_NEAR(friction.damping_V_s_per_rad, 0.0328, 1e-12);
+  EXPECT_EQ(friction.rotation_V, 0.0);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(friction.sine_V[i], 0.0);
+    EXPECT_EQ(friction.sign_V[i], 0.0);
+  }
+  EXPECT_TRUE(friction_note(robot).starts_with("feed-forward of friction is off"));
+  EXPECT_EQ(friction_note(twente()), "");
+}
+
+TEST(FrictionVoltage, NamesWhatHalfAFrictionTableLacks) {
+  Robot robot = twente();
+  robot.roller_drag_ratio = kAbsent;
+  robot.wheel_damping_Nm_s_per_rad = kAbsent;
+  try {
+    friction_voltage(robot, ecx_32().nominal);
+    FAIL() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_EQ(failure.diagnostics().size(), 2U);
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
