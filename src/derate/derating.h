@@ -47,7 +47,8 @@ struct Derating {
 /// The current that the motor bears for good at every speed and in every hot case, in A ≥ 0: for a wheel whose speed nobody knows.
 /// Derivation: each held use draws all that the table allows, at one speed in one hot case, until the slowest body has settled (four
 /// slowest time constants, 900 s at least). The current that still flows at the end is the one at which the observer, which counts heat
-/// heat_reserve_ratio times, rests below its limits. The smallest of these over all held uses. 0 without held uses.
+/// heat_reserve_ratio times, rests at its limits. The smallest of these over all held uses. 0 without held uses. The fastest held use is at
+/// 0.98 of the table's highest speed: above what a battery drives, because the table reaches to 1.1 times that.
 double limp_current_A(const Derating& derating);
 
 /// Finds the smallest reserve of heat with which the share of motors that is asked for keeps every limit in every use, and checks it on

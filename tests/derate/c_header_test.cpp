@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -75,7 +76,8 @@ Derating guarded_ecx_32(const std::string& lines = {}) {
           .rules = guarded.rules,
           .table = guarded.table,
           .options = {},
-          .effects = {{"copper_loss", "copper_loss", "P = I² R"}},
+          .assumed = {},
+          .effects = {{"copper_loss", "copper_loss", "P = I² R", ""}},
           .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
           .uses = {},
           .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
@@ -162,6 +164,42 @@ TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
     ASSERT_EQ(answers[i].winding_C, expected[i].winding_C) << "in step " << i;
     ASSERT_EQ(answers[i].stator_C, expected[i].stator_C) << "in step " << i;
     ASSERT_EQ(answers[i].allowed_A, expected[i].allowed_A) << "in step " << i;
+  }
+}
+
+// Laws with exponential and power bring their own, so that a controller's C library cannot change a bit.
+TEST_P(CHeader, brings_its_own_exponential_and_power) {
+  const std::string laws = R"([effects.air]
+type = "natural_convection"
+conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
+exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
+
+[effects.knee]
+type = "saturation"
+excess = { value = "0.3", origin = "estimated", derivation = "a test" }
+knee_current = { value = "5 A", origin = "estimated", derivation = "a test" }
+knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
+)";
+  const std::string text = header_text(laws);
+  EXPECT_THAT(text,
+              testing::AllOf(HasSubstr("= heatsoak_exp("), HasSubstr("heatsoak_pow("), HasSubstr("static inline float heatsoak_exp(")));
+  EXPECT_THAT(text, testing::Not(testing::AnyOf(HasSubstr("expf"), HasSubstr("powf"), HasSubstr("<math.h>"))));
+  EXPECT_THAT(header_text(), testing::Not(HasSubstr("heatsoak_exp")));
+  build(laws);
+  const Derating derating = guarded_ecx_32(laws);
+  ObserverRun<float> run(derating.observer, 0.01F, 31.0F);
+  std::string lines = "start 31\n";
+  std::vector<float> expected_C;
+  for (int i = 0; i < 2000; ++i) {
+    const float current_A = 4.0F + 3.0F * static_cast<float>(std::sin(0.01 * i));
+    lines += fmt::format("in {:.9g} 100 25\n", current_A);
+    run.step(std::array<float, firmware::kSignalCount>{current_A, 100.0F, 25.0F, 0.0F, 0.0F, 0.0F, 0.0F});
+    expected_C.push_back(run.state_C()[0]);
+  }
+  const std::vector<Answer> answers = ask(lines);
+  ASSERT_EQ(answers.size(), expected_C.size());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    ASSERT_EQ(answers[i].winding_C, expected_C[i]) << "in step " << i;
   }
 }
 
