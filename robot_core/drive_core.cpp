@@ -9,10 +9,10 @@ constexpr std::uint32_t kStarted = 0x4452564EU;
 // So that a state of zeros is none.
 constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
 
-/// Of what stands between the sum and the guards.
+/// Of what stands between the sum and the comparisons.
 [[gnu::noinline]] std::uint64_t state_check_sum(const State& state) {
-  static_assert(__builtin_offsetof(State, guard) % sizeof(std::uint64_t) == 0);
-  return kSeed + sum_of_words<1, __builtin_offsetof(State, guard) / sizeof(std::uint64_t)>(&state);
+  static_assert(__builtin_offsetof(State, comparison) % sizeof(std::uint64_t) == 0);
+  return kSeed + sum_of_words<1, __builtin_offsetof(State, comparison) / sizeof(std::uint64_t)>(&state);
 }
 
 /// Guard steps of the wheels are spread over the guard period.
@@ -22,7 +22,7 @@ void spread_guards(const Config& config, State& state) {
   }
   const int periods = static_cast<int>(config.guard->period_s / config.period_s + 0.5F);
   for (int i = 0; i < config.wheel_count; ++i) {
-    state.wheel[i].guard_steps = i * periods / config.wheel_count;
+    state.wheel[i].guard_steps = static_cast<std::uint16_t>(i * periods / config.wheel_count);
   }
 }
 
@@ -31,16 +31,14 @@ void reset(const Config& config, State& state, float body_C) {
   for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
     WheelState& wheel = state.wheel[i];
     start_guard(*config.guard, state.guard[i], body_C);
-    wheel.body_C = state.guard[i].state_C[0];
-    const bool is_at_limit = !(wheel.body_C < config.guard->winding_limit_C);
+    const float start_C = state.guard[i].state_C[0];
+    const bool is_at_limit = !(start_C < config.guard->winding_limit_C);
     wheel.guard_fault = is_at_limit ? static_cast<std::uint8_t>(Reason::guard_unknown) : 0;
     // Until its first step, at standstill, as the table says.
-    wheel.allowed_A = wheel.allowed_braking_A =
-        allowed_current_A(*config.guard, 0.0F, wheel.body_C, wheel.body_C + config.braking_reserve_K);
-    wheel.time_to_limit_s = kLongTime_s;
+    wheel.allowed_A = wheel.allowed_braking_A = allowed_current_A(*config.guard, 0.0F, start_C, start_C + config.braking_reserve_K);
   }
   spread_guards(config, state);
-  state.battery_V = config.battery_lowest_V;
+  seal(state.comparison);
 }
 
 Output all_open(Reason reason) {

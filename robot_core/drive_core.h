@@ -162,63 +162,64 @@ struct Input {
   Command command;
 };
 
+/// Of one wheel, read and written in every step.
 struct WheelState {
   float raw_speed_rad_per_s = 0.0F;  ///< last sample
-  float disagreement_s = 0.0F;       ///< how long the sample has contradicted the other evidence
-  float agreement_s = 0.0F;          ///< how long it has agreed while the sensor counts as faulty
-  float modelled_rad_per_s = 0.0F;   ///< speed that the applied voltage alone explains, smoothed
   float integral_V = 0.0F;
-  float voltage_V = 0.0F;              ///< applied over the last period
-  float current_error_s = 0.0F;        ///< how long the current sensor has contradicted voltage and speed
-  float current_squared_A2 = 0.0F;     ///< sum since the guard's last step
-  float current_A = 0.0F;              ///< sum
-  float speed_sum_rad_per_s = 0.0F;    ///< sum
-  float guard_speed_rad_per_s = 0.0F;  ///< mean of the guard period before
+  float voltage_V = 0.0F;           ///< applied over the last period
+  float current_squared_A2 = 0.0F;  ///< sum since the guard's last step
   float allowed_A = 0.0F;
   float allowed_braking_A = 0.0F;
-  float body_C = 0.0F;
-  float rate_K_per_s = 0.0F;       ///< smoothed heating of the winding
-  float wanted_squared_A2 = 0.0F;  ///< smoothed square of the current that was asked for
-  float time_to_limit_s = 0.0F;
-  float current_bound_A = 0.0F;  ///< limit of the last steps, decaying: a sensed current far above it opens the bridge
-  std::int32_t guard_steps = 0;  ///< periods since the guard's last step
-  std::uint32_t same_steps = 0;  ///< periods in which the sample has not changed by a bit
-  std::uint8_t has_current = 0;  ///< a sample of the current has been seen: its absence is a fault from then on
-  std::uint8_t unused[3] = {};
-  std::uint8_t is_open = 1;      ///< the bridge was open over the last period
-  std::uint8_t speed_fault = 0;  ///< Reason, or 0
+  float current_bound_A = 0.0F;   ///< limit of the last steps, decaying: a sensed current far above it opens the bridge
+  std::uint16_t guard_steps = 0;  ///< periods since the guard's last step
+  std::uint16_t same_steps = 0;   ///< periods in which the speed sample has not changed by a bit, up to kMostSameSteps
+  std::uint8_t speed_fault = 0;   ///< Reason, or 0
   std::uint8_t current_fault = 0;
   std::uint8_t guard_fault = 0;
+  std::uint8_t is_open = 1;             ///< the bridge was open over the last period
+  std::uint8_t has_current = 0;         ///< a sample of the current has been seen: its absence is a fault from then on
+  std::uint8_t is_current_doubted = 0;  ///< the current sensor has contradicted voltage and speed for too long
+  std::uint8_t has_spoken_wrongly = 0;  ///< a sample spoke against itself since the last comparison
+  std::uint8_t has_stator = 0;          ///< a stator temperature has been seen: its absence is a fault from then on
 };
 
-/// What evolves. Only start() and step() write it; a copy can be logged.
+/// What compares sensors with each other over tens of milliseconds; looked at once in kStepsPerComparison steps. The check sum covers
+/// the rest.
+struct alignas(8) ComparisonState {
+  std::uint64_t check_sum = 0;
+  float disagreement_s[kMostWheels] = {};   ///< how long the speed sample has contradicted the other evidence
+  float agreement_s[kMostWheels] = {};      ///< how long it has agreed while the sensor counts as faulty
+  float current_error_s[kMostWheels] = {};  ///< how long the current sensor has contradicted voltage and speed
+  float residual_m2_per_s2 = 0.0F;          ///< leaky mean square of what the wheels' samples contradict each other by
+  float swapped_m2_per_s2[6] = {};          ///< the same with two of the samples swapped, one per pair of wheels
+  float yaw_disagreement_s = 0.0F;
+  float yaw_agreement_s = 0.0F;
+};
+
+/// What evolves. Only start() and step() write it; a copy can be logged. The check sum covers what follows it up to `comparison`;
+/// comparison and guards have their own, looked at when they are used.
 struct alignas(8) State {
   std::uint64_t check_sum = 0;
-  std::uint32_t is_valid = 0;  ///< kStarted after start() with a valid Config
+  std::uint32_t is_valid = 0;  ///< a constant after start() with a valid Config
+  std::uint32_t steps = 0;     ///< since the start
   WheelState wheel[kMostWheels];
   Vector3 velocity_reference;  ///< of the body, local frame
-  Vector3 acceleration_reference;
   float yaw_integral_rad = 0.0F;
   float speed_share = 1.0F;         ///< of the commanded velocity that the limits leave
   float yaw_rate_rad_per_s = 0.0F;  ///< last believed
   float raw_yaw_rate_rad_per_s = 0.0F;
-  float yaw_disagreement_s = 0.0F;
-  float yaw_agreement_s = 0.0F;
-  std::uint32_t steps = 0;       ///< since the start
-  float swap_error_rad[6] = {};  ///< one per pair of wheels, see input_validation.cpp
-  float own_error_rad[kMostWheels] = {};
-  float battery_V = 0.0F;
   float battery_current_A = 0.0F;  ///< of the last period, estimated
   Vector3 plan_velocity;           ///< of the pose target's plan, field frame
   Vector3 plan_acceleration;
   std::uint32_t shadow_steps = 0;   ///< in which the guard would have limited
   float shadow_deficit_A_s = 0.0F;  ///< current time integral that it would have taken away
   std::uint8_t is_limited = 0;      ///< a limit scaled the wheels in the last period
-  std::uint8_t unused[4] = {};
   std::uint8_t yaw_fault = 0;
-  std::uint8_t has_ambient = 0;  ///< a sample has been seen: its absence is a fault from then on
-  std::uint8_t has_stator = 0;   ///< the same, a bit per wheel
-  // Last: each has a check sum of its own, looked at when the guard is stepped.
+  std::uint8_t has_ambient = 0;             ///< an air temperature has been seen: its absence is a fault from then on
+  std::uint8_t is_yaw_same = 0;             ///< the last two samples of the yaw rate are equal to the bit
+  std::uint8_t has_yaw_spoken_wrongly = 0;  ///< a sample spoke against itself since the last comparison
+  std::uint8_t unused[3] = {};
+  ComparisonState comparison;
   GuardState guard[kMostWheels];
 };
 
@@ -234,7 +235,6 @@ struct Output {
   Reason robot_reason = Reason::none;                    ///< fault of the whole robot
 };
 
-inline constexpr float kLongTime_s = 3600.0F;
 inline constexpr float kLongestGap_periods = 3.0F;
 /// A sensor that was faulty is believed again after so long in agreement with the rest.
 inline constexpr float kSteadyAgain_s = 0.25F;

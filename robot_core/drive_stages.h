@@ -82,6 +82,28 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
                              const WheelVoltages& voltage);
 Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited);
 
+// Parts of stage 1, in sensor_comparison.cpp.
+
+inline float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) {
+  return speed_rad_per_s * config.wheel[i].rim_per_speed_m;
+}
+
+/// Yaw rate that the sensed wheel speeds imply.
+float yaw_rate_of_wheels(const Config& config, const Believed& believed);
+
+/// Largest and smallest current that the last voltage explains at a speed, whatever the winding's temperature; 0 with an open bridge.
+struct CurrentRange {
+  float low_A = 0.0F;
+  float high_A = 0.0F;
+};
+CurrentRange explained_current(const Config& config, const WheelState& wheel, float speed_rad_per_s);
+
+/// Compares sensors with each other: stuck and swapped ones, and those that are believed again.
+void compare_sensors(const Config& config, State& state, const Input& input, const Believed& believed);
+
+/// Sets the check sum of the comparisons.
+void seal(ComparisonState& comparison);
+
 /// Steps the thermal guards that are due: each wheel's once per guard period, spread over the period.
 void run_guards(const Config& config, State& state, const Input& input, const Believed& believed);
 

@@ -86,6 +86,9 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
   }
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
   const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].implied_rad_per_s;
+  if (absolute(voltage_V - implied_V) <= band_V) {
+    return true;
+  }
   voltage_V = clamped(voltage_V, implied_V - band_V, implied_V + band_V);
   constexpr float kRounding = 1.0001F;
   return absolute(voltage_V) <= kRounding * most_V && absolute(voltage_V - demand.back_V) <= kRounding * band_V;
@@ -190,7 +193,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
       feed_back(config, believed, wheel, end.voltage_V - voltage.wheel[i].wanted_V);
     }
     wheel.voltage_V = end.voltage_V;
-    end.reason = strongest(wheel, end.reason);
+    end.reason = believed.wheel[i].is_speed_known ? strongest(wheel, end.reason) : Reason::wheel_speed_unknown;
   }
   state.battery_current_A = power_W / believed.pwm_battery_V;
   return limited;

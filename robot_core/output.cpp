@@ -8,7 +8,6 @@ Output make_output(const Config& config, const State& state, const Believed& bel
   out.time_to_guard_limit_s = kLongTime_s;
   const float per_battery = 1.0F / believed.pwm_battery_V;
   for (int i = 0; i < config.wheel_count; ++i) {
-    const WheelState& wheel = state.wheel[i];
     out.is_open[i] = limited.wheel[i].is_open;
     out.voltage_V[i] = limited.wheel[i].voltage_V;
     out.pwm_ratio[i] = clamped(limited.wheel[i].voltage_V * per_battery, -1.0F, 1.0F);
@@ -16,7 +15,7 @@ Output make_output(const Config& config, const State& state, const Believed& bel
     out.allowed_current_A[i] = limited.wheel[i].allowed_A;
     out.winding_C[i] = state.guard[i].state_C[0];
     if (config.guard != nullptr) {
-      out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, wheel.time_to_limit_s);
+      out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, state.guard[i].time_to_limit_s);
     }
   }
   out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;

@@ -6,6 +6,9 @@ namespace {
 // So that a state of zeros is none.
 constexpr std::uint64_t kStarted = 0x4845415453544152U;
 constexpr float kMostTemperature_C = 1000.0F;
+// Over which heating and load are smoothed for the time until the guard limits, and how many steps an estimate serves.
+constexpr float kSmoothing_s = 3.0F;
+constexpr std::uint32_t kStepsPerEstimate = 50;
 
 /// False for what is no number.
 bool is_between(float low, float x, float high) { return x >= low && x <= high; }
@@ -70,9 +73,10 @@ void take_hottest(const GuardModel& model, float* signal, int which, const float
   signal[which] = hottest;
 }
 
-/// Two passes: a signal's hottest value may depend on another's.
+/// Two passes where several are unknown: a signal's hottest value may depend on another's.
 void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C, float* rate_K_per_s) {
-  for (int pass = 0; pass < 2; ++pass) {
+  const int passes = (unknown & (unknown - 1)) != 0 ? 2 : 1;
+  for (int pass = 0; pass < passes; ++pass) {
     for (int i = 0; i < kGuardSignals; ++i) {
       if ((unknown & (1U << static_cast<unsigned>(i))) != 0) {
         take_hottest(model, signal, i, state_C, rate_K_per_s);
@@ -89,6 +93,7 @@ void start_guard(const GuardModel& model, GuardState& state, float body_C) {
   for (int node = 0; node < model.node_count; ++node) {
     state.state_C[node] = start_C;
   }
+  state.time_to_limit_s = kLongTime_s;
   seal(state);
 }
 
@@ -133,6 +138,44 @@ float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float st
   return allowed_current_A(model, find_row(model, speed_rad_per_s, stator_C), winding_C);
 }
 
+namespace {
+
+/// Temperature at which the table allows no more than `current_A`: between the axis points the table falls in a straight line.
+float limiting_temperature_C(const GuardModel& model, const GuardRow& row, float current_A) {
+  const GuardAxis& axis = model.winding_C;
+  int low = 0;
+  int high = axis.count - 1;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    if (allowed_current_A(model, row, axis.points[middle]) >= current_A) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  const float at_low_A = allowed_current_A(model, row, axis.points[low]);
+  const float at_high_A = allowed_current_A(model, row, axis.points[high]);
+  const float share = at_low_A > at_high_A ? clamped((at_low_A - current_A) / (at_low_A - at_high_A), 0.0F, 1.0F) : 0.0F;
+  return axis.points[low] + share * (axis.points[high] - axis.points[low]);
+}
+
+/// If the load goes on: straight extrapolation of the smoothed heating, an estimate that is early while the winding approaches balance.
+float find_time_to_limit_s(const GuardModel& model, const GuardState& state, const GuardRow& row, const GuardOutput& out,
+                           float braking_reserve_K) {
+  const float load_A = square_root(state.load_squared_A2);
+  if (load_A > out.allowed_A) {
+    return 0.0F;
+  }
+  constexpr float kLeastHeating_K_per_s = 0.01F;
+  if (!(state.heating_K_per_s > kLeastHeating_K_per_s)) {
+    return kLongTime_s;
+  }
+  const float limiting_C = limiting_temperature_C(model, row, load_A) - braking_reserve_K;
+  return clamped((limiting_C - out.winding_C) / state.heating_K_per_s, 0.0F, kLongTime_s);
+}
+
+}  // namespace
+
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
   GuardOutput out;
   out.was_started = is_started(model, state);
@@ -155,19 +198,26 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
     state.carry_K[node] = (next_C - state.state_C[node]) - change_K;
     state.state_C[node] = next_C > model.coldest_ambient_C ? next_C : model.coldest_ambient_C;
   }
-  seal(state);
   out.winding_C = state.state_C[0];
-  out.winding_rate_K_per_s = rate_K_per_s[0];
   out.hottest_body_C = state.state_C[1];
   for (int node = 2; node < model.node_count; ++node) {
     out.hottest_body_C = larger(out.hottest_body_C, state.state_C[node]);
   }
   out.is_unknown_input = unknown != 0;
+  const float smoothing = model.period_s / kSmoothing_s;
+  state.heating_K_per_s += smoothing * (rate_K_per_s[0] - state.heating_K_per_s);
+  state.load_squared_A2 += smoothing * (believed[guard_current_A] * believed[guard_current_A] - state.load_squared_A2);
+  state.speed_rad_per_s = believed[guard_speed_rad_per_s];
+  ++state.steps;
   if ((unknown & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
-    out.row = find_row(model, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
-    out.allowed_braking_A = allowed_current_A(model, out.row, out.winding_C);
-    out.allowed_A = smaller(out.allowed_braking_A, allowed_current_A(model, out.row, out.winding_C + braking_reserve_K));
+    const GuardRow row = find_row(model, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
+    out.allowed_braking_A = allowed_current_A(model, row, out.winding_C);
+    out.allowed_A = smaller(out.allowed_braking_A, allowed_current_A(model, row, out.winding_C + braking_reserve_K));
+    if (state.steps % kStepsPerEstimate == 0) {
+      state.time_to_limit_s = find_time_to_limit_s(model, state, row, out, braking_reserve_K);
+    }
   }
+  seal(state);
   return out;
 }
 

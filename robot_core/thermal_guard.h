@@ -62,9 +62,17 @@ struct alignas(8) GuardState {
   std::uint64_t check_sum = 0;
   float state_C[kMostGuardNodes] = {};
   float carry_K[kMostGuardNodes] = {};
+  float speed_rad_per_s = 0.0F;  ///< of the last step, motor shaft
+  float heating_K_per_s = 0.0F;  ///< of the winding, smoothed
+  float load_squared_A2 = 0.0F;  ///< square of the current, smoothed
+  float time_to_limit_s = 0.0F;  ///< estimate: until less is allowed than flows now, if the load goes on; kLongTime_s: never
+  std::uint32_t steps = 0;
+  std::uint32_t unused = 0;
 };
 
-/// Where a speed and a body temperature lie in the table: found once, used for several winding temperatures.
+inline constexpr float kLongTime_s = 3600.0F;
+
+/// Where a speed and a body temperature lie in the table: found once, used for several winding temperatures. No corner: outside.
 struct GuardRow {
   const float* corner = nullptr;  ///< of the row's cell at the first winding temperature; none outside of the table
   float speed_share = 0.0F;
@@ -76,10 +84,9 @@ struct GuardOutput {
   float allowed_braking_A = 0.0F;  ///< magnitude where the current brakes; at least allowed_A
   float winding_C = 0.0F;          ///< of the observer, which counts heat more than once: hotter than the nominal motor
   float hottest_body_C = 0.0F;     ///< of the nodes other than the winding
-  float winding_rate_K_per_s = 0.0F;
-  GuardRow row;                   ///< of the table
-  bool is_unknown_input = false;  ///< a signal was not believed and its hottest case was taken
-  bool was_started = true;        ///< false: the state was none, and the guard began as hot as its limit
+  GuardRow row;                    ///< of the table
+  bool is_unknown_input = false;   ///< a signal was not believed and its hottest case was taken
+  bool was_started = true;         ///< false: the state was none, and the guard began as hot as its limit
 };
 
 /// All nodes at `body_C`. Anything that cannot be a temperature counts as the winding's limit.

@@ -1,0 +1,163 @@
+// Stage 1, second part: sensors compared with each other over tens of milliseconds. One test per step in turn, so that no step carries
+// all of them.
+#include "robot_core/drive_stages.h"
+
+namespace robot_core {
+namespace {
+
+constexpr std::uint32_t kStepsPerComparison = 16;
+// A sample that is exactly the same for so long while other evidence says that it should have changed is stuck.
+constexpr float kStuck_s = 0.05F;
+// Sliding contacts make wheels disagree with each other for a while; beyond this share of the fastest speed it is no sliding.
+constexpr float kDisagreement_share = 0.06F;
+constexpr float kYawDisagreement_rad_per_s = 2.0F;
+// A winding is never this many times its coldest resistance: 2 is copper at 280 degC.
+constexpr float kHotResistance_ratio = 2.0F;
+// Swapped sensors: time constant of the comparison, least contradiction between the wheels, and what share of it swapping leaves.
+constexpr float kSwap_s = 0.2F;
+constexpr float kLeastContradiction_m_per_s = 0.15F;
+constexpr float kSwappedLeaves_ratio = 0.05F;
+constexpr std::uint64_t kSeed = 0x434F4D5041524521U;
+
+constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
+
+std::uint64_t check_sum_of(const ComparisonState& comparison) {
+  return kSeed + sum_of_words<1, sizeof(ComparisonState) / sizeof(std::uint64_t)>(&comparison);
+}
+
+bool current_contradicts(const Config& config, const WheelState& wheel, float sensed_A, float speed_rad_per_s) {
+  const CurrentRange explained = explained_current(config, wheel, speed_rad_per_s);
+  const float margin_A = config.derived.current_margin_A;
+  const bool is_sample = absolute(sensed_A) <= config.derived.most_sensed_A;
+  return is_sample && !(sensed_A >= explained.low_A - margin_A && sensed_A <= explained.high_A + margin_A);
+}
+
+/// Speed and current sensor of one wheel against the other wheels and the motor's equation.
+void compare_wheel(const Config& config, State& state, const Input& input, const Believed& believed, int i, float since_s) {
+  WheelState& wheel = state.wheel[i];
+  ComparisonState& comparison = state.comparison;
+  const float sample = wheel.raw_speed_rad_per_s;
+  const float most_apart_rad_per_s = kDisagreement_share * config.fastest_wheel_rad_per_s;
+  const bool contradicts = current_contradicts(config, wheel, input.motor_current_A[i], sample);
+  const bool agrees = absolute(sample - believed.wheel[i].implied_rad_per_s) <= most_apart_rad_per_s && !contradicts;
+  const bool is_same = static_cast<float>(wheel.same_steps) * config.period_s > kStuck_s;
+  // Up to kSteadyAgain_s beyond the threshold are kept, so that the sensor has to agree for that long before it is believed again.
+  float& current_error_s = comparison.current_error_s[i];
+  current_error_s = contradicts ? smaller(current_error_s + since_s, kStuck_s + kSteadyAgain_s) : larger(0.0F, current_error_s - since_s);
+  wheel.is_current_doubted = current_error_s > kStuck_s ? 1 : 0;
+  if (wheel.speed_fault == 0) {
+    comparison.agreement_s[i] = 0.0F;
+    comparison.disagreement_s[i] = agrees ? 0.0F : comparison.disagreement_s[i] + since_s;
+    wheel.speed_fault = is_same && comparison.disagreement_s[i] > kStuck_s ? code(Reason::wheel_speed_stuck) : 0;
+  } else if (wheel.speed_fault != code(Reason::wheel_speed_swapped)) {
+    const bool is_confirmed = agrees && believed.wheel[i].is_speed_known && wheel.has_spoken_wrongly == 0;
+    comparison.agreement_s[i] = is_confirmed ? comparison.agreement_s[i] + since_s : 0.0F;
+    if (comparison.agreement_s[i] >= kSteadyAgain_s && !is_same) {
+      wheel.speed_fault = 0;
+      comparison.disagreement_s[i] = 0.0F;
+    }
+  }
+  wheel.has_spoken_wrongly = 0;
+}
+
+void compare_yaw_rate(const Config& config, State& state, const Believed& believed, float since_s) {
+  ComparisonState& comparison = state.comparison;
+  const float apart_rad_per_s = absolute(state.raw_yaw_rate_rad_per_s - yaw_rate_of_wheels(config, believed));
+  const bool disagrees = believed.are_all_sensed && apart_rad_per_s > kYawDisagreement_rad_per_s;
+  comparison.yaw_disagreement_s = state.is_yaw_same != 0 && disagrees ? comparison.yaw_disagreement_s + since_s : 0.0F;
+  comparison.yaw_agreement_s = state.has_yaw_spoken_wrongly == 0 && !disagrees ? comparison.yaw_agreement_s + since_s : 0.0F;
+  if (state.yaw_fault == 0 && comparison.yaw_disagreement_s > kStuck_s) {
+    state.yaw_fault = code(Reason::yaw_rate_stuck);
+  } else if (comparison.yaw_agreement_s >= kSteadyAgain_s) {
+    state.yaw_fault = 0;
+  }
+  state.has_yaw_spoken_wrongly = 0;
+}
+
+/// Mean square of what is left of rim speeds (the turning taken off) that one velocity of the body should explain.
+float contradiction_m2_per_s2(const Config& config, const float* rim_m_per_s) {
+  float x = 0.0F;
+  float y = 0.0F;
+  float all = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    x += config.wheel[i].rolling_x_share * rim_m_per_s[i];
+    y += config.wheel[i].rolling_y_share * rim_m_per_s[i];
+    all += rim_m_per_s[i] * rim_m_per_s[i];
+  }
+  // Σ r² − bᵀ·P·b, b = Σ t·r: the residual of least squares.
+  const DerivedConfig& derived = config.derived;
+  const float explained = derived.plane_xx * x * x + 2.0F * derived.plane_xy * x * y + derived.plane_yy * y * y;
+  return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
+}
+
+/// Swapped sensors: the samples contradict each other, and two of them swapped do not. Needs no model of the drive.
+void compare_pairs(const Config& config, State& state, const Believed& believed, float since_s) {
+  ComparisonState& comparison = state.comparison;
+  const float forget = smaller(1.0F, since_s / kSwap_s);
+  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  float rim_m_per_s[kMostWheels] = {};
+  for (int i = 0; i < config.wheel_count; ++i) {
+    rim_m_per_s[i] = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
+  }
+  comparison.residual_m2_per_s2 += forget * (contradiction_m2_per_s2(config, rim_m_per_s) - comparison.residual_m2_per_s2);
+  const bool is_contradiction = comparison.residual_m2_per_s2 > kLeastContradiction_m_per_s * kLeastContradiction_m_per_s;
+  int pair = 0;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    for (int j = i + 1; j < config.wheel_count; ++j, ++pair) {
+      float swapped_m_per_s[kMostWheels] = {rim_m_per_s[0], rim_m_per_s[1], rim_m_per_s[2], rim_m_per_s[3]};
+      swapped_m_per_s[i] = rim_m_per_s[j];
+      swapped_m_per_s[j] = rim_m_per_s[i];
+      float& left = comparison.swapped_m2_per_s2[pair];
+      left += forget * (contradiction_m2_per_s2(config, swapped_m_per_s) - left);
+      if (is_contradiction && state.yaw_fault == 0 && left < kSwappedLeaves_ratio * comparison.residual_m2_per_s2) {
+        state.wheel[i].speed_fault = state.wheel[j].speed_fault = code(Reason::wheel_speed_swapped);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+float yaw_rate_of_wheels(const Config& config, const Believed& believed) {
+  float yaw_rate_rad_per_s = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    yaw_rate_rad_per_s += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s);
+  }
+  return yaw_rate_rad_per_s;
+}
+
+CurrentRange explained_current(const Config& config, const WheelState& wheel, float speed_rad_per_s) {
+  if (wheel.is_open != 0) {
+    return {};
+  }
+  const float cold_A =
+      (wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * config.derived.per_lowest_resistance_A_per_V;
+  constexpr float kHot_share = 1.0F / kHotResistance_ratio;
+  const float hot_A = cold_A * kHot_share;
+  return {smaller(cold_A, hot_A), larger(cold_A, hot_A)};
+}
+
+void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(comparison); }
+
+void compare_sensors(const Config& config, State& state, const Input& input, const Believed& believed) {
+  // Even steps; wheels 0, 4, 8, 12, pairs 2, yaw rate 6.
+  const std::uint32_t turn = state.steps % kStepsPerComparison;
+  const bool is_wheel = turn % 4 == 0 && turn / 4 < static_cast<std::uint32_t>(config.wheel_count);
+  if (!is_wheel && turn != 2 && turn != 6) {
+    return;
+  }
+  if (state.comparison.check_sum != check_sum_of(state.comparison)) {
+    state.comparison = {};  // what it had found stands in the faults
+  }
+  const float since_s = believed.elapsed_s * static_cast<float>(kStepsPerComparison);
+  if (is_wheel) {
+    compare_wheel(config, state, input, believed, static_cast<int>(turn / 4), since_s);
+  } else if (turn == 2) {
+    compare_pairs(config, state, believed, since_s);
+  } else {
+    compare_yaw_rate(config, state, believed, since_s);
+  }
+  seal(state.comparison);
+}
+
+}  // namespace robot_core
