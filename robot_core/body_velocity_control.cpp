@@ -24,10 +24,20 @@ bool is_standing(const Vector3& v) { return length(v) < kStanding_m_per_s && abs
 
 Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, v.y * plane, v.yaw * yaw}; }
 
-/// Length of the plane part and size of the yaw part at most as given, directions kept.
-Vector3 limited(const Vector3& v, float most_plane, float most_yaw) {
-  const float plane = length(v);
-  return scaled(v, plane > most_plane ? most_plane / plane : 1.0F, absolute(v.yaw) > most_yaw ? most_yaw / absolute(v.yaw) : 1.0F);
+/// Length of the plane part and size of the yaw part at most as given, directions kept. Whether there was anything to do.
+bool limit(Vector3& v, float most_plane, float most_yaw) {
+  const float square = v.x * v.x + v.y * v.y;
+  const bool is_long = square > most_plane * most_plane;
+  if (is_long) {
+    const float share = most_plane / square_root(square);
+    v.x *= share;
+    v.y *= share;
+  }
+  const bool is_fast = absolute(v.yaw) > most_yaw;
+  if (is_fast) {
+    v.yaw = v.yaw > 0.0F ? most_yaw : -most_yaw;
+  }
+  return is_long || is_fast;
 }
 
 /// What the command asks for now: continued by its acceleration, seen from a robot that has turned since.
@@ -55,6 +65,9 @@ void follow_command(const Config& config, State& state, const Input& input, cons
 /// Where limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction, so that the
 /// wheels' errors keep the ratios of that direction.
 void hold_back(State& state, const Vector3& wanted, const Believed& believed) {
+  if (state.is_limited == 0 && state.speed_share >= 1.0F) {
+    return;
+  }
   const float square = wanted.x * wanted.x + wanted.y * wanted.y + 1e-6F;
   const float reached = (wanted.x * believed.velocity.x + wanted.y * believed.velocity.y) / square;
   const float target = clamped(reached + kLead_share, 0.0F, 1.0F);
@@ -70,15 +83,13 @@ void approach(const Config& config, State& state, const Believed& believed, Body
   // Within a period the robot turns by a tenth of a radian at most, in a gap the reference has been set anew.
   const float angle_rad = clamped(-believed.yaw_rate_rad_per_s * believed.elapsed_s, -0.3F, 0.3F);
   const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
-  const Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
+  Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
   const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * believed.elapsed_s;
   const float most_rad_per_s = kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2 * believed.elapsed_s;
-  const Vector3 taken = limited(change, most_m_per_s, most_rad_per_s);
-  body.velocity = {last.x + taken.x, last.y + taken.y, last.yaw + taken.yaw};
-  const bool is_jump = taken.x != change.x || taken.y != change.y || taken.yaw != change.yaw;
-  if (is_jump) {
+  if (limit(change, most_m_per_s, most_rad_per_s)) {
+    body.velocity = {last.x + change.x, last.y + change.y, last.yaw + change.yaw};
     const float rate_per_s = 1.0F / (kApproach_ratio * believed.elapsed_s);
-    body.acceleration = scaled(taken, rate_per_s, rate_per_s);
+    body.acceleration = scaled(change, rate_per_s, rate_per_s);
   }
 }
 
@@ -90,11 +101,9 @@ void close_loop(const Config& config, State& state, const Believed& believed, Bo
   body.acceleration.y += config.body_gain_per_s * (body.velocity.y - believed.velocity.y);
   body.acceleration.yaw += config.yaw_gain_per_s * yaw_error_rad_per_s + config.yaw_integral_per_s2 * state.yaw_integral_rad;
   const float most_m_per_s2 = kApproach_ratio * config.acceleration_limit_m_per_s2;
-  body.acceleration = limited(body.acceleration, most_m_per_s2, kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2);
+  limit(body.acceleration, most_m_per_s2, kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2);
   // The wheels follow their speeds; what they slip in yaw only the gyro sees.
-  if (config.yaw_gain_per_s > 0.0F) {
-    body.velocity.yaw += config.yaw_integral_per_s2 / config.yaw_gain_per_s * state.yaw_integral_rad;
-  }
+  body.velocity.yaw += config.derived.yaw_correction_per_s * state.yaw_integral_rad;
 }
 
 }  // namespace
@@ -117,9 +126,11 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
     state.plan_velocity = state.plan_acceleration = {};
   }
   follow_command(config, state, input, believed, body);
-  body.velocity = limited(body.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
+  limit(body.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
   hold_back(state, body.velocity, believed);
-  body.velocity = scaled(body.velocity, state.speed_share, state.speed_share);
+  if (state.speed_share < 1.0F) {
+    body.velocity = scaled(body.velocity, state.speed_share, state.speed_share);
+  }
   approach(config, state, believed, body);
   state.velocity_reference = body.velocity;
   close_loop(config, state, believed, body);

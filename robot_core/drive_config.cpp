@@ -86,6 +86,7 @@ void complete(Config& config) {
   derived.geared_constant_V_s_per_rad = config.torque_constant_Nm_per_A * config.gear_ratio;
   derived.per_lowest_resistance_A_per_V = 1.0F / config.lowest_resistance_ohm;
   derived.volt_per_Nm = config.resistance_ohm / (derived.geared_constant_V_s_per_rad * config.gear_efficiency);
+  derived.yaw_correction_per_s = config.yaw_gain_per_s > 0.0F ? config.yaw_integral_per_s2 / config.yaw_gain_per_s : 0.0F;
   derived.per_tracking_time_per_s = 1.0F / config.tracking_time_s;
   derived.most_battery_sag_A = config.battery_resistance_ohm > 0.0F ? 1.0F / config.battery_resistance_ohm : 0.0F;
   float xx = 0.0F;

@@ -66,6 +66,7 @@ struct DerivedConfig {
   float volt_per_Nm = 0.0F;         ///< at the wheel, driving
   float most_battery_sag_A = 0.0F;  ///< per V of sag: 1/R of the battery; 0 without one
   float per_tracking_time_per_s = 0.0F;
+  float yaw_correction_per_s = 0.0F;  ///< yaw rate per integral of its error
   // P, inverse of Σ t·tᵀ over all wheels: body velocity in the plane from rim speeds, the yaw rate being known.
   float plane_xx = 0.0F;
   float plane_xy = 0.0F;

@@ -6,17 +6,20 @@ namespace robot_core {
 Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited) {
   Output out;
   out.time_to_guard_limit_s = kLongTime_s;
-  const float per_battery = 1.0F / believed.pwm_battery_V;
+  const float per_battery_V = 1.0F / believed.pwm_battery_V;
   for (int i = 0; i < config.wheel_count; ++i) {
-    out.is_open[i] = limited.wheel[i].is_open;
-    out.voltage_V[i] = limited.wheel[i].voltage_V;
-    out.pwm_ratio[i] = clamped(limited.wheel[i].voltage_V * per_battery, -1.0F, 1.0F);
-    out.reason[i] = limited.wheel[i].reason;
-    out.allowed_current_A[i] = limited.wheel[i].allowed_A;
-    out.winding_C[i] = state.guard[i].state_C[0];
-    if (config.guard != nullptr) {
-      out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, state.guard[i].time_to_limit_s);
-    }
+    const LimitedWheel& wheel = limited.wheel[i];
+    const GuardState& guard = state.guard[i];
+    out.is_open[i] = wheel.is_open;
+    out.voltage_V[i] = wheel.voltage_V;
+    out.pwm_ratio[i] = clamped(wheel.voltage_V * per_battery_V, -1.0F, 1.0F);
+    out.reason[i] = wheel.reason;
+    out.allowed_current_A[i] = wheel.allowed_A;
+    out.winding_C[i] = guard.state_C[0];
+    out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, guard.time_to_limit_s);
+  }
+  if (config.guard == nullptr) {
+    out.time_to_guard_limit_s = kLongTime_s;
   }
   out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;
   out.robot_reason = believed.robot_fault != Reason::none ? believed.robot_fault : believed.command_fault;
