@@ -64,7 +64,7 @@ void follow_command(const Config& config, State& state, const Input& input, cons
 
 /// Where limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction, so that the
 /// wheels' errors keep the ratios of that direction.
-void hold_back(State& state, const Vector3& wanted, const Believed& believed) {
+void hold_back(State& state, const Vector3& wanted, const Believed& believed, float since_s) {
   if (state.is_limited == 0 && state.speed_share >= 1.0F) {
     return;
   }
@@ -72,31 +72,30 @@ void hold_back(State& state, const Vector3& wanted, const Believed& believed) {
   const float reached = (wanted.x * believed.velocity.x + wanted.y * believed.velocity.y) / square;
   const float target = clamped(reached + kLead_share, 0.0F, 1.0F);
   if (target < state.speed_share && state.is_limited != 0) {
-    state.speed_share += (target - state.speed_share) * smaller(1.0F, believed.elapsed_s / kHoldBack_s);
+    state.speed_share += (target - state.speed_share) * smaller(1.0F, since_s / kHoldBack_s);
   } else {
-    state.speed_share = smaller(1.0F, state.speed_share + believed.elapsed_s / kRecovery_s);
+    state.speed_share = smaller(1.0F, state.speed_share + since_s / kRecovery_s);
   }
 }
 
-/// The reference of the last period seen from the robot's present heading, moved towards the wanted one.
-void approach(const Config& config, State& state, const Believed& believed, BodyReference& body) {
+/// The last reference seen from the robot's present heading, moved towards the wanted one.
+void approach(const Config& config, const State& state, const Believed& believed, float since_s, BodyReference& body) {
   // Within a period the robot turns by a tenth of a radian at most, in a gap the reference has been set anew.
-  const float angle_rad = clamped(-believed.yaw_rate_rad_per_s * believed.elapsed_s, -0.3F, 0.3F);
+  const float angle_rad = clamped(-believed.yaw_rate_rad_per_s * since_s, -0.3F, 0.3F);
   const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
   Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
-  const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * believed.elapsed_s;
-  const float most_rad_per_s = kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2 * believed.elapsed_s;
+  const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * since_s;
+  const float most_rad_per_s = kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2 * since_s;
   if (limit(change, most_m_per_s, most_rad_per_s)) {
     body.velocity = {last.x + change.x, last.y + change.y, last.yaw + change.yaw};
-    const float rate_per_s = 1.0F / (kApproach_ratio * believed.elapsed_s);
+    const float rate_per_s = 1.0F / (kApproach_ratio * since_s);
     body.acceleration = scaled(change, rate_per_s, rate_per_s);
   }
 }
 
-void close_loop(const Config& config, State& state, const Believed& believed, BodyReference& body) {
+void close_loop(const Config& config, State& state, const Believed& believed, float since_s, BodyReference& body) {
   const float yaw_error_rad_per_s = body.velocity.yaw - believed.yaw_rate_rad_per_s;
-  state.yaw_integral_rad =
-      clamped(state.yaw_integral_rad + yaw_error_rad_per_s * believed.elapsed_s, -kMostYawIntegral_rad, kMostYawIntegral_rad);
+  state.yaw_integral_rad = clamped(state.yaw_integral_rad + yaw_error_rad_per_s * since_s, -kMostYawIntegral_rad, kMostYawIntegral_rad);
   body.acceleration.x += config.body_gain_per_s * (body.velocity.x - believed.velocity.x);
   body.acceleration.y += config.body_gain_per_s * (body.velocity.y - believed.velocity.y);
   body.acceleration.yaw += config.yaw_gain_per_s * yaw_error_rad_per_s + config.yaw_integral_per_s2 * state.yaw_integral_rad;
@@ -110,6 +109,8 @@ void close_loop(const Config& config, State& state, const Believed& believed, Bo
 
 BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Believed& believed) {
   BodyReference body;
+  const float since_s = state.held.since_s + believed.elapsed_s;
+  state.held.since_s = 0.0F;
   if (believed.robot_fault == Reason::time_jump) {
     state.velocity_reference = believed.velocity;
     state.yaw_integral_rad = 0.0F;
@@ -127,13 +128,13 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
   }
   follow_command(config, state, input, believed, body);
   limit(body.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
-  hold_back(state, body.velocity, believed);
+  hold_back(state, body.velocity, believed, since_s);
   if (state.speed_share < 1.0F) {
     body.velocity = scaled(body.velocity, state.speed_share, state.speed_share);
   }
-  approach(config, state, believed, body);
+  approach(config, state, believed, since_s, body);
   state.velocity_reference = body.velocity;
-  close_loop(config, state, believed, body);
+  close_loop(config, state, believed, since_s, body);
   return body;
 }
 

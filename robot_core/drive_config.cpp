@@ -18,7 +18,7 @@ bool all(bool (*holds)(float), const float (&values)[count]) {
   return all_hold;
 }
 
-bool is_possible(const WheelConfig& wheel) {
+[[gnu::cold]] bool is_possible(const WheelConfig& wheel) {
   const float values[] = {wheel.rolling_x_share,   wheel.rolling_y_share, wheel.inverse_x_factor,   wheel.inverse_y_factor,
                           wheel.inverse_yaw_per_m, wheel.sine_V,          wheel.phase_cosine_ratio, wheel.phase_sine_ratio};
   const float positive[] = {wheel.slip_factor, wheel.damping_V_s_per_rad};
@@ -27,7 +27,7 @@ bool is_possible(const WheelConfig& wheel) {
 }
 
 /// Whole guard periods per control period, and a table.
-bool is_possible(const GuardModel& guard, float period_s) {
+[[gnu::cold]] bool is_possible(const GuardModel& guard, float period_s) {
   const float periods = guard.period_s / period_s;
   const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, 1e6F) + 0.5F));
   return guard.node_count >= 2 && guard.node_count <= kMostGuardNodes && is_positive(guard.period_s) && whole >= 1.0F &&
@@ -38,7 +38,7 @@ bool is_possible(const GuardModel& guard, float period_s) {
 
 }  // namespace
 
-bool is_possible(const Config& config) {
+[[gnu::cold]] bool is_possible(const Config& config) {
   if (config.wheel_count != 3 && config.wheel_count != 4) {
     return false;
   }
@@ -80,7 +80,7 @@ bool is_possible(const Config& config) {
   return possible && (config.guard == nullptr || is_possible(*config.guard, config.period_s));
 }
 
-void complete(Config& config) {
+[[gnu::cold]] void complete(Config& config) {
   DerivedConfig& derived = config.derived;
   derived = {};
   derived.geared_constant_V_s_per_rad = config.torque_constant_Nm_per_A * config.gear_ratio;
@@ -126,7 +126,7 @@ void complete(Config& config) {
   config.check_sum = config_check_sum(config);
 }
 
-std::uint32_t config_check_sum(const Config& config) {
+[[gnu::cold]] std::uint32_t config_check_sum(const Config& config) {
   // FNV-1a by words (Fowler, Noll, Vo): every change of one word changes it.
   static_assert(__builtin_offsetof(Config, unused) % sizeof(std::uint32_t) == 2, "flags and padding fill the last word");
   constexpr unsigned kWords = (__builtin_offsetof(Config, unused) + sizeof(Config::unused)) / sizeof(std::uint32_t);

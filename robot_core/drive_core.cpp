@@ -26,7 +26,7 @@ void spread_guards(const Config& config, State& state) {
   }
 }
 
-void reset(const Config& config, State& state, float body_C) {
+[[gnu::cold]] void reset(const Config& config, State& state, float body_C) {
   state = {};
   for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
     WheelState& wheel = state.wheel[i];
@@ -41,8 +41,8 @@ void reset(const Config& config, State& state, float body_C) {
   seal(state.comparison);
 }
 
-Output all_open(Reason reason) {
-  Output out;
+[[gnu::cold]] Output all_open(Reason reason) {
+  Output out{};
   out.robot_reason = reason;
   for (Reason& each : out.reason) {
     each = reason;
@@ -52,7 +52,7 @@ Output all_open(Reason reason) {
 
 }  // namespace
 
-bool start(const Config& config, State& state, const StartUp& start_up) {
+[[gnu::cold]] bool start(const Config& config, State& state, const StartUp& start_up) {
   state = {};
   const bool is_valid = is_possible(config) && config.check_sum == config_check_sum(config);
   if (!is_valid) {
@@ -67,6 +67,32 @@ bool start(const Config& config, State& state, const StartUp& start_up) {
 
 namespace {
 
+/// Stages 2 to 4. The reference of a body velocity is slow beside the wheels' loops, so it serves two periods; what changes the kind of
+/// motion acts at once.
+BodyReference find_references(const Config& config, State& state, const Input& input, const Believed& believed, WheelReferences& wheels,
+                              WheelVoltages& voltage) {
+  HeldReference& held = state.held;
+  const bool is_body_velocity = believed.mode == Mode::body_velocity && believed.robot_fault == Reason::none;
+  if (is_body_velocity && held.is_fresh != 0) {
+    held.is_fresh = 0;
+    held.since_s += believed.elapsed_s;
+    for (int i = 0; i < config.wheel_count; ++i) {
+      wheels.wheel[i].speed_rad_per_s = held.speed_rad_per_s[i];
+      voltage.wheel[i].feed_forward_V = held.feed_forward_V[i];
+    }
+    return {};
+  }
+  const BodyReference body = control_body_velocity(config, state, input, believed);
+  find_wheel_speeds(config, input, body, wheels);
+  feed_forward(config, input, believed, body, wheels, voltage);
+  held.is_fresh = is_body_velocity ? 1 : 0;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    held.speed_rad_per_s[i] = wheels.wheel[i].speed_rad_per_s;
+    held.feed_forward_V[i] = voltage.wheel[i].feed_forward_V;
+  }
+  return body;
+}
+
 /// On its own so that the result is made where the caller wants it.
 Output step_valid(const Config& config, State& state, const Input& input, bool was_corrupted) {
   Believed believed = validate_input(config, state, input);
@@ -74,9 +100,9 @@ Output step_valid(const Config& config, State& state, const Input& input, bool w
     believed.robot_fault = Reason::state_corrupted;
   }
   run_guards(config, state, input, believed);
-  const BodyReference body = control_body_velocity(config, state, input, believed);
-  const WheelReferences wheels = find_wheel_speeds(config, input, body);
-  WheelVoltages voltage = feed_forward(config, input, believed, body, wheels);
+  WheelReferences wheels;
+  WheelVoltages voltage;
+  const BodyReference body = find_references(config, state, input, believed, wheels, voltage);
   control_wheel_speeds(config, state, believed, wheels, voltage);
   const LimitedVoltages limited = apply_limits(config, state, believed, body, voltage);
   Output out = make_output(config, state, believed, limited);

@@ -184,6 +184,14 @@ struct WheelState {
   std::uint8_t has_stator = 0;          ///< a stator temperature has been seen: its absence is a fault from then on
 };
 
+/// Stages 2 to 4 of a body velocity serve two periods: what they found last.
+struct HeldReference {
+  PerWheel speed_rad_per_s = {};
+  PerWheel feed_forward_V = {};
+  float since_s = 0.0F;        ///< time that has passed since they were run
+  std::uint32_t is_fresh = 0;  ///< they were run in the last period, for a body velocity
+};
+
 /// What compares sensors with each other over tens of milliseconds; looked at once in kStepsPerComparison steps. The check sum covers
 /// the rest.
 struct alignas(8) ComparisonState {
@@ -204,6 +212,7 @@ struct alignas(8) State {
   std::uint32_t is_valid = 0;  ///< a constant after start() with a valid Config
   std::uint32_t steps = 0;     ///< since the start
   WheelState wheel[kMostWheels];
+  HeldReference held;
   Vector3 velocity_reference;  ///< of the body, local frame
   float yaw_integral_rad = 0.0F;
   float speed_share = 1.0F;         ///< of the commanded velocity that the limits leave
@@ -224,6 +233,7 @@ struct alignas(8) State {
   GuardState guard[kMostWheels];
 };
 
+/// Wheels that the robot does not have: no voltage, open.
 struct Output {
   PerWheel pwm_ratio = {};                               ///< of the battery voltage, -1 to 1
   PerWheel voltage_V = {};                               ///< that the ratio stands for

@@ -35,9 +35,9 @@ struct Believed {
 
 /// Stage 2.
 struct BodyReference {
-  Vector3 velocity;      ///< local frame
-  Vector3 acceleration;  ///< as seen from the field, resolved in the local frame
-  Vector3 push;
+  Vector3 velocity;           ///< local frame
+  Vector3 acceleration;       ///< as seen from the field, resolved in the local frame
+  Vector3 push;               ///< on something outside
   bool is_wheelwise = false;  ///< wheel_speed or wheel_torque: no body motion is asked for
   bool is_open = false;       ///< coast
 };
@@ -73,9 +73,9 @@ struct LimitedVoltages {
 
 Believed validate_input(const Config& config, State& state, const Input& input);
 BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Believed& believed);
-WheelReferences find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body);
-WheelVoltages feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
-                           const WheelReferences& wheels);
+void find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body, WheelReferences& wheels);
+void feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
+                  const WheelReferences& wheels, WheelVoltages& voltage);
 void control_wheel_speeds(const Config& config, State& state, const Believed& believed, const WheelReferences& wheels,
                           WheelVoltages& voltage);
 LimitedVoltages apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,

@@ -21,9 +21,8 @@ float friction_V(const Config& config, const WheelConfig& wheel, const Vector3& 
 
 }  // namespace
 
-WheelVoltages feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
-                           const WheelReferences& wheels) {
-  WheelVoltages voltage;
+void feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
+                  const WheelReferences& wheels, WheelVoltages& voltage) {
   const float speed_m_per_s = square_root(body.velocity.x * body.velocity.x + body.velocity.y * body.velocity.y);
   const float turning_m_per_s = config.contact_radius_m * absolute(body.velocity.yaw);
   const float s = turning_m_per_s < speed_m_per_s ? turning_m_per_s / speed_m_per_s : 1.0F;
@@ -49,7 +48,6 @@ WheelVoltages feed_forward(const Config& config, const Input& input, const Belie
       voltage.wheel[i].feed_forward_V += friction_V(config, wheel, body.velocity, per_speed_s_per_m, rotation_share, reference);
     }
   }
-  return voltage;
 }
 
 }  // namespace robot_core

@@ -62,7 +62,7 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
 }
 
 /// Nobody knows what flowed in a gap: the largest current heats a standing winding for all of it, up to the limit.
-void heat_for_gap(const Config& config, WheelState& wheel, GuardState& guard, float gap_s) {
+[[gnu::cold]] void heat_for_gap(const Config& config, WheelState& wheel, GuardState& guard, float gap_s) {
   const GuardModel& model = *config.guard;
   if (!(gap_s <= kLongestGap_s) || !is_started(model, guard)) {
     start_guard(model, guard, model.winding_limit_C);

@@ -149,7 +149,7 @@ void find_from_all(const Config& config, Believed& believed) {
 }
 
 /// Some sensors are missing: from those that are left.
-void find_from_some(const Config& config, const State& state, Believed& believed) {
+[[gnu::cold]] void find_from_some(const Config& config, const State& state, Believed& believed) {
   const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
   PlaneFit all;
   PerWheel rim_m_per_s = {};

@@ -95,7 +95,7 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
 }
 
 /// Of a wheel whose speed nobody knows: into a standing motor no more than the limp current.
-bool limp_blindly(const Config& config, const Believed& believed, int i, float most_V, float& voltage_V) {
+[[gnu::cold]] bool limp_blindly(const Config& config, const Believed& believed, int i, float most_V, float& voltage_V) {
   const float limp_V = smaller(config.lowest_resistance_ohm * config.limp_current_A, most_V);
   voltage_V = clamped(voltage_V, -limp_V, limp_V);
   return believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= config.limp_current_A;

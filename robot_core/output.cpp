@@ -18,6 +18,10 @@ Output make_output(const Config& config, const State& state, const Believed& bel
     out.winding_C[i] = guard.state_C[0];
     out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, guard.time_to_limit_s);
   }
+  for (int i = config.wheel_count; i < kMostWheels; ++i) {
+    out.voltage_V[i] = out.pwm_ratio[i] = out.allowed_current_A[i] = out.winding_C[i] = 0.0F;
+    out.reason[i] = Reason::none;
+  }
   if (config.guard == nullptr) {
     out.time_to_guard_limit_s = kLongTime_s;
   }

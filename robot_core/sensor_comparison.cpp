@@ -33,7 +33,7 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
 }
 
 /// Speed and current sensor of one wheel against the other wheels and the motor's equation.
-void compare_wheel(const Config& config, State& state, const Input& input, const Believed& believed, int i, float since_s) {
+[[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, const Believed& believed, int i, float since_s) {
   WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
   const float sample = wheel.raw_speed_rad_per_s;
@@ -60,7 +60,7 @@ void compare_wheel(const Config& config, State& state, const Input& input, const
   wheel.has_spoken_wrongly = 0;
 }
 
-void compare_yaw_rate(const Config& config, State& state, const Believed& believed, float since_s) {
+[[gnu::cold]] void compare_yaw_rate(const Config& config, State& state, const Believed& believed, float since_s) {
   ComparisonState& comparison = state.comparison;
   const float apart_rad_per_s = absolute(state.raw_yaw_rate_rad_per_s - yaw_rate_of_wheels(config, believed));
   const bool disagrees = believed.are_all_sensed && apart_rad_per_s > kYawDisagreement_rad_per_s;
@@ -75,7 +75,7 @@ void compare_yaw_rate(const Config& config, State& state, const Believed& believ
 }
 
 /// Mean square of what is left of rim speeds (the turning taken off) that one velocity of the body should explain.
-float contradiction_m2_per_s2(const Config& config, const float* rim_m_per_s) {
+[[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const float* rim_m_per_s) {
   float x = 0.0F;
   float y = 0.0F;
   float all = 0.0F;
@@ -91,7 +91,7 @@ float contradiction_m2_per_s2(const Config& config, const float* rim_m_per_s) {
 }
 
 /// Swapped sensors: the samples contradict each other, and two of them swapped do not. Needs no model of the drive.
-void compare_pairs(const Config& config, State& state, const Believed& believed, float since_s) {
+[[gnu::cold]] void compare_pairs(const Config& config, State& state, const Believed& believed, float since_s) {
   ComparisonState& comparison = state.comparison;
   const float forget = smaller(1.0F, since_s / kSwap_s);
   const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;

@@ -54,7 +54,7 @@ unsigned replace_unbelieved(const GuardModel& model, float* signal) {
 }
 
 /// Every node heats as fast as with the worst of the possible values; the signal keeps the value that heats the winding most.
-void take_hottest(const GuardModel& model, float* signal, int which, const float* state_C, float* most_K_per_s) {
+[[gnu::cold]] void take_hottest(const GuardModel& model, float* signal, int which, const float* state_C, float* most_K_per_s) {
   const GuardBelief& belief = model.belief[which];
   float hottest = belief.possible[0];
   float hottest_K_per_s = -1e30F;
@@ -74,7 +74,7 @@ void take_hottest(const GuardModel& model, float* signal, int which, const float
 }
 
 /// Two passes where several are unknown: a signal's hottest value may depend on another's.
-void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C, float* rate_K_per_s) {
+[[gnu::cold]] void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C, float* rate_K_per_s) {
   const int passes = (unknown & (unknown - 1)) != 0 ? 2 : 1;
   for (int pass = 0; pass < passes; ++pass) {
     for (int i = 0; i < kGuardSignals; ++i) {
@@ -87,7 +87,7 @@ void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal
 
 }  // namespace
 
-void start_guard(const GuardModel& model, GuardState& state, float body_C) {
+[[gnu::cold]] void start_guard(const GuardModel& model, GuardState& state, float body_C) {
   const float start_C = is_temperature(model, body_C) ? body_C : model.winding_limit_C;
   state = {};
   for (int node = 0; node < model.node_count; ++node) {

@@ -3,8 +3,7 @@
 
 namespace robot_core {
 
-WheelReferences find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body) {
-  WheelReferences wheels;
+void find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body, WheelReferences& wheels) {
   // Seen from the turning robot: dv/dt = a − yaw rate × v.
   const float rate_x = body.acceleration.x + body.velocity.yaw * body.velocity.y;
   const float rate_y = body.acceleration.y - body.velocity.yaw * body.velocity.x;
@@ -23,7 +22,6 @@ WheelReferences find_wheel_speeds(const Config& config, const Input& input, cons
     wheels.wheel[i].acceleration_rad_per_s2 =
         per_rim * (wheel.rolling_x_share * rate_x + wheel.rolling_y_share * rate_y + config.contact_radius_m * body.acceleration.yaw);
   }
-  return wheels;
 }
 
 }  // namespace robot_core
