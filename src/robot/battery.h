@@ -1,6 +1,9 @@
 // A battery that sags under load and empties.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 namespace heatsoak {
 
 /// Open-circuit voltage linear over the charge that is left, one internal resistance.
@@ -11,7 +14,9 @@ struct BatteryConfig {
   double capacity_A_s = 1.0;
 };
 
-double open_circuit_V(const BatteryConfig& battery, double charge_A_s);
+inline double open_circuit_V(const BatteryConfig& battery, double charge_A_s) {
+  return battery.empty_V + (battery.full_V - battery.empty_V) * charge_A_s / battery.capacity_A_s;
+}
 
 /// Energy that the charge can still give, ∫E dq: its loss is what a step takes out, E·I.
 double stored_energy_J(const BatteryConfig& battery, double charge_A_s);
@@ -23,6 +28,15 @@ struct BatteryLoad {
 };
 /// P = V·I with V = E − R·I: V = (E + √(E² − 4·R·P))/2. Where there is no such V, the load gets V = E/2 and the most
 /// there is; the caller must shed load.
-BatteryLoad battery_load(const BatteryConfig& battery, double charge_A_s, double power_W);
+inline BatteryLoad battery_load(const BatteryConfig& battery, double charge_A_s, double power_W) {
+  const double source_V = open_circuit_V(battery, charge_A_s);
+  const double below_root_V2 = source_V * source_V - 4.0 * battery.internal_resistance_ohm * power_W;
+  BatteryLoad load;
+  load.collapsed = below_root_V2 < 0.0;
+  load.terminal_V = 0.5 * (source_V + std::sqrt(std::max(below_root_V2, 0.0)));
+  const double given_W = load.collapsed ? source_V * source_V / (4.0 * battery.internal_resistance_ohm) : power_W;
+  load.current_A = given_W / load.terminal_V;
+  return load;
+}
 
 }  // namespace heatsoak

@@ -80,15 +80,6 @@ Wrench wrench_of_acceleration(const BodyConfig& body, double yaw_rad_per_s, cons
   return wrench;
 }
 
-BodyAcceleration acceleration_of_wrench(const BodyConfig& body, double yaw_rad_per_s, const Wrench& wrench) {
-  const double c_x = body.weight.center_of_gravity_x_m;
-  const double c_y = body.weight.center_of_gravity_y_m;
-  const double square = yaw_rad_per_s * yaw_rad_per_s;
-  const double yaw_rad_per_s2 = (wrench.yaw_Nm - c_x * wrench.y_N + c_y * wrench.x_N) / body.yaw_inertia_kg_m2;
-  return {wrench.x_N / body.weight.mass_kg + yaw_rad_per_s2 * c_y + square * c_x,
-          wrench.y_N / body.weight.mass_kg - yaw_rad_per_s2 * c_x + square * c_y, yaw_rad_per_s2};
-}
-
 double kinetic_energy_J(const BodyConfig& body, const BodyVelocity& local, const PerWheel& wheel_speed_rad_per_s) {
   const double x_m_per_s = local.x_m_per_s - local.yaw_rad_per_s * body.weight.center_of_gravity_y_m;
   const double y_m_per_s = local.y_m_per_s + local.yaw_rad_per_s * body.weight.center_of_gravity_x_m;
@@ -101,12 +92,7 @@ double kinetic_energy_J(const BodyConfig& body, const BodyVelocity& local, const
 }
 
 double transmission_loss_Nm(double efficiency, double output_Nm, double speed_rad_per_s, double smoothing_rad_per_s) {
-  if (efficiency == 1.0) {
-    return 0.0;
-  }
-  const double part = output_Nm * speed_rad_per_s >= 0.0 ? 1.0 / efficiency - 1.0 : 1.0 - efficiency;
-  const double sign = speed_rad_per_s / std::sqrt(speed_rad_per_s * speed_rad_per_s + smoothing_rad_per_s * smoothing_rad_per_s);
-  return part * std::abs(output_Nm) * sign;
+  return loss_torque_Nm(1.0 / efficiency - 1.0, 1.0 - efficiency, output_Nm, smooth_sign(speed_rad_per_s, smoothing_rad_per_s));
 }
 
 }  // namespace heatsoak

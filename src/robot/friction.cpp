@@ -9,8 +9,6 @@
 namespace heatsoak {
 namespace {
 
-double smooth_sign(double x, double width) { return x / std::sqrt(x * x + width * width); }
-
 /// γ: 0 in translation, 1 where the contact points move more by rotation.
 double rotation_share(const Kinematics& kinematics, const BodyVelocity& local, double speed_m_per_s) {
   const double turning_m_per_s = kinematics.contact_radius_m * std::abs(local.yaw_rad_per_s);
@@ -20,41 +18,41 @@ double rotation_share(const Kinematics& kinematics, const BodyVelocity& local, d
   return turning_m_per_s >= speed_m_per_s ? 1.0 : 0.5 * (1.0 - std::cos(std::numbers::pi * turning_m_per_s / speed_m_per_s));
 }
 
+Wheels cosines(const std::array<Direction, kMostWheels>& of) {
+  return {of[0].cosine_ratio, of[1].cosine_ratio, of[2].cosine_ratio, of[3].cosine_ratio};
+}
+Wheels sines(const std::array<Direction, kMostWheels>& of) {
+  return {of[0].sine_ratio, of[1].sine_ratio, of[2].sine_ratio, of[3].sine_ratio};
+}
+
 /// |f(θ)| of the wheels, rotation mixed in.
-PerWheel heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics& kinematics, const BodyVelocity& local) {
+Wheels heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics& kinematics, const BodyVelocity& local) {
   const double speed_m_per_s = std::sqrt(local.x_m_per_s * local.x_m_per_s + local.y_m_per_s * local.y_m_per_s);
   const double rotation = rotation_share(kinematics, local, speed_m_per_s);
   const double x = speed_m_per_s > 0.0 ? local.x_m_per_s / speed_m_per_s : 0.0;
   const double y = speed_m_per_s > 0.0 ? local.y_m_per_s / speed_m_per_s : 0.0;
-  PerWheel magnitude_Nm{};
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    // sin and cos of θ + φ, φ the wheel's rolling direction
-    const double sine = kinematics.wheels[i].rolling_x_share * x + kinematics.wheels[i].rolling_y_share * y;
-    const double cosine = kinematics.wheels[i].rolling_y_share * x - kinematics.wheels[i].rolling_x_share * y;
-    const double s = std::abs(sine * heading.phase_offset[i].cosine_ratio + cosine * heading.phase_offset[i].sine_ratio);
-    // sin(2θ + ψ) of the unit vector (x, y)
-    const Direction& phase = heading.double_angle_phase[i];
-    const double twice = 2.0 * x * y * phase.cosine_ratio + (x * x - y * y) * phase.sine_ratio;
-    const double translation_Nm = heading.constant_Nm[i] + heading.sine_Nm[i] * s + heading.double_angle_Nm * twice;
-    magnitude_Nm[i] = (1.0 - rotation) * translation_Nm + rotation * heading.rotation_Nm;
-  }
-  return magnitude_Nm;
+  const WheelArrays wheels = wheel_arrays(kinematics);
+  // sin and cos of θ + φ, φ the wheel's rolling direction
+  const Wheels sine = wheels.rolling_x_share * x + wheels.rolling_y_share * y;
+  const Wheels cosine = wheels.rolling_y_share * x - wheels.rolling_x_share * y;
+  const Wheels s = (sine * cosines(heading.phase_offset) + cosine * sines(heading.phase_offset)).abs();
+  // sin(2θ + ψ) of the unit vector (x, y)
+  const Wheels twice = 2.0 * x * y * cosines(heading.double_angle_phase) + (x * x - y * y) * sines(heading.double_angle_phase);
+  const Wheels translation_Nm = as_wheels(heading.constant_Nm) + as_wheels(heading.sine_Nm) * s + heading.double_angle_Nm * twice;
+  return (1.0 - rotation) * translation_Nm + rotation * heading.rotation_Nm;
 }
 
 }  // namespace
 
+Wheels dry_friction_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local) {
+  return friction.by_heading ? heading_magnitudes_Nm(friction.heading, kinematics, local) : Wheels::Constant(friction.wheel_torque_Nm);
+}
+
 PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,
                              const PerWheel& wheel_speed_rad_per_s) {
-  PerWheel torque_Nm;
-  torque_Nm.fill(friction.wheel_torque_Nm);
-  if (friction.by_heading) {
-    torque_Nm = heading_magnitudes_Nm(friction.heading, kinematics, local);
-  }
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    torque_Nm[i] = torque_Nm[i] * smooth_sign(wheel_speed_rad_per_s[i], friction.smoothing_rad_per_s) +
-                   friction.wheel_damping_Nm_s_per_rad * wheel_speed_rad_per_s[i];
-  }
-  return torque_Nm;
+  const Wheels speed_rad_per_s = as_wheels(wheel_speed_rad_per_s);
+  return per_wheel(dry_friction_Nm(friction, kinematics, local) * smooth_sign(speed_rad_per_s, friction.smoothing_rad_per_s) +
+                   friction.wheel_damping_Nm_s_per_rad * speed_rad_per_s);
 }
 
 double rolling_phase_rad(const WheelDirections& wheel) { return std::atan2(wheel.rolling_x_share, wheel.rolling_y_share); }

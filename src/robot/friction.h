@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "motor/motor.h"
-#include "robot/kinematics.h"
+#include "robot/wheels.h"
 
 namespace heatsoak {
 
@@ -51,6 +51,16 @@ struct FrictionConfig {
   bool by_heading = false;                  ///< `heading` stands in place of wheel torque and roller drag
   HeadingFriction heading;
 };
+
+/// x/√(x² + width²). S is double or Wheels.
+template <class S>
+S smooth_sign(const S& x, double width) {
+  using std::sqrt;
+  return x / sqrt(x * x + width * width);
+}
+
+/// Magnitude of the dry friction torque of each wheel in N m: wheel_torque_Nm, or the curve over the direction of travel.
+Wheels dry_friction_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local);
 
 /// Torque against the turning of each wheel, signed like the wheel's speed: subtract it from what drives the wheel.
 PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,

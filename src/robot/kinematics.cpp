@@ -47,11 +47,6 @@ BodyAcceleration acceleration_from_rates(const BodyVelocity& local, const BodyAc
           rates.yaw_rad_per_s2};
 }
 
-BodyAcceleration rates_from_acceleration(const BodyVelocity& local, const BodyAcceleration& acceleration) {
-  return {acceleration.x_m_per_s2 + local.yaw_rad_per_s * local.y_m_per_s, acceleration.y_m_per_s2 - local.yaw_rad_per_s * local.x_m_per_s,
-          acceleration.yaw_rad_per_s2};
-}
-
 Kinematics make_kinematics(const Robot& robot) {
   const std::size_t count = robot.wheel_axis_rad.size();
   if (count < 3 || count > kMostWheels) {

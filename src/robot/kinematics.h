@@ -50,7 +50,10 @@ Wrench to_global(const Wrench& local, double yaw_rad);
 /// a = dv/dt + yaw rate × v, where `rates` are the rates of change of the local components.
 BodyAcceleration acceleration_from_rates(const BodyVelocity& local, const BodyAcceleration& rates);
 /// dv/dt = a − yaw rate × v.
-BodyAcceleration rates_from_acceleration(const BodyVelocity& local, const BodyAcceleration& acceleration);
+inline BodyAcceleration rates_from_acceleration(const BodyVelocity& local, const BodyAcceleration& acceleration) {
+  return {acceleration.x_m_per_s2 + local.yaw_rad_per_s * local.y_m_per_s, acceleration.y_m_per_s2 - local.yaw_rad_per_s * local.x_m_per_s,
+          acceleration.yaw_rad_per_s2};
+}
 
 inline constexpr int kMostWheels = 4;
 /// One value per wheel, wheel 1 first; of a robot with three wheels the last is 0.

@@ -80,6 +80,8 @@ double heat_W(const PlantOutput& output);
 /// Method: ROS2 (Verwer, Spee, Blom, Hundsdorfer 1999), second order for any approximation of the Jacobian; here
 /// that of the contacts and of what resists the wheels, because they are stiff. Powers are integrated by the same
 /// method, so that the balance above closes to second order in the period. Currents and battery have settled.
+/// All fields of `output` are overwritten.
+void step(const PlantConfig& plant, PlantState& state, const PlantInput& input, PlantOutput& output);
 PlantOutput step(const PlantConfig& plant, PlantState& state, const PlantInput& input);
 
 }  // namespace heatsoak

@@ -77,35 +77,10 @@ WeightConfig make_weight(const Kinematics& kinematics, double mass_kg, double he
   return made;
 }
 
-LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, const Wrench& external, double external_height_m) {
-  const double weight_N = weight.mass_kg * kGravity_m_per_s2;
-  const double height_m = weight.center_of_gravity_height_m;
-  const double above_m = external_height_m - height_m;
-  return {weight_N * weight.center_of_gravity_x_m - height_m * ground.x_N + above_m * external.x_N,
-          weight_N * weight.center_of_gravity_y_m - height_m * ground.y_N + above_m * external.y_N};
-}
-
 NormalLoads normal_loads(const WeightConfig& weight, const LoadMoment& moment) {
-  NormalLoads loads;
-  const double weight_N = weight.mass_kg * kGravity_m_per_s2;
-  for (int i = 0; i < weight.wheel_count; ++i) {
-    loads.force_N[i] = weight.level_share[i] * weight_N + weight.along_x_per_m[i] * moment.x_Nm + weight.along_y_per_m[i] * moment.y_Nm;
-    loads.lifted = loads.lifted || loads.force_N[i] < 0.0;
-  }
+  const Wheels plane_N = plane_loads_N(weight, moment);
+  const NormalLoads loads{per_wheel(plane_N), plane_N.minCoeff() < 0.0};
   return loads.lifted ? loads_with_a_wheel_lifted(weight, moment, loads.force_N) : loads;
-}
-
-ContactRatios contact_ratios(const TractionConfig& traction, double slip_m_per_s, double lateral_m_per_s) {
-  const double s_0 = traction.slip_speed_m_per_s;
-  const double root_m_per_s = std::sqrt(slip_m_per_s * slip_m_per_s + s_0 * s_0);
-  ContactRatios ratios;
-  ratios.rolling_ratio = traction.traction_ratio * slip_m_per_s / root_m_per_s;
-  ratios.rolling_slope_s_per_m = traction.traction_ratio * s_0 * s_0 / (root_m_per_s * root_m_per_s * root_m_per_s);
-  const double sliding_m_per_s = traction.roller_drag_ratio / traction.traction_ratio * slip_m_per_s;
-  const double u_0 = traction.roller_speed_m_per_s;
-  ratios.lateral_ratio = -traction.roller_drag_ratio * lateral_m_per_s /
-                         std::sqrt(lateral_m_per_s * lateral_m_per_s + sliding_m_per_s * sliding_m_per_s + u_0 * u_0);
-  return ratios;
 }
 
 }  // namespace heatsoak

@@ -1,7 +1,9 @@
 // How the robot's weight stands on its wheels, and what force a contact can pass on.
 #pragma once
 
-#include "robot/kinematics.h"
+#include <cmath>
+
+#include "robot/wheels.h"
 
 namespace heatsoak {
 
@@ -32,7 +34,19 @@ struct LoadMoment {
 
 /// S = m·g·c − h·F + (h_e − h)·F_e: the ground's force F acts below the centre of gravity (height h, offset c), so
 /// accelerating forward loads the rear wheels; a push F_e from outside at the height h_e tips the other way.
-LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, const Wrench& external, double external_height_m);
+inline LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, const Wrench& external, double external_height_m) {
+  const double weight_N = weight.mass_kg * kGravity_m_per_s2;
+  const double height_m = weight.center_of_gravity_height_m;
+  const double above_m = external_height_m - height_m;
+  return {weight_N * weight.center_of_gravity_x_m - height_m * ground.x_N + above_m * external.x_N,
+          weight_N * weight.center_of_gravity_y_m - height_m * ground.y_N + above_m * external.y_N};
+}
+
+/// Loads in N as a plane over the contact points. A load below 0 means that the wheel has left the ground: see normal_loads().
+inline Wheels plane_loads_N(const WeightConfig& weight, const LoadMoment& moment) {
+  return as_wheels(weight.level_share) * (weight.mass_kg * kGravity_m_per_s2) + as_wheels(weight.along_x_per_m) * moment.x_Nm +
+         as_wheels(weight.along_y_per_m) * moment.y_Nm;
+}
 
 struct NormalLoads {
   PerWheel force_N{};   ///< at least 0; the sum is the weight
@@ -58,12 +72,30 @@ struct TractionConfig {
   double roller_speed_m_per_s = 0.01;  ///< u_0: where the sign of u is smoothed
 };
 
-/// Force per normal force, and its slope over the slip.
+/// Force per normal force, and its slope over the slip. S is double for one contact, Wheels for all.
+template <class S>
 struct ContactRatios {
-  double rolling_ratio = 0.0;
-  double lateral_ratio = 0.0;
-  double rolling_slope_s_per_m = 0.0;
+  S rolling_ratio;
+  S lateral_ratio;
+  S rolling_slope_s_per_m;
 };
-ContactRatios contact_ratios(const TractionConfig& traction, double slip_m_per_s, double lateral_m_per_s);
+template <class S>
+ContactRatios<S> contact_ratios(const TractionConfig& traction, const S& slip_m_per_s, const S& lateral_m_per_s) {
+  using std::sqrt;
+  const double s_0 = traction.slip_speed_m_per_s;
+  const S per_root_s_per_m = 1.0 / sqrt(slip_m_per_s * slip_m_per_s + s_0 * s_0);
+  ContactRatios<S> ratios;
+  ratios.rolling_ratio = traction.traction_ratio * slip_m_per_s * per_root_s_per_m;
+  ratios.rolling_slope_s_per_m = traction.traction_ratio * s_0 * s_0 * (per_root_s_per_m * per_root_s_per_m * per_root_s_per_m);
+  if (traction.roller_drag_ratio == 0.0) {
+    ratios.lateral_ratio = 0.0 * lateral_m_per_s;
+    return ratios;
+  }
+  const S sliding_m_per_s = traction.roller_drag_ratio / traction.traction_ratio * slip_m_per_s;
+  const double u_0 = traction.roller_speed_m_per_s;
+  ratios.lateral_ratio = -traction.roller_drag_ratio * lateral_m_per_s /
+                         sqrt(lateral_m_per_s * lateral_m_per_s + sliding_m_per_s * sliding_m_per_s + u_0 * u_0);
+  return ratios;
+}
 
 }  // namespace heatsoak
