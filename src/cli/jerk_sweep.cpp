@@ -100,12 +100,12 @@ nlohmann::ordered_json json(const std::vector<StudyResult>& results) {
 
 }  // namespace
 
-ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const std::string& plot, Session& session) {
+ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const DriveOptions& drive, const std::string& plot, Session& session) {
   const std::vector<StudyCase> cases = jerk_sweep(robot);
-  const std::vector<StudyResult> results = study_planners(robot, motor, cases, 0, progress_bar("driving"));
+  const std::vector<StudyResult> results = study_planners(robot, motor, cases, drive, 0, progress_bar("driving"));
   session.say(fmt::format(
       "{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest, means\ngrip: the acceleration at which the "
-      "first wheel slides if nothing else is asked of it; contacts creep before, and what the controller corrects comes on top, so that "
+      "first wheel slides if nothing else is asked of it; contacts creep before, and what the drive core corrects comes on top, so that "
       "sliding begins somewhat below\n\n{}",
       motor.id, robot.id, table(results, robot)));
   if (!plot.empty()) {

@@ -4,9 +4,10 @@
 #include <string>
 
 #include "cli/command.h"
+#include "simulate/core_drive.h"
 
 namespace heatsoak {
 
-ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const std::string& plot, Session& session);
+ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const DriveOptions& drive, const std::string& plot, Session& session);
 
 }  // namespace heatsoak

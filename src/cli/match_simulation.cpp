@@ -10,6 +10,7 @@
 #include "cli/verdict_words.h"
 #include "report/chart.h"
 #include "simulate/match_trace.h"
+#include "simulate/reason_name.h"
 
 namespace heatsoak {
 namespace {
@@ -25,7 +26,7 @@ struct Played {
   std::vector<MatchRow> rows;  ///< for the picture
 };
 
-Played play(const MatchSimulation& wanted, Planner planner) {
+Played play(const MatchSimulation& wanted, const Game& game, const robot_core::Config& core, Planner planner) {
   Played played{planner, {}, {}, {}};
   const double ambient_C = wanted.duty.ambient_C.value;
   const auto wheels = static_cast<int>(wanted.robot.wheel_axis_rad.size());
@@ -35,8 +36,12 @@ Played play(const MatchSimulation& wanted, Planner planner) {
   }
   MatchRows csv(wanted.every_s, ambient_C, added, [&](const MatchRow& row) { append_csv(played.csv, row, wheels, ambient_C, added); });
   MatchRows picture(kPictureStep_s, ambient_C, {}, [&](const MatchRow& row) { played.rows.push_back(row); });
-  const MatchRunOptions options{planner, wanted.seed, ambient_C, progress_bar(fmt::format("driving, {}", to_string(planner)))};
-  played.run = run_match(wanted.inputs, wanted.robot, wanted.motor, options, [&](const LoopMoment& moment) {
+  MatchRunOptions options;
+  options.planner = planner;
+  options.ambient_C = ambient_C;
+  options.drive = wanted.is_sensing_ideal ? ideal_drive() : real_drive(wanted.robot, wanted.seed);
+  options.progress = progress_bar(fmt::format("driving, {}", to_string(planner)));
+  played.run = run_match(game, wanted.robot, wanted.motor, core, options, [&](const LoopMoment& moment) {
     if (!wanted.out.empty()) {
       csv.take(moment);
     }
@@ -49,22 +54,6 @@ Played play(const MatchSimulation& wanted, Planner planner) {
   return played;
 }
 
-/// Why the match was not driven, whatever the motors' temperatures are; empty where it was.
-std::string not_driven(const DriveScore& score) {
-  constexpr double kRobot_m = 0.18;
-  constexpr double kMostLifted_share = 0.01;
-  if (score.battery_empty_s > 0.0) {
-    return fmt::format("the battery is empty after {:.0f} s; the rest of the match is a standstill", score.time_s - score.battery_empty_s);
-  }
-  if (score.lifted_s > kMostLifted_share * score.time_s) {
-    return fmt::format("wheels are off the ground for {:.0f} s: the robot tips", score.lifted_s);
-  }
-  return score.tracking_rms_m > kRobot_m
-             ? fmt::format("the robot is {:.1f} m (rms) off its plan, more than its own size: motors, driver or grip are too weak",
-                           score.tracking_rms_m)
-             : std::string();
-}
-
 /// Of all runs: too hot is worse than not driven.
 std::string_view verdict(const MatchSimulation& wanted, const std::vector<Played>& all) {
   const MotorValues& limits = wanted.motor.nominal;
@@ -75,6 +64,10 @@ std::string_view verdict(const MatchSimulation& wanted, const std::vector<Played
     return "fail";
   }
   return std::ranges::all_of(all, [](const Played& each) { return not_driven(each.run.score).empty(); }) ? "pass" : "infeasible";
+}
+
+double limited_s(const DriveScore& score, robot_core::Reason limit) {
+  return score.limited_s.at(static_cast<std::size_t>(std::ranges::find(kLimits, limit) - kLimits.begin()));
 }
 
 struct TableRow {
@@ -97,6 +90,14 @@ constexpr TableRow kRows[] = {
     {"rms current, hottest motor / A", [](const DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
     {"driver or battery falls short / s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
     {"lowest battery voltage / V", [](const DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
+    {"core limits by traction / s", [](const DriveScore& s) { return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::traction)); }},
+    {"  by voltage, current or sag / s",
+     [](const DriveScore& s) {
+       return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::voltage) + limited_s(s, robot_core::Reason::driver_current) +
+                                        limited_s(s, robot_core::Reason::battery_sag));
+     }},
+    {"faults that the core reports / s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.fault_s); }},
+    {"radio packets lost / %", [](const DriveScore& s) { return fmt::format("{:.1f}", 100.0 * s.lost_packets_share); }},
     {"battery empty / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
     {"copper heat, all motors / kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
     {"  per metre / J", [](const DriveScore& s) { return fmt::format("{:.1f}", s.energy.copper_J / s.distance_m); }},
@@ -152,8 +153,48 @@ std::string energy_text(const std::vector<Played>& all) {
   return text + "\n";
 }
 
+std::string sensing_text(const MatchSimulation& wanted) {
+  return wanted.is_sensing_ideal ? std::string("exact sensors and no delays")
+                                 : fmt::format("real sensing and {:.0f} radio packets per second", radio_of(wanted.robot).packet_rate_Hz);
+}
+
+/// What the thermal guard did or, in shadow mode, would have done.
+std::string guard_text(const MatchSimulation& wanted, const MotorGuard& guard, const std::vector<Played>& all) {
+  if (wanted.guard == GuardUse::off) {
+    return "thermal guard: off\n";
+  }
+  if (!guard.guard) {
+    return fmt::format("thermal guard: none, because this motor cannot be guarded: {}\n", guard.why_none);
+  }
+  std::string text;
+  for (const Played& each : all) {
+    const DriveScore& score = each.run.score;
+    const std::string what = wanted.guard == GuardUse::on ? fmt::format("limited a motor for {:.1f} s", score.guard_limited_s)
+                                                          : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s",
+                                                                        score.guard_limited_s, score.guard_missing_A_s);
+    text += fmt::format(
+        "thermal guard ({}), {}: {} of {}; its observer, with air of {:.0f} °C and its safety factor on heat, reached {:.0f} °C\n",
+        kGuardUses[static_cast<std::size_t>(wanted.guard)], to_string(each.planner), what, duration_text(score.time_s),
+        wanted.is_sensing_ideal ? wanted.duty.ambient_C.value : static_cast<double>(guard.guard->model().hottest_ambient_C),
+        score.guard_winding_peak_C);
+  }
+  return text;
+}
+
+nlohmann::ordered_json guard_json(const MatchSimulation& wanted, const MotorGuard& guard) {
+  const bool is_missing = wanted.guard != GuardUse::off && !guard.guard;
+  return {{"use", is_missing ? kGuardUses[0] : kGuardUses[static_cast<std::size_t>(wanted.guard)]},
+          {"asked_for", kGuardUses[static_cast<std::size_t>(wanted.guard)]},
+          {"why_none", is_missing ? nlohmann::ordered_json(guard.why_none) : nlohmann::ordered_json()},
+          {"heat_reserve_ratio", guard.derating ? rounded(guard.derating->observer.heat_reserve_ratio(), 4) : nlohmann::ordered_json()}};
+}
+
 nlohmann::ordered_json json(const Played& played) {
   const DriveScore& s = played.run.score;
+  nlohmann::ordered_json limited;
+  for (std::size_t limit = 0; limit < kLimits.size(); ++limit) {
+    limited[std::string(to_string(kLimits[limit]))] = rounded(s.limited_s[limit], 3);
+  }
   nlohmann::ordered_json energy{{"battery_J", rounded(s.energy.battery_J, 2)}};
   for (const EnergyRow& row : kEnergies) {
     energy[fmt::format("{}_J", row.name)] = rounded(s.energy.*row.value, 2);
@@ -186,6 +227,12 @@ nlohmann::ordered_json json(const Played& played) {
           {"winding_peak_C", rounded(s.winding_peak_C, 3)},
           {"stator_peak_C", rounded(s.stator_peak_C, 3)},
           {"duel_copper_share", rounded(s.duel_copper_share, 4)},
+          {"guard_limited_s", rounded(s.guard_limited_s, 3)},
+          {"guard_missing_A_s", rounded(s.guard_missing_A_s, 3)},
+          {"guard_winding_peak_C", rounded(s.guard_winding_peak_C, 3)},
+          {"limited_s", limited},
+          {"fault_s", rounded(s.fault_s, 3)},
+          {"lost_packets_share", rounded(s.lost_packets_share, 5)},
           {"energy", energy},
           {"phases", phases}};
 }
@@ -266,6 +313,21 @@ Chart picture(const MatchSimulation& wanted, const std::vector<Played>& all) {
 
 }  // namespace
 
+std::string not_driven(const DriveScore& score) {
+  constexpr double kRobot_m = 0.18;
+  constexpr double kMostLifted_share = 0.01;
+  if (score.battery_empty_s > 0.0) {
+    return fmt::format("the battery is empty after {:.0f} s; the rest of the match is a standstill", score.time_s - score.battery_empty_s);
+  }
+  if (score.lifted_s > kMostLifted_share * score.time_s) {
+    return fmt::format("wheels are off the ground for {:.0f} s: the robot tips", score.lifted_s);
+  }
+  return score.tracking_rms_m > kRobot_m
+             ? fmt::format("the robot is {:.1f} m (rms) off its plan, more than its own size: motors, driver or grip are too weak",
+                           score.tracking_rms_m)
+             : std::string();
+}
+
 std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
 
 ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
@@ -275,9 +337,14 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
   if (!wanted.out.empty() && 1e4 / wanted.every_s > kMostRows) {
     throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes too many rows of a match; expected 0.02 s or more", wanted.every_s));
   }
+  const MotorGuard guard = wanted.guard == GuardUse::off
+                               ? MotorGuard{}
+                               : make_guard(wanted.motor, wanted.robot, wanted.duty.ambient_C.value, 0, progress_bar("making the guard"));
+  const Game game = play_game(wanted.inputs, wanted.robot, wanted.seed);
   std::vector<Played> all;
   for (const Planner planner : wanted.planners) {
-    all.push_back(play(wanted, planner));
+    const GuardedCore core(wanted.robot, wanted.motor, wanted.guard, guard);
+    all.push_back(play(wanted, game, core.config(), planner));
   }
   if (!wanted.out.empty()) {
     session.write(wanted.out, std::move(all.front().csv));
@@ -286,12 +353,13 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
     session.write(wanted.plot, draw_svg(picture(wanted, all)));
   }
   const DriveScore& first = all.front().run.score;
-  session.say(fmt::format(
-      "{} on {}, {} as {}, seed {}: closed loop of {} at 1 kHz, firmware at {:.0f} Hz, {} thermal data\nload: {}\n\n{}\n{}"
-      "hottest: wheel {} at {:.1f} °C (limit {:.0f} °C): {}\n",
-      wanted.motor.id, wanted.robot.id, wanted.duty.id, kRoleNames.at(static_cast<std::size_t>(wanted.inputs.role)), wanted.seed,
-      duration_text(first.time_s), 1.0 / control_period_s(wanted.robot), data_quality(wanted.motor), wanted.duty.origin, table(all),
-      energy_text(all), first.hottest_wheel + 1, first.winding_peak_C, wanted.motor.nominal.winding_limit_C, verdict(wanted, all)));
+  session.say(
+      fmt::format("{} on {}, {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data\nload: {}\n\n{}\n{}{}"
+                  "hottest: wheel {} at {:.1f} °C (limit {:.0f} °C): {}\n",
+                  wanted.motor.id, wanted.robot.id, wanted.duty.id, kRoleNames.at(static_cast<std::size_t>(wanted.inputs.role)),
+                  wanted.seed, duration_text(first.time_s), sensing_text(wanted), data_quality(wanted.motor), wanted.duty.origin,
+                  table(all), energy_text(all), guard_text(wanted, guard, all), first.hottest_wheel + 1, first.winding_peak_C,
+                  wanted.motor.nominal.winding_limit_C, verdict(wanted, all)));
   for (const Played& each : all) {
     if (const std::string why = not_driven(each.run.score); !why.empty()) {
       session.say(fmt::format("{}: {}\n", to_string(each.planner), why));
@@ -320,6 +388,8 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
                   {"current_rms_A", rounded(first.current_rms_A, 4)},
                   {"verdict", verdict(wanted, all)},
                   {"data_quality", data_quality(wanted.motor)},
+                  {"sensing", wanted.is_sensing_ideal ? "ideal" : "real"},
+                  {"guard", guard_json(wanted, guard)},
                   {"planners", planners}});
   return verdict(wanted, all) != "pass" ? ExitCode::limit_exceeded : ExitCode::done;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "simulate/guarded_core.h"
 #include "simulate/match_run.h"
 
 namespace heatsoak {
@@ -19,9 +20,14 @@ struct MatchSimulation {
   std::string out;   ///< CSV, of one planner
   std::string plot;  ///< SVG
   double every_s = 1.0;
+  GuardUse guard = GuardUse::shadow;
+  bool is_sensing_ideal = false;
 };
 
 std::string_view to_string(Planner planner);
+
+/// Why a match was not driven, whatever the motors' temperatures are; empty where it was.
+std::string not_driven(const DriveScore& score);
 
 ExitCode simulate_match(const MatchSimulation& wanted, Session& session);
 

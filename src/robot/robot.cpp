@@ -13,7 +13,7 @@ namespace heatsoak {
 namespace {
 
 /// Ranges hold whatever anybody builds for a lab floor, and leave out what another unit makes of it.
-constexpr std::array<RobotFigureSpec, 28> kSpecs{{
+constexpr std::array<RobotFigureSpec, 29> kSpecs{{
     {"body",
      {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0), "about the vertical through the centre of gravity; mind g cm2 and kg m2"},
      &Robot::yaw_inertia_kg_m2},
@@ -52,6 +52,9 @@ constexpr std::array<RobotFigureSpec, 28> kSpecs{{
      &Robot::driver_resistance_ohm},
     {"drive", {"driver_standby_power", "W", Range::between(0.0, 100.0), "of one motor's driver without current"}, &Robot::driver_standby_W},
     {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "how often the firmware commands the motors"}, &Robot::control_rate_Hz},
+    {"drive",
+     {"command_rate", "Hz", Range::between(5.0, 1000.0), "how often the team's computer commands the robot"},
+     &Robot::command_rate_Hz},
     {"battery", {"full_voltage", "V", Range::between(1.0, 5000.0), "open circuit, full"}, &Robot::battery_full_V},
     {"battery", {"empty_voltage", "V", Range::between(1.0, 5000.0), "open circuit, empty"}, &Robot::battery_empty_V},
     {"battery", {"internal_resistance", "ohm", Range::between(0.0, 10.0), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
@@ -74,7 +77,8 @@ constexpr std::array<WheelFigureSpec, 3> kWheelSpecs{{
     {{"phase", "rad", Range::any(), "of that part and of the sign, near the negative angle of the wheel's axle"}, &HeadingWheel::phase_rad},
 }};
 
-constexpr std::array<std::string_view, 4> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate"};
+constexpr std::array<std::string_view, 5> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate",
+                                                        "command_rate"};
 
 void read_figure(Reader& reader, const RobotFigureSpec& each, Need need, Robot& robot) {
   if (std::optional<Figure> figure = reader.figure(each.spec, need)) {

@@ -61,6 +61,7 @@ struct Robot {
   double driver_resistance_ohm = kAbsent;  ///< switches and traces of one motor, in series with the winding
   double driver_standby_W = kAbsent;       ///< per motor: gate drive, logic, switching
   double control_rate_Hz = kAbsent;        ///< of the firmware's commands to the motors
+  double command_rate_Hz = kAbsent;        ///< of the commands that the team's computer sends to the robot
   double battery_full_V = kAbsent;
   double battery_empty_V = kAbsent;
   double battery_resistance_ohm = kAbsent;

@@ -16,6 +16,8 @@ constexpr double kLeastSpeed_m_per_s = 0.05;
 
 void DriveScorer::take(const LoopMoment& moment) {
   robot_ = moment.robot;
+  drive_ = moment.drive;
+  follow_core(moment);
   const PlantOutput& out = *moment.out;
   const PlantState& state = moment.robot->state();
   const int wheels = moment.robot->wheel_count();
@@ -50,6 +52,23 @@ void DriveScorer::take(const LoopMoment& moment) {
     planned_moving_s_ += kStep_s;
   }
   follow_command(moment);
+}
+
+void DriveScorer::follow_core(const LoopMoment& moment) {
+  const robot_core::Output& out = moment.drive->output();
+  bool is_fault = robot_core::is_fault(out.robot_reason);
+  std::array<bool, kLimits.size()> is_met{};
+  for (int i = 0; i < moment.robot->wheel_count(); ++i) {
+    is_fault = is_fault || robot_core::is_fault(out.reason[i]);
+    score_.guard_winding_peak_C = std::max(score_.guard_winding_peak_C, static_cast<double>(out.winding_C[i]));
+    for (std::size_t limit = 0; limit < kLimits.size(); ++limit) {
+      is_met[limit] = is_met[limit] || out.reason[i] == kLimits[limit];
+    }
+  }
+  score_.fault_s += is_fault ? kStep_s : 0.0;
+  for (std::size_t limit = 0; limit < kLimits.size(); ++limit) {
+    score_.limited_s[limit] += is_met[limit] ? kStep_s : 0.0;
+  }
 }
 
 void DriveScorer::follow_command(const LoopMoment& moment) {
@@ -92,6 +111,12 @@ DriveScore DriveScorer::finish() {
   score_.tracking_rms_m = planned_moving_s_ > 0.0 ? std::sqrt(error_squared_m2_s_ / planned_moving_s_) : 0.0;
   score_.overshoot_mean_m /= std::max(1.0, score_.arrivals_count);
   score_.energy = robot_->energy();
+  const robot_core::Config& core = drive_->config();
+  score_.guard_limited_s =
+      core.shadow_mode ? static_cast<double>(drive_->state().shadow_steps) * static_cast<double>(core.period_s) : score_.limited_s.back();
+  score_.guard_missing_A_s = static_cast<double>(drive_->state().shadow_deficit_A_s);
+  const auto sent = static_cast<double>(drive_->off_board().sent());
+  score_.lost_packets_share = sent > 0.0 ? static_cast<double>(drive_->off_board().lost()) / sent : 0.0;
   score_.duel_copper_share = score_.energy.copper_J > 0.0 ? duel_copper_J_ / score_.energy.copper_J : 0.0;
   score_.current_rms_A = std::sqrt(*std::ranges::max_element(current_squared_A2_s_) / score_.time_s);
   for (int i = 0; i < robot_->wheel_count(); ++i) {

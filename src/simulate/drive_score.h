@@ -1,11 +1,16 @@
 // How well, and at what price, a script was driven.
 #pragma once
 
-#include <vector>
+#include <array>
 
 #include "simulate/drive_script.h"
 
 namespace heatsoak {
+
+/// Limits of the core that a wheel can meet, in the order of DriveScore::limited_s.
+inline constexpr std::array<robot_core::Reason, 5> kLimits{robot_core::Reason::voltage, robot_core::Reason::driver_current,
+                                                           robot_core::Reason::battery_sag, robot_core::Reason::traction,
+                                                           robot_core::Reason::guard};
 
 struct DriveScore {
   double time_s = 0.0;
@@ -28,6 +33,13 @@ struct DriveScore {
   double stator_peak_C = 0.0;
   int hottest_wheel = 0;  ///< from 0
   double duel_copper_share = 0.0;
+  // What the drive core did about it.
+  double guard_limited_s = 0.0;                    ///< time in which the guard limits a wheel or, in shadow mode, would have
+  double guard_missing_A_s = 0.0;                  ///< in shadow mode: current over time that it would have taken away, all wheels
+  double guard_winding_peak_C = 0.0;               ///< of the guard's observer, any wheel; 0 without guard
+  double fault_s = 0.0;                            ///< time in which the core reports a fault of a wheel or of the robot
+  std::array<double, kLimits.size()> limited_s{};  ///< time in which each of kLimits holds any wheel back
+  double lost_packets_share = 0.0;
   EnergyAccount energy;
 };
 
@@ -39,10 +51,12 @@ class DriveScorer {
 
  private:
   void follow_command(const LoopMoment& moment);
+  void follow_core(const LoopMoment& moment);
   void close_command();
 
   DriveScore score_;
   const SimulatedRobot* robot_ = nullptr;
+  const CoreDrive* drive_ = nullptr;
   double error_squared_m2_s_ = 0.0;
   double planned_moving_s_ = 0.0;
   double duel_copper_J_ = 0.0;

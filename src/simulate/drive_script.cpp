@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/diagnostic.h"
 #include "robot/inverse_dynamics.h"
 
 namespace heatsoak {
@@ -21,7 +20,7 @@ class Duel {
   }
   void end() { active_ = false; }
   [[nodiscard]] bool active() const { return active_; }
-  /// What the controller is to push with, global frame.
+  /// What the robot is to push with, global frame.
   [[nodiscard]] Wrench push() const { return active_ ? Wrench{force_N_ * x_share_, force_N_ * y_share_, 0.0} : Wrench{}; }
   /// What comes back, local frame.
   [[nodiscard]] Wrench reaction(const SimulatedRobot& robot) const {
@@ -50,8 +49,8 @@ class Duel {
 
 class Loop {
  public:
-  Loop(SimulatedRobot& robot, DriveController& controller, Follower& plan, double control_period_s, const LoopObserver& observer)
-      : robot_(robot), controller_(controller), plan_(plan), observer_(observer), periods_per_control_(periods(control_period_s)) {}
+  Loop(SimulatedRobot& robot, CoreDrive& drive, Follower& plan, const LoopObserver& observer)
+      : robot_(robot), drive_(drive), plan_(plan), observer_(observer) {}
 
   void run(std::span<const ScheduledCommand> script, double end_s) {
     for (std::size_t i = 0; i < script.size(); ++i) {
@@ -74,38 +73,28 @@ class Loop {
     if (scheduled.command.duel && at_rest && !duel_.active()) {
       duel_.begin(scheduled.command, robot_.state().pose, robot_.plant().body);
     }
-    if (now_ % periods_per_control_ == 0) {
-      const Setpoint setpoint{plan_.pose(), plan_.velocity_global(), plan_.acceleration_global(), duel_.push()};
-      commands_ = controller_.command(setpoint, {robot_.state().pose, robot_.state().velocity, robot_.state().wheel_speed_rad_per_s});
-    }
+    const std::array<MotorCommand, kMostWheels>& commands = drive_.advance(plan_, robot_, duel_.push());
     plan_.advance(SimulatedRobot::kPeriod_s);
-    const PlantOutput& out = robot_.advance(commands_, duel_.reaction(robot_));
+    const PlantOutput& out = robot_.advance(commands, duel_.reaction(robot_));
+    drive_.follow(robot_, out);
     ++now_;
-    observer_({static_cast<double>(now_) * SimulatedRobot::kPeriod_s, &scheduled, index, at_rest, duel_.active(), &plan_, &out, &robot_});
+    observer_({static_cast<double>(now_) * SimulatedRobot::kPeriod_s, &scheduled, index, at_rest, duel_.active(), &plan_, &out, &robot_,
+               &drive_});
   }
 
   SimulatedRobot& robot_;
-  DriveController& controller_;
+  CoreDrive& drive_;
   Follower& plan_;
   const LoopObserver& observer_;
-  std::int64_t periods_per_control_;
   Duel duel_;
-  std::array<MotorCommand, kMostWheels> commands_{};
   std::int64_t now_ = 0;
 };
 
 }  // namespace
 
-void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script,
-                  double end_s, double control_period_s, const LoopObserver& observer) {
-  Loop(robot, controller, plan, control_period_s, observer).run(script, end_s);
-}
-
-double control_period_s(const Robot& robot) {
-  if (std::isnan(robot.control_rate_Hz)) {
-    throw bad_input({robot.file.string()}, "drive.control_rate", "is missing: how often the firmware commands the motors");
-  }
-  return SimulatedRobot::kPeriod_s * std::round(1.0 / (robot.control_rate_Hz * SimulatedRobot::kPeriod_s));
+void drive_script(SimulatedRobot& robot, CoreDrive& drive, Follower& plan, std::span<const ScheduledCommand> script, double end_s,
+                  const LoopObserver& observer) {
+  Loop(robot, drive, plan, observer).run(script, end_s);
 }
 
 }  // namespace heatsoak

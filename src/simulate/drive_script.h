@@ -1,4 +1,4 @@
-// A script of commands, driven in a closed loop: planner, controller at the firmware's rate, plant.
+// A script of commands, driven in a closed loop: planner, radio, sensors, drive core, plant.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <span>
 
 #include "duty/match/generator.h"
-#include "simulate/drive_controller.h"
+#include "simulate/core_drive.h"
 #include "simulate/simulated_robot.h"
 
 namespace heatsoak {
@@ -21,6 +21,7 @@ struct LoopMoment {
   const Follower* plan = nullptr;
   const PlantOutput* out = nullptr;  ///< means over the period
   const SimulatedRobot* robot = nullptr;
+  const CoreDrive* drive = nullptr;
 };
 using LoopObserver = std::function<void(const LoopMoment&)>;
 
@@ -31,13 +32,9 @@ struct Opponent {
   double damping_N_s_per_m = 100.0;
 };
 
-/// Drives `script` until `end_s`, from the plan's and the robot's present state on. Every `control_period_s` (a multiple of
-/// the plant's period) the controller is asked. In a duel the robot pushes from when its plan stands still. Times of
-/// the script are taken to the nearest period of the plant.
-void drive_script(SimulatedRobot& robot, DriveController& controller, Follower& plan, std::span<const ScheduledCommand> script,
-                  double end_s, double control_period_s, const LoopObserver& observer);
-
-/// That of the robot's file. Throws Failure (bad_input) where it has none.
-double control_period_s(const Robot& robot);
+/// Drives `script` until `end_s`, from the plan's and the robot's present state on. In a duel the robot pushes from when its plan stands
+/// still. Times of the script are taken to the nearest period of the plant.
+void drive_script(SimulatedRobot& robot, CoreDrive& drive, Follower& plan, std::span<const ScheduledCommand> script, double end_s,
+                  const LoopObserver& observer);
 
 }  // namespace heatsoak

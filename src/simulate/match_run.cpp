@@ -5,19 +5,22 @@
 
 namespace heatsoak {
 
-MatchRun run_match(const MatchInputs& inputs, const Robot& robot, const Motor& motor, const MatchRunOptions& options,
-                   const LoopObserver& observer) {
+Game play_game(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed) {
   const MatchValues values = inputs.nominal();
-  const MatchLoad game = play_match(inputs, values, robot, options.seed, Planner::jerk_limited);
-  const double period_s = control_period_s(robot);
-  SimulatedRobot simulated(robot, motor, options.ambient_C);
-  const std::unique_ptr<DriveController> controller = tracking_controller(robot, motor.nominal, period_s);
-  const std::unique_ptr<Follower> plan = ideal_tracking(robot, values.aggressiveness, options.planner);
+  MatchLoad load = play_match(inputs, values, robot, seed, Planner::jerk_limited);
+  return {std::move(load.script), load.duration_s, values.aggressiveness};
+}
+
+MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, const robot_core::Config& core, const MatchRunOptions& options,
+                   const LoopObserver& observer) {
+  SimulatedRobot simulated(robot, motor, options.ambient_C, options.start_C);
+  CoreDrive drive(core, simulated, options.drive);
+  const std::unique_ptr<Follower> plan = ideal_tracking(robot, game.aggressiveness, options.planner);
   MatchRun run;
   DriveScorer scorer;
   const auto all_s = static_cast<std::size_t>(game.duration_s);
   std::size_t whole_s = 0;
-  drive_script(simulated, *controller, *plan, game.script, game.duration_s, period_s, [&](const LoopMoment& moment) {
+  drive_script(simulated, drive, *plan, game.script, game.duration_s, [&](const LoopMoment& moment) {
     scorer.take(moment);
     PhaseHeat& phase = run.phases.at(static_cast<std::size_t>(moment.command->phase));
     phase.time_s += SimulatedRobot::kPeriod_s;

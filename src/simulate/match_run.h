@@ -9,8 +9,9 @@ namespace heatsoak {
 
 struct MatchRunOptions {
   Planner planner = Planner::jerk_limited;
-  std::uint64_t seed = 1;
   double ambient_C = 25.0;
+  double start_C = kAbsent;  ///< of the motors; absent: ambient
+  DriveOptions drive;
   Progress progress;  ///< in whole seconds of the match
 };
 
@@ -25,10 +26,18 @@ struct MatchRun {
   std::array<PhaseHeat, kPhaseNames.size()> phases{};
 };
 
-/// The commands are those that the game gives a robot which follows the jerk-limited planner exactly, so that every
-/// planner and controller is asked the same at the same time. `observer` sees every period of the plant.
+/// What a game asks of a robot that follows the jerk-limited planner exactly, so that every planner, motor and drive core is asked the same
+/// at the same time.
+struct Game {
+  std::vector<ScheduledCommand> script;
+  double duration_s = 0.0;
+  double aggressiveness = 1.0;
+};
+Game play_game(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed);
+
+/// Drives a game. `core` is the robot's (guarded_core.h). `observer` sees every period of the plant.
 /// Throws Failure (bad_input) that names what the files of robot or motor lack.
-MatchRun run_match(const MatchInputs& inputs, const Robot& robot, const Motor& motor, const MatchRunOptions& options,
+MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, const robot_core::Config& core, const MatchRunOptions& options,
                    const LoopObserver& observer = {});
 
 }  // namespace heatsoak

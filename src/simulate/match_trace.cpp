@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "motor/datasheet_network.h"
+#include "simulate/reason_name.h"
 
 namespace heatsoak {
 
@@ -59,6 +60,17 @@ void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& pl
   periods_ = 0;
 }
 
+void MatchRows::take_core(const LoopMoment& moment) {
+  const robot_core::Output& out = moment.drive->output();
+  open_.robot_reason = std::max(open_.robot_reason, out.robot_reason);
+  for (int i = 0; i < moment.robot->wheel_count(); ++i) {
+    const auto allowed_A = static_cast<double>(out.allowed_current_A[i]);
+    open_.reason[static_cast<std::size_t>(i)] = std::max(open_.reason[static_cast<std::size_t>(i)], out.reason[i]);
+    open_.allowed_A[i] = periods_ == 0 ? allowed_A : std::min(open_.allowed_A[i], allowed_A);
+    open_.guard_winding_C[i] = std::max(open_.guard_winding_C[i], static_cast<double>(out.winding_C[i]));
+  }
+}
+
 void MatchRows::take(const LoopMoment& moment) {
   const PlantOutput& out = *moment.out;
   if (!begun_) {
@@ -81,6 +93,7 @@ void MatchRows::take(const LoopMoment& moment) {
     winding_.at(static_cast<std::size_t>(i)).advance(SimulatedRobot::kPeriod_s, moment.robot->winding_C(i));
     stator_.at(static_cast<std::size_t>(i)).advance(SimulatedRobot::kPeriod_s, moment.robot->stator_C(i));
   }
+  take_core(moment);
   open_.battery_V += out.battery_V;
   open_.battery_A += out.battery_current_A;
   ++periods_;
@@ -126,6 +139,10 @@ std::string csv_header(int wheel_count, const MatchAdditions& added) {
     text += added.winding.empty() ? "" : fmt::format(",winding_shown_{}_C", i);
     text += added.stator.empty() ? "" : fmt::format(",stator_shown_{}_C", i);
   }
+  text += ",robot_reason";
+  for (int i = 1; i <= wheel_count; ++i) {
+    text += fmt::format(",reason_{0},allowed_{0}_A,guard_winding_{0}_C", i);
+  }
   return text + "\n";
 }
 
@@ -148,6 +165,10 @@ void append_csv(std::string& text, const MatchRow& row, int wheel_count, double 
     if (!added.stator.empty()) {
       fmt::format_to(to, ",{:.4f}", row.stator_shown_C[i]);
     }
+  }
+  fmt::format_to(to, ",{}", to_string(row.robot_reason));
+  for (int i = 0; i < wheel_count; ++i) {
+    fmt::format_to(to, ",{},{:.4f},{:.3f}", to_string(row.reason[static_cast<std::size_t>(i)]), row.allowed_A[i], row.guard_winding_C[i]);
   }
   text += "\n";
 }

@@ -36,6 +36,11 @@ struct MatchRow {
   double battery_A = 0.0;
   double battery_charge_A_s = 0.0;
   double tracking_error_m = 0.0;
+  // Of the drive core, from time_s to the next row.
+  robot_core::Reason robot_reason = robot_core::Reason::none;  ///< strongest fault of the robot
+  std::array<robot_core::Reason, kMostWheels> reason{};        ///< strongest of each wheel: faults before limits
+  PerWheel allowed_A{};                                        ///< least
+  PerWheel guard_winding_C{};                                  ///< highest of the guard's observer; 0 without guard
 };
 
 /// What the motor's file adds to a trace.
@@ -56,6 +61,7 @@ class MatchRows {
   void finish();
 
  private:
+  void take_core(const LoopMoment& moment);
   void start(double time_s, const SimulatedRobot& robot, const Pose& plan, Phase phase, bool duel);
 
   double every_s_;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "firmware/core_config.h"
 #include "robot/inverse_dynamics.h"
 #include "simulate/drive_score.h"
 
@@ -30,16 +31,16 @@ double planned_s(const Robot& robot, Planner planner, const MotionCommand& comma
   return time_s;
 }
 
-StudyResult drive(const Robot& robot, const Motor& motor, Planner planner, const MotionCommand& command) {
-  const double period_s = control_period_s(robot);
+StudyResult drive_once(const Robot& robot, const Motor& motor, const robot_core::Config& core, const DriveOptions& options, Planner planner,
+                       const MotionCommand& command) {
   SimulatedRobot simulated(robot, motor, kAmbient_C);
-  const std::unique_ptr<DriveController> controller = tracking_controller(robot, motor.nominal, period_s);
+  CoreDrive drive(core, simulated, options);
   const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, planner);
   StudyResult result;
   result.planned_s = planned_s(robot, planner, command);
   const std::array<ScheduledCommand, 1> script{{{0.0, Phase::running, command}}};
   DriveScorer scorer;
-  drive_script(simulated, *controller, *plan, script, result.planned_s + kAfterwards_s, period_s, [&](const LoopMoment& moment) {
+  drive_script(simulated, drive, *plan, script, result.planned_s + kAfterwards_s, [&](const LoopMoment& moment) {
     scorer.take(moment);
     const Pose& pose = simulated.state().pose;
     if (std::hypot(pose.x_m - command.x_m, pose.y_m - command.y_m) > kSettled_m) {
@@ -56,12 +57,13 @@ StudyResult drive(const Robot& robot, const Motor& motor, Planner planner, const
   return result;
 }
 
-StudyResult one_case(const Robot& robot, const Motor& motor, const StudyCase& limits) {
+StudyResult one_case(const Robot& robot, const Motor& motor, const StudyCase& limits, const DriveOptions& options) {
   const bool bang_bang = std::isinf(limits.jerk_m_per_s3);
   Robot limited = robot;
   limited.acceleration_limit_m_per_s2 = limits.acceleration_m_per_s2;
   limited.braking_limit_m_per_s2 = limits.acceleration_m_per_s2;
   limited.jerk_limit_m_per_s3 = bang_bang ? robot.jerk_limit_m_per_s3 : limits.jerk_m_per_s3;
+  const robot_core::Config core = make_core_config(limited, motor.nominal, {});
   StudyResult sum;
   for (const double distance_m : kDistances_m) {
     for (int direction = 0; direction < kDirections; ++direction) {
@@ -69,7 +71,7 @@ StudyResult one_case(const Robot& robot, const Motor& motor, const StudyCase& li
       MotionCommand command;
       command.x_m = distance_m * std::cos(heading_rad);
       command.y_m = distance_m * std::sin(heading_rad);
-      const StudyResult each = drive(limited, motor, bang_bang ? Planner::bang_bang : Planner::jerk_limited, command);
+      const StudyResult each = drive_once(limited, motor, core, options, bang_bang ? Planner::bang_bang : Planner::jerk_limited, command);
       for (double StudyResult::*const mean :
            {&StudyResult::planned_s, &StudyResult::settled_s, &StudyResult::slip_share, &StudyResult::sliding_share,
             &StudyResult::tracking_rms_m, &StudyResult::overshoot_mean_m, &StudyResult::copper_J}) {
@@ -84,10 +86,11 @@ StudyResult one_case(const Robot& robot, const Motor& motor, const StudyCase& li
 
 }  // namespace
 
-std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, std::span<const StudyCase> cases, int threads,
-                                        const Progress& progress) {
+std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, std::span<const StudyCase> cases, const DriveOptions& drive,
+                                        int threads, const Progress& progress) {
   std::vector<StudyResult> results(cases.size());
-  in_parallel(cases.size(), threads, 0, cases.size(), progress, [&](std::size_t i) { results[i] = one_case(robot, motor, cases[i]); });
+  in_parallel(cases.size(), threads, 0, cases.size(), progress,
+              [&](std::size_t i) { results[i] = one_case(robot, motor, cases[i], drive); });
   return results;
 }
 

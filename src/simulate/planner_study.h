@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
+#include "simulate/core_drive.h"
 
 namespace heatsoak {
 
@@ -30,10 +31,10 @@ struct StudyResult {
 };
 inline constexpr double kSettled_m = 0.01;
 
-/// Drives of 0.5, 1 and 2 m in eight directions of the robot. The same for every number of threads.
+/// Drives of 0.5, 1 and 2 m in eight directions of the robot, without thermal guard. The same for every number of threads.
 /// Throws Failure (bad_input) that names what the files of robot or motor lack.
-std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, std::span<const StudyCase> cases, int threads,
-                                        const Progress& progress = {});
+std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, std::span<const StudyCase> cases, const DriveOptions& drive,
+                                        int threads, const Progress& progress = {});
 
 /// Cases around a robot's own limits: its acceleration, its grip and half as much again, each with twelve jerks from 3
 /// to 60 m/s³ and bang-bang. Where two of the three are within 5 % of each other, the robot's own stands for both.

@@ -3,6 +3,7 @@
 
 #include "motor/motor.h"
 #include "robot/plant.h"
+#include "robot/wheels.h"
 #include "thermal/ensemble.h"
 
 namespace heatsoak {
@@ -30,7 +31,7 @@ struct EnergyAccount {
   [[nodiscard]] double residual_J() const { return battery_J + external_J - heat_J() - kinetic_J; }
 };
 
-/// One motor per wheel, all alike. Starts at rest with a full battery, everything at ambient temperature.
+/// One motor per wheel, all alike. Starts at rest with a full battery, all motors at one temperature.
 /// R and K_t follow winding and stator (the magnets are taken to be as warm as the stator); both are computed by the
 /// motor's thermal network, which gets the means of the currents every kThermalPeriod_s.
 class SimulatedRobot {
@@ -38,14 +39,16 @@ class SimulatedRobot {
   static constexpr double kPeriod_s = 0.001;
   static constexpr double kThermalPeriod_s = 0.01;
 
-  /// Throws Failure (bad_input) that names what the robot's or the motor's file lacks.
-  SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C);
+  /// Motors start at `start_C`, or at ambient temperature where it is absent. Throws Failure (bad_input) that names what the robot's or
+  /// the motor's file lacks.
+  SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, double start_C = kAbsent);
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
   /// One period of the plant. `external` acts on the body from outside at the height of its centre of gravity, local axes.
   const PlantOutput& advance(const std::array<MotorCommand, kMostWheels>& command, const Wrench& external);
 
+  [[nodiscard]] double ambient_C() const { return ambient_C_; }
   [[nodiscard]] const PlantConfig& plant() const { return plant_; }
   [[nodiscard]] const PlantState& state() const { return state_; }
   [[nodiscard]] BodyVelocity velocity_global() const { return to_global(state_.velocity, state_.pose.yaw_rad); }
@@ -61,7 +64,20 @@ class SimulatedRobot {
  private:
   static constexpr std::size_t kWinding = 0;
   static constexpr std::size_t kStator = 1;
-  void book(const PlantOutput& out);
+  /// Sums of the plant's powers over all periods. Times kPeriod_s they are energies.
+  struct Sums {
+    Wheels copper_W = Wheels::Zero();
+    Wheels driver_W = Wheels::Zero();
+    Wheels motor_drag_W = Wheels::Zero();
+    Wheels gear_W = Wheels::Zero();
+    Wheels rolling_W = Wheels::Zero();
+    Wheels friction_W = Wheels::Zero();
+    Wheels slip_W = Wheels::Zero();
+    Wheels roller_W = Wheels::Zero();
+    double battery_loss_W = 0.0;
+    double external_W = 0.0;
+  };
+  void book();
   void warm_up();
 
   PlantConfig plant_;
@@ -69,15 +85,16 @@ class SimulatedRobot {
   PlantInput input_;
   PlantOutput output_;
   double ambient_C_;
-  EnergyAccount account_;
+  Sums sums_;
   Network network_;
   std::vector<Lanes> parameters_;
   EnsembleRun thermal_;  ///< a wheel per lane
   double longest_step_s_;
-  // Sums since the network was last advanced.
-  Lanes copper_J_ = Lanes::Zero();
-  Lanes speed_rad_ = Lanes::Zero();
-  Lanes speed_squared_rad2_per_s_ = Lanes::Zero();
+  OperatingPoint<Lanes> heating_;  ///< means over the last kThermalPeriod_s
+  // Sums over the periods since the network was last advanced.
+  Wheels copper_W_ = Wheels::Zero();
+  Wheels speed_rad_per_s_ = Wheels::Zero();
+  Wheels speed_squared_rad2_per_s2_ = Wheels::Zero();
   int periods_ = 0;
 };
 

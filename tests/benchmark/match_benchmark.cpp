@@ -1,10 +1,13 @@
 // A 40-minute match of one robot at 1 kHz, 2.4 million steps of four wheels: as the game's generator plays it (inverse
-// dynamics), and in the closed loop (controller and plant with slip, battery and warming motors).
+// dynamics), and in the closed loop (drive core and plant with slip, battery and warming motors); and where the time of the loop goes.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 
+#include "simulate/guarded_core.h"
 #include "simulate/match_run.h"
 #include "support/shipped.h"
 
@@ -53,14 +56,108 @@ void match_40_minutes_closed_loop(benchmark::State& state) {
   MatchValues values;
   const MatchInputs inputs = forty_minutes(values);
   const Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  const GuardedCore core(twente(), motor, GuardUse::off, {});
+  MatchRunOptions options;
+  options.drive = real_drive(twente(), 1);
   MatchRun run;
   for (auto _ : state) {
-    run = run_match(inputs, twente(), motor, {});
+    run = run_match(play_game(inputs, twente(), 1), twente(), motor, core.config(), options);
   }
   state.counters["length_s"] = run.score.time_s;
   state.counters["resident_MB"] = resident_MB();
 }
 BENCHMARK(match_40_minutes_closed_loop)->Unit(benchmark::kMillisecond);
+
+constexpr double kLoop_s = 60.0;
+
+/// A target every 1.5 s, so that most plans are cut short, as in play.
+std::vector<ScheduledCommand> restless() {
+  std::vector<ScheduledCommand> script;
+  for (int i = 0; 1.5 * i < kLoop_s; ++i) {
+    MotionCommand command;
+    command.x_m = 2.0 * std::sin(1.7 * i);
+    command.y_m = 1.5 * std::cos(2.9 * i);
+    command.yaw_rad = std::sin(0.6 * i);
+    script.push_back({1.5 * i, Phase::running, command});
+  }
+  return script;
+}
+
+/// What one run of the loop handed to the core and to the plant.
+struct Record {
+  std::vector<robot_core::Input> inputs;
+  std::vector<std::array<MotorCommand, kMostWheels>> commands;
+};
+
+double drive_loop(const Robot& robot, const Motor& motor, const robot_core::Config& config, Record* record) {
+  SimulatedRobot simulated(robot, motor, 25.0);
+  CoreDrive drive(config, simulated, real_drive(robot, 1));
+  const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, Planner::jerk_limited);
+  const auto start = std::chrono::steady_clock::now();
+  drive_script(simulated, drive, *plan, restless(), kLoop_s, [&](const LoopMoment& moment) {
+    if (record != nullptr) {
+      record->inputs.push_back(moment.drive->input());
+      record->commands.push_back(moment.drive->commands());
+    }
+  });
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double replay_core_s(const robot_core::Config& config, const Record& record) {
+  robot_core::State state{};
+  robot_core::start(config, state, {true, 25.0F});
+  const auto start = std::chrono::steady_clock::now();
+  for (const robot_core::Input& input : record.inputs) {
+    benchmark::DoNotOptimize(robot_core::step(config, state, input));
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double replay_plant_s(const Robot& robot, const Motor& motor, const Record& record, bool with_sensors) {
+  SimulatedRobot simulated(robot, motor, 25.0);
+  Sensing sensing(sensing_of(robot), simulated, SimulatedRobot::kPeriod_s, 1);
+  robot_core::Input input;
+  const auto start = std::chrono::steady_clock::now();
+  for (const std::array<MotorCommand, kMostWheels>& command : record.commands) {
+    const PlantOutput& out = simulated.advance(command, {});
+    if (with_sensors) {
+      sensing.follow(simulated, out);
+      sensing.sample(simulated, 25.0, input);
+      benchmark::DoNotOptimize(input);
+    }
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Of one core. The parts are the same run replayed part by part, because clocks inside the loop would cost as much as the parts; `rest` is
+/// planner, radio and the loop itself.
+void closed_loop_1kHz(benchmark::State& state) {
+  const Robot robot = twente();
+  const Motor motor = ecx_32();
+  const MotorGuard guard = make_guard(motor, robot, 25.0, 0);
+  const GuardedCore guarded(robot, motor, GuardUse::shadow, guard);
+  const GuardedCore bare(robot, motor, GuardUse::off, {});
+  double whole_s = 0.0;
+  for (auto _ : state) {
+    whole_s += drive_loop(robot, motor, guarded.config(), nullptr);
+  }
+  Record record;
+  drive_loop(robot, motor, guarded.config(), &record);
+  const auto steps = static_cast<double>(record.inputs.size());
+  const double whole_ns = 1e9 * whole_s / static_cast<double>(state.iterations()) / steps;
+  const double core_ns = 1e9 * replay_core_s(bare.config(), record) / steps;
+  const double guard_ns = 1e9 * replay_core_s(guarded.config(), record) / steps - core_ns;
+  const double plant_ns = 1e9 * replay_plant_s(robot, motor, record, false) / steps;
+  const double sensing_ns = 1e9 * replay_plant_s(robot, motor, record, true) / steps - plant_ns;
+  state.counters["steps_per_s"] = 1e9 / whole_ns;
+  state.counters["step_ns"] = whole_ns;
+  state.counters["plant_ns"] = plant_ns;
+  state.counters["core_ns"] = core_ns;
+  state.counters["guard_ns"] = guard_ns;
+  state.counters["sensing_ns"] = sensing_ns;
+  state.counters["rest_ns"] = whole_ns - plant_ns - core_ns - guard_ns - sensing_ns;
+}
+BENCHMARK(closed_loop_1kHz)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace heatsoak

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "cli/closed_loop_rank.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
 #include "cli/named_files.h"
@@ -18,6 +19,7 @@
 #include "cli/verdict_chart.h"
 #include "cli/verdict_words.h"
 #include "duty/duty.h"
+#include "duty/match/match_duty.h"
 #include "motor/conditions.h"
 #include "motor/motor.h"
 #include "report/chart.h"
@@ -35,6 +37,8 @@ struct Options {
   std::string plot;
   std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
+  bool is_closed_loop = false;
+  int games = 3;
 };
 
 /// A file whose name has commas is one motor.
@@ -213,16 +217,31 @@ ExitCode run(Options& options, Session& session) {
   if (motors.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", named.folders().motors.string()));
   }
+  const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
+  if (options.is_closed_loop && !match) {
+    throw Failure(ExitCode::bad_input, fmt::format("--closed-loop drives matches; {} is {}. Expected a duty of the shape match, or no "
+                                                   "--closed-loop",
+                                                   duty.id, duty.shape));
+  }
   options.evaluate.with_curves = !options.plot.empty();
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
   const std::vector<WheelDemand> draws = draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples),
                                                       options.evaluate.threads, progress_bar(fmt::format("playing draws of {}", duty.id)));
   options.evaluate.draws = draws;
-  const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
+  std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
+  std::vector<ClosedLoopRank> ranks;
+  if (options.is_closed_loop) {
+    const GameDriveOptions drive{options.games, options.evaluate.seed,   duty.ambient_C.value, GuardUse::shadow,
+                                 false,         options.evaluate.threads};
+    ranks = rank_closed_loop(drive_games(robot, match->inputs(), motors, drive, progress_bar("driving games")), results);
+  }
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
   session.say(report(results, robot, duty, wheels.front().duration_s(), options) + slip_text(wheels.front()) + silent_effects(motors));
+  if (options.is_closed_loop) {
+    session.say(closed_loop_text(ranks, options.games, options.evaluate.seed));
+  }
   if (!options.plot.empty()) {
     session.say(fmt::format("picture: {}\n", options.plot));
   }
@@ -232,9 +251,14 @@ ExitCode run(Options& options, Session& session) {
                                 {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
-  for (const MotorEvaluation& each : results) {
-    answer["motors"].push_back(json(each));
-    exceeded = exceeded || each.verdict == Verdict::fail || each.verdict == Verdict::infeasible;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    answer["motors"].push_back(json(results[i]));
+    Verdict verdict = results[i].verdict;
+    if (options.is_closed_loop) {
+      answer["motors"].back()["closed_loop"] = closed_loop_json(ranks[i], options.evaluate.seed);
+      verdict = ranks[i].verdict;
+    }
+    exceeded = exceeded || verdict == Verdict::fail || verdict == Verdict::infeasible;
   }
   session.answer(answer);
   return exceeded ? ExitCode::limit_exceeded : ExitCode::done;
@@ -261,7 +285,13 @@ Command evaluate_command() {
         app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
             ->check(whole_number(1'000'000))
             ->capture_default_str();
-        add_seed(app, options->evaluate.seed, "of the draws; same seed, same bytes");
+        app.add_flag("--closed-loop", options->is_closed_loop,
+                     "on a match: the drive core drives games with each motor, with slip, battery sag and real sensing; ranks by them, and "
+                     "exit 1 follows them");
+        app.add_option("--games", options->games, "of --closed-loop, with successive seeds")
+            ->check(CLI::Range(1, 1000))
+            ->capture_default_str();
+        add_seed(app, options->evaluate.seed, "of the draws and games; same seed, same bytes");
         app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")
             ->check(whole_number(1024))
             ->capture_default_str();

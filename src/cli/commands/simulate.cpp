@@ -35,6 +35,8 @@ struct Options {
   bool jerk_sweep = false;
   double every_s = 1.0;
   std::uint64_t seed = 1;
+  std::string guard = "shadow";
+  std::string sensing = "real";
   std::map<std::string, std::string> conditions;
 };
 
@@ -59,6 +61,11 @@ nlohmann::ordered_json balance_json(const Trace& trace) {
 ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor, const Duty& duty, Session& session) {
   if (options.planner != "jerk_limited") {
     throw Failure(ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", duty.id, duty.shape));
+  }
+  const Options usual;
+  if (options.guard != usual.guard || options.sensing != usual.sensing) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--guard and --sensing are for matches, which the drive core drives; {} is {}", duty.id, duty.shape));
   }
   constexpr double kMostRows = 5e6;  // some 1 GB
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
@@ -108,6 +115,8 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
   return result.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
 }
 
+GuardUse guard_use(const std::string& name) { return static_cast<GuardUse>(std::ranges::find(kGuardUses, name) - std::begin(kGuardUses)); }
+
 ExitCode run(const Options& options, Session& session) {
   if (options.duty.empty() != options.jerk_sweep) {
     throw Failure(ExitCode::bad_input, "expected one of --duty and --jerk-sweep (`heatsoak simulate --help` shows examples)");
@@ -133,7 +142,8 @@ ExitCode run(const Options& options, Session& session) {
     if (!options.out.empty()) {
       throw Failure(ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
     }
-    return sweep_jerk(robot, motor, options.plot, session);
+    const DriveOptions drive = options.sensing == "ideal" ? ideal_drive() : real_drive(robot, options.seed);
+    return sweep_jerk(robot, motor, drive, options.plot, session);
   }
   const Duty& duty = *duty_read;
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
@@ -148,7 +158,9 @@ ExitCode run(const Options& options, Session& session) {
   if (options.planner != "jerk_limited") {
     planners.push_back(Planner::bang_bang);
   }
-  return simulate_match({robot, motor, duty, match->inputs(), planners, options.seed, options.out, options.plot, options.every_s}, session);
+  return simulate_match({robot, motor, duty, match->inputs(), planners, options.seed, options.out, options.plot, options.every_s,
+                         guard_use(options.guard), options.sensing == "ideal"},
+                        session);
 }
 
 }  // namespace
@@ -178,7 +190,20 @@ Command simulate() {
             app.add_flag("--jerk-sweep", options->jerk_sweep,
                          "in place of a duty: short drives over the limit of the jerk against bang-bang; slip, time, precision, heat");
             add_picture(app, options->plot, "picture of temperatures and what makes them");
-            add_seed(app, options->seed, "of a generated match; same seed, same bytes");
+            app.add_option("--guard", options->guard,
+                           "of a match: the motor's thermal guard as `heatsoak derate` makes it. shadow: counts what it would limit and "
+                           "limits nothing; on: limits the currents")
+                ->check(CLI::IsMember({"off", "shadow", "on"}))
+                ->type_name("G")
+                ->capture_default_str();
+            app.add_option(
+                   "--sensing", options->sensing,
+                   "of a match or jerk sweep: real has encoder steps, gyro drift, radio packets that get lost and late, noisy poses; "
+                   "ideal has none of them")
+                ->check(CLI::IsMember({"ideal", "real"}))
+                ->type_name("S")
+                ->capture_default_str();
+            add_seed(app, options->seed, "of a generated match, sensors and radio; same seed, same bytes");
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
             session.add_data_option(app);

@@ -1,0 +1,29 @@
+// `evaluate --closed-loop`: the answer of games that the drive core has driven, beside the open-loop evaluation.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "select/evaluate.h"
+#include "simulate/game_drives.h"
+
+namespace heatsoak {
+
+struct ClosedLoopRank {
+  GameDrives drives;
+  double winding_limit_C = 0.0;
+  std::optional<double> stator_limit_C;
+  /// infeasible: some game was not driven (not_driven()) or the file lacks what motion needs; fail: the first game or more than half of
+  /// them exceed a limit; marginal: any other game does.
+  Verdict verdict = Verdict::infeasible;
+};
+
+/// Sorts `results` and what belongs to them in the same order: by the closed-loop verdict, then by the hottest winding's distance to its
+/// limit. `drives` has the motors of `results` in any order.
+std::vector<ClosedLoopRank> rank_closed_loop(std::vector<GameDrives> drives, std::vector<MotorEvaluation>& results);
+
+std::string closed_loop_text(const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed);
+nlohmann::ordered_json closed_loop_json(const ClosedLoopRank& rank, std::uint64_t seed);
+
+}  // namespace heatsoak

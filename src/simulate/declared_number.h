@@ -1,0 +1,37 @@
+// Numbers of a simulation that no robot file has: each declared once with unit, range and origin.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/figure.h"
+#include "base/parameter.h"
+
+namespace heatsoak {
+
+/// One number of a `Config`, which holds its default.
+template <class Config>
+struct DeclaredNumber {
+  ParameterSpec spec;  ///< its range is what a run accepts
+  double Config::*value = nullptr;
+  Origin origin = Origin::estimated;
+  Range plausible;  ///< where the true value of a robot of this league is expected
+  std::string_view derivation;
+};
+
+/// Throws Failure (bad_input) with every number of `config` that is outside of its declared range.
+void require_declared_ranges(std::span<const ParameterSpec> specs, std::span<const double> values);
+
+template <class Config>
+void require_declared_ranges(const Config& config, std::span<const DeclaredNumber<Config>> numbers) {
+  std::vector<ParameterSpec> specs;
+  std::vector<double> values;
+  for (const DeclaredNumber<Config>& each : numbers) {
+    specs.push_back(each.spec);
+    values.push_back(config.*each.value);
+  }
+  require_declared_ranges(specs, values);
+}
+
+}  // namespace heatsoak

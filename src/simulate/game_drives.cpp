@@ -1,0 +1,58 @@
+#include "simulate/game_drives.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+
+GameSpread GameDrives::spread(double DriveScore::*value) const {
+  GameSpread made;
+  if (games.empty()) {
+    return {kAbsent, kAbsent, kAbsent};
+  }
+  made.nominal = made.low = made.high = games.front().*value;
+  for (const DriveScore& each : games) {
+    made.low = std::min(made.low, each.*value);
+    made.high = std::max(made.high, each.*value);
+  }
+  return made;
+}
+
+std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& inputs, std::span<const Motor> motors,
+                                    const GameDriveOptions& options, const Progress& progress) {
+  const auto games = static_cast<std::size_t>(options.games);
+  const std::size_t all = games + motors.size() * (1 + games);
+  std::vector<Game> played(games);
+  in_parallel(games, options.threads, 0, all, progress, [&](std::size_t i) { played[i] = play_game(inputs, robot, options.seed + i); });
+  std::vector<GameDrives> drives(motors.size());
+  std::vector<MotorGuard> guards(motors.size());
+  in_parallel(motors.size(), options.threads, games, all, progress, [&](std::size_t i) {
+    drives[i].motor_id = motors[i].id;
+    if (std::isnan(motors[i].nominal.rotor_inertia_kg_m2)) {
+      drives[i].why_none = "the motor's file has no rotor_inertia: without it no acceleration of a wheel can be calculated";
+      return;
+    }
+    drives[i].games.resize(games);
+    if (options.guard != GuardUse::off) {
+      guards[i] = make_guard(motors[i], robot, options.ambient_C, options.threads);
+      drives[i].why_no_guard = guards[i].why_none;
+    }
+  });
+  in_parallel(motors.size() * games, options.threads, games + motors.size(), all, progress, [&](std::size_t job) {
+    const std::size_t motor = job / games;
+    const std::size_t game = job % games;
+    if (!drives[motor].why_none.empty()) {
+      return;
+    }
+    const GuardedCore core(robot, motors[motor], options.guard, guards[motor]);
+    MatchRunOptions run;
+    run.ambient_C = options.ambient_C;
+    run.drive = options.is_sensing_ideal ? ideal_drive() : real_drive(robot, options.seed + game);
+    drives[motor].games[game] = run_match(played[game], robot, motors[motor], core.config(), run).score;
+  });
+  return drives;
+}
+
+}  // namespace heatsoak

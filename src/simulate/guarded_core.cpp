@@ -1,0 +1,39 @@
+#include "simulate/guarded_core.h"
+
+#include <algorithm>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+
+MotorGuard make_guard(const Motor& motor, const Robot& robot, double ambient_C, int threads, const Progress& progress) {
+  DerateOptions options;
+  options.hottest_ambient_C = std::max(options.hottest_ambient_C, ambient_C);
+  options.coldest_ambient_C = std::min(options.coldest_ambient_C, ambient_C);
+  options.guarantee.threads = threads;
+  MotorGuard made;
+  try {
+    made.derating.emplace(derate(motor, robot, options, progress));
+    made.guard.emplace(*made.derating);
+  } catch (const Failure& failure) {
+    if (failure.code() != ExitCode::limit_exceeded && failure.code() != ExitCode::bad_input) {
+      throw;
+    }
+    made.why_none = failure.message();
+  }
+  return made;
+}
+
+GuardedCore::GuardedCore(const Robot& robot, const Motor& motor, GuardUse use, const MotorGuard& guard) {
+  const CoreOptions options = with_tolerance({}, motor);
+  if (use == GuardUse::off || !guard.guard) {
+    config_ = make_core_config(robot, motor.nominal, options);
+    return;
+  }
+  guard_.emplace(*guard.guard);
+  config_ = make_core_config(robot, motor, options, *guard.derating, *guard_);
+  config_.shadow_mode = use == GuardUse::shadow;
+  robot_core::complete(config_);
+}
+
+}  // namespace heatsoak

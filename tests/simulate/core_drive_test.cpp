@@ -1,0 +1,244 @@
+// The drive core in its place: what sensors, radio, friction parameters and guard do to the drive.
+#include "simulate/core_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "simulate/game_drives.h"
+#include "simulate/match_trace.h"
+#include "simulate/test_drive.h"
+#include "support/allocation_counter.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+namespace {
+
+using robot_core::Reason;
+
+ScheduledCommand go(double time_s, double x_m, double y_m, double yaw_rad) {
+  return {time_s, Phase::running, {.duration_s = 0.0, .stand = false, .x_m = x_m, .y_m = y_m, .yaw_rad = yaw_rad}};
+}
+std::vector<ScheduledCommand> there_and_back() { return {go(0.0, 1.2, 0.5, 0.8), go(2.5, 0.0, 0.0, 0.0)}; }
+constexpr double kThereAndBack_s = 5.0;
+
+struct Driven {
+  DriveScore score;
+  std::string csv;
+};
+
+Driven drive(const Robot& robot, const Motor& motor, const robot_core::Config& core, const DriveOptions& options, double start_C = 25.0,
+             const LoopObserver& observer = {}) {
+  SimulatedRobot simulated(robot, motor, 25.0, start_C);
+  CoreDrive core_drive(core, simulated, options);
+  const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, Planner::jerk_limited);
+  Driven driven;
+  DriveScorer scorer;
+  MatchRows rows(0.01, 25.0, {}, [&](const MatchRow& row) { append_csv(driven.csv, row, simulated.wheel_count(), 25.0, {}); });
+  drive_script(simulated, core_drive, *plan, there_and_back(), kThereAndBack_s, [&](const LoopMoment& moment) {
+    scorer.take(moment);
+    rows.take(moment);
+    if (observer) {
+      observer(moment);
+    }
+  });
+  driven.score = scorer.finish();
+  return driven;
+}
+
+robot_core::Config core_of(const Robot& robot, const Motor& motor) { return make_core_config(robot, motor.nominal, {}); }
+
+// de/dt = (v_command − v) − k·e keeps the error e of the position below the largest error of the velocity over the gain k. With exact
+// sensors, slip is most of it: encoders do not see that wheels creep.
+TEST(CoreDrive, follows_the_plan_with_exact_sensors) {
+  const Robot robot = twente();
+  const robot_core::Config core = core_of(robot, ecx_32());
+  double error_m_per_s = 0.0;
+  double slip_m_per_s = 0.0;
+  const auto see = [&](const LoopMoment& moment) {
+    const BodyVelocity& now = moment.robot->state().velocity;
+    const BodyVelocity rolled = body_velocity(moment.robot->plant().body.kinematics, moment.robot->state().wheel_speed_rad_per_s);
+    const robot_core::Vector3& asked = moment.drive->input().command.velocity;
+    slip_m_per_s = std::max(slip_m_per_s, std::hypot(rolled.x_m_per_s - now.x_m_per_s, rolled.y_m_per_s - now.y_m_per_s));
+    error_m_per_s =
+        std::max(error_m_per_s, std::hypot(static_cast<double>(asked.x) - now.x_m_per_s, static_cast<double>(asked.y) - now.y_m_per_s));
+  };
+  const DriveScore exact = drive(robot, ecx_32(), core, ideal_drive(), 25.0, see).score;
+  EXPECT_LT(exact.tracking_most_m, error_m_per_s / ideal_radio().position_gain_per_s);
+  EXPECT_GT(slip_m_per_s, 0.5 * error_m_per_s);
+  EXPECT_LT(exact.tracking_most_m, 0.01 * 1.3);  // of the way from stop to stop
+  EXPECT_EQ(exact.fault_s, 0.0);
+  const DriveScore real = drive(robot, ecx_32(), core, real_drive(robot, 1)).score;
+  EXPECT_GT(real.tracking_rms_m, exact.tracking_rms_m);
+  EXPECT_LT(real.tracking_rms_m, 4.0 * exact.tracking_rms_m);  // half the gain, and a delay of about half of its time constant
+  EXPECT_EQ(real.fault_s, 0.0);
+}
+
+// Without it, friction has to be found by the wheels' integrators; at low speed it is most of the voltage.
+TEST(CoreDrive, feed_forward_of_friction_helps_at_low_speed) {
+  const robot_core::Config core = core_of(twente(), ecx_32());
+  const DriveOptions options = without_position_feedback(real_drive(twente(), 3));
+  for (const double direction_rad : {0.0, 0.5, std::numbers::pi / 2.0, 2.5}) {
+    StraightDrive slow;
+    slow.direction_rad = direction_rad;
+    slow.speed_m_per_s = 0.2;
+    slow.duration_s = 1.5;
+    const DrivenLine with = drive_straight(twente(), ecx_32(), core, options, slow);
+    const DrivenLine without = drive_straight(twente(), ecx_32(), with_friction_factor(core, 0.0), options, slow);
+    EXPECT_LT(with.speed_error_rms_m_per_s, 0.7 * without.speed_error_rms_m_per_s) << direction_rad;
+    EXPECT_LT(with.distance_error_m, without.distance_error_m) << direction_rad;
+  }
+}
+
+// Straight ahead, friction at the front right wheel turns the robot to the right and pulls it there: the gyro brings the yaw rate back to
+// zero, not the angle that was lost, until the wheel's integrator has found the friction.
+TEST(CoreDrive, a_dirty_wheel_pulls_the_robot_to_its_side) {
+  const robot_core::Config core = core_of(twente(), ecx_32());
+  const DriveOptions options = without_position_feedback(ideal_drive());
+  StraightDrive slow;
+  slow.speed_m_per_s = 0.2;
+  slow.duration_s = 1.5;
+  const DrivenLine clean = drive_straight(twente(), ecx_32(), core, options, slow);
+  const DrivenLine right = drive_straight(with_dirty_wheel(twente(), 0, 3.0), ecx_32(), core, options, slow);
+  const DrivenLine left = drive_straight(with_dirty_wheel(twente(), 1, 3.0), ecx_32(), core, options, slow);
+  const double clean_m = std::abs(clean.moments.back().pose.y_m);
+  EXPECT_LT(right.moments.back().pose.y_m, -10.0 * clean_m);
+  EXPECT_GT(left.moments.back().pose.y_m, 10.0 * clean_m);
+  EXPECT_LT(right.yaw_error_rad, -10.0 * std::abs(clean.yaw_error_rad));
+  EXPECT_GT(left.yaw_error_rad, 10.0 * std::abs(clean.yaw_error_rad));
+  // A curve for all wheels and the same curve for each wheel are one.
+  const DrivenLine same = drive_straight(with_dirty_wheel(twente(), 0, 1.0), ecx_32(), core, options, slow);
+  EXPECT_NEAR(same.moments.back().pose.x_m, clean.moments.back().pose.x_m, 1e-9);
+}
+
+TEST(CoreDrive, same_seed_same_bytes) {
+  const robot_core::Config core = core_of(twente(), ecx_32());
+  const std::string once = drive(twente(), ecx_32(), core, real_drive(twente(), 5)).csv;
+  EXPECT_EQ(once, drive(twente(), ecx_32(), core, real_drive(twente(), 5)).csv);
+  EXPECT_NE(once, drive(twente(), ecx_32(), core, real_drive(twente(), 6)).csv);
+}
+
+// A packet per second: the robot drives for the command's timeout, brakes to a stand and opens its bridges.
+TEST(CoreDrive, lost_packets_bring_the_robot_to_a_stand) {
+  const robot_core::Config core = core_of(twente(), ecx_32());
+  DriveOptions options = ideal_drive();
+  options.radio.packet_rate_Hz = 1.0;
+  StraightDrive line;
+  line.speed_m_per_s = 0.6;
+  line.duration_s = 2.0;
+  const DrivenLine driven = drive_straight(twente(), ecx_32(), core, options, line);
+  const auto speed_m_per_s = [&](double time_s) {
+    const DriveMoment& moment = driven.moments.at(static_cast<std::size_t>(std::lround(1e3 * time_s)) - 1);
+    return std::hypot(moment.velocity.x_m_per_s, moment.velocity.y_m_per_s);
+  };
+  // The first packet was sent when the plan stood.
+  EXPECT_LT(speed_m_per_s(0.9), 0.01);
+  const double timeout_s = static_cast<double>(core.command_timeout_s);
+  EXPECT_GT(speed_m_per_s(1.0 + 0.95 * timeout_s), 0.3);
+  EXPECT_LT(speed_m_per_s(1.0 + timeout_s + 2.0 * line.speed_m_per_s / static_cast<double>(core.acceleration_limit_m_per_s2)), 0.01);
+  const DriveMoment& last = driven.moments.back();
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(last.current_A[i], 0.0);
+    EXPECT_NEAR(last.wheel_speed_rad_per_s[i], 0.0, 0.1);
+  }
+}
+
+// The packet of time 0 has the plan's first velocity; voltages that follow from the samples of one period act in the next.
+TEST(CoreDrive, voltages_act_one_period_late) {
+  const robot_core::Config core = core_of(twente(), ecx_32());
+  std::vector<double> starts_s;
+  for (const double delay_periods_count : {0.0, 1.0}) {
+    DriveOptions options = ideal_drive();
+    options.sensing.delay_periods_count = delay_periods_count;
+    const DrivenLine driven = drive_straight(twente(), ecx_32(), core, options, {});
+    const auto first = std::ranges::find_if(driven.moments, [](const DriveMoment& moment) { return moment.current_A[0] != 0.0; });
+    starts_s.push_back(first->time_s);
+  }
+  EXPECT_NEAR(starts_s[1] - starts_s[0], SimulatedRobot::kPeriod_s, 1e-9);
+}
+
+TEST(CoreDrive, asks_for_no_memory) {
+  if (!allocations_are_counted()) {
+    GTEST_SKIP() << "a sanitizer brings its own malloc";
+  }
+  SimulatedRobot simulated(twente(), ecx_32(), 25.0);
+  CoreDrive core_drive(core_of(twente(), ecx_32()), simulated, real_drive(twente(), 1));
+  const std::unique_ptr<Follower> plan = ideal_tracking(twente(), 1.0, Planner::jerk_limited);
+  const std::vector<ScheduledCommand> script = there_and_back();
+  DriveScorer scorer;
+  const LoopObserver observer = [&](const LoopMoment& moment) { scorer.take(moment); };
+  const long before = allocation_count();
+  drive_script(simulated, core_drive, *plan, script, kThereAndBack_s, observer);
+  EXPECT_EQ(allocation_count(), before);
+}
+
+// In shadow mode nothing changes but what the guard counts; hot motors are limited when it is on, and stay within their limit.
+TEST(GuardedCore, shadow_counts_and_on_limits) {
+  const Motor motor = ecx_32();
+  const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
+  ASSERT_TRUE(guard.guard) << guard.why_none;
+  const double hot_C = motor.nominal.winding_limit_C - 10.0;
+  const GuardedCore off(twente(), motor, GuardUse::off, guard);
+  const GuardedCore shadow(twente(), motor, GuardUse::shadow, guard);
+  const GuardedCore on(twente(), motor, GuardUse::on, guard);
+  const DriveOptions options = real_drive(twente(), 1);
+  const DriveScore without = drive(twente(), motor, off.config(), options, hot_C).score;
+  const DriveScore counted = drive(twente(), motor, shadow.config(), options, hot_C).score;
+  const DriveScore limited = drive(twente(), motor, on.config(), options, hot_C).score;
+  EXPECT_EQ(without.guard_limited_s, 0.0);
+  EXPECT_EQ(counted.winding_peak_C, without.winding_peak_C);
+  EXPECT_EQ(counted.distance_m, without.distance_m);
+  EXPECT_GT(counted.guard_limited_s, 0.5);
+  EXPECT_GT(limited.guard_limited_s, 0.5);
+  EXPECT_LT(limited.winding_peak_C, without.winding_peak_C);
+  EXPECT_LT(limited.winding_peak_C, motor.nominal.winding_limit_C);
+  EXPECT_LT(limited.distance_m, without.distance_m);
+}
+
+// Winding and stator so badly coupled that iron loss alone is too much: derate() refuses, and the core drives without guard.
+TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
+  Motor motor = ecx_32();
+  Figure& figure = motor.figures.at("winding_limit");
+  figure.value = 41.0;
+  refresh_values(motor);
+  const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
+  EXPECT_FALSE(guard.guard);
+  EXPECT_FALSE(guard.why_none.empty());
+  const GuardedCore core(twente(), motor, GuardUse::on, guard);
+  EXPECT_EQ(core.config().guard, nullptr);
+}
+
+TEST(GameDrives, do_not_depend_on_threads) {
+  const Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
+  const MatchInputs& inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();
+  std::vector<Motor> motors{ecx_32(), shipped_motor("nanotec_df45l024048_a2")};
+  motors.push_back(ecx_32());
+  motors.back().nominal.rotor_inertia_kg_m2 = kAbsent;
+  GameDriveOptions options;
+  options.games = 2;
+  options.guard = GuardUse::off;
+  options.threads = 1;
+  const std::vector<GameDrives> one = drive_games(twente(), inputs, motors, options);
+  options.threads = 2;
+  const std::vector<GameDrives> two = drive_games(twente(), inputs, motors, options);
+  ASSERT_EQ(one.size(), 3U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(one[i].motor_id, motors[i].id);
+    ASSERT_EQ(one[i].games.size(), 2U);
+    for (std::size_t game = 0; game < 2; ++game) {
+      EXPECT_EQ(one[i].games[game].winding_peak_C, two[i].games[game].winding_peak_C);
+      EXPECT_EQ(one[i].games[game].tracking_rms_m, two[i].games[game].tracking_rms_m);
+    }
+    const GameSpread spread = one[i].spread(&DriveScore::winding_peak_C);
+    EXPECT_LT(spread.low, spread.high);
+    EXPECT_EQ(spread.nominal, one[i].games.front().winding_peak_C);
+  }
+  EXPECT_TRUE(one[2].games.empty());
+  EXPECT_FALSE(one[2].why_none.empty());
+}
+
+}  // namespace
+}  // namespace heatsoak

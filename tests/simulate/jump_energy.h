@@ -1,0 +1,40 @@
+// What the energy account cannot resolve of voltages that jump.
+#pragma once
+
+#include <algorithm>
+
+#include "motor/motor.h"
+#include "robot/robot.h"
+#include "robot/traction.h"
+#include "simulate/simulated_robot.h"
+
+namespace heatsoak {
+
+/// A jump of the voltage starts a motion of the wheel against its contact of the time constant J/(c·r²), c = μ·N/slip speed the contact's
+/// slope: 0.4 ms for RoboTeam Twente, less than the plant's period T. The plant's method damps what it cannot follow; the power that the
+/// account misses over that period is of the order of the jump of the torque times that of the wheel's speed, ΔM·ΔM/(c·r²).
+class JumpEnergy {
+ public:
+  JumpEnergy(const Robot& robot, const Motor& motor)
+      : torque_per_V_(motor.nominal.torque_constant_Nm_per_A * robot.gear_ratio / motor.nominal.terminal_resistance_ohm),
+        slope_Nm_s_per_rad_(robot.traction_ratio * robot.mass_kg * kGravity_m_per_s2 / static_cast<double>(robot.wheel_axis_rad.size()) /
+                            robot.slip_speed_m_per_s * robot.wheel_radius_m * robot.wheel_radius_m) {}
+
+  void take(const PlantOutput& out) {
+    for (int i = 0; i < kMostWheels; ++i) {
+      const double jump_Nm = torque_per_V_ * (out.terminal_V[i] - last_V_[i]);
+      sum_J_ += jump_Nm * jump_Nm / slope_Nm_s_per_rad_ * SimulatedRobot::kPeriod_s;
+    }
+    last_V_ = out.terminal_V;
+  }
+  /// Of all jumps so far.
+  [[nodiscard]] double unresolved_J() const { return sum_J_; }
+
+ private:
+  double torque_per_V_;
+  double slope_Nm_s_per_rad_;
+  PerWheel last_V_{};
+  double sum_J_ = 0.0;
+};
+
+}  // namespace heatsoak

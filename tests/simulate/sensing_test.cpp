@@ -1,0 +1,259 @@
+// Sensors and radio link against their analytic statistics.
+#include "simulate/sensing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "simulate/radio.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kPeriod_s = SimulatedRobot::kPeriod_s;
+
+struct Statistics {
+  double mean = 0.0;
+  double sd = 0.0;
+};
+
+Statistics statistics_of(const std::vector<double>& values) {
+  Statistics made;
+  for (const double value : values) {
+    made.mean += value / static_cast<double>(values.size());
+  }
+  for (const double value : values) {
+    made.sd += (value - made.mean) * (value - made.mean) / static_cast<double>(values.size());
+  }
+  made.sd = std::sqrt(made.sd);
+  return made;
+}
+
+/// All errors off but those that a test switches on.
+SensingConfig silent() {
+  SensingConfig config = ideal_sensing();
+  config.has_motor_current = config.has_stator = config.has_ambient = false;
+  return config;
+}
+
+TEST(Noise, is_normal_to_the_fourth_moment) {
+  Random random(7, 0);
+  constexpr int kDraws = 400'000;
+  double sum = 0.0, square = 0.0, fourth = 0.0, largest = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    const double x = noise(random);
+    sum += x;
+    square += x * x;
+    fourth += x * x * x * x;
+    largest = std::max(largest, std::abs(x));
+  }
+  EXPECT_NEAR(sum / kDraws, 0.0, 4.0 / std::sqrt(kDraws));
+  EXPECT_NEAR(square / kDraws, 1.0, 4.0 * std::sqrt(2.0 / kDraws));
+  EXPECT_NEAR(fourth / kDraws, 2.7, 0.03);  // 3 − 6/5/4 of four uniform numbers
+  EXPECT_LE(largest, 2.0 * std::sqrt(3.0) + 1e-9);
+}
+
+// The count of a period differs from the true angle by the difference of two roundings. At a speed of n + f counts per period it is n or
+// n + 1, standard deviation q·√(f·(1 − f)) of the resolution q = 2π/(N·T); over all speeds ∫f·(1 − f)df = 1/6 makes it q/√6.
+TEST(Sensing, encoder_noise_is_that_of_quantisation) {
+  for (const double gear_ratio : {1.0, 3.0}) {
+    Robot robot = twente();
+    robot.gear_ratio = gear_ratio;
+    SimulatedRobot simulated(robot, ecx_32(), 25.0);
+    SensingConfig config = silent();
+    config.encoder_turn_count = 8192.0;
+    Sensing sensing(config, simulated, kPeriod_s, 3);
+    std::array<MotorCommand, kMostWheels> command{};
+    std::vector<double> errors_rad_per_s;
+    PerWheel before = simulated.state().wheel_speed_rad_per_s;
+    for (int i = 0; i < 4000; ++i) {
+      command.fill({MotorCommand::Kind::voltage, 2.0 + 0.002 * i});
+      const PlantOutput& out = simulated.advance(command, {});
+      sensing.follow(simulated, out);
+      robot_core::Input input;
+      sensing.sample(simulated, 25.0, input);
+      const PerWheel& now = simulated.state().wheel_speed_rad_per_s;
+      for (int wheel = 0; wheel < 4; ++wheel) {
+        errors_rad_per_s.push_back(static_cast<double>(input.wheel_speed_rad_per_s[wheel]) - 0.5 * (before[wheel] + now[wheel]));
+      }
+      before = now;
+    }
+    const double resolution_rad_per_s = 2.0 * std::numbers::pi / (8192.0 * gear_ratio * kPeriod_s);
+    const Statistics errors = statistics_of(errors_rad_per_s);
+    EXPECT_NEAR(errors.sd, resolution_rad_per_s / std::sqrt(6.0), 0.03 * resolution_rad_per_s) << gear_ratio;
+    EXPECT_NEAR(errors.mean, 0.0, 1e-3 * resolution_rad_per_s);  // no count is ever lost
+    EXPECT_LE(std::ranges::max(errors_rad_per_s), resolution_rad_per_s * (1.0 + 1e-4));
+  }
+}
+
+TEST(Sensing, ideal_sensors_show_the_truth) {
+  SimulatedRobot simulated(twente(), ecx_32(), 31.0, 47.0);
+  Sensing sensing(ideal_sensing(), simulated, kPeriod_s, 3);
+  const std::array<MotorCommand, kMostWheels> command{
+      {{MotorCommand::Kind::voltage, 2.0}, {MotorCommand::Kind::voltage, 4.0}, {MotorCommand::Kind::voltage, -1.0}}};
+  for (int i = 0; i < 50; ++i) {
+    const PlantOutput& out = simulated.advance(command, {});
+    sensing.follow(simulated, out);
+    robot_core::Input input;
+    sensing.sample(simulated, 31.0, input);
+    for (int wheel = 0; wheel < 4; ++wheel) {
+      EXPECT_FLOAT_EQ(input.wheel_speed_rad_per_s[wheel], static_cast<float>(simulated.state().wheel_speed_rad_per_s[wheel]));
+      EXPECT_FLOAT_EQ(input.motor_current_A[wheel], static_cast<float>(out.current_A[wheel]));
+      EXPECT_FLOAT_EQ(input.stator_C[wheel], static_cast<float>(simulated.stator_C(wheel)));
+    }
+    EXPECT_FLOAT_EQ(input.yaw_rate_rad_per_s, static_cast<float>(simulated.state().velocity.yaw_rad_per_s));
+    EXPECT_FLOAT_EQ(input.battery_V, static_cast<float>(out.battery_V));
+    EXPECT_FLOAT_EQ(input.ambient_C, 31.0F);
+  }
+  EXPECT_GT(simulated.stator_C(3), 46.0);
+}
+
+/// Yaw rates of a standing robot.
+std::vector<double> gyro_at_rest(const SensingConfig& config, std::uint64_t seed, int samples) {
+  const SimulatedRobot simulated(twente(), ecx_32(), 25.0);
+  Sensing sensing(config, simulated, kPeriod_s, seed);
+  std::vector<double> seen_rad_per_s;
+  for (int i = 0; i < samples; ++i) {
+    robot_core::Input input;
+    sensing.sample(simulated, 25.0, input);
+    seen_rad_per_s.push_back(static_cast<double>(input.yaw_rate_rad_per_s));
+  }
+  return seen_rad_per_s;
+}
+
+TEST(Sensing, gyro_noise_bias_and_drift) {
+  SensingConfig config = silent();
+  config.gyro_noise_rad_per_s = 0.003;
+  const Statistics noisy = statistics_of(gyro_at_rest(config, 5, 20'000));
+  EXPECT_NEAR(noisy.sd, 0.003, 0.03 * 0.003);
+  EXPECT_NEAR(noisy.mean, 0.0, 4.0 * 0.003 / std::sqrt(20'000.0));
+  config.gyro_step_rad_per_s = 0.002;  // white as well as uniform errors of the rounding add up
+  EXPECT_NEAR(statistics_of(gyro_at_rest(config, 5, 20'000)).sd, std::sqrt(0.003 * 0.003 + 0.002 * 0.002 / 12.0), 1e-4);
+  SensingConfig slow = silent();
+  slow.gyro_bias_rad_per_s = 0.002;
+  slow.gyro_drift_rad_per_s_per_root_s = 0.01;
+  std::vector<double> first, walked;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const std::vector<double> seen_rad_per_s = gyro_at_rest(slow, seed, 2000);
+    first.push_back(seen_rad_per_s.front());
+    walked.push_back(seen_rad_per_s.back() - seen_rad_per_s.front());
+  }
+  EXPECT_NEAR(statistics_of(first).sd, 0.002, 4.0 * 0.002 / std::sqrt(600.0));
+  EXPECT_NEAR(statistics_of(walked).sd, 0.01 * std::sqrt(2.0), 4.0 * 0.01 * std::sqrt(2.0) / std::sqrt(600.0));
+}
+
+TEST(Sensing, what_is_not_fitted_has_no_sample) {
+  const SimulatedRobot simulated(twente(), ecx_32(), 25.0);
+  Sensing sensing(sensing_of(twente()), simulated, kPeriod_s, 1);
+  robot_core::Input input;
+  sensing.sample(simulated, 25.0, input);
+  for (int wheel = 0; wheel < 4; ++wheel) {
+    EXPECT_TRUE(std::isnan(input.motor_current_A[wheel]));  // Twente's drivers have no current limit
+    EXPECT_TRUE(std::isnan(input.stator_C[wheel]));
+  }
+  EXPECT_TRUE(std::isnan(input.ambient_C));
+  EXPECT_TRUE(sensing_of(shipped_robot("tigers_v2020")).has_motor_current);
+}
+
+TEST(Sensing, defaults_are_plausible_and_ranges_are_kept) {
+  for (const DeclaredNumber<SensingConfig>& each : sensing_numbers()) {
+    const double value = SensingConfig{}.*each.value;
+    EXPECT_TRUE(each.plausible.contains(value)) << each.spec.key;
+    EXPECT_FALSE(each.derivation.empty()) << each.spec.key;
+  }
+  for (const DeclaredNumber<RadioConfig>& each : radio_numbers()) {
+    EXPECT_TRUE(each.plausible.contains(RadioConfig{}.*each.value)) << each.spec.key;
+    EXPECT_FALSE(each.derivation.empty()) << each.spec.key;
+  }
+  SensingConfig config;
+  config.encoder_turn_count = -1.0;
+  config.gyro_noise_rad_per_s = kAbsent;
+  try {
+    require_declared_ranges(config, sensing_numbers());
+    FAIL();
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_EQ(failure.diagnostics().size(), 2U);
+  }
+}
+
+TEST(PacketLoss, has_its_share_and_its_bursts) {
+  for (const auto& [share, burst_count] : {std::pair(0.01, 2.0), std::pair(0.2, 1.5), std::pair(0.3, 10.0)}) {
+    PacketLoss loss(share, burst_count);
+    Random random(11, 0);
+    constexpr int kPackets = 1'000'000;
+    int lost = 0, bursts = 0;
+    bool arrived = true;
+    for (int i = 0; i < kPackets; ++i) {
+      const bool arrives = loss.arrives(random);
+      lost += arrives ? 0 : 1;
+      bursts += !arrives && arrived ? 1 : 0;
+      arrived = arrives;
+    }
+    // Bursts are geometric: the variance of a sum over independent bursts, with a margin of four standard deviations.
+    const double expected_bursts = kPackets * share / burst_count;
+    const double share_sd = share * std::sqrt(2.0 / expected_bursts);
+    EXPECT_NEAR(static_cast<double>(lost) / kPackets, share, 4.0 * share_sd);
+    EXPECT_NEAR(static_cast<double>(lost) / bursts, burst_count, 4.0 * burst_count / std::sqrt(expected_bursts));
+  }
+}
+
+/// A plan that moves and turns evenly.
+class Even final : public Follower {
+ public:
+  void take(const MotionCommand& command) override { static_cast<void>(command); }
+  void advance(double step_s) override { time_s_ += step_s; }
+  [[nodiscard]] Pose pose() const override {
+    return {velocity.x_m_per_s * time_s_, velocity.y_m_per_s * time_s_, velocity.yaw_rad_per_s * time_s_};
+  }
+  [[nodiscard]] BodyVelocity velocity_global() const override { return velocity; }
+  [[nodiscard]] BodyAcceleration acceleration_global() const override { return {}; }
+  [[nodiscard]] bool at_rest() const override { return false; }
+
+  BodyVelocity velocity{1.0, 0.5, 2.0};
+
+ private:
+  double time_s_ = 0.0;
+};
+
+// A robot that follows the plan at a fixed distance behind gets the plan's velocity and the gain times that distance, turned to where
+// it looks when the packet arrives: latencies make no error. In a duel the push's direction has push_speed in place of the correction.
+TEST(OffBoard, commands_the_plan_and_corrects_the_distance) {
+  RadioConfig config = radio_of(twente());
+  EXPECT_EQ(config.packet_rate_Hz, 60.0);
+  EXPECT_EQ(radio_of(shipped_robot("tigers_v2020")).packet_rate_Hz, 100.0);
+  config.loss_share = config.vision_noise_m = config.vision_noise_rad = 0.0;
+  const Pose behind{0.02, -0.01, 0.05};
+  for (const double push_N : {0.0, 3.0}) {
+    OffBoard off_board(config, 1);
+    Even plan;
+    const double x_m_per_s = push_N > 0.0 ? config.push_speed_m_per_s : config.position_gain_per_s * behind.x_m;
+    int received = 0;
+    for (int i = 0; i < 1000; ++i, plan.advance(kPeriod_s)) {
+      const Pose planned = plan.pose();
+      const Pose truth{planned.x_m - behind.x_m, planned.y_m - behind.y_m, planned.yaw_rad - behind.yaw_rad};
+      const robot_core::Command* const command = off_board.advance(i * kPeriod_s, plan, truth, {push_N, 0.0, 0.0});
+      if (command == nullptr || i < 100) {
+        continue;
+      }
+      ++received;
+      const BodyVelocity expected = to_local(
+          BodyVelocity{1.0 + x_m_per_s, 0.5 + config.position_gain_per_s * behind.y_m, 2.0 + config.heading_gain_per_s * behind.yaw_rad},
+          truth.yaw_rad);
+      EXPECT_NEAR(static_cast<double>(command->velocity.x), expected.x_m_per_s, 1e-4);
+      EXPECT_NEAR(static_cast<double>(command->velocity.y), expected.y_m_per_s, 1e-4);
+      EXPECT_NEAR(static_cast<double>(command->velocity.yaw), expected.yaw_rad_per_s, 1e-4);
+      EXPECT_NEAR(static_cast<double>(command->push.x), push_N * std::cos(truth.yaw_rad), 1e-4);
+    }
+    EXPECT_NEAR(received, 54, 1);
+    EXPECT_EQ(off_board.sent(), 60);
+    EXPECT_EQ(off_board.lost(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
