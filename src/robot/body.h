@@ -31,23 +31,23 @@ BodyConfig make_body(const Robot& robot, const MotorValues& motor);
 Wrench wrench_of_acceleration(const BodyConfig& body, double yaw_rad_per_s, const BodyAcceleration& acceleration);
 /// And back.
 inline BodyAcceleration acceleration_of_wrench(const BodyConfig& body, double yaw_rad_per_s, const Wrench& wrench) {
-  const double c_x = body.weight.center_of_gravity_x_m;
-  const double c_y = body.weight.center_of_gravity_y_m;
-  const double square = yaw_rad_per_s * yaw_rad_per_s;
-  const double yaw_rad_per_s2 = (wrench.yaw_Nm - c_x * wrench.y_N + c_y * wrench.x_N) / body.yaw_inertia_kg_m2;
-  return {wrench.x_N / body.weight.mass_kg + yaw_rad_per_s2 * c_y + square * c_x,
-          wrench.y_N / body.weight.mass_kg - yaw_rad_per_s2 * c_x + square * c_y, yaw_rad_per_s2};
+  const double offset_x_m = body.weight.center_of_gravity_x_m;
+  const double offset_y_m = body.weight.center_of_gravity_y_m;
+  const double square_rad2_per_s2 = yaw_rad_per_s * yaw_rad_per_s;
+  const double yaw_rad_per_s2 = (wrench.yaw_Nm - offset_x_m * wrench.y_N + offset_y_m * wrench.x_N) / body.yaw_inertia_kg_m2;
+  return {wrench.x_N / body.weight.mass_kg + yaw_rad_per_s2 * offset_y_m + square_rad2_per_s2 * offset_x_m,
+          wrench.y_N / body.weight.mass_kg - yaw_rad_per_s2 * offset_x_m + square_rad2_per_s2 * offset_y_m, yaw_rad_per_s2};
 }
 
 /// ½·m·v² of the centre of gravity + ½·I·ω² + Σ ½·J·ω_i².
 double kinetic_energy_J(const BodyConfig& body, const BodyVelocity& local, const PerWheel& wheel_speed_rad_per_s);
 
-/// Loss torque as a part of |torque|, with the sign of the speed: `driving_part` if torque and speed have the same sign,
-/// `braking_part` otherwise. `sign` is smooth_sign() of the speed. S is double or Wheels.
+/// Loss torque as a part of |torque|, with the sign of the speed: `driving_ratio` if torque and speed have the same sign,
+/// `braking_ratio` otherwise. `sign` is smooth_sign() of the speed. S is double or Wheels.
 template <class S>
-S loss_torque_Nm(double driving_part, double braking_part, const S& torque_Nm, const S& sign) {
+S loss_torque_Nm(double driving_ratio, double braking_ratio, const S& torque_Nm, const S& sign) {
   using std::abs;
-  return 0.5 * (driving_part + braking_part) * abs(torque_Nm) * sign + 0.5 * (driving_part - braking_part) * torque_Nm * abs(sign);
+  return 0.5 * (driving_ratio + braking_ratio) * abs(torque_Nm) * sign + 0.5 * (driving_ratio - braking_ratio) * torque_Nm * abs(sign);
 }
 
 /// Torque that a transmission takes from the wheel besides what it hands on, signed like `speed`: it turns against

@@ -78,7 +78,7 @@ struct DriverDemands {
   Wheels current_limit_A;  ///< 0 if open
 };
 inline DriverDemands driver_demands(const DriverConfig& driver, const std::array<MotorCommand, kMostWheels>& command, int wheel_count) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+  constexpr double kNone_V = std::numeric_limits<double>::infinity();
   const auto is = [&](int i, MotorCommand::Kind kind) { return i < wheel_count && command[i].kind == kind; };
   const auto is_open = [&](int i) { return i >= wheel_count || command[i].kind == MotorCommand::Kind::open; };
   // Wheels are built in registers: a pair that was stored one number at a time is slow to load.
@@ -86,8 +86,8 @@ inline DriverDemands driver_demands(const DriverConfig& driver, const std::array
   return {of_all([&](int i) { return is(i, MotorCommand::Kind::voltage) ? command[i].value : 0.0; }),
           of_all([&](int i) { return is(i, MotorCommand::Kind::current) ? command[i].value : 0.0; }),
           of_all([&](int i) { return is(i, MotorCommand::Kind::voltage) ? 1.0 : 0.0; }),
-          of_all([&](int i) { return is_open(i) ? kNone : driver.voltage_limit_V; }),
-          of_all([&](int i) { return is_open(i) ? kNone : 0.0; }),
+          of_all([&](int i) { return is_open(i) ? kNone_V : driver.voltage_limit_V; }),
+          of_all([&](int i) { return is_open(i) ? kNone_V : 0.0; }),
           of_all([&](int i) { return is_open(i) ? 0.0 : driver.current_limit_A; })};
 }
 

@@ -82,19 +82,20 @@ struct ContactRatios {
 template <class S>
 ContactRatios<S> contact_ratios(const TractionConfig& traction, const S& slip_m_per_s, const S& lateral_m_per_s) {
   using std::sqrt;
-  const double s_0 = traction.slip_speed_m_per_s;
-  const S per_root_s_per_m = 1.0 / sqrt(slip_m_per_s * slip_m_per_s + s_0 * s_0);
+  const double s_0_m_per_s = traction.slip_speed_m_per_s;
+  const S per_root_s_per_m = 1.0 / sqrt(slip_m_per_s * slip_m_per_s + s_0_m_per_s * s_0_m_per_s);
   ContactRatios<S> ratios;
   ratios.rolling_ratio = traction.traction_ratio * slip_m_per_s * per_root_s_per_m;
-  ratios.rolling_slope_s_per_m = traction.traction_ratio * s_0 * s_0 * (per_root_s_per_m * per_root_s_per_m * per_root_s_per_m);
+  ratios.rolling_slope_s_per_m =
+      traction.traction_ratio * s_0_m_per_s * s_0_m_per_s * (per_root_s_per_m * per_root_s_per_m * per_root_s_per_m);
   if (traction.roller_drag_ratio == 0.0) {
     ratios.lateral_ratio = 0.0 * lateral_m_per_s;
     return ratios;
   }
   const S sliding_m_per_s = traction.roller_drag_ratio / traction.traction_ratio * slip_m_per_s;
-  const double u_0 = traction.roller_speed_m_per_s;
+  const double u_0_m_per_s = traction.roller_speed_m_per_s;
   ratios.lateral_ratio = -traction.roller_drag_ratio * lateral_m_per_s /
-                         sqrt(lateral_m_per_s * lateral_m_per_s + sliding_m_per_s * sliding_m_per_s + u_0 * u_0);
+                         sqrt(lateral_m_per_s * lateral_m_per_s + sliding_m_per_s * sliding_m_per_s + u_0_m_per_s * u_0_m_per_s);
   return ratios;
 }
 

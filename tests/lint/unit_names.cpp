@@ -162,7 +162,7 @@ std::vector<NamedNumber> floating_point_names(std::string_view header) {
 }
 
 bool ends_in_unit(std::string_view name) {
-  static const std::string kUnit = "(A|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px|nats)";
+  static const std::string kUnit = "(A|V2|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px|nats)";
   static const std::regex kEnd("[A-Za-z0-9]_(" + kUnit + "|per_" + kUnit + ")(_per_" + kUnit + ")*_?$");
   return std::regex_search(name.begin(), name.end(), kEnd);
 }
