@@ -15,7 +15,7 @@ constexpr float kLead_share = 0.2F;
 constexpr float kRecovery_s = 0.3F;
 
 Vector3 turned(const Vector3& v, const SineCosine& turn) {
-  return {v.x * turn.cosine - v.y * turn.sine, v.x * turn.sine + v.y * turn.cosine, v.yaw};
+  return {v.x * turn.cosine_ratio - v.y * turn.sine_ratio, v.x * turn.sine_ratio + v.y * turn.cosine_ratio, v.yaw};
 }
 
 float length(const Vector3& v) { return square_root(v.x * v.x + v.y * v.y); }

@@ -9,8 +9,8 @@ constexpr float kGravity_m_per_s2 = 9.80665F;
 bool is_positive(float x) { return is_finite(x) && x > 0.0F; }
 bool is_not_negative(float x) { return is_finite(x) && x >= 0.0F; }
 
-template <int count>
-bool all(bool (*holds)(float), const float (&values)[count]) {
+template <auto holds, int count>
+bool all(const float (&values)[count]) {
   bool all_hold = true;
   for (const float value : values) {
     all_hold = all_hold && holds(value);
@@ -23,7 +23,7 @@ bool all(bool (*holds)(float), const float (&values)[count]) {
                           wheel.inverse_yaw_per_m, wheel.sine_V,          wheel.phase_cosine_ratio, wheel.phase_sine_ratio};
   const float positive[] = {wheel.slip_factor, wheel.damping_V_s_per_rad};
   const float not_negative[] = {wheel.level_load_share, wheel.sign_V};
-  return all(is_finite<float>, values) && all(is_positive, positive) && all(is_not_negative, not_negative);
+  return all<is_finite<float>>(values) && all<is_positive>(positive) && all<is_not_negative>(not_negative);
 }
 
 /// Whole guard periods per control period, and a table.
@@ -70,10 +70,10 @@ bool all(bool (*holds)(float), const float (&values)[count]) {
                                 config.wheel_gain_V_s_per_rad, config.wheel_integral_V_per_rad, config.jerk_limit_m_per_s3,
                                 config.traction_ratio,         config.braking_reserve_K,        config.limp_current_A,
                                 config.warning_time_s};
-  bool possible = all(is_positive, positive) && all(is_not_negative, not_negative) && config.battery_lowest_V <= config.battery_full_V;
+  bool possible = all<is_positive>(positive) && all<is_not_negative>(not_negative) && config.battery_lowest_V <= config.battery_full_V;
   const DerivedConfig& derived = config.derived;
-  const float plane[] = {derived.plane_xx, derived.plane_xy, derived.plane_yy, derived.geared_constant_V_s_per_rad};
-  possible = possible && all(is_finite<float>, plane) && is_positive(derived.geared_constant_V_s_per_rad);
+  const float plane[] = {derived.plane_xx_factor, derived.plane_xy_factor, derived.plane_yy_factor, derived.geared_constant_V_s_per_rad};
+  possible = possible && all<is_finite<float>>(plane) && is_positive(derived.geared_constant_V_s_per_rad);
   for (int i = 0; i < config.wheel_count; ++i) {
     possible = possible && is_possible(config.wheel[i]) && is_finite(config.wheel[i].others_factor);
   }
@@ -104,9 +104,9 @@ bool all(bool (*holds)(float), const float (&values)[count]) {
   derived.current_margin_A = kCurrent_share * config.current_limit_A;
   derived.most_sensed_A = 2.5F * config.battery_full_V / config.lowest_resistance_ohm;  // braking, the back-EMF adds to the battery
   const float per_determinant = 1.0F / (xx * yy - xy * xy);
-  derived.plane_xx = yy * per_determinant;
-  derived.plane_xy = -xy * per_determinant;
-  derived.plane_yy = xx * per_determinant;
+  derived.plane_xx_factor = yy * per_determinant;
+  derived.plane_xy_factor = -xy * per_determinant;
+  derived.plane_yy_factor = xx * per_determinant;
   for (int i = 0; i < config.wheel_count && i < kMostWheels; ++i) {
     WheelConfig& wheel = config.wheel[i];
     const float t_x = wheel.rolling_x_share;
@@ -114,7 +114,8 @@ bool all(bool (*holds)(float), const float (&values)[count]) {
     wheel.rim_per_speed_m = config.wheel_radius_m / wheel.slip_factor;
     wheel.speed_per_rim_per_m = wheel.slip_factor / config.wheel_radius_m;
     wheel.per_damping_rad_per_V_s = 1.0F / wheel.damping_V_s_per_rad;
-    const float leverage = derived.plane_xx * t_x * t_x + 2.0F * derived.plane_xy * t_x * t_y + derived.plane_yy * t_y * t_y;
+    const float leverage =
+        derived.plane_xx_factor * t_x * t_x + 2.0F * derived.plane_xy_factor * t_x * t_y + derived.plane_yy_factor * t_y * t_y;
     constexpr float kMostLeverage = 0.98F;  // else the other wheels say next to nothing of this one's direction
     wheel.others_factor = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
     const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;

@@ -68,9 +68,9 @@ struct DerivedConfig {
   float per_tracking_time_per_s = 0.0F;
   float yaw_correction_per_s = 0.0F;  ///< yaw rate per integral of its error
   // P, inverse of Σ t·tᵀ over all wheels: body velocity in the plane from rim speeds, the yaw rate being known.
-  float plane_xx = 0.0F;
-  float plane_xy = 0.0F;
-  float plane_yy = 0.0F;
+  float plane_xx_factor = 0.0F;
+  float plane_xy_factor = 0.0F;
+  float plane_yy_factor = 0.0F;
   float jump_rad_per_s = 0.0F;    ///< change of a wheel speed within a period that no motor can make
   float current_margin_A = 0.0F;  ///< by which current sensor and motor equation may differ
   float most_sensed_A = 0.0F;     ///< more no battery can drive

@@ -137,8 +137,8 @@ void find_from_all(const Config& config, Believed& believed) {
     x_m_per_s += config.wheel[i].rolling_x_share * rim_m_per_s[i];
     y_m_per_s += config.wheel[i].rolling_y_share * rim_m_per_s[i];
   }
-  believed.velocity = {derived.plane_xx * x_m_per_s + derived.plane_xy * y_m_per_s,
-                       derived.plane_xy * x_m_per_s + derived.plane_yy * y_m_per_s, believed.yaw_rate_rad_per_s};
+  believed.velocity = {derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s,
+                       derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s, believed.yaw_rate_rad_per_s};
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
         rim_m_per_s[i] - config.wheel[i].rolling_x_share * believed.velocity.x - config.wheel[i].rolling_y_share * believed.velocity.y;

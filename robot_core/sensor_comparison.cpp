@@ -86,7 +86,7 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
   }
   // Σ r² − bᵀ·P·b, b = Σ t·r: the residual of least squares.
   const DerivedConfig& derived = config.derived;
-  const float explained = derived.plane_xx * x * x + 2.0F * derived.plane_xy * x * y + derived.plane_yy * y * y;
+  const float explained = derived.plane_xx_factor * x * x + 2.0F * derived.plane_xy_factor * x * y + derived.plane_yy_factor * y * y;
   return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 

@@ -46,7 +46,8 @@ const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "relative",
                                                       "confidence",
                                                       "weight",
-                                                      "sign"};
+                                                      "sign",
+                                                      "periods"};
 
 /// The unit is not known where the name is written, but stands beside it.
 const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit
@@ -80,8 +81,11 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      "columns", "noise", "saturates_high", "saturates_low", "step", "usual",
                                                      // VTK's own signature
                                                      "point",
+                                                     // of a vector of two lengths and an angle, and of a guard's signal: its comment
+                                                     // or the signal's name has the unit
+                                                     "yaw", "signal", "least", "possible", "points", "corner",
                                                      // not a number
-                                                     "kAbsent"};
+                                                     "kAbsent", "kNoSample"};
 
 bool is_identifier(const std::string& text) { return std::isalpha(static_cast<unsigned char>(text[0])) != 0 || text[0] == '_'; }
 
@@ -162,7 +166,7 @@ std::vector<NamedNumber> floating_point_names(std::string_view header) {
 }
 
 bool ends_in_unit(std::string_view name) {
-  static const std::string kUnit = "(A|V2|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px|nats)";
+  static const std::string kUnit = "(A2|A|V2|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px|nats)";
   static const std::regex kEnd("[A-Za-z0-9]_(" + kUnit + "|per_" + kUnit + ")(_per_" + kUnit + ")*_?$");
   return std::regex_search(name.begin(), name.end(), kEnd);
 }

@@ -26,7 +26,7 @@ CallGraph core_graph(const std::string& files, const std::string& rates, const s
     if (caller.find("replay") != std::string::npos) {
       continue;  // of the test's own program, above the core
     }
-    const bool is_planner = caller.find("control_body_velocity") != std::string::npos || caller.find("commanded") != std::string::npos;
+    const bool is_planner = caller.find("control_body_velocity") != std::string::npos || caller.find("follow_command") != std::string::npos;
     const bool is_guard = caller.find("guard") != std::string::npos || caller.find("hottest") != std::string::npos ||
                           caller.find("heat_for_gap") != std::string::npos;
     EXPECT_TRUE(is_planner != is_guard) << caller << " calls through a pointer that this test does not know";
