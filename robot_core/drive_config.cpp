@@ -65,11 +65,11 @@ bool all(const float (&values)[count]) {
                             config.acceleration_limit_m_per_s2,
                             config.yaw_acceleration_limit_rad_per_s2,
                             config.command_timeout_s};
-  const float not_negative[] = {config.battery_resistance_ohm, config.rotation_friction_V,      config.friction_smoothing_m_per_s,
-                                config.body_gain_per_s,        config.yaw_gain_per_s,           config.yaw_integral_per_s2,
-                                config.wheel_gain_V_s_per_rad, config.wheel_integral_V_per_rad, config.jerk_limit_m_per_s3,
-                                config.traction_ratio,         config.braking_reserve_K,        config.limp_current_A,
-                                config.warning_time_s};
+  const float not_negative[] = {
+      config.resistance_rise_per_K,    config.battery_resistance_ohm, config.rotation_friction_V, config.friction_smoothing_m_per_s,
+      config.body_gain_per_s,          config.yaw_gain_per_s,         config.yaw_integral_per_s2, config.wheel_gain_V_s_per_rad,
+      config.wheel_integral_V_per_rad, config.jerk_limit_m_per_s3,    config.traction_ratio,      config.braking_reserve_K,
+      config.limp_current_A,           config.warning_time_s};
   bool possible = all<is_positive>(positive) && all<is_not_negative>(not_negative) && config.battery_lowest_V <= config.battery_full_V;
   const DerivedConfig& derived = config.derived;
   const float plane[] = {derived.plane_xx_factor, derived.plane_xy_factor, derived.plane_yy_factor, derived.geared_constant_V_s_per_rad};
@@ -85,6 +85,7 @@ bool all(const float (&values)[count]) {
   derived = {};
   derived.geared_constant_V_s_per_rad = config.torque_constant_Nm_per_A * config.gear_ratio;
   derived.per_lowest_resistance_A_per_V = 1.0F / config.lowest_resistance_ohm;
+  derived.per_resistance_A_per_V = 1.0F / config.resistance_ohm;
   derived.volt_per_Nm = config.resistance_ohm / (derived.geared_constant_V_s_per_rad * config.gear_efficiency);
   derived.yaw_correction_per_s = config.yaw_gain_per_s > 0.0F ? config.yaw_integral_per_s2 / config.yaw_gain_per_s : 0.0F;
   derived.per_tracking_time_per_s = 1.0F / config.tracking_time_s;

@@ -63,6 +63,7 @@ struct WheelConfig {
 struct DerivedConfig {
   float geared_constant_V_s_per_rad = 0.0F;  ///< K_t·n: back-EMF per wheel speed, torque per current at the wheel without loss
   float per_lowest_resistance_A_per_V = 0.0F;
+  float per_resistance_A_per_V = 0.0F;
   float volt_per_Nm = 0.0F;         ///< at the wheel, driving
   float most_battery_sag_A = 0.0F;  ///< per V of sag: 1/R of the battery; 0 without one
   float per_tracking_time_per_s = 0.0F;
@@ -91,6 +92,7 @@ struct Config {
   // Motor and gear.
   float torque_constant_Nm_per_A = 0.0F;  ///< K_t at the motor; also its back-EMF in V·s/rad
   float resistance_ohm = 0.0F;            ///< winding at 25 °C and driver: for the feed-forward
+  float resistance_rise_per_K = 0.0F;     ///< of it, per winding temperature
   float lowest_resistance_ohm = 0.0F;     ///< of the coldest motor within its tolerance: for limits
   float gear_ratio = 1.0F;                ///< motor turns per wheel turn
   float gear_efficiency = 1.0F;

@@ -12,7 +12,7 @@ namespace robot_core {
 struct BelievedWheel {
   float speed_rad_per_s;    ///< sensed, else implied, else 0
   float implied_rad_per_s;  ///< by the other wheels and the gyro; the sensed speed where they say nothing
-  float current_A;          ///< sensed, else the largest that voltage and speed allow
+  float current_A;          ///< sensed, else estimated from voltage and speed
   bool is_speed_known;      ///< sensed or implied
   bool is_speed_sensed;
   bool is_current_sensed;

@@ -225,6 +225,19 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
   }
 }
 
+/// Where no sensor tells: what the last voltage drives through the nominal resistance at the guard's winding temperature. That heat of a
+/// motor with another resistance differs by as much as at a sensed current, the other way round, so the guard's safety factor covers it.
+float estimated_current_A(const Config& config, const State& state, int i, float speed_rad_per_s) {
+  const WheelState& wheel = state.wheel[i];
+  if (wheel.is_open != 0) {
+    return 0.0F;
+  }
+  constexpr float kReference_C = 25.0F;
+  const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s;
+  const float warm_K = config.guard != nullptr ? larger(0.0F, state.guard[i].state_C[0] - kReference_C) : 0.0F;
+  return driven_V * config.derived.per_resistance_A_per_V / (1.0F + config.resistance_rise_per_K * warm_K);
+}
+
 void validate_currents(const Config& config, State& state, const Input& input, Believed& believed) {
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
@@ -239,8 +252,7 @@ void validate_currents(const Config& config, State& state, const Input& input, B
       wheel.current_fault = code(Reason::current_missing);
     }
     if (!believed.wheel[i].is_current_sensed) {
-      const CurrentRange explained = explained_current(config, wheel, believed.wheel[i].speed_rad_per_s);
-      const float largest_A = -explained.low_A > explained.high_A ? explained.low_A : explained.high_A;
+      const float largest_A = estimated_current_A(config, state, i, believed.wheel[i].speed_rad_per_s);
       const bool is_larger = is_sample && absolute(sample_A) > absolute(largest_A);
       believed.wheel[i].current_A = is_larger ? sample_A : largest_A;
       wheel.current_fault = is_sample ? code(Reason::current_implausible) : wheel.current_fault;

@@ -21,7 +21,7 @@
 // | 113 W  | wheel speed follows another wheel's voltage (swapped)       | as 110, both wheels                               | start()                         |
 // | 114 W  | speed unknown: too few other wheels to estimate it          | voltage that drives at most limp_current_A into a | as 110                          |
 // |        |                                                             | standing motor; open where current is not sensed  |                                 |
-// | 120 W  | motor current not finite or beyond what the battery drives  | current from voltage and speed, at its largest    | next valid sample               |
+// | 120 W  | motor current not finite or beyond what the battery drives  | current from voltage, speed and guard temperature | next valid sample               |
 // | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard takes the larger of both        | kSteadyAgain_s of agreement     |
 // | 130 R  | battery voltage not finite or outside of the declared range | PWM as for a full battery, limits as for an empty | next valid sample               |
 // | 140 R  | yaw rate not finite, beyond the sensor, or jumping          | yaw rate from the wheels                          | kSteadyAgain_s of agreement     |

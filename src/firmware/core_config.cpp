@@ -95,6 +95,9 @@ void set_drive(const Robot& robot, const MotorValues& motor, const BodyConfig& b
   const double most_A = current_limit_A(robot, geared, fastest_rad_per_s, lowest_ohm);
   config.torque_constant_Nm_per_A = single(drive.torque_constant_Nm_per_A);
   config.resistance_ohm = single(drive.resistance_ohm);
+  const MotorElectrics electrics = make_electrics(robot, motor);
+  config.resistance_rise_per_K =
+      single(electrics.resistance_rise_per_K * electrics.heating_factor * electrics.resistance_25C_ohm / drive.resistance_ohm);
   config.lowest_resistance_ohm = single(lowest_ohm);
   config.gear_ratio = single(drive.gear_ratio);
   config.gear_efficiency = single(efficiency);
