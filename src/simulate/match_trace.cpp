@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "motor/datasheet_network.h"
-#include "simulate/reason_name.h"
 
 namespace heatsoak {
 
@@ -166,9 +165,10 @@ void append_csv(std::string& text, const MatchRow& row, int wheel_count, double 
       fmt::format_to(to, ",{:.4f}", row.stator_shown_C[i]);
     }
   }
-  fmt::format_to(to, ",{}", to_string(row.robot_reason));
+  fmt::format_to(to, ",{}", static_cast<int>(row.robot_reason));
   for (int i = 0; i < wheel_count; ++i) {
-    fmt::format_to(to, ",{},{:.4f},{:.3f}", to_string(row.reason[static_cast<std::size_t>(i)]), row.allowed_A[i], row.guard_winding_C[i]);
+    fmt::format_to(to, ",{},{:.4f},{:.3f}", static_cast<int>(row.reason[static_cast<std::size_t>(i)]), row.allowed_A[i],
+                   row.guard_winding_C[i]);
   }
   text += "\n";
 }

@@ -74,7 +74,8 @@ class MatchRows {
   bool begun_ = false;
 };
 
-/// What sensors show has a column where they have faults, as have bodies that the motor's file adds.
+/// Reasons are the numbers of robot_core::Reason. What sensors show has a column where they have faults, as have bodies that the motor's
+/// file adds.
 std::string csv_header(int wheel_count, const MatchAdditions& added);
 /// One line, with its end.
 void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchAdditions& added);

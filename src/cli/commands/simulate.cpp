@@ -182,7 +182,9 @@ Command simulate() {
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file; a match is driven in a closed loop")
                 ->type_name("D");
-            add_table(app, options->out, "every signal; names end in units, a row's inputs hold until the next row");
+            add_table(app, options->out,
+                      "every signal; names end in units, a row's inputs hold until the next row; reasons are the drive core's codes "
+                      "(robot_core/reason.h)");
             app.add_option("--planner", options->planner, "of a match; both: the two side by side")
                 ->check(CLI::IsMember({"jerk_limited", "bang_bang", "both"}))
                 ->type_name("P")
