@@ -82,7 +82,7 @@ std::string closed_loop_text(const std::vector<ClosedLoopRank>& ranks, int games
       text += fmt::format("{:3}  {:32} {:10}  {}\n", i + 1, drives.motor_id, "not driven", drives.why_none);
       continue;
     }
-    const std::string guard = drives.why_no_guard.empty() ? text_of(drives.spread(&DriveScore::guard_limited_s), 1.0, 0) : "no guard";
+    const std::string guard = drives.is_guarded ? text_of(drives.spread(&DriveScore::guard_limited_s), 1.0, 0) : "no guard";
     text += fmt::format("{:3}  {:32} {:10}  {:>18}  {:>18}  {:>18}  {:>18}  {:>18}\n", i + 1, drives.motor_id, to_string(ranks[i].verdict),
                         text_of(drives.spread(&DriveScore::winding_peak_C), 1.0, 0),
                         text_of(drives.spread(&DriveScore::stator_peak_C), 1.0, 0), text_of(drives.spread(&DriveScore::distance_m), 1.0, 0),
@@ -124,10 +124,9 @@ nlohmann::ordered_json closed_loop_json(const ClosedLoopRank& rank, std::uint64_
                                 {"slip_m", json(drives.spread(&DriveScore::slip_m), 4)},
                                 {"lowest_battery_V", json(drives.spread(&DriveScore::lowest_battery_V), 3)},
                                 {"battery_empty_s", json(drives.spread(&DriveScore::battery_empty_s), 3)}};
-  const bool is_guarded = drives.why_no_guard.empty();
-  answer["guard_limited_s"] = is_guarded ? json(drives.spread(&DriveScore::guard_limited_s), 3) : nlohmann::ordered_json();
-  answer["guard_winding_peak_C"] = is_guarded ? json(drives.spread(&DriveScore::guard_winding_peak_C), 2) : nlohmann::ordered_json();
-  answer["why_no_guard"] = is_guarded ? nlohmann::ordered_json() : nlohmann::ordered_json(drives.why_no_guard);
+  answer["guard_limited_s"] = drives.is_guarded ? json(drives.spread(&DriveScore::guard_limited_s), 3) : nlohmann::ordered_json();
+  answer["guard_winding_peak_C"] = drives.is_guarded ? json(drives.spread(&DriveScore::guard_winding_peak_C), 2) : nlohmann::ordered_json();
+  answer["why_no_guard"] = drives.why_no_guard.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(drives.why_no_guard);
   return answer;
 }
 

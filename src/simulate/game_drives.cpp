@@ -37,6 +37,7 @@ std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& input
     drives[i].games.resize(games);
     if (options.guard != GuardUse::off) {
       guards[i] = make_guard(motors[i], robot, options.ambient_C, options.threads);
+      drives[i].is_guarded = guards[i].guard.has_value();
       drives[i].why_no_guard = guards[i].why_none;
     }
   });

@@ -28,7 +28,8 @@ struct GameSpread {
 
 struct GameDrives {
   std::string motor_id;
-  std::string why_none;           ///< why nothing could be driven; empty where it was
+  std::string why_none;  ///< why nothing could be driven; empty where it was
+  bool is_guarded = false;
   std::string why_no_guard;       ///< as MotorGuard::why_none
   std::vector<DriveScore> games;  ///< by seed
 
