@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/condition_option.h"
+#include "cli/guard_options.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
 #include "cli/verdict_words.h"
 #include "derate/exporter.h"
-#include "motor/conditions.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak::commands {
@@ -24,13 +23,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Options {
-  std::string motor;
-  std::string model;
+  GuardOptions guard;
   std::string robot;
   std::string to = "c_header";
   std::string out;
-  std::map<std::string, std::string> conditions;
-  DerateOptions derate;
 };
 
 const ExporterType& exporter_named(const std::string& name) {
@@ -44,22 +40,6 @@ const ExporterType& exporter_named(const std::string& name) {
     expected += fmt::format("{}{}", expected.empty() ? "" : ", ", each.name);
   }
   throw Failure(ExitCode::bad_input, fmt::format("--to {}: expected one of {}{}", name, expected, did_you_mean(name, names)));
-}
-
-/// The model takes the motor's place; where both are named it must be a model of that motor.
-Motor motor_of(const Options& options, NamedFiles& named) {
-  if (options.motor.empty() && options.model.empty()) {
-    throw Failure(ExitCode::bad_input, "which motor? Expected --motor M or --model FILE");
-  }
-  const std::optional<std::filesystem::path> file = options.motor.empty() ? std::nullopt : named.motor_file(options.motor);
-  const std::optional<Motor> motor = named.motor(options.model.empty() ? options.motor : options.model);
-  named.throw_if_any();
-  if (file && !options.model.empty() && motor->id != file->stem() && (!motor->fit || motor->fit->motor != file->stem())) {
-    throw Failure(ExitCode::bad_input, fmt::format("--model {} is no model of {}: it {}", options.model, file->stem().string(),
-                                                   motor->fit ? fmt::format("was fitted from {}", motor->fit->motor)
-                                                              : std::string("has another name and no [fit]")));
-  }
-  return under(*motor, options.conditions);
 }
 
 /// Allowed at moments of a use that goes on for long.
@@ -146,7 +126,7 @@ Json json(const Derating& derating, const Options& options) {
       {"motor", derating.motor_id},
       {"robot", derating.robot_id},
       {"data_quality", derating.data_quality},
-      {"seed", options.derate.guarantee.seed},
+      {"seed", options.guard.derate.guarantee.seed},
       {"winding_limit_C", derating.rules.limits.winding_C},
       {"stator_limit_C", derating.rules.limits.stator_C ? Json(*derating.rules.limits.stator_C) : Json()},
       {"hottest_ambient_C", derating.rules.hottest_ambient_C},
@@ -174,14 +154,11 @@ ExitCode run(const Options& options, Session& session) {
   if (options.out == "-") {
     throw Failure(ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
   }
-  if (options.derate.coldest_ambient_C >= options.derate.hottest_ambient_C) {
-    throw Failure(ExitCode::bad_input, fmt::format("--coldest {:.4g} °C is not below --ambient {:.4g} °C", options.derate.coldest_ambient_C,
-                                                   options.derate.hottest_ambient_C));
-  }
+  check_derate_options(options.guard.derate);
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
-  const Motor motor = motor_of(options, named);
-  const Derating derating = derate(motor, *robot, options.derate, progress_bar("looking for the reserve"));
+  const Motor motor = guarded_motor(options.guard, named);
+  const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
   session.write(options.out, exporter.write(derating));
   session.say(report(derating) + columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}) +
               fmt::format("\n{}: {}\n", exporter.name, options.out));
@@ -198,33 +175,13 @@ Command derate_command() {
       .example = "heatsoak derate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --to c_header --out motor_guard.h",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto options = std::make_shared<Options>();
-        GuaranteeOptions& guarantee = options->derate.guarantee;
-        app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
-        app.add_option("--model", options->model, "a motor file that `calibrate` or `diagnose` wrote, in its place")
-            ->type_name("FILE.toml");
-        add_conditions(app, options->conditions);
+        add_motor_options(app, options->guard);
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--to", options->to, "form (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
         app.add_option("--out", options->out, "file to write")->required()->type_name("FILE");
-        add_quantity(app, "--ambient", options->derate.hottest_ambient_C,
-                     {"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"});
-        add_quantity(app, "--coldest", options->derate.coldest_ambient_C,
-                     {"coldest", "degC", Range::between(-60.0, 120.0),
-                      "coldest air; a sensor that shows less is taken for broken; 0degC unless given"});
-        add_quantity(app, "--period", options->derate.period_s,
+        add_quantity(app, "--period", options->guard.derate.period_s,
                      {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
-        add_quantity(app, "--approach", options->derate.approach_s,
-                     {"approach", "s", Range::between(0.01, 100.0),
-                      "in which the winding may come near its limit: shorter lets peaks through for longer; 0.5 s unless given"});
-        add_quantity(app, "--confidence", guarantee.confidence,
-                     {"confidence", "", Range::between(0.5, 0.999), "share of motors that keep their limits; 0.95 unless given"});
-        app.add_option("--samples", guarantee.samples, "motors drawn to find the reserve, and as many fresh ones to check it")
-            ->check(whole_number(100'000))
-            ->capture_default_str();
-        add_seed(app, guarantee.seed, "of the draws; same seed, same bytes");
-        app.add_option("--threads", guarantee.threads, "0: all cores; the result does not depend on it")
-            ->check(whole_number(1024))
-            ->capture_default_str();
+        add_derate_options(app, options->guard.derate);
         session.add_data_option(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };

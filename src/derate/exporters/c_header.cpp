@@ -10,6 +10,7 @@
 
 #include "derate/belief.h"
 #include "derate/exporter.h"
+#include "derate/rate_lines.h"
 
 namespace heatsoak::exporters {
 namespace {
@@ -44,76 +45,11 @@ std::string literal(double value) {
   return text.front() == '-' ? fmt::format("({}f)", text) : fmt::format("{}f", text);
 }
 
-/// The steps that the rates need, a line each. An input goes by its field.
-class Lines {
- public:
-  explicit Lines(const Observer& observer) : formula_(observer.formula()) {
-    const std::vector<char> needed = formula_.needed_for(observer.rate_steps());
-    for (std::size_t i = 0; i < needed.size(); ++i) {
-      const Formula::Step& step = formula_.steps()[i];
-      if (needed[i] != 0 && step.operation != Operation::constant && step.operation != Operation::input) {
-        text_ += fmt::format("  const float t{} = {};\n", i, expression(step));
-      }
-    }
-    for (std::size_t node = 0; node < observer.state_count(); ++node) {
-      text_ += fmt::format("  rate_K_per_s[{}] = {};\n", node, operand(observer.rate_steps()[node]));
-    }
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-  /// Whether <math.h> is needed: for the square root, which is one instruction and has the same bits everywhere.
-  [[nodiscard]] bool calls_library() const { return calls_library_; }
-  /// Whether a law needs the exponential or the power of thermal_math.h.
-  [[nodiscard]] bool calls_own() const { return calls_own_; }
-
- private:
-  std::string operand(int place) const {
-    const Formula::Step& step = formula_.steps()[static_cast<std::size_t>(place)];
-    if (step.operation == Operation::constant) {
-      return literal(step.value);
-    }
-    if (step.operation != Operation::input) {
-      return fmt::format("t{}", place);
-    }
-    const auto input = static_cast<std::size_t>(step.left);
-    return input < firmware::kSignalCount ? fmt::format("input->{}", firmware::signals()[input].name)
-                                          : fmt::format("state_C[{}]", input - firmware::kSignalCount);
-  }
-
-  std::string expression(const Formula::Step& step) {
-    const std::string left = operand(step.left);
-    const std::string right = step.right < 0 ? "" : operand(step.right);
-    const auto own = [&](std::string_view function) {
-      calls_own_ = true;
-      return step.right < 0 ? fmt::format("{}({})", function, left) : fmt::format("{}({}, {})", function, left, right);
-    };
-    switch (step.operation) {
-      case Operation::add:
-        return left + " + " + right;
-      case Operation::subtract:
-        return left + " - " + right;
-      case Operation::multiply:
-        return left + " * " + right;
-      case Operation::divide:
-        return left + " / " + right;
-      case Operation::magnitude:
-        return fmt::format("{0} < 0.0f ? -{0} : {0}", left);
-      case Operation::positive_part:
-        return fmt::format("{0} > 0.0f ? {0} : 0.0f", left);
-      case Operation::square_root:
-        calls_library_ = true;
-        return fmt::format("sqrtf({})", left);
-      case Operation::power:
-        return own("heatsoak_pow");
-      default:
-        return own("heatsoak_exp");
-    }
-  }
-
-  const Formula& formula_;
-  std::string text_;
-  bool calls_library_ = false;
-  bool calls_own_ = false;
-};
+/// An input goes by its field.
+const LineStyle kStyle{
+    .literal = literal,
+    .signal = [](firmware::Signal signal) { return fmt::format("input->{}", firmware::signals()[static_cast<std::size_t>(signal)].name); },
+    .square_root = "sqrtf"};
 
 std::string assumptions(const Derating& derating) {
   std::string text;
@@ -378,7 +314,7 @@ std::string replaced(std::string_view pattern, const std::vector<std::pair<std::
 std::string write(const Derating& derating) {
   const std::string prefix = identifier(derating.motor_id);
   const std::string capital = in_capitals(prefix);
-  const Lines lines(derating.observer);
+  const RateLines lines(derating.observer, kStyle);
   const auto define = [&](std::string_view name, double value) { return fmt::format("#define {}_{} {}\n", capital, name, literal(value)); };
   const std::vector<std::pair<std::string, std::string>> words{{"@UNKNOWN@", doubts(derating, prefix)},
                                                                {"@SWEEPS@", sweeps(derating, prefix)},
@@ -390,10 +326,10 @@ std::string write(const Derating& derating) {
                                                                {"@WINDINGS@", std::to_string(derating.table.winding_C.size())},
                                                                {"@", prefix}};
   return head_comment(derating, prefix) + fmt::format("#ifndef {0}\n#define {0}\n\n", guard(derating, capital)) +
-         (lines.calls_library() ? "#include <math.h>\n" : "") + "#include <stdint.h>\n\n" +
+         (lines.calls_square_root() ? "#include <math.h>\n" : "") + "#include <stdint.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"without -ffast-math: it takes away what tells a number from none, and the rounding that is "
          "carried\"\n#endif\n\n" +
-         (lines.calls_own() ? std::string(embedded::thermal_math_text().front().text) + "\n" : "") +
+         (lines.calls_thermal_math() ? std::string(embedded::thermal_math_text().front().text) + "\n" : "") +
          define("PERIOD_S", derating.options.period_s) + define("WINDING_LIMIT_C", derating.rules.limits.winding_C) +
          define("HOTTEST_AMBIENT_C", derating.rules.hottest_ambient_C) + define("COLDEST_AMBIENT_C", derating.options.coldest_ambient_C) +
          define("MOST_CURRENT_A", derating.rules.most_current_A) + define("MOST_SPEED_RAD_PER_S", derating.rules.most_speed_rad_per_s) +

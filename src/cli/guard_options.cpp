@@ -1,0 +1,60 @@
+#include "cli/guard_options.h"
+
+#include <fmt/format.h>
+
+#include "cli/condition_option.h"
+#include "cli/quantity_option.h"
+#include "motor/conditions.h"
+
+namespace heatsoak {
+
+void add_motor_options(CLI::App& app, GuardOptions& options) {
+  app.add_option("--motor", options.motor, "id (see `heatsoak list motors`) or file")->type_name("M");
+  app.add_option("--model", options.model, "a motor file that `calibrate` or `diagnose` wrote, in its place")->type_name("FILE.toml");
+  add_conditions(app, options.conditions);
+}
+
+void add_derate_options(CLI::App& app, DerateOptions& options) {
+  GuaranteeOptions& guarantee = options.guarantee;
+  add_quantity(app, "--ambient", options.hottest_ambient_C,
+               {"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"});
+  add_quantity(
+      app, "--coldest", options.coldest_ambient_C,
+      {"coldest", "degC", Range::between(-60.0, 120.0), "coldest air; a sensor that shows less is taken for broken; 0degC unless given"});
+  add_quantity(app, "--approach", options.approach_s,
+               {"approach", "s", Range::between(0.01, 100.0),
+                "in which the winding may come near its limit: shorter lets peaks through for longer; 0.5 s unless given"});
+  add_quantity(app, "--confidence", guarantee.confidence,
+               {"confidence", "", Range::between(0.5, 0.999), "share of motors that keep their limits; 0.95 unless given"});
+  app.add_option("--samples", guarantee.samples, "motors drawn to find the reserve, and as many fresh ones to check it")
+      ->check(whole_number(100'000))
+      ->capture_default_str();
+  add_seed(app, guarantee.seed, "of the draws; same seed, same bytes");
+  app.add_option("--threads", guarantee.threads, "0: all cores; the result does not depend on it")
+      ->check(whole_number(1024))
+      ->capture_default_str();
+}
+
+Motor guarded_motor(const GuardOptions& options, NamedFiles& named) {
+  if (options.motor.empty() && options.model.empty()) {
+    throw Failure(ExitCode::bad_input, "which motor? Expected --motor M or --model FILE");
+  }
+  const std::optional<std::filesystem::path> file = options.motor.empty() ? std::nullopt : named.motor_file(options.motor);
+  const std::optional<Motor> motor = named.motor(options.model.empty() ? options.motor : options.model);
+  named.throw_if_any();
+  if (file && !options.model.empty() && motor->id != file->stem() && (!motor->fit || motor->fit->motor != file->stem())) {
+    throw Failure(ExitCode::bad_input, fmt::format("--model {} is no model of {}: it {}", options.model, file->stem().string(),
+                                                   motor->fit ? fmt::format("was fitted from {}", motor->fit->motor)
+                                                              : std::string("has another name and no [fit]")));
+  }
+  return under(*motor, options.conditions);
+}
+
+void check_derate_options(const DerateOptions& options) {
+  if (options.coldest_ambient_C >= options.hottest_ambient_C) {
+    throw Failure(ExitCode::bad_input, fmt::format("--coldest {:.4g} °C is not below --ambient {:.4g} °C", options.coldest_ambient_C,
+                                                   options.hottest_ambient_C));
+  }
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,40 @@
+// The observer's rates as straight-line statements of a C-like language, for generated code.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "derate/observer.h"
+
+namespace heatsoak {
+
+/// How the target language writes what the statements need.
+struct LineStyle {
+  std::string (*literal)(double value) = nullptr;            ///< in single precision; in parentheses where negative
+  std::string (*signal)(firmware::Signal signal) = nullptr;  ///< an input
+  std::string_view square_root;                              ///< function of one number
+};
+
+/// The steps that the rates need, a line each: "  const float t7 = …;", then "  rate_K_per_s[node] = …;". Temperatures are state_C[node].
+/// In single precision without contraction they have the bits of FormulaRun<float>.
+class RateLines {
+ public:
+  RateLines(const Observer& observer, const LineStyle& style);
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  /// Whether a law needs the square root, which is one instruction and has the same bits everywhere.
+  [[nodiscard]] bool calls_square_root() const { return calls_square_root_; }
+  /// Whether a law needs the exponential or the power of robot_core/thermal_math.h.
+  [[nodiscard]] bool calls_thermal_math() const { return calls_thermal_math_; }
+
+ private:
+  [[nodiscard]] std::string operand(const Formula& formula, int place) const;
+  std::string expression(const Formula& formula, const Formula::Step& step);
+
+  LineStyle style_;
+  std::string text_;
+  bool calls_square_root_ = false;
+  bool calls_thermal_math_ = false;
+};
+
+}  // namespace heatsoak
