@@ -13,6 +13,7 @@
 #include "cli/file_kind.h"
 #include "duty/duty.h"
 #include "duty/match/match_duty.h"
+#include "firmware/core_diagram.h"
 #include "motor/datasheet_network.h"
 #include "robot/robot.h"
 
@@ -326,6 +327,54 @@ Description describe_effect(const EffectType& effect) {
   return result;
 }
 
+/// "Input: pose (m, rad), command_age_s (s)".
+std::string signals_text(const SignalGroup& group, robot_core::Blocks readers) {
+  std::vector<std::string> signals;
+  for (const robot_core::SignalText& signal : group.signals) {
+    if ((signal.to & readers) != 0) {
+      signals.push_back(fmt::format("{} ({})", signal.name, signal.unit));
+    }
+  }
+  return signals.empty() ? "" : fmt::format("{}: {}", group.carrier, fmt::join(signals, ", "));
+}
+
+Description describe_core() {
+  Description result{
+      "robot_core: the drive core, one control step of a robot on three or four omni wheels, in simulation and in firmware\n"
+      "One call of robot_core::step() runs these blocks in this order; sources in robot_core/.\n",
+      {{"kind", "core"}, {"id", "robot_core"}}};
+  const std::vector<SignalGroup> groups = signal_groups();
+  for (const robot_core::BlockText& block : robot_core::kBlocks) {
+    result.text += fmt::format("\n{} {}, {}: {}() in {}\n    {}\n", block.number, block.title, rate_words(block.rate), block.function,
+                               block.files, wrapped(block.task, 4));
+    for (const SignalGroup& group : groups) {
+      const std::string read = signals_text(group, robot_core::only(block.block));
+      result.text += read.empty() ? "" : fmt::format("    reads  {}\n", wrapped(read, 11));
+    }
+    for (const SignalGroup& group : groups) {
+      result.text += group.from == block.block ? fmt::format("    writes {}\n", wrapped(signals_text(group, ~0U), 11)) : "";
+    }
+    result.json["blocks"].push_back({{"number", block.number},
+                                     {"function", block.function},
+                                     {"files", block.files},
+                                     {"title", block.title},
+                                     {"task", block.task},
+                                     {"rate", rate_words(block.rate)}});
+  }
+  for (const robot_core::SignalText& signal : robot_core::kSignals) {
+    const bool is_input = signal.from == robot_core::Block::firmware;
+    result.json["signals"].push_back({{"carrier", signal.carrier},
+                                      {"name", signal.name},
+                                      {"unit", signal.unit},
+                                      {"from", is_input ? "firmware" : text_of(signal.from).number},
+                                      {"to", numbers_of(signal.to)}});
+  }
+  result.text += "\n`heatsoak describe robot_core --diagram core.svg` draws them, `heatsoak generate core` writes the core for a robot.\n";
+  return result;
+}
+
+constexpr std::string_view kCore = "robot_core";
+
 Description describe_file(const std::filesystem::path& file) {
   switch (file_kind(file)) {
     case FileKind::duty:
@@ -353,7 +402,10 @@ Description describe(const std::string& name, const DataFolders& folders) {
               {{"kind", "shape"}, {"id", shape.name}, {"example", file}}};
     }
   }
-  std::vector<std::string> known;
+  if (name == kCore) {
+    return describe_core();
+  }
+  std::vector<std::string> known{std::string(kCore)};
   for (const ShapeType& shape : all_shapes()) {
     known.emplace_back(shape.name);
   }
@@ -395,11 +447,22 @@ Command describe() {
           .example = "heatsoak describe maxon_ecx_flat_32l_48v",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto name = std::make_shared<std::string>();
-            app.add_option("name", *name, "id, as `heatsoak list` shows it, or a motor, robot or duty file")->required();
+            const auto diagram = std::make_shared<std::string>();
+            app.add_option("name", *name, "id, as `heatsoak list` shows it, a motor, robot or duty file, or robot_core")->required();
+            app.add_option("--diagram", *diagram, "draw the block diagram of robot_core")
+                ->check([](const std::string& file) { return file.ends_with(".svg") ? "" : "expected a name that ends in .svg"; })
+                ->type_name("FILE.svg");
             session.add_data_option(app);
             session.add_json_option(app);
-            return [name, &session] {
+            return [name, diagram, &session] {
               Description description = describe(*name, session.folders());
+              if (!diagram->empty()) {
+                if (*name != kCore) {
+                  throw Failure(ExitCode::bad_input,
+                                fmt::format("--diagram: '{}' has no block diagram; expected `heatsoak describe {}`", *name, kCore));
+                }
+                session.write(*diagram, core_diagram_svg());
+              }
               session.say(description.text);
               Json json{{"schema", "heatsoak.describe/1"}};
               json.update(description.json);

@@ -1,0 +1,36 @@
+// Block diagram of the drive core, drawn from the tables of robot_core/block_diagram.h.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robot_core/block_diagram.h"
+
+namespace heatsoak {
+
+/// "every period".
+std::string_view rate_words(robot_core::BlockRate rate);
+
+/// The declaration of a block other than the firmware.
+const robot_core::BlockText& text_of(robot_core::Block block);
+
+/// Signals that one block writes into one carrier; in the order of the table.
+struct SignalGroup {
+  std::string_view carrier;
+  robot_core::Block from;
+  std::vector<robot_core::SignalText> signals;
+
+  /// That read at least one of them.
+  [[nodiscard]] robot_core::Blocks readers() const;
+};
+/// In the order of the blocks that write them.
+std::vector<SignalGroup> signal_groups();
+
+/// "1 G 4": numbers of the blocks in the order of the calls; "firmware" where it is one of them.
+std::string numbers_of(robot_core::Blocks blocks);
+
+/// SVG: blocks from top to bottom in the order of the calls, signals on lanes beside them. Needs no font but a sans and a monospaced one.
+std::string core_diagram_svg();
+
+}  // namespace heatsoak

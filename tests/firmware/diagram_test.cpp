@@ -1,0 +1,460 @@
+// The block diagram against the code that it stands for, and the drawing against itself.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "firmware/core_config.h"
+#include "firmware/core_diagram.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+namespace {
+
+using robot_core::Block;
+using robot_core::BlockText;
+using robot_core::SignalText;
+using testing::ElementsAreArray;
+using testing::HasSubstr;
+using Names = std::set<std::string>;
+
+const std::filesystem::path kCore = kSource / "robot_core";
+
+/// Without comments.
+std::string code_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  EXPECT_TRUE(stream) << file;
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return std::regex_replace(text, std::regex("//[^\n]*"), "");
+}
+
+std::vector<std::string> all_matches(const std::string& text, const std::string& pattern, std::size_t group = 1) {
+  const std::regex regex(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator each(text.begin(), text.end(), regex), end; each != end; ++each) {
+    found.push_back((*each)[group]);
+  }
+  return found;
+}
+
+bool has(const std::string& text, const std::string& pattern) { return std::regex_search(text, std::regex(pattern)); }
+
+/// Members of all structs of the headers that the stages share.
+std::map<std::string, std::vector<std::string>> structs_of(const std::string& headers) {
+  static const std::regex kStruct(R"(struct (?:alignas\(\d+\) )?(\w+) \{\n([^}]*(?:\{[^}\n]*\}[^}]*)*)\n\};)");
+  std::map<std::string, std::vector<std::string>> structs;
+  for (std::sregex_iterator each(headers.begin(), headers.end(), kStruct), end; each != end; ++each) {
+    structs[(*each)[1]] = all_matches((*each)[2], R"((\w+)(?:\[\w+\])?\s*(?:=[^;]*|\{[^;]*\})?;)");
+  }
+  return structs;
+}
+
+/// The files of a block, one after the other.
+std::map<Block, std::string> code_of_blocks() {
+  std::map<Block, std::string> code;
+  for (const BlockText& block : robot_core::kBlocks) {
+    for (const std::string& file : all_matches(block.files, R"((\w+\.cpp))")) {
+      code[block.block] += code_of(kCore / file);
+    }
+  }
+  return code;
+}
+
+/// The core's code as the test reads it.
+struct Code {
+  std::string stages = code_of(kCore / "drive_stages.h");
+  std::string core = code_of(kCore / "drive_core.cpp");
+  std::map<std::string, std::vector<std::string>> structs =
+      structs_of(code_of(kCore / "drive_core.h") + stages + code_of(kCore / "thermal_guard.h"));
+  std::map<Block, std::string> blocks = code_of_blocks();
+};
+
+const Code& code() {
+  static const Code kCode;
+  return kCode;
+}
+
+/// How the stages name the structs that they hand on; the second is one wheel's part.
+struct Carrier {
+  std::string name;
+  std::string variable;
+  std::string per_wheel;
+};
+const std::vector<Carrier> kCarriers{{"Believed", "believed", "BelievedWheel"},
+                                     {"BodyReference", "body", ""},
+                                     {"WheelReferences", "wheels", "WheelReference"},
+                                     {"WheelVoltages", "voltage", "WheelVoltage"},
+                                     {"LimitedVoltages", "limited", "LimitedWheel"}};
+
+/// "wheel.speed_rad_per_s", "velocity", "command.pose".
+std::vector<std::string> signals_in(const std::string& name, const std::string& part, const std::string& member) {
+  std::vector<std::string> names;
+  const auto found = code().structs.find(name);
+  EXPECT_NE(found, code().structs.end()) << name;
+  for (const std::string& each : found->second) {
+    if (each != member) {
+      names.push_back(each);
+    }
+  }
+  for (const std::string& each : part.empty() ? std::vector<std::string>{} : code().structs.at(part)) {
+    names.push_back(fmt::format("{}.{}", member, each));
+  }
+  return names;
+}
+
+/// Patterns of what a block calls the carrier, or one wheel's part of it by an alias.
+std::vector<std::string> ways_to(const Carrier& carrier, bool is_per_wheel, const std::string& text) {
+  std::vector<std::string> ways{carrier.variable + (is_per_wheel ? R"(\.wheel\[\w+\])" : "")};
+  for (const std::string& alias : all_matches(text, fmt::format(R"(\b{}& (\w+) = {}\.wheel\[)", carrier.per_wheel, carrier.variable))) {
+    ways.push_back(alias);
+  }
+  return ways;
+}
+
+/// Blocks that look at or set a member of what the carrier hands on.
+Names users_of(const Carrier& carrier, const std::string& signal) {
+  const bool is_per_wheel = signal.starts_with("wheel.");
+  const std::string member = is_per_wheel ? signal.substr(6) : signal;
+  Names users;
+  for (const auto& [block, text] : code().blocks) {
+    for (const std::string& way : ways_to(carrier, is_per_wheel, text)) {
+      if (has(text, fmt::format(R"(\b{}\.{}\b)", way, member))) {
+        users.insert(text_of(block).number);
+      }
+    }
+  }
+  return users;
+}
+
+/// Whether a block that may change the carrier looks at one of its members, too.
+bool looks_at(const Carrier& carrier, const std::string& text) {
+  for (const std::string& way : ways_to(carrier, true, text)) {
+    if (has(text, fmt::format(R"(\b{}\.\w+\b(?!\s*[-+]?=[^=]))", way))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Names split(const std::string& numbers) {
+  std::istringstream stream(numbers);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+std::string unit_in_name(const std::string& name) {
+  static const std::vector<std::pair<std::string, std::string>> kUnits{{"_rad_per_s2", "rad/s2"},
+                                                                       {"_rad_per_s", "rad/s"},
+                                                                       {"_Nm", "N m"},
+                                                                       {"_A", "A"},
+                                                                       {"_V", "V"},
+                                                                       {"_C", "°C"},
+                                                                       {"_s", "s"},
+                                                                       {"_ratio", "1"}};
+  for (const auto& [end, unit] : kUnits) {
+    if (name.ends_with(end)) {
+      return unit;
+    }
+  }
+  return "";
+}
+
+const SignalText* row_of(const std::string& carrier, const std::string& name, Block from) {
+  for (const SignalText& each : robot_core::kSignals) {
+    if (each.carrier == carrier && each.name == name && each.from == from) {
+      return &each;
+    }
+  }
+  return nullptr;
+}
+
+std::string number_of(Block block) { return block == Block::firmware ? "firmware" : text_of(block).number; }
+
+/// Calls of `wanted` functions in the order in which `function` of drive_core.cpp makes them, through the other functions of that file.
+std::vector<std::string> calls_of(const std::string& function, const Names& wanted) {
+  std::smatch body;
+  const std::regex definition(fmt::format(R"(\n[\w:]+(?: [\w:]+)* {}\([^;{{]*\) \{{\n([\s\S]*?)\n\}})", function));
+  if (!std::regex_search(code().core, body, definition)) {
+    return {};
+  }
+  std::vector<std::string> calls;
+  for (const std::string& call : all_matches(body[1], R"(\b(\w+)\()")) {
+    if (wanted.contains(call)) {
+      calls.push_back(call);
+    } else if (call != function && call != "start") {
+      const std::vector<std::string> below = calls_of(call, wanted);
+      calls.insert(calls.end(), below.begin(), below.end());
+    }
+  }
+  return calls;
+}
+
+TEST(BlockDiagram, StagesAreTheCallsOfStep) {
+  const std::vector<std::string> declared = all_matches(code().stages, R"(\n\w+ (\w+)\(const Config& config)");
+  const std::vector<std::string> expected = calls_of("step", {declared.begin(), declared.end()});
+  ASSERT_GE(expected.size(), 8U);
+  std::vector<std::string> drawn;
+  for (const BlockText& block : robot_core::kBlocks) {
+    if (block.block != Block::plan_to_pose) {
+      drawn.emplace_back(block.function);
+    }
+  }
+  EXPECT_THAT(drawn, ElementsAreArray(expected));
+}
+
+TEST(BlockDiagram, EachFileOfTheCoreBelongsToABlock) {
+  Names named{"drive_core.cpp", "drive_config.cpp", "sine_cosine.cpp"};
+  for (const BlockText& block : robot_core::kBlocks) {
+    const std::vector<std::string> files = all_matches(block.files, R"((\w+\.cpp))");
+    ASSERT_FALSE(files.empty());
+    EXPECT_TRUE(has(code_of(kCore / files[0]), fmt::format(R"(\b{}\(const Config& config[^;{{]*\) \{{)", block.function)))
+        << block.function;
+    named.insert(files.begin(), files.end());
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(kCore)) {
+    const std::string file = entry.path().filename().string();
+    // The planner names its interface; what lies below starts with the same word.
+    EXPECT_TRUE(!file.ends_with(".cpp") || named.contains(file) || file.starts_with("trajectory_")) << file << " is of no block";
+  }
+}
+
+TEST(BlockDiagram, UnitsAreThoseOfTheNames) {
+  for (const SignalText& signal : robot_core::kSignals) {
+    const std::string unit = unit_in_name(signal.name);
+    if (!unit.empty()) {
+      EXPECT_EQ(unit, signal.unit) << signal.name;
+    } else {
+      EXPECT_THAT(signal.unit, testing::MatchesRegex("flag|code|count|m/s, rad/s|m/s2, rad/s2|N, N m|m, rad")) << signal.name;
+    }
+  }
+}
+
+// Both ways: what the stages hand on is in the table with its readers, and the table has nothing else.
+TEST(BlockDiagram, SignalsBetweenStagesAreThoseOfTheCode) {
+  std::size_t rows = 0;
+  for (const Carrier& carrier : kCarriers) {
+    for (const std::string& name : signals_in(carrier.name, carrier.per_wheel, "wheel")) {
+      const Names used = users_of(carrier, name);
+      Names drawn;
+      for (const SignalText& each : robot_core::kSignals) {
+        if (each.carrier == carrier.name && each.name == name) {
+          const Names readers = split(numbers_of(each.to));
+          drawn.insert(readers.begin(), readers.end());
+          drawn.insert(number_of(each.from));
+          ++rows;
+        }
+      }
+      // What only the block itself looks at is no signal.
+      EXPECT_EQ(drawn, used.size() > 1 ? used : Names{}) << carrier.name << " " << name;
+    }
+  }
+  const auto is_of_stage = [](const SignalText& each) {
+    return std::ranges::any_of(kCarriers, [&](const Carrier& carrier) { return carrier.name == each.carrier; });
+  };
+  EXPECT_EQ(rows, static_cast<std::size_t>(std::ranges::count_if(robot_core::kSignals, is_of_stage)));
+}
+
+TEST(BlockDiagram, SignalsBetweenStagesComeFromWhereTheyAreReturned) {
+  for (const Carrier& carrier : kCarriers) {
+    Names writers;
+    Names readers;
+    for (const BlockText& block : robot_core::kBlocks) {
+      const std::string declaration = block.function + std::string(R"(\([^;{]*)");
+      const bool returns = has(code().stages, fmt::format(R"(\n{} {})", carrier.name, declaration));
+      const bool reads = has(code().stages, fmt::format(R"(\b{}\bconst {}& {})", declaration, carrier.name, carrier.variable));
+      const bool changes = has(code().stages, fmt::format(R"(\b{}[,(]\s*{}& {})", declaration, carrier.name, carrier.variable));
+      const bool changes_and_reads = changes && looks_at(carrier, code().blocks.at(block.block));
+      if (returns || changes) {
+        writers.insert(block.number);
+      }
+      if (reads || changes_and_reads) {
+        readers.insert(block.number);
+      }
+    }
+    Names drawn_writers;
+    Names drawn_readers;
+    for (const SignalGroup& group : signal_groups()) {
+      if (group.carrier == carrier.name) {
+        drawn_writers.insert(number_of(group.from));
+        const Names numbers = split(numbers_of(group.readers()));
+        drawn_readers.insert(numbers.begin(), numbers.end());
+      }
+    }
+    EXPECT_EQ(drawn_writers, writers) << carrier.name;
+    EXPECT_EQ(drawn_readers, readers) << carrier.name;
+  }
+}
+
+TEST(BlockDiagram, InputsAreReadWhereTheTableSays) {
+  std::size_t rows = 0;
+  for (const std::string& name : signals_in("Input", "Command", "command")) {
+    Names used;
+    for (const auto& [block, text] : code().blocks) {
+      static const std::regex kPlan(R"(plan_step\([^;{]*\))");
+      std::smatch plan;
+      const bool is_planned = std::regex_search(text, plan, kPlan) && has(plan.str(), fmt::format(R"(\binput\.{}\b)", name));
+      const std::string own = std::regex_replace(text, kPlan, "");
+      bool is_read = has(own, fmt::format(R"(\binput\.{}\b)", name));
+      for (const std::string& alias : all_matches(own, R"(\bCommand& (\w+)\b)")) {
+        is_read = is_read || (name.starts_with("command.") && has(own, fmt::format(R"(\b{}\.{}\b)", alias, name.substr(8))));
+      }
+      if (is_read) {
+        used.insert(text_of(block).number);
+      }
+      if (is_planned) {
+        used.insert(text_of(Block::plan_to_pose).number);
+      }
+    }
+    const SignalText* const row = row_of("Input", name, Block::firmware);
+    ASSERT_NE(row, nullptr) << name;
+    EXPECT_EQ(split(numbers_of(row->to)), used) << name;
+    ++rows;
+  }
+  EXPECT_EQ(rows, static_cast<std::size_t>(std::ranges::count(robot_core::kSignals, std::string_view("Input"), &SignalText::carrier)));
+}
+
+TEST(BlockDiagram, OutputsAreThoseOfTheCode) {
+  Names drawn;
+  for (const SignalText& signal : robot_core::kSignals) {
+    if (signal.carrier == std::string_view("Output")) {
+      EXPECT_EQ(signal.from, Block::make_output);
+      EXPECT_EQ(numbers_of(signal.to), "firmware");
+      EXPECT_TRUE(has(code().blocks.at(Block::make_output), fmt::format(R"(\bout\.{}\b)", signal.name))) << signal.name;
+      drawn.insert(signal.name);
+    }
+  }
+  const std::vector<std::string>& members = code().structs.at("Output");
+  EXPECT_EQ(drawn, Names(members.begin(), members.end()));
+}
+
+/// State members whose name no other struct has, so that a place in the code is surely one of them.
+std::vector<std::string> unique_state_members() {
+  std::map<std::string, int> times;
+  for (const auto& [name, members] : code().structs) {
+    for (const std::string& member : members) {
+      ++times[member];
+    }
+  }
+  std::vector<std::string> unique;
+  for (const auto& [name, prefix] : std::map<std::string, std::string>{{"State", ""}, {"WheelState", "wheel."}, {"GuardState", "guard."}}) {
+    for (const std::string& member : code().structs.at(name)) {
+      if (times[member] == 1) {
+        unique.push_back(prefix + member);
+      }
+    }
+  }
+  return unique;
+}
+
+TEST(BlockDiagram, WhatBlocksKeepForEachOtherIsInTheTable) {
+  const auto member_of = [](const std::string& name) { return name.substr(name.rfind('.') + 1); };
+  for (const SignalText& signal : robot_core::kSignals) {
+    if (signal.carrier != std::string_view("State")) {
+      continue;
+    }
+    const std::string member = member_of(signal.name);
+    const std::string from =
+        signal.from == Block::plan_to_pose ? code().blocks.at(Block::control_body_velocity) : code().blocks.at(signal.from);
+    const std::string planned = fmt::format(R"(plan_step\([^;{{]*\.{}\b)", member);
+    const std::string assigned = fmt::format(R"(\.{}(\[\w+\])?\s*(=[^=]|[-+*]=))", member);
+    EXPECT_TRUE(has(from, member.starts_with("plan_") ? planned : assigned)) << signal.name;
+    for (const BlockText& reader : robot_core::kBlocks) {
+      if (contains(signal.to, reader.block)) {
+        EXPECT_TRUE(has(code().blocks.at(reader.block), fmt::format(R"(\.{}\b)", member))) << signal.name << " in " << reader.number;
+      }
+    }
+  }
+  std::size_t shared = 0;
+  for (const std::string& name : unique_state_members()) {
+    Names used;
+    Names drawn;
+    for (const auto& [block, text] : code().blocks) {
+      if (has(text, fmt::format(R"(\.{}\b)", member_of(name)))) {
+        used.insert(text_of(block).number);
+      }
+    }
+    for (const SignalText& each : robot_core::kSignals) {
+      if (each.carrier == std::string_view("State") && each.name == name && each.from != Block::plan_to_pose) {
+        const Names readers = split(numbers_of(each.to));
+        drawn.insert(readers.begin(), readers.end());
+        drawn.insert(number_of(each.from));
+      }
+    }
+    EXPECT_EQ(drawn, used.size() > 1 ? used : Names{}) << name;
+    shared += used.size() > 1 ? 1 : 0;
+  }
+  EXPECT_GE(shared, 5U);
+}
+
+int guard_runs = 0;
+int plan_runs = 0;
+
+// The rates that the blocks state, counted.
+TEST(BlockDiagram, RatesAreThoseOfTheCore) {
+  const float axis[] = {0.0F, 100.0F};
+  const float hot_C[] = {0.0F, 155.0F};
+  const float most_A[] = {9.0F, 9.0F, 9.0F, 9.0F, 9.0F, 9.0F, 9.0F, 9.0F};
+  robot_core::GuardModel guard;
+  guard.node_count = 2;
+  guard.period_s = 0.01F;
+  guard.winding_limit_C = 155.0F;
+  guard.hottest_ambient_C = 40.0F;
+  guard.most_current_A = 9.0F;
+  guard.speed_rad_per_s = {axis, 2};
+  guard.stator_C = guard.winding_C = {hot_C, 2};
+  guard.current_A = most_A;
+  guard.rates = [](const void*, const float*, const float*, float* rate_K_per_s) {
+    ++guard_runs;
+    rate_K_per_s[0] = rate_K_per_s[1] = 0.0F;
+  };
+  robot_core::Config config = make_core_config(twente(), ecx_32().nominal, {});
+  config.guard = &guard;
+  config.plan_step = [](const robot_core::Config&, const robot_core::Vector3&, const robot_core::Vector3&, robot_core::Vector3&,
+                        robot_core::Vector3&) {
+    ++plan_runs;
+    return true;
+  };
+  robot_core::complete(config);
+  robot_core::State state{};
+  ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+  robot_core::Input input;
+  input.battery_V = 22.0F;
+  input.pose = {0.0F, 0.0F, 0.0F};
+  const auto run = [&](robot_core::Mode mode) {
+    guard_runs = plan_runs = 0;
+    input.command.mode = mode;
+    for (int i = 0; i < 1000; ++i) {
+      robot_core::step(config, state, input);
+    }
+  };
+  run(robot_core::Mode::body_velocity);
+  EXPECT_EQ(guard_runs, 4 * 1000 / 10);
+  EXPECT_EQ(plan_runs, 0);
+  run(robot_core::Mode::pose_target);
+  EXPECT_EQ(plan_runs, 1000);
+  // The limits of motion are reached only after many steps, so that each new reference differs from the last.
+  int references = 0;
+  robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F});
+  input.command.mode = robot_core::Mode::body_velocity;
+  input.command.velocity.x = 1.0F;
+  for (int i = 0; i < 40; ++i) {
+    const float before_m_per_s = state.velocity_reference.x;
+    robot_core::step(config, state, input);
+    references += state.velocity_reference.x != before_m_per_s ? 1 : 0;
+  }
+  EXPECT_EQ(references, 20);
+  for (const Block block : {Block::control_body_velocity, Block::find_wheel_speeds, Block::feed_forward}) {
+    EXPECT_EQ(text_of(block).rate, robot_core::BlockRate::every_second_period);
+  }
+  EXPECT_EQ(text_of(Block::run_guards).rate, robot_core::BlockRate::every_guard_period);
+  EXPECT_EQ(text_of(Block::plan_to_pose).rate, robot_core::BlockRate::every_period_of_command);
+}
+
+}  // namespace
+}  // namespace heatsoak
