@@ -36,6 +36,8 @@ class Session {
   StreamedFile& stream(const std::filesystem::path& path) { return *streams_.emplace_back(std::make_unique<StreamedFile>(path)); }
   /// A folder for files, made with them or not at all.
   void make_folder(std::filesystem::path path) { folders_.push_back(std::move(path)); }
+  /// Runs once all files are written, before the text: for the rename that completes a folder.
+  void complete_with(std::function<void()> last) { last_ = std::move(last); }
   /// The answer, for where --json asks for it; nothing without --json.
   void answer(const nlohmann::ordered_json& json);
   void finish();
@@ -51,6 +53,7 @@ class Session {
   std::vector<std::filesystem::path> folders_;
   std::vector<OutputFile> files_;
   std::vector<std::unique_ptr<StreamedFile>> streams_;
+  std::function<void()> last_;
 };
 
 /// An effect that a verb's answers may name and that is none of the network's.

@@ -220,6 +220,9 @@ void Session::finish() {
   const std::vector<std::filesystem::path> made = made_folders(folders_);
   try {
     write_files(files_, streams_);
+    if (last_) {
+      last_();
+    }
   } catch (...) {
     for (const std::filesystem::path& folder : made) {
       std::error_code in_use;
@@ -237,6 +240,7 @@ void Session::answer_failure(const Failure& failure) {
   folders_.clear();
   files_.clear();
   streams_.clear();
+  last_ = nullptr;
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
   for (const Diagnostic& each : failure.diagnostics()) {
     diagnostics.push_back(

@@ -87,6 +87,10 @@ TEST(Layers, TreeKeepsToTheTable) {
     ADD_FAILURE() << problem;
   }
   for (const SourceFile& file : files_in("src")) {
+    // What is written for others to compile includes what stands beside it there.
+    if (file.path.find("/templates/") != std::string::npos) {
+      continue;
+    }
     for (const std::string& violation : layer_violations(table, file.path, file.text)) {
       ADD_FAILURE() << violation;
     }

@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/guard_options.h"
+#include "cli/named_files.h"
+#include "cli/quantity_option.h"
+#include "firmware/core_files.h"
+#include "firmware/staged_folder.h"
+
+namespace heatsoak::commands {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string what;
+  GuardOptions guard;
+  std::string robot;
+  std::string out;
+  CoreOptions core;
+  bool force = false;
+};
+
+std::size_t bytes_of(const CoreFolder& folder) {
+  std::size_t bytes = 0;
+  for (const CoreFile& file : folder.files) {
+    bytes += file.content.size();
+  }
+  return bytes;
+}
+
+std::string report(const CoreFolder& folder, const Derating& derating, const Options& options) {
+  const Guarantee& checked = derating.guarantee;
+  std::string text = fmt::format(
+      "drive core for {} with {}: {}, {} kB in {}\n"
+      "inputs {} {}, configuration check sum {:08x}\n"
+      "control period {:.6g} ms, guard period {:.6g} ms\n"
+      "winding below {:.0f} °C in air up to {:.0f} °C, {} thermal data; heat counts {:.2f} times: of {} motors drawn from the declared "
+      "tolerances\n{} exceeded a limit in one of the {} hardest uses\n"
+      "a wheel whose speed is unknown gets at most {:.2f} A; {:.1f} K are kept free for one full stop\n",
+      derating.robot_id, derating.motor_id, counted(folder.files.size(), "file"), bytes_of(folder) / 1024, options.out, kInputHash,
+      folder.hash, folder.config_check_sum, 1e3 * options.core.period_s, 1e3 * derating.options.period_s, derating.rules.limits.winding_C,
+      derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(), checked.samples, checked.over,
+      derating.uses.size(), folder.limp_current_A, folder.braking_reserve_K);
+  for (const std::string& note : folder.notes) {
+    text += fmt::format("note: {}\n", note);
+  }
+  return text + fmt::format("next: make -C {0} host   and   make -C {0} firmware\n", options.out);
+}
+
+Json json(const CoreFolder& folder, const Derating& derating, const Options& options) {
+  const Guarantee& checked = derating.guarantee;
+  Json files = Json::array();
+  for (const CoreFile& file : folder.files) {
+    files.push_back({{"path", file.path}, {"bytes", file.content.size()}});
+  }
+  return {{"schema", "heatsoak.core/1"},
+          {"robot", derating.robot_id},
+          {"motor", derating.motor_id},
+          {"out", options.out},
+          {"period_s", options.core.period_s},
+          {"input_hash", {{"name", kInputHash}, {"value", folder.hash}}},
+          {"config_check_sum", fmt::format("{:08x}", folder.config_check_sum)},
+          {"files", files},
+          {"derating",
+           {{"data_quality", derating.data_quality},
+            {"seed", derating.options.guarantee.seed},
+            {"guard_period_s", derating.options.period_s},
+            {"winding_limit_C", derating.rules.limits.winding_C},
+            {"hottest_ambient_C", derating.rules.hottest_ambient_C},
+            {"heat_reserve_ratio", rounded(derating.observer.heat_reserve_ratio(), 4)},
+            {"confidence", derating.options.guarantee.confidence},
+            {"samples", checked.samples},
+            {"over", checked.over},
+            {"limp_current_A", rounded(folder.limp_current_A, 4)},
+            {"braking_reserve_K", rounded(folder.braking_reserve_K, 3)},
+            {"nodes", derating.observer.state_names()}}},
+          {"notes", folder.notes}};
+}
+
+ExitCode run(Options& options, Session& session) {
+  check_derate_options(options.guard.derate);
+  // All that can be wrong is looked at before the derating, which takes seconds.
+  check_target_folder(options.out, options.force);
+  NamedFiles named(session.folders());
+  const std::optional<Robot> robot = named.robot(options.robot);
+  const Motor motor = guarded_motor(options.guard, named);
+  static_cast<void>(make_core_config(*robot, motor.nominal, options.core));
+  options.guard.derate.period_s = guard_period_s(options.core.period_s);
+  const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
+  const CoreFolder folder = core_files(*robot, motor, options.core, derating, "heatsoak " HEATSOAK_VERSION);
+  const auto staged = std::make_shared<StagedFolder>(options.out, folder.files, options.force);
+  session.complete_with([staged] { staged->commit(); });
+  session.say(report(folder, derating, options));
+  session.answer(json(folder, derating, options));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Command generate_command() {
+  return {.name = {},
+          .summary = "Writes the drive core with configuration and thermal guard of a robot as source files, ready to compile",
+          .example = "heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out drive_core",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("what", options->what, "core: the drive core")->required()->check([](const std::string& word) {
+              return word == "core" ? "" : fmt::format("'{}' is not known; expected core", word);
+            });
+            add_motor_options(app, options->guard);
+            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+            app.add_option("--out", options->out, "folder to write, new or empty")->required()->type_name("DIR");
+            app.add_flag("--force", options->force, "replace the generated files in a folder that is not empty, keep all others");
+            add_quantity(app, "--period", options->core.period_s,
+                         {"period", "s", Range::between(1e-4, 0.1), "between two control steps; 1 ms unless given"});
+            add_derate_options(app, options->guard.derate);
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

@@ -1,0 +1,243 @@
+#include "firmware/core_files.h"
+
+#include <embedded/core_sources.h>
+#include <embedded/core_templates.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/crc.hpp>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <regex>
+
+#include "base/files.h"
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::string_view kTemplates = "src/firmware/templates/";
+constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 24U;
+
+using Words = std::map<std::string, std::string>;
+
+/// "@WORD@" by what stands for it; a word without meaning is a bug.
+std::string filled(std::string_view text, const Words& words) {
+  static const std::regex kWord("@([A-Z_]+)@");
+  std::string result;
+  const char* begin = text.data();
+  const char* const end = begin + text.size();
+  std::cmatch match;
+  while (std::regex_search(begin, end, match, kWord)) {
+    const auto found = words.find(match[1]);
+    if (found == words.end()) {
+      throw Failure(ExitCode::bug, fmt::format("a template asks for @{}@", match[1].str()));
+    }
+    result.append(begin, match[0].first).append(found->second);
+    begin = match[0].second;
+  }
+  return result.append(begin, end);
+}
+
+std::string_view source_text(std::string_view path) {
+  const auto all = embedded::core_sources();
+  const auto found = std::ranges::find(all, path, &embedded::Text::path);
+  if (found == all.end()) {
+    throw Failure(ExitCode::bug, fmt::format("the program has no {} to write", path));
+  }
+  return found->text;
+}
+
+std::string in_capitals(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return name;
+}
+
+/// The reasons as C constants, and the checks that both are the same.
+void add_reasons(Words& words) {
+  static const std::regex kReason(R"(\n  (\w+) = (\d+),(?:\s*///< ([^\n]*))?)");
+  const std::string header(source_text("robot_core/reason.h"));
+  for (std::sregex_iterator each(header.begin(), header.end(), kReason), end; each != end; ++each) {
+    const std::string name = "HEATSOAK_CORE_" + in_capitals((*each)[1]);
+    words["REASONS"] +=
+        fmt::format("  {} = {},{}\n", name, (*each)[2].str(), (*each)[3].matched ? fmt::format(" /* {} */", (*each)[3].str()) : "");
+    words["SAME_REASONS"] += fmt::format("static_assert({} == int(Reason::{}));\n", name, (*each)[1].str());
+  }
+}
+
+/// Members of a struct of drive_core.h by their names; both sides have the same.
+void add_places(Words& words, const std::string& c, const std::string& cpp) {
+  static const std::regex kMember(R"(^  [\w:]+ (\w+)(?:\[\w+\])?(?: = [^;]*|\{[^;]*\})?;)");
+  const std::string header(source_text("robot_core/drive_core.h"));
+  const std::size_t begin = header.find("struct " + cpp + " {");
+  std::string body = header.substr(begin, header.find("\n};", begin) - begin);
+  for (std::size_t line = body.find('\n'); line != std::string::npos; line = body.find('\n', line + 1)) {
+    const std::string text = body.substr(line + 1, body.find('\n', line + 1) - line - 1);
+    if (std::smatch found; std::regex_search(text, found, kMember)) {
+      words["SAME_PLACES"] += fmt::format("SAME_PLACE({}, {}, {});\n", c, cpp, found[1].str());
+    }
+  }
+}
+
+std::string limitations(const Robot& robot, const Derating& derating, const std::vector<std::string>& notes) {
+  std::string text = fmt::format(
+      "- The thermal guard is computed from the files, not measured on this robot: {} thermal data of the motor. Air up to {:.0f} °C.\n"
+      "- The example has run on no board. Its default board functions have no sensors, so the core keeps all bridges open.\n",
+      derating.data_quality, derating.rules.hottest_ambient_C);
+  text += std::isfinite(robot.current_limit_A)
+              ? ""
+              : "- The robot file has no current limit of the driver: only the battery bounds the current until the guard does.\n";
+  for (const std::string& note : notes) {
+    text += fmt::format("- {}\n", note);
+  }
+  return text;
+}
+
+Words words_for(const CoreSource& source, const std::vector<std::string>& notes) {
+  Words words{{"ROBOT", in_one_line(source.robot.id)},
+              {"MOTOR", in_one_line(source.motor.id)},
+              {"VERSION", source.version},
+              {"PERIOD_S", float_literal(source.config.period_s)},
+              {"PERIOD_MS", fmt::format("{:.6g}", 1e3 * source.options.period_s)},
+              {"WHEELS", std::to_string(source.config.wheel_count)},
+              {"STATE_BYTES", std::to_string(sizeof(robot_core::State))},
+              {"CHECK_SUM", fmt::format("0x{:08X}U", source.config.check_sum)},
+              {"BATTERY_V", float_literal(0.5F * (source.config.battery_full_V + source.config.battery_lowest_V))},
+              {"LIMITATIONS", limitations(source.robot, source.derating, notes)}};
+  add_reasons(words);
+  add_places(words, "heatsoak_core_command", "Command");
+  add_places(words, "heatsoak_core_input", "Input");
+  add_places(words, "heatsoak_core_output", "Output");
+  return words;
+}
+
+std::string options_text(const Motor& motor, const CoreOptions& options, const Derating& derating) {
+  const DerateOptions& derate = derating.options;
+  std::string text = fmt::format(
+      "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --confidence {:.9g} --samples {} --seed {}",
+      options.period_s, derate.hottest_ambient_C, derate.coldest_ambient_C, derate.approach_s, derate.guarantee.confidence,
+      derate.guarantee.samples, derate.guarantee.seed);
+  for (const auto& [key, value] : motor.assumed) {
+    text += fmt::format(" --condition {}={}", key, value);
+  }
+  return text;
+}
+
+/// Effects of the motor that need a signal, "vehicle_airflow, fan".
+std::string effects_with(const Motor& motor, Signal signal) {
+  std::string names;
+  for (const MotorEffect& effect : motor.effects) {
+    const std::vector<Signal> needed = effect.type->needed_with(effect.values());
+    if (std::ranges::find(needed, signal) != needed.end()) {
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", effect.name);
+    }
+  }
+  return names.empty() ? "the motor's thermal law" : names;
+}
+
+std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const Derating& derating) {
+  std::vector<std::string> notes;
+  if (const std::string friction = friction_note(robot); !friction.empty()) {
+    notes.push_back(friction);
+  }
+  const Observer& observer = derating.observer;
+  if (observer.uses(firmware::vehicle_speed)) {
+    notes.push_back(fmt::format("{} depends on the robot's speed through the air, which the core does not know: it assumes still air",
+                                effects_with(motor, Signal::vehicle_speed)));
+  }
+  if (observer.uses(firmware::neighbour)) {
+    notes.push_back(fmt::format("{} depends on the motors beside it: the core takes the hottest of the other wheels' guards",
+                                effects_with(motor, Signal::neighbour_temperature)));
+  }
+  if (observer.uses(firmware::age)) {
+    notes.push_back(fmt::format("{} depends on operating hours, which the core does not know: it takes the age that heats most",
+                                effects_with(motor, Signal::age)));
+  }
+  for (const MotorEffect& effect : motor.effects) {
+    if (!effect.column.empty()) {
+      notes.push_back(fmt::format("{} goes with {} of the logs, which the core does not know: it takes the value that heats most",
+                                  effect.name, effect.column));
+    }
+  }
+  for (const auto& [key, value] : motor.assumed) {
+    notes.push_back(fmt::format("the guard holds only where {} is {}, as --condition says", key, value));
+  }
+  return notes;
+}
+
+bool is_for_firmware(std::string_view path) { return path != "robot_core/block_diagram.h"; }
+
+}  // namespace
+
+std::string input_hash(std::string_view bytes) {
+  boost::crc_optimal<64, 0x42F0E1EBA9EA3693U, 0xFFFFFFFFFFFFFFFFU, 0xFFFFFFFFFFFFFFFFU, true, true> sum;
+  sum.process_bytes(bytes.data(), bytes.size());
+  return fmt::format("{:016x}", std::uint64_t{sum.checksum()});
+}
+
+double guard_period_s(double period_s) {
+  constexpr double kUsual_s = 0.01;
+  return period_s * std::max(1.0, std::round(kUsual_s / period_s));
+}
+
+std::string float_literal(float value) {
+  if (!std::isfinite(value)) {
+    throw Failure(ExitCode::bug, "a value that is not finite cannot be written");
+  }
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".e") == std::string::npos) {
+    text += ".0";
+  }
+  return text + "F";
+}
+
+std::string in_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < ' ' || c == 0x7F; }, ' ');
+  // A backslash at the end would continue a comment.
+  std::ranges::replace(text, '\\', '/');
+  for (std::size_t at = text.find("*/"); at != std::string::npos; at = text.find("*/")) {
+    text.replace(at, 2, "* /");
+  }
+  return text;
+}
+
+CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
+                      std::string_view version) {
+  const HostGuard guard(derating);
+  CoreSource source{.robot = robot,
+                    .motor = motor,
+                    .derating = derating,
+                    .options = options,
+                    .config = make_core_config(robot, motor, options, derating, guard),
+                    .guard = guard.model(),
+                    .version = std::string(version),
+                    .options_text = options_text(motor, options, derating),
+                    .hash = {}};
+  source.hash =
+      input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + source.options_text);
+  CoreFolder folder{.files = {},
+                    .hash = source.hash,
+                    .config_check_sum = source.config.check_sum,
+                    .limp_current_A = source.config.limp_current_A,
+                    .braking_reserve_K = source.config.braking_reserve_K,
+                    .notes = notes_on(robot, motor, derating)};
+  folder.files.push_back({"core_config.h", core_config_header(source)});
+  folder.files.push_back({"motor_guard.h", motor_guard_header(source)});
+  folder.files.push_back({"motor_guard.cpp", motor_guard_source(source)});
+  const Words words = words_for(source, folder.notes);
+  for (const embedded::Text& each : embedded::core_templates()) {
+    folder.files.push_back({std::string(each.path.substr(kTemplates.size())), filled(each.text, words)});
+  }
+  for (const embedded::Text& each : embedded::core_sources()) {
+    if (is_for_firmware(each.path)) {
+      folder.files.push_back({std::string(each.path), std::string(each.text)});
+    }
+  }
+  std::ranges::sort(folder.files, {}, &CoreFile::path);
+  return folder;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,63 @@
+// `heatsoak generate core`: the drive core of one robot and motor as a folder of source files that compiles on its own.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/core_config.h"
+#include "firmware/host_guard.h"
+
+namespace heatsoak {
+
+struct CoreFile {
+  std::string path;  ///< within the folder
+  std::string content;
+};
+
+/// Check sum that identifies inputs: CRC-64/XZ (ECMA-182 polynomial, reflected), 16 hexadecimal digits.
+inline constexpr std::string_view kInputHash = "CRC-64/XZ";
+std::string input_hash(std::string_view bytes);
+
+struct CoreFolder {
+  std::vector<CoreFile> files;         ///< sorted by path
+  std::string hash;                    ///< kInputHash over the texts of both files and the options
+  std::uint32_t config_check_sum = 0;  ///< robot_core::config_check_sum()
+  double limp_current_A = 0.0;
+  double braking_reserve_K = 0.0;
+  std::vector<std::string> notes;  ///< for the user: what the core does not know, and what it assumes instead
+};
+
+/// What the generators of single files share.
+struct CoreSource {
+  const Robot& robot;
+  const Motor& motor;
+  const Derating& derating;
+  CoreOptions options;
+  robot_core::Config config;  ///< its guard is the model below
+  robot_core::GuardModel guard;
+  std::string version;       ///< of this program
+  std::string options_text;  ///< all options that matter, as on the command line
+  std::string hash;
+};
+
+/// Guard period of a control period: the whole multiple nearest to 10 ms.
+double guard_period_s(double period_s);
+
+/// Same inputs, same bytes. The derating must have guard_period_s(). Reads the files of robot and motor again for the hash. Throws Failure
+/// (bad_input) as make_core_config() and HostGuard do, or where a file cannot be read.
+CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
+                      std::string_view version);
+
+// The generated files that are no templates.
+std::string core_config_header(const CoreSource& source);
+std::string motor_guard_header(const CoreSource& source);
+std::string motor_guard_source(const CoreSource& source);
+
+/// Shortest decimal that reads back as the same float, "0.01F". The value must be finite.
+std::string float_literal(float value);
+/// Without line breaks, so that no comment ends early.
+std::string in_one_line(std::string text);
+
+}  // namespace heatsoak

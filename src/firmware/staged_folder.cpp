@@ -1,0 +1,130 @@
+#include "firmware/staged_folder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace fs = std::filesystem;
+namespace {
+
+Failure unwritable(const fs::path& path, const std::error_code& problem) {
+  return {ExitCode::bad_input, fmt::format("{} cannot be written: {}; choose another folder with --out", path.string(), problem.message())};
+}
+
+/// Without a trailing slash, links followed.
+fs::path real_path(const fs::path& folder) {
+  std::error_code problem;
+  fs::path path = fs::weakly_canonical(fs::absolute(folder), problem);
+  if (problem) {
+    throw unwritable(folder, problem);
+  }
+  return path.has_filename() ? path : path.parent_path();
+}
+
+/// What a user may have added; robot_core/ is generated as a whole, so that no file of an older version stays in it.
+void copy_others(const fs::path& from, const fs::path& to) {
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(from, problem)) {
+    if (entry.path().filename() != "robot_core" && !problem) {
+      fs::copy(entry.path(), to / entry.path().filename(),
+               fs::copy_options::recursive | fs::copy_options::copy_symlinks | fs::copy_options::skip_existing, problem);
+    }
+  }
+  if (problem) {
+    throw Failure(ExitCode::bad_input, fmt::format("the files in {} cannot be kept: {}", from.string(), problem.message()));
+  }
+}
+
+}  // namespace
+
+void check_target_folder(const fs::path& folder, bool may_replace) {
+  const fs::path path = real_path(folder);
+  std::error_code problem;
+  const fs::file_status status = fs::status(path, problem);
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    throw Failure(ExitCode::bad_input, fmt::format("--out {} is a file; expected a folder, which may be new", folder.string()));
+  }
+  if (!fs::exists(status) && !fs::is_directory(path.parent_path(), problem)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--out {}: there is no folder {}; make it first", folder.string(), path.parent_path().string()));
+  }
+  if (path == path.parent_path()) {
+    throw Failure(ExitCode::bad_input, fmt::format("--out {}: expected a folder of its own", folder.string()));
+  }
+  if (fs::is_directory(status) && !may_replace && !fs::is_empty(path, problem)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--out {} is not empty; name another folder, or --force replaces the generated files in it "
+                              "and keeps all others",
+                              folder.string()));
+  }
+  if (problem) {
+    throw unwritable(path, problem);
+  }
+}
+
+StagedFolder::StagedFolder(const fs::path& folder, std::span<const CoreFile> files, bool may_replace) : folder_(real_path(folder)) {
+  check_target_folder(folder, may_replace);
+  stage_ = folder_.parent_path() / fmt::format(".{}.{}.new", folder_.filename().string(), getpid());
+  std::error_code problem;
+  fs::remove_all(stage_, problem);
+  if (!fs::create_directory(stage_, problem)) {
+    throw unwritable(folder_, problem);
+  }
+  try {
+    write(files);
+    if (fs::is_directory(folder_, problem)) {
+      copy_others(folder_, stage_);
+    }
+  } catch (...) {
+    fs::remove_all(stage_, problem);
+    throw;
+  }
+}
+
+StagedFolder::~StagedFolder() {
+  if (!stage_.empty()) {
+    std::error_code left;
+    fs::remove_all(stage_, left);
+  }
+}
+
+void StagedFolder::write(std::span<const CoreFile> files) const {
+  for (const CoreFile& file : files) {
+    const fs::path path = stage_ / file.path;
+    std::error_code problem;
+    fs::create_directories(path.parent_path(), problem);
+    std::ofstream stream(path, std::ios::binary);
+    stream << file.content;
+    stream.close();
+    if (!stream) {
+      throw unwritable(folder_ / file.path, problem ? problem : std::make_error_code(std::errc::io_error));
+    }
+  }
+}
+
+void StagedFolder::commit() {
+  std::error_code problem;
+  const fs::path old = folder_.parent_path() / fmt::format(".{}.{}.old", folder_.filename().string(), getpid());
+  const bool is_replaced = fs::exists(folder_, problem);
+  if (is_replaced) {
+    fs::rename(folder_, old, problem);
+  }
+  if (!problem) {
+    fs::rename(stage_, folder_, problem);
+    if (problem && is_replaced) {
+      std::error_code lost;
+      fs::rename(old, folder_, lost);
+    }
+  }
+  if (problem) {
+    throw unwritable(folder_, problem);
+  }
+  stage_.clear();
+  fs::remove_all(old, problem);
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,34 @@
+// A folder that appears complete or not at all.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "firmware/core_files.h"
+
+namespace heatsoak {
+
+/// Throws Failure (bad_input) where `folder` could not be made: its parent is missing, it is a file, or it holds something and
+/// `may_replace` is not set.
+void check_target_folder(const std::filesystem::path& folder, bool may_replace);
+
+/// Files under a temporary name beside their folder; commit() gives them its name, and without it nothing is left.
+class StagedFolder {
+ public:
+  /// Writes the files. Of a folder that may be replaced, what is none of them is kept. Throws Failure (bad_input).
+  StagedFolder(const std::filesystem::path& folder, std::span<const CoreFile> files, bool may_replace);
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+  ~StagedFolder();
+
+  void commit();
+
+ private:
+  void write(std::span<const CoreFile> files) const;
+
+  std::filesystem::path folder_;
+  std::filesystem::path stage_;
+};
+
+}  // namespace heatsoak
