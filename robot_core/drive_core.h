@@ -201,8 +201,9 @@ struct alignas(8) ComparisonState {
   float disagreement_s[kMostWheels] = {};   ///< how long the speed sample has contradicted the other evidence
   float agreement_s[kMostWheels] = {};      ///< how long it has agreed while the sensor counts as faulty
   float current_error_s[kMostWheels] = {};  ///< how long the current sensor has contradicted voltage and speed
-  float residual_m2_per_s2 = 0.0F;          ///< leaky mean square of what the wheels' samples contradict each other by
-  float swapped_m2_per_s2[6] = {};          ///< the same with two of the samples swapped, one per pair of wheels
+  float last_rad_per_s[kMostWheels] = {};   ///< speed samples of the last comparison of pairs
+  float with_V_rad_per_s[6] = {};           ///< per pair of wheels: leaky sum of how much its currents accelerate its difference of speeds
+  float against_V_rad_per_s[6] = {};        ///< and of how much they seem to decelerate it
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
 };
@@ -221,6 +222,7 @@ struct alignas(8) State {
   float yaw_rate_rad_per_s = 0.0F;  ///< last believed
   float raw_yaw_rate_rad_per_s = 0.0F;
   float battery_current_A = 0.0F;  ///< of the last period, estimated
+  float battery_source_V = 0.0F;   ///< voltage without load that samples have shown, slowly sinking
   Vector3 plan_velocity;           ///< of the pose target's plan, field frame
   Vector3 plan_acceleration;
   std::uint32_t shadow_steps = 0;   ///< in which the guard would have limited

@@ -28,6 +28,7 @@ struct Believed {
   float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
   int elapsed_periods = 1;
   bool are_all_sensed = true;
+  bool are_samples_compared = false;  ///< too few are believed: implied speeds are those of all samples
   Mode mode = Mode::coast;  ///< after faults of the command
   Reason command_fault = Reason::none;
   Reason robot_fault = Reason::none;
@@ -99,7 +100,7 @@ struct CurrentRange {
 CurrentRange explained_current(const Config& config, const WheelState& wheel, float speed_rad_per_s);
 
 /// Compares sensors with each other: stuck and swapped ones, and those that are believed again.
-void compare_sensors(const Config& config, State& state, const Input& input, const Believed& believed);
+void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed);
 
 /// Sets the check sum of the comparisons.
 void seal(ComparisonState& comparison);

@@ -5,6 +5,8 @@ namespace robot_core {
 namespace {
 
 constexpr float kLongestGap_s = 1.0F;
+// A guard that began as hot as its limit is known again when it allows this share of what a cold motor may carry, or all of the driver.
+constexpr float kKnown_share = 0.8F;
 
 int periods_per_guard_step(const Config& config) { return static_cast<int>(config.guard->period_s / config.period_s + 0.5F); }
 
@@ -40,7 +42,7 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   wheel.allowed_braking_A = sensed.is_speed_known ? guard.allowed_braking_A : config.limp_current_A;
   if (!guard.was_started) {
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
-  } else if (guard.allowed_A >= model.most_current_A) {
+  } else if (guard.allowed_A >= smaller(config.current_limit_A, kKnown_share * model.current_A[0])) {
     wheel.guard_fault = 0;
   }
 }

@@ -29,8 +29,11 @@ void validate_time(const Config& config, const Input& input, Believed& believed)
   }
 }
 
-/// Not finite if one of the components is not.
-float sum(const Vector3& v) { return v.x + v.y + v.yaw; }
+// Nobody means a larger number, and products of such numbers stay finite.
+constexpr float kMostCommand = 1e6F;
+
+/// Not a number if one of the components is not.
+float sum(const Vector3& v) { return absolute(v.x) + absolute(v.y) + absolute(v.yaw); }
 
 bool has_finite_values(const Config& config, const Command& command) {
   float all = 0.0F;
@@ -39,19 +42,19 @@ bool has_finite_values(const Config& config, const Command& command) {
     case Mode::brake:
       return true;
     case Mode::body_velocity:
-      return is_finite(sum(command.velocity) + sum(command.acceleration) + sum(command.push));
+      return sum(command.velocity) + sum(command.acceleration) + sum(command.push) <= kMostCommand;
     case Mode::pose_target:
-      return is_finite(sum(command.pose));
+      return sum(command.pose) <= kMostCommand;
     case Mode::wheel_speed:
       for (int i = 0; i < config.wheel_count; ++i) {
-        all += command.wheel_speed_rad_per_s[i];
+        all += absolute(command.wheel_speed_rad_per_s[i]);
       }
-      return is_finite(all);
+      return all <= kMostCommand;
     case Mode::wheel_torque:
       for (int i = 0; i < config.wheel_count; ++i) {
-        all += command.wheel_torque_Nm[i];
+        all += absolute(command.wheel_torque_Nm[i]);
       }
-      return is_finite(all);
+      return all <= kMostCommand;
   }
   return false;
 }
@@ -62,7 +65,7 @@ void validate_command(const Config& config, const Input& input, Believed& believ
     believed.command_fault = Reason::command_invalid;
   } else if (!(input.command_age_s >= 0.0F && input.command_age_s <= config.command_timeout_s)) {
     believed.command_fault = Reason::command_stale;
-  } else if (input.command.mode == Mode::pose_target && (config.plan_step == nullptr || !is_finite(sum(input.pose)))) {
+  } else if (input.command.mode == Mode::pose_target && (config.plan_step == nullptr || !(sum(input.pose) <= kMostCommand))) {
     believed.command_fault = Reason::pose_invalid;
   }
   if (believed.command_fault != Reason::none && believed.mode != Mode::coast) {
@@ -70,13 +73,26 @@ void validate_command(const Config& config, const Input& input, Believed& believ
   }
 }
 
-void validate_battery(const Config& config, const Input& input, Believed& believed) {
+/// A sample below what the battery has shown, less its sag, would make the PWM ratio too large: so low it cannot have become so soon.
+void validate_battery(const Config& config, State& state, const Input& input, Believed& believed) {
   const float sample_V = input.battery_V;
-  if (sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V) {
-    believed.battery_V = believed.pwm_battery_V = sample_V;
+  const float sag_V = config.battery_resistance_ohm * larger(0.0F, state.battery_current_A);
+  constexpr float kSag_ratio = 1.5F;        // an old battery, and what it has to recover from
+  constexpr float kTolerance_share = 0.03F;  // of the full battery: noise
+  constexpr float kFall_share_per_s = 0.004F;
+  constexpr float kRise_s = 0.05F;
+  const float least_V = state.battery_source_V - kSag_ratio * sag_V;
+  const bool is_possible = sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V;
+  state.battery_source_V = larger(0.0F, state.battery_source_V - kFall_share_per_s * config.battery_full_V * believed.elapsed_s);
+  if (is_possible && sample_V >= least_V - kTolerance_share * config.battery_full_V) {
+    const float source_V = smaller(sample_V + sag_V, config.battery_full_V);
+    const float rise_ratio = state.steps == 0 ? 1.0F : smaller(1.0F, believed.elapsed_s / kRise_s);
+    state.battery_source_V += rise_ratio * larger(0.0F, source_V - state.battery_source_V);
+    believed.battery_V = sample_V;
+    believed.pwm_battery_V = larger(sample_V, least_V);
   } else {
     believed.battery_V = config.battery_lowest_V;
-    believed.pwm_battery_V = config.battery_full_V;
+    believed.pwm_battery_V = 1.1F * config.battery_full_V;
     believed.robot_fault = believed.robot_fault == Reason::none ? Reason::battery_voltage_missing : believed.robot_fault;
   }
 }
@@ -148,6 +164,30 @@ void find_from_all(const Config& config, Believed& believed) {
   }
 }
 
+/// Too few sensors are left: every sample is compared with all the others, although none of them is believed. So sensors come back that
+/// were lost together, and agree with each other again.
+[[gnu::cold]] void compare_samples(const Config& config, const State& state, Believed& believed) {
+  PerWheel rim_m_per_s = {};
+  for (int i = 0; i < config.wheel_count; ++i) {
+    rim_m_per_s[i] =
+        rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  }
+  for (int i = 0; i < config.wheel_count; ++i) {
+    PlaneFit others;
+    for (int j = 0; j < config.wheel_count; ++j) {
+      others.add(config.wheel[j], rim_m_per_s[j], j == i ? 0.0F : 1.0F);
+    }
+    float x_m_per_s = 0.0F;
+    float y_m_per_s = 0.0F;
+    const WheelConfig& wheel = config.wheel[i];
+    if (others.solve(x_m_per_s, y_m_per_s)) {
+      const float implied_m_per_s = wheel.rolling_x_share * x_m_per_s + wheel.rolling_y_share * y_m_per_s;
+      believed.wheel[i].implied_rad_per_s =
+          state.wheel[i].raw_speed_rad_per_s + (implied_m_per_s - rim_m_per_s[i]) * wheel.speed_per_rim_per_m;
+    }
+  }
+}
+
 /// Some sensors are missing: from those that are left.
 [[gnu::cold]] void find_from_some(const Config& config, const State& state, Believed& believed) {
   const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
@@ -162,6 +202,7 @@ void find_from_all(const Config& config, Believed& believed) {
   believed.velocity = state.velocity_reference;
   believed.velocity.yaw = believed.yaw_rate_rad_per_s;
   const bool is_known = all.solve(believed.velocity.x, believed.velocity.y);
+  believed.are_samples_compared = !is_known;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
     Vector3 others = believed.velocity;
@@ -178,6 +219,9 @@ void find_from_all(const Config& config, Believed& believed) {
     if (!believed.wheel[i].is_speed_sensed) {
       believed.wheel[i].speed_rad_per_s = is_implied ? believed.wheel[i].implied_rad_per_s : 0.0F;
     }
+  }
+  if (!is_known) {
+    compare_samples(config, state, believed);
   }
 }
 
@@ -266,7 +310,7 @@ Believed validate_input(const Config& config, State& state, const Input& input) 
   Believed believed;
   validate_time(config, input, believed);
   validate_command(config, input, believed);
-  validate_battery(config, input, believed);
+  validate_battery(config, state, input, believed);
   validate_ambient(config, state, input, believed);
   take_samples(config, state, input, believed);
   validate_yaw_rate(config, state, input, believed);

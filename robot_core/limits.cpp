@@ -13,6 +13,8 @@ namespace {
 constexpr float kOvercurrent_ratio = 1.3F;
 constexpr float kBoundDecay = 0.8F;  // of the bound's memory, per period: sampling and actuation are late by one or two
 
+constexpr float kSensedSlack_share = 0.05F;  // of the driver's limit
+
 /// What one wheel wants and may have.
 struct WheelDemand {
   float back_V;     ///< back-EMF at the sensed speed
@@ -101,6 +103,18 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
   return believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= config.limp_current_A;
 }
 
+/// Holds a voltage within the current limit by what the sensor shows: the current that flowed, changed by the change of the voltage. True
+/// whatever the speed is. The slack is for noise, where two speeds hold the limit already.
+void hold_sensed_current(const Config& config, const BelievedWheel& believed, const WheelState& wheel, float most_A, float& voltage_V) {
+  if (wheel.is_open != 0) {
+    return;
+  }
+  const float slack_A = believed.is_speed_sensed ? kSensedSlack_share * config.current_limit_A : 0.0F;
+  const float room_V = config.lowest_resistance_ohm * (most_A + slack_A);
+  const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * believed.current_A;
+  voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
+}
+
 bool is_overcurrent(const Config& config, const Believed& believed, WheelState& wheel, int i, float most_A) {
   wheel.current_bound_A = larger(most_A, kBoundDecay * wheel.current_bound_A);
   return believed.wheel[i].is_current_sensed &&
@@ -162,8 +176,16 @@ void feed_back(const Config& config, const Believed& believed, WheelState& wheel
 bool finish_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i, float most_V,
                   float& voltage_V) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
+  const BelievedWheel& sensed = believed.wheel[i];
+  if (sensed.is_current_sensed && sensed.is_speed_sensed) {
+    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+  }
   const bool is_held = believed.wheel[i].is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V)
                                                         : limp_blindly(config, believed, i, most_V, voltage_V);
+  if (sensed.is_current_sensed && !sensed.is_speed_sensed) {
+    // Better evidence than speeds that others imply.
+    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+  }
   return is_overcurrent(config, believed, wheel, i, demand.most_A) || !is_held || !is_finite(voltage_V);
 }
 

@@ -13,10 +13,14 @@ constexpr float kDisagreement_share = 0.06F;
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // A winding is never this many times its coldest resistance: 2 is copper at 280 degC.
 constexpr float kHotResistance_ratio = 2.0F;
-// Swapped sensors: time constant of the comparison, least contradiction between the wheels, and what share of it swapping leaves.
-constexpr float kSwap_s = 0.2F;
-constexpr float kLeastContradiction_m_per_s = 0.15F;
-constexpr float kSwappedLeaves_ratio = 0.05F;
+// Swapped sensors: time constant of the comparison, least contradiction, and how many times the confirmation it is.
+constexpr float kSwap_s = 0.3F;
+constexpr float kLeastContradiction_share = 0.008F;
+constexpr float kMuchMore_ratio = 4.0F;
+// Of the least contradiction, as a confirmation while wheels are driven one by one: they slide for a while after it.
+constexpr float kWheelwise_ratio = 10.0F;
+// A wheel that changes its speed faster than this multiple of the limits of acceleration slides.
+constexpr float kGripping_ratio = 2.0F;
 constexpr std::uint64_t kSeed = 0x434F4D5041524521U;
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
@@ -50,9 +54,11 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
     comparison.disagreement_s[i] = agrees ? 0.0F : comparison.disagreement_s[i] + since_s;
     wheel.speed_fault = is_same && comparison.disagreement_s[i] > kStuck_s ? code(Reason::wheel_speed_stuck) : 0;
   } else if (wheel.speed_fault != code(Reason::wheel_speed_swapped)) {
-    const bool is_confirmed = agrees && believed.wheel[i].is_speed_known && wheel.has_spoken_wrongly == 0;
+    const bool is_comparable = believed.wheel[i].is_speed_known || believed.are_samples_compared;
+    const bool is_confirmed = agrees && is_comparable && wheel.has_spoken_wrongly == 0;
     comparison.agreement_s[i] = is_confirmed ? comparison.agreement_s[i] + since_s : 0.0F;
-    if (comparison.agreement_s[i] >= kSteadyAgain_s && !is_same) {
+    // A sensor that shows the same all the time may do so while no current flows.
+    if (comparison.agreement_s[i] >= kSteadyAgain_s && (!is_same || wheel.is_open != 0)) {
       wheel.speed_fault = 0;
       comparison.disagreement_s[i] = 0.0F;
     }
@@ -74,44 +80,67 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
   state.has_yaw_spoken_wrongly = 0;
 }
 
-/// Mean square of what is left of rim speeds (the turning taken off) that one velocity of the body should explain.
-[[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const float* rim_m_per_s) {
-  float x = 0.0F;
-  float y = 0.0F;
-  float all = 0.0F;
+/// What the currents do to one wheel: (V − K·n·ω), and the speed that it has gained since the last comparison.
+struct WheelResponse {
+  float driving_V;
+  float gained_rad_per_s;
+  bool is_usable;
+};
+
+void find_responses(const Config& config, State& state, const Believed& believed, float since_s, WheelResponse* response) {
+  const float turning_rad = believed.yaw_rate_rad_per_s * since_s;
+  const float gripping_m_per_s = kGripping_ratio * since_s *
+                                 (config.acceleration_limit_m_per_s2 + config.contact_radius_m * config.yaw_acceleration_limit_rad_per_s2);
   for (int i = 0; i < config.wheel_count; ++i) {
-    x += config.wheel[i].rolling_x_share * rim_m_per_s[i];
-    y += config.wheel[i].rolling_y_share * rim_m_per_s[i];
-    all += rim_m_per_s[i] * rim_m_per_s[i];
+    const WheelState& wheel = state.wheel[i];
+    const WheelConfig& at = config.wheel[i];
+    float& last_rad_per_s = state.comparison.last_rad_per_s[i];
+    // Seen from a robot that turns, its velocity turns without any force.
+    const float turned_m_per_s = turning_rad * (at.rolling_x_share * believed.velocity.y - at.rolling_y_share * believed.velocity.x);
+    const float gained_rad_per_s = wheel.raw_speed_rad_per_s - last_rad_per_s - turned_m_per_s * at.speed_per_rim_per_m;
+    last_rad_per_s = wheel.raw_speed_rad_per_s;
+    response[i] = {wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s, gained_rad_per_s,
+                   wheel.is_open == 0 && believed.wheel[i].is_speed_sensed &&
+                       absolute(rim_speed_m_per_s(config, i, gained_rad_per_s)) <= gripping_m_per_s};
   }
-  // Σ r² − bᵀ·P·b, b = Σ t·r: the residual of least squares.
-  const DerivedConfig& derived = config.derived;
-  const float explained = derived.plane_xx_factor * x * x + 2.0F * derived.plane_xy_factor * x * y + derived.plane_yy_factor * y * y;
-  return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 
-/// Swapped sensors: the samples contradict each other, and two of them swapped do not. Needs no model of the drive.
-[[gnu::cold]] void compare_pairs(const Config& config, State& state, const Believed& believed, float since_s) {
+/// Swapped sensors: the difference of two wheels' currents accelerates the difference of their speeds. If the sensors are swapped it
+/// seems to decelerate it: then the control makes the difference grow, until the product of both is large. Only where the body is
+/// controlled: wheels that are driven against each other move as the strongest want.
+void compare_pairs(const Config& config, State& state, const Believed& believed, float since_s) {
   ComparisonState& comparison = state.comparison;
-  const float forget = smaller(1.0F, since_s / kSwap_s);
-  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
-  float rim_m_per_s[kMostWheels] = {};
-  for (int i = 0; i < config.wheel_count; ++i) {
-    rim_m_per_s[i] = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
-  }
-  comparison.residual_m2_per_s2 += forget * (contradiction_m2_per_s2(config, rim_m_per_s) - comparison.residual_m2_per_s2);
-  const bool is_contradiction = comparison.residual_m2_per_s2 > kLeastContradiction_m_per_s * kLeastContradiction_m_per_s;
+  const float keep = 1.0F - smaller(1.0F, since_s / kSwap_s);
+  // Where wheels and gyro contradict each other, one of them lies about the turning.
+  const bool is_turning_known =
+      state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, believed) - believed.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
+  const bool is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
+  const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
+  float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
+  WheelResponse response[kMostWheels];
+  find_responses(config, state, believed, since_s, response);
+  int worst[2] = {-1, -1};
   int pair = 0;
   for (int i = 0; i < config.wheel_count; ++i) {
     for (int j = i + 1; j < config.wheel_count; ++j, ++pair) {
-      float swapped_m_per_s[kMostWheels] = {rim_m_per_s[0], rim_m_per_s[1], rim_m_per_s[2], rim_m_per_s[3]};
-      swapped_m_per_s[i] = rim_m_per_s[j];
-      swapped_m_per_s[j] = rim_m_per_s[i];
-      float& left = comparison.swapped_m2_per_s2[pair];
-      left += forget * (contradiction_m2_per_s2(config, swapped_m_per_s) - left);
-      if (is_contradiction && state.yaw_fault == 0 && left < kSwappedLeaves_ratio * comparison.residual_m2_per_s2) {
-        state.wheel[i].speed_fault = state.wheel[j].speed_fault = code(Reason::wheel_speed_swapped);
+      const bool is_usable = is_turning_known && response[i].is_usable && response[j].is_usable;
+      const float product = is_usable ? (response[i].driving_V - response[j].driving_V) *
+                                            (response[i].gained_rad_per_s - response[j].gained_rad_per_s)
+                                      : 0.0F;
+      float& with = comparison.with_V_rad_per_s[pair];
+      float& against = comparison.against_V_rad_per_s[pair];
+      with = is_wheelwise ? kWheelwise_ratio * most : keep * with + larger(0.0F, product);
+      against = is_wheelwise ? 0.0F : keep * against + larger(0.0F, -product);
+      if (against > kMuchMore_ratio * with && against > most) {
+        most = against;
+        worst[0] = i;
+        worst[1] = j;
       }
+    }
+  }
+  for (const int i : worst) {
+    if (i >= 0) {
+      state.wheel[i].speed_fault = code(Reason::wheel_speed_swapped);
     }
   }
 }
@@ -139,7 +168,7 @@ CurrentRange explained_current(const Config& config, const WheelState& wheel, fl
 
 void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(comparison); }
 
-void compare_sensors(const Config& config, State& state, const Input& input, const Believed& believed) {
+void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed) {
   // Even steps; wheels 0, 4, 8, 12, pairs 2, yaw rate 6.
   const std::uint32_t turn = state.steps % kStepsPerComparison;
   const bool is_wheel = turn % 4 == 0 && turn / 4 < static_cast<std::uint32_t>(config.wheel_count);
@@ -148,6 +177,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, con
   }
   if (state.comparison.check_sum != check_sum_of(state.comparison)) {
     state.comparison = {};  // what it had found stands in the faults
+    believed.robot_fault = Reason::state_corrupted;
   }
   const float since_s = believed.elapsed_s * static_cast<float>(kStepsPerComparison);
   if (is_wheel) {
