@@ -67,34 +67,41 @@ void spread_guards(const Config& config, State& state) {
 
 namespace {
 
-/// Stages 2 to 4. The reference of a body velocity is slow beside the wheels' loops, so it serves two periods; what changes the kind of
-/// motion acts at once.
-BodyReference find_references(const Config& config, State& state, const Input& input, const Believed& believed, WheelReferences& wheels,
-                              WheelVoltages& voltage) {
-  HeldReference& held = state.held;
-  const bool is_body_velocity = believed.mode == Mode::body_velocity && believed.robot_fault == Reason::none;
-  if (is_body_velocity && held.is_fresh != 0) {
-    held.is_fresh = 0;
-    held.since_s += believed.elapsed_s;
-    for (int i = 0; i < config.wheel_count; ++i) {
-      wheels.wheel[i].speed_rad_per_s = held.speed_rad_per_s[i];
-      voltage.wheel[i].feed_forward_V = held.feed_forward_V[i];
-    }
-    return {};
-  }
-  const BodyReference body = control_body_velocity(config, state, input, believed);
+/// Stages 2 to 4.
+void find_references(const Config& config, State& state, const Input& input, const Believed& believed, BodyReference& body,
+                     WheelReferences& wheels, WheelVoltages& voltage) {
+  body = control_body_velocity(config, state, input, believed);
   find_wheel_speeds(config, input, body, wheels);
   feed_forward(config, input, believed, body, wheels, voltage);
-  held.is_fresh = is_body_velocity ? 1 : 0;
+  HeldReference& held = state.held;
   for (int i = 0; i < config.wheel_count; ++i) {
     held.speed_rad_per_s[i] = wheels.wheel[i].speed_rad_per_s;
     held.feed_forward_V[i] = voltage.wheel[i].feed_forward_V;
   }
-  return body;
 }
 
-/// On its own so that the result is made where the caller wants it.
-Output step_valid(const Config& config, State& state, const Input& input, bool was_corrupted) {
+/// Once more what stages 2 to 4 found in the last period.
+void hold_references(const Config& config, State& state, const Believed& believed, WheelReferences& wheels, WheelVoltages& voltage) {
+  HeldReference& held = state.held;
+  held.is_fresh = 0;
+  held.since_s += believed.elapsed_s;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    wheels.wheel[i].speed_rad_per_s = held.speed_rad_per_s[i];
+    voltage.wheel[i].feed_forward_V = held.feed_forward_V[i];
+  }
+}
+
+/// Stages 5 to 7.
+void control_wheels(const Config& config, State& state, const Believed& believed, const BodyReference& body, const WheelReferences& wheels,
+                    WheelVoltages& voltage, Output& out) {
+  control_wheel_speeds(config, state, believed, wheels, voltage);
+  const LimitedVoltages limited = apply_limits(config, state, believed, body, voltage);
+  make_output(config, state, believed, limited, out);
+}
+
+/// The reference of a body velocity is slow beside the wheels' loops, so it serves two periods; what changes the kind of motion acts at
+/// once.
+void step_valid(const Config& config, State& state, const Input& input, bool was_corrupted, Output& out) {
   Believed believed = validate_input(config, state, input);
   if (was_corrupted) {
     believed.robot_fault = Reason::state_corrupted;
@@ -102,23 +109,39 @@ Output step_valid(const Config& config, State& state, const Input& input, bool w
   run_guards(config, state, input, believed);
   WheelReferences wheels;
   WheelVoltages voltage;
-  const BodyReference body = find_references(config, state, input, believed, wheels, voltage);
-  control_wheel_speeds(config, state, believed, wheels, voltage);
-  const LimitedVoltages limited = apply_limits(config, state, believed, body, voltage);
-  Output out = make_output(config, state, believed, limited);
+  const bool is_body_velocity = believed.mode == Mode::body_velocity && believed.robot_fault == Reason::none;
+  if (is_body_velocity && state.held.is_fresh != 0) {
+    static constexpr BodyReference kBodyVelocity;
+    hold_references(config, state, believed, wheels, voltage);
+    control_wheels(config, state, believed, kBodyVelocity, wheels, voltage, out);
+  } else {
+    BodyReference body;
+    find_references(config, state, input, believed, body, wheels, voltage);
+    state.held.is_fresh = is_body_velocity ? 1 : 0;
+    control_wheels(config, state, believed, body, wheels, voltage, out);
+  }
   ++state.steps;
   state.check_sum = state_check_sum(state);
-  return out;
 }
 
 }  // namespace
 
-Output step(const Config& config, State& state, const Input& input) {
+void step(const Config& config, State& state, const Input& input, Output& out) {
   const bool is_corrupted = state.check_sum != state_check_sum(state);
   if (is_corrupted) {
     start(config, state, {});
   }
-  return state.is_valid == kStarted ? step_valid(config, state, input, is_corrupted) : all_open(Reason::config_invalid);
+  if (state.is_valid == kStarted) {
+    step_valid(config, state, input, is_corrupted, out);
+  } else {
+    out = all_open(Reason::config_invalid);
+  }
+}
+
+Output step(const Config& config, State& state, const Input& input) {
+  Output out;
+  step(config, state, input, out);
+  return out;
 }
 
 }  // namespace robot_core

@@ -266,6 +266,8 @@ bool start(const Config& config, State& state, const StartUp& start_up);
 
 /// One period.
 Output step(const Config& config, State& state, const Input& input);
+/// The same without a copy of the output: writes all of `out`.
+void step(const Config& config, State& state, const Input& input, Output& out);
 
 /// Fills in Config::derived and Config::check_sum. Call it last when a Config is made.
 void complete(Config& config);

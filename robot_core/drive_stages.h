@@ -81,7 +81,8 @@ void control_wheel_speeds(const Config& config, State& state, const Believed& be
                           WheelVoltages& voltage);
 LimitedVoltages apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,
                              const WheelVoltages& voltage);
-Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited);
+/// Writes all of `out`.
+void make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited, Output& out);
 
 // Parts of stage 1, in sensor_comparison.cpp.
 

@@ -21,26 +21,36 @@ struct WheelDemand {
   float current_A;  ///< that the wanted voltage drives
   float most_A;     ///< largest magnitude within driver, grip and guard
   float share;      ///< of the wanted current that the wheel's own limits leave
-  Reason reason;    ///< of most_A
+  Reason reason;    ///< of most_A; none: the smaller one of driver limit and grip
 };
 
 /// Without the guard.
 void limit_demand(const Config& config, const WheelState& state, const Believed& believed, const BodyReference& body, int i,
                   WheelDemand& demand) {
   demand.most_A = config.wheel[i].body_limit_A;
-  demand.reason = config.wheel[i].is_grip_limit != 0 ? Reason::traction : Reason::driver_current;
+  demand.reason = Reason::none;
   if (body.is_wheelwise) {
     demand.most_A = config.current_limit_A;
     demand.reason = Reason::driver_current;
   }
   if (!believed.wheel[i].is_speed_sensed && config.limp_current_A < demand.most_A) {
     demand.most_A = config.limp_current_A;
-    demand.reason = static_cast<Reason>(state.speed_fault);
+    // A fault that has just been cleared counts from the next step on.
+    demand.reason = state.speed_fault != 0 ? static_cast<Reason>(state.speed_fault) : Reason::wheel_speed_missing;
   }
+}
+
+[[gnu::cold]] Reason reason_of(const WheelConfig& wheel, const WheelDemand& demand) {
+  const Reason own = wheel.is_grip_limit != 0 ? Reason::traction : Reason::driver_current;
+  return demand.reason == Reason::none ? own : demand.reason;
 }
 
 /// What the guard leaves. In shadow mode it is counted instead; true if it would have limited.
 bool apply_guard(const Config& config, State& state, const WheelState& wheel, float speed_rad_per_s, float elapsed_s, WheelDemand& demand) {
+  // Braking is allowed at least as much.
+  if (wheel.allowed_A >= demand.most_A) {
+    return false;
+  }
   const bool brakes = demand.current_A * speed_rad_per_s < 0.0F;
   const float allowed_A = brakes ? wheel.allowed_braking_A : wheel.allowed_A;
   if (allowed_A >= demand.most_A) {
@@ -68,28 +78,29 @@ float share_of_battery(const Config& config, const State& state, const Believed&
   return power_W > most_W && config.derived.most_battery_sag_A > 0.0F ? most_W / power_W : 1.0F;
 }
 
-/// Share of a wheel's current that its limits leave; the reason where it is below one.
-float share_of_wheel(const Config& config, const WheelDemand& demand, float most_V, Reason& reason) {
+/// Finds the share of a wheel's current that its limits leave, and the reason. True if it is less than all.
+bool limit_wheel(const Config& config, const WheelConfig& wheel, float most_V, WheelDemand& demand, Reason& reason) {
   const float size_A = absolute(demand.current_A);
   const float room_V = demand.current_A > 0.0F ? most_V - demand.back_V : most_V + demand.back_V;
   const float reachable_A = room_V * config.derived.per_lowest_resistance_A_per_V;
   if (size_A <= demand.most_A && size_A <= reachable_A) {
-    return 1.0F;
+    return false;
   }
-  reason = reachable_A < demand.most_A ? Reason::voltage : demand.reason;
+  reason = reachable_A < demand.most_A ? Reason::voltage : reason_of(wheel, demand);
   const float most_A = smaller(demand.most_A, reachable_A);
-  return most_A > 0.0F ? most_A / size_A : 0.0F;
+  demand.share = most_A > 0.0F ? most_A / size_A : 0.0F;
+  return true;
 }
 
 /// Holds a voltage within the current limit for the implied speed too; for the sensed one it is. False where no voltage does.
 bool hold_window(const Config& config, const Believed& believed, const WheelDemand& demand, int i, float most_V, float& voltage_V) {
-  if (!(demand.most_A > 0.0F)) {
-    return false;
-  }
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
   const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].implied_rad_per_s;
-  if (absolute(voltage_V - implied_V) <= band_V) {
+  if (absolute(voltage_V - implied_V) < band_V) {
     return true;
+  }
+  if (!(demand.most_A > 0.0F)) {
+    return false;
   }
   voltage_V = clamped(voltage_V, implied_V - band_V, implied_V + band_V);
   constexpr float kRounding = 1.0001F;
@@ -139,8 +150,9 @@ float find_demands(const Config& config, State& state, const Believed& believed,
       would_limit = apply_guard(config, state, state.wheel[i], sensed.speed_rad_per_s, believed.elapsed_s, each) || would_limit;
     }
     if (sensed.is_speed_known) {
-      each.share = share_of_wheel(config, each, most_V, limited.wheel[i].reason);
-      least = smaller(least, each.share);
+      if (limit_wheel(config, config.wheel[i], most_V, each, limited.wheel[i].reason)) {
+        least = smaller(least, each.share);
+      }
     }
     power_W += (each.back_V + config.lowest_resistance_ohm * each.current_A) * each.current_A;
   }
@@ -165,11 +177,6 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   }
   const std::uint8_t later = wheel.current_fault != 0 ? wheel.current_fault : wheel.guard_fault;
   return static_cast<Reason>(wheel.speed_fault != 0 ? wheel.speed_fault : later);
-}
-
-/// The integrator follows the voltage that the wheel really gets.
-void feed_back(const Config& config, const Believed& believed, WheelState& wheel, float excess_V) {
-  wheel.integral_V += excess_V * smaller(1.0F, believed.elapsed_s * config.derived.per_tracking_time_per_s);
 }
 
 /// What is left of the wanted voltage of one wheel; true if its bridge has to be opened.
@@ -199,6 +206,8 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
   const float share = find_demands(config, state, believed, body, voltage, most_V, demand, limited);
   const bool is_all_open = body.is_open || believed.robot_fault == Reason::period_invalid;
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
+  // The integrators follow the voltages that the wheels really get.
+  const float feedback_share = smaller(1.0F, believed.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
@@ -208,11 +217,11 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;
-      end.reason = is_all_open ? Reason::none : demand[i].reason;
+      end.reason = is_all_open ? Reason::none : reason_of(config.wheel[i], demand[i]);
       wheel.integral_V = 0.0F;
     } else {
       power_W += end.voltage_V * demand[i].current_A;
-      feed_back(config, believed, wheel, end.voltage_V - voltage.wheel[i].wanted_V);
+      wheel.integral_V += (end.voltage_V - voltage.wheel[i].wanted_V) * feedback_share;
     }
     wheel.voltage_V = end.voltage_V;
     end.reason = believed.wheel[i].is_speed_known ? strongest(wheel, end.reason) : Reason::wheel_speed_unknown;

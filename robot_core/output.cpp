@@ -3,31 +3,29 @@
 
 namespace robot_core {
 
-Output make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited) {
-  Output out;
-  out.time_to_guard_limit_s = kLongTime_s;
+void make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited, Output& out) {
+  float time_to_limit_s = kLongTime_s;
   const float per_battery_V = 1.0F / believed.pwm_battery_V;
   for (int i = 0; i < config.wheel_count; ++i) {
     const LimitedWheel& wheel = limited.wheel[i];
     const GuardState& guard = state.guard[i];
     out.is_open[i] = wheel.is_open;
     out.voltage_V[i] = wheel.voltage_V;
-    out.pwm_ratio[i] = clamped(wheel.voltage_V * per_battery_V, -1.0F, 1.0F);
+    const float pwm_ratio = wheel.voltage_V * per_battery_V;
+    out.pwm_ratio[i] = absolute(pwm_ratio) > 1.0F ? clamped(pwm_ratio, -1.0F, 1.0F) : pwm_ratio;
     out.reason[i] = wheel.reason;
     out.allowed_current_A[i] = wheel.allowed_A;
     out.winding_C[i] = guard.state_C[0];
-    out.time_to_guard_limit_s = smaller(out.time_to_guard_limit_s, guard.time_to_limit_s);
+    time_to_limit_s = smaller(time_to_limit_s, guard.time_to_limit_s);
   }
   for (int i = config.wheel_count; i < kMostWheels; ++i) {
     out.voltage_V[i] = out.pwm_ratio[i] = out.allowed_current_A[i] = out.winding_C[i] = 0.0F;
     out.reason[i] = Reason::none;
+    out.is_open[i] = true;
   }
-  if (config.guard == nullptr) {
-    out.time_to_guard_limit_s = kLongTime_s;
-  }
+  out.time_to_guard_limit_s = config.guard == nullptr ? kLongTime_s : time_to_limit_s;
   out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;
   out.robot_reason = believed.robot_fault != Reason::none ? believed.robot_fault : believed.command_fault;
-  return out;
 }
 
 }  // namespace robot_core
