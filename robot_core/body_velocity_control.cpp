@@ -13,6 +13,9 @@ constexpr float kMostYawIntegral_rad = 0.5F;
 constexpr float kHoldBack_s = 0.1F;
 constexpr float kLead_share = 0.2F;
 constexpr float kRecovery_s = 0.3F;
+constexpr float kRelease_s = 0.2F;
+// Over which the force that accelerates the body is smoothed.
+constexpr float kForce_s = 0.01F;
 
 Vector3 turned(const Vector3& v, const SineCosine& turn) {
   return {v.x * turn.cosine_ratio - v.y * turn.sine_ratio, v.x * turn.sine_ratio + v.y * turn.cosine_ratio, v.yaw};
@@ -96,11 +99,22 @@ void approach(const Config& config, const State& state, const Believed& believed
 void close_loop(const Config& config, State& state, const Believed& believed, float since_s, BodyReference& body) {
   const float yaw_error_rad_per_s = body.velocity.yaw - believed.yaw_rate_rad_per_s;
   state.yaw_integral_rad = clamped(state.yaw_integral_rad + yaw_error_rad_per_s * since_s, -kMostYawIntegral_rad, kMostYawIntegral_rad);
+  // A robot that is to stand must not turn because its integral was needed on the way.
+  if (body.velocity.yaw == 0.0F && length(body.velocity) < kStanding_m_per_s) {
+    state.yaw_integral_rad -= state.yaw_integral_rad * smaller(1.0F, since_s / kRelease_s);
+  }
   body.acceleration.x += config.body_gain_per_s * (body.velocity.x - believed.velocity.x);
   body.acceleration.y += config.body_gain_per_s * (body.velocity.y - believed.velocity.y);
   body.acceleration.yaw += config.yaw_gain_per_s * yaw_error_rad_per_s + config.yaw_integral_per_s2 * state.yaw_integral_rad;
   const float most_m_per_s2 = kApproach_ratio * config.acceleration_limit_m_per_s2;
   limit(body.acceleration, most_m_per_s2, kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2);
+  // Every packet corrects the velocity a little at once: as a force that would be a blow.
+  const float share = smaller(1.0F, since_s / kForce_s);
+  Vector3& smoothed = state.acceleration_reference;
+  smoothed.x += share * (body.acceleration.x - smoothed.x);
+  smoothed.y += share * (body.acceleration.y - smoothed.y);
+  smoothed.yaw += share * (body.acceleration.yaw - smoothed.yaw);
+  body.acceleration = smoothed;
   // The wheels follow their speeds; what they slip in yaw only the gyro sees.
   body.velocity.yaw += config.derived.yaw_correction_per_s * state.yaw_integral_rad;
 }
@@ -113,12 +127,14 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
   state.held.since_s = 0.0F;
   if (believed.robot_fault == Reason::time_jump) {
     state.velocity_reference = believed.velocity;
+    state.acceleration_reference = {};
     state.yaw_integral_rad = 0.0F;
   }
   body.is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
   body.is_open = believed.mode == Mode::coast || (believed.command_fault != Reason::none && is_standing(believed.velocity));
   if (body.is_open || body.is_wheelwise) {
     state.velocity_reference = believed.velocity;
+    state.acceleration_reference = {};
     state.yaw_integral_rad = 0.0F;
     state.speed_share = 1.0F;
     return body;

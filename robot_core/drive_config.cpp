@@ -120,8 +120,10 @@ bool all(const float (&values)[count]) {
     constexpr float kMostLeverage = 0.98F;  // else the other wheels say next to nothing of this one's direction
     wheel.others_factor = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
     const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
-    const float grip_A = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
-                         absolute(wheel.sign_V) / config.resistance_ohm;
+    const float nominal_A = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
+                            absolute(wheel.sign_V) / config.resistance_ohm;
+    // Of the nominal motor: the grip protects nothing, so the lowest resistance need not count.
+    const float grip_A = nominal_A * config.resistance_ohm / config.lowest_resistance_ohm;
     wheel.is_grip_limit = config.traction_ratio > 0.0F && grip_A < config.current_limit_A ? 1 : 0;
     wheel.body_limit_A = wheel.is_grip_limit != 0 ? grip_A : config.current_limit_A;
   }

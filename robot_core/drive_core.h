@@ -170,13 +170,14 @@ struct WheelState {
   float raw_speed_rad_per_s = 0.0F;  ///< last sample
   float integral_V = 0.0F;
   float voltage_V = 0.0F;           ///< applied over the last period
+  float earlier_V = 0.0F;           ///< and over the period before
   float current_squared_A2 = 0.0F;  ///< sum since the guard's last step
-  float allowed_A = 0.0F;
-  float allowed_braking_A = 0.0F;
-  float current_bound_A = 0.0F;   ///< limit of the last steps, decaying: a sensed current far above it opens the bridge
-  std::uint16_t guard_steps = 0;  ///< periods since the guard's last step
-  std::uint16_t same_steps = 0;   ///< periods in which the speed sample has not changed by a bit, up to kMostSameSteps
-  std::uint8_t speed_fault = 0;   ///< Reason, or 0
+  float allowed_A = 0.0F;           ///< by the guard, as the current of a motor with the lowest resistance
+  float allowed_braking_A = 0.0F;   ///< the same where the current brakes
+  float current_bound_A = 0.0F;     ///< limit of the last steps, decaying: a sensed current far above it opens the bridge
+  std::uint16_t guard_steps = 0;    ///< periods since the guard's last step
+  std::uint16_t same_steps = 0;     ///< periods in which the speed sample has not changed by a bit, up to kMostSameSteps
+  std::uint8_t speed_fault = 0;     ///< Reason, or 0
   std::uint8_t current_fault = 0;
   std::uint8_t guard_fault = 0;
   std::uint8_t is_open = 1;             ///< the bridge was open over the last period
@@ -216,7 +217,8 @@ struct alignas(8) State {
   std::uint32_t steps = 0;     ///< since the start
   WheelState wheel[kMostWheels];
   HeldReference held;
-  Vector3 velocity_reference;  ///< of the body, local frame
+  Vector3 velocity_reference;      ///< of the body, local frame
+  Vector3 acceleration_reference;  ///< smoothed
   float yaw_integral_rad = 0.0F;
   float speed_share = 1.0F;         ///< of the commanded velocity that the limits leave
   float yaw_rate_rad_per_s = 0.0F;  ///< last believed

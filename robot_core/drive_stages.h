@@ -29,7 +29,7 @@ struct Believed {
   int elapsed_periods = 1;
   bool are_all_sensed = true;
   bool are_samples_compared = false;  ///< too few are believed: implied speeds are those of all samples
-  Mode mode = Mode::coast;  ///< after faults of the command
+  Mode mode = Mode::coast;            ///< after faults of the command
   Reason command_fault = Reason::none;
   Reason robot_fault = Reason::none;
 };
@@ -92,13 +92,6 @@ inline float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_
 
 /// Yaw rate that the sensed wheel speeds imply.
 float yaw_rate_of_wheels(const Config& config, const Believed& believed);
-
-/// Largest and smallest current that the last voltage explains at a speed, whatever the winding's temperature; 0 with an open bridge.
-struct CurrentRange {
-  float low_A = 0.0F;
-  float high_A = 0.0F;
-};
-CurrentRange explained_current(const Config& config, const WheelState& wheel, float speed_rad_per_s);
 
 /// Compares sensors with each other: stuck and swapped ones, and those that are believed again.
 void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed);

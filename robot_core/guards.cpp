@@ -21,6 +21,16 @@ float hottest_neighbour_C(const Config& config, const State& state, int of) {
   return hottest_C;
 }
 
+/// The limits hold voltages by the lowest resistance. The guard limits heat, and a motor that is as hot as its observer says has more:
+/// its current is what the guard allows when one of the lowest resistance would carry this many times as much. A motor that is colder
+/// than that carries more, but heats by the square of the voltage over its resistance and so stays colder than the observer.
+float cold_current_ratio(const Config& config, float winding_C) {
+  constexpr float kReference_C = 25.0F;
+  const float warm_K = larger(0.0F, winding_C - kReference_C);
+  return larger(1.0F,
+                config.resistance_ohm * (1.0F + config.resistance_rise_per_K * warm_K) * config.derived.per_lowest_resistance_A_per_V);
+}
+
 /// `periods`: that current_squared_A2 is the sum of.
 void step_wheel_guard(const Config& config, State& state, const Believed& believed, int i, float periods) {
   WheelState& wheel = state.wheel[i];
@@ -38,8 +48,9 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
-  wheel.allowed_A = sensed.is_speed_known ? guard.allowed_A : config.limp_current_A;
-  wheel.allowed_braking_A = sensed.is_speed_known ? guard.allowed_braking_A : config.limp_current_A;
+  const float cold_ratio = cold_current_ratio(config, guard.winding_C);
+  wheel.allowed_A = sensed.is_speed_known ? cold_ratio * guard.allowed_A : config.limp_current_A;
+  wheel.allowed_braking_A = sensed.is_speed_known ? cold_ratio * guard.allowed_braking_A : config.limp_current_A;
   if (!guard.was_started) {
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
   } else if (guard.allowed_A >= smaller(config.current_limit_A, kKnown_share * model.current_A[0])) {

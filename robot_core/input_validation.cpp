@@ -228,7 +228,8 @@ void find_from_all(const Config& config, Believed& believed) {
 void validate_yaw_rate(const Config& config, State& state, const Input& input, Believed& believed) {
   const float sample = input.yaw_rate_rad_per_s;
   const bool is_possible = absolute(sample) <= kFastestYaw_rad_per_s;  // false for what is no number
-  if (!is_possible || absolute(sample - state.raw_yaw_rate_rad_per_s) > kYawJump_rad_per_s) {
+  const bool is_jump = absolute(sample - state.raw_yaw_rate_rad_per_s) > kYawJump_rad_per_s && state.steps != 0;
+  if (!is_possible || is_jump) {
     state.yaw_fault = code(Reason::yaw_rate_missing);
     state.has_yaw_spoken_wrongly = 1;
   }
@@ -248,7 +249,9 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, B
 void take_samples(const Config& config, State& state, const Input& input, Believed& believed) {
   const float most_rad_per_s = config.fastest_wheel_rad_per_s;
   const float jump_rad_per_s =
-      config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (believed.elapsed_s - config.period_s);
+      // After a start there is no sample to jump from.
+      state.steps == 0 ? 2.0F * most_rad_per_s
+                       : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (believed.elapsed_s - config.period_s);
   believed.are_all_sensed = true;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];

@@ -223,6 +223,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
       power_W += end.voltage_V * demand[i].current_A;
       wheel.integral_V += (end.voltage_V - voltage.wheel[i].wanted_V) * feedback_share;
     }
+    wheel.earlier_V = wheel.voltage_V;
     wheel.voltage_V = end.voltage_V;
     end.reason = believed.wheel[i].is_speed_known ? strongest(wheel, end.reason) : Reason::wheel_speed_unknown;
   }

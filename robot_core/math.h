@@ -76,7 +76,7 @@ struct SineCosine {
   float cosine_ratio = 1.0F;
 };
 
-/// Error below 3e-7 for |angle| up to 1000 rad, which larger angles are taken for.
+/// Error below 4e-7 for |angle| up to 1000 rad, which larger angles are taken for.
 SineCosine sine_cosine(float angle_rad);
 
 }  // namespace robot_core

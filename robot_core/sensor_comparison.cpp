@@ -21,6 +21,11 @@ constexpr float kMuchMore_ratio = 4.0F;
 constexpr float kWheelwise_ratio = 10.0F;
 // A wheel that changes its speed faster than this multiple of the limits of acceleration slides.
 constexpr float kGripping_ratio = 2.0F;
+struct CurrentRange {
+  float low_A = 0.0F;
+  float high_A = 0.0F;
+};
+
 constexpr std::uint64_t kSeed = 0x434F4D5041524521U;
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
@@ -29,11 +34,23 @@ std::uint64_t check_sum_of(const ComparisonState& comparison) {
   return kSeed + sum_of_words<1, sizeof(ComparisonState) / sizeof(std::uint64_t)>(&comparison);
 }
 
+/// Current that a voltage explains at a speed, whatever the winding's temperature.
+CurrentRange explained_current(const Config& config, float voltage_V, float speed_rad_per_s) {
+  const float cold_A =
+      (voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * config.derived.per_lowest_resistance_A_per_V;
+  constexpr float kHot_share = 1.0F / kHotResistance_ratio;
+  const float hot_A = cold_A * kHot_share;
+  return {smaller(cold_A, hot_A), larger(cold_A, hot_A)};
+}
+
+/// Whether a sample can be of the last period or of the one before: nobody knows how late samples and voltages are.
 bool current_contradicts(const Config& config, const WheelState& wheel, float sensed_A, float speed_rad_per_s) {
-  const CurrentRange explained = explained_current(config, wheel, speed_rad_per_s);
+  const CurrentRange last = wheel.is_open != 0 ? CurrentRange{} : explained_current(config, wheel.voltage_V, speed_rad_per_s);
+  const CurrentRange earlier = explained_current(config, wheel.earlier_V, speed_rad_per_s);
   const float margin_A = config.derived.current_margin_A;
   const bool is_sample = absolute(sensed_A) <= config.derived.most_sensed_A;
-  return is_sample && !(sensed_A >= explained.low_A - margin_A && sensed_A <= explained.high_A + margin_A);
+  return is_sample &&
+         !(sensed_A >= smaller(last.low_A, earlier.low_A) - margin_A && sensed_A <= larger(last.high_A, earlier.high_A) + margin_A);
 }
 
 /// Speed and current sensor of one wheel against the other wheels and the motor's equation.
@@ -89,8 +106,8 @@ struct WheelResponse {
 
 void find_responses(const Config& config, State& state, const Believed& believed, float since_s, WheelResponse* response) {
   const float turning_rad = believed.yaw_rate_rad_per_s * since_s;
-  const float gripping_m_per_s = kGripping_ratio * since_s *
-                                 (config.acceleration_limit_m_per_s2 + config.contact_radius_m * config.yaw_acceleration_limit_rad_per_s2);
+  const float gripping_m_per_s =
+      kGripping_ratio * since_s * (config.acceleration_limit_m_per_s2 + config.contact_radius_m * config.yaw_acceleration_limit_rad_per_s2);
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelState& wheel = state.wheel[i];
     const WheelConfig& at = config.wheel[i];
@@ -124,9 +141,9 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
   for (int i = 0; i < config.wheel_count; ++i) {
     for (int j = i + 1; j < config.wheel_count; ++j, ++pair) {
       const bool is_usable = is_turning_known && response[i].is_usable && response[j].is_usable;
-      const float product = is_usable ? (response[i].driving_V - response[j].driving_V) *
-                                            (response[i].gained_rad_per_s - response[j].gained_rad_per_s)
-                                      : 0.0F;
+      const float product =
+          is_usable ? (response[i].driving_V - response[j].driving_V) * (response[i].gained_rad_per_s - response[j].gained_rad_per_s)
+                    : 0.0F;
       float& with = comparison.with_V_rad_per_s[pair];
       float& against = comparison.against_V_rad_per_s[pair];
       with = is_wheelwise ? kWheelwise_ratio * most : keep * with + larger(0.0F, product);
@@ -153,17 +170,6 @@ float yaw_rate_of_wheels(const Config& config, const Believed& believed) {
     yaw_rate_rad_per_s += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s);
   }
   return yaw_rate_rad_per_s;
-}
-
-CurrentRange explained_current(const Config& config, const WheelState& wheel, float speed_rad_per_s) {
-  if (wheel.is_open != 0) {
-    return {};
-  }
-  const float cold_A =
-      (wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * config.derived.per_lowest_resistance_A_per_V;
-  constexpr float kHot_share = 1.0F / kHotResistance_ratio;
-  const float hot_A = cold_A * kHot_share;
-  return {smaller(cold_A, hot_A), larger(cold_A, hot_A)};
 }
 
 void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(comparison); }
