@@ -53,7 +53,8 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   wheel.allowed_braking_A = sensed.is_speed_known ? cold_ratio * guard.allowed_braking_A : config.limp_current_A;
   if (!guard.was_started) {
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
-  } else if (guard.allowed_A >= smaller(config.current_limit_A, kKnown_share * model.current_A[0])) {
+  } else if (wheel.guard_fault == static_cast<std::uint8_t>(Reason::guard_unknown) &&
+             guard.allowed_A >= smaller(config.current_limit_A, kKnown_share * model.current_A[0])) {
     wheel.guard_fault = 0;
   }
 }

@@ -10,6 +10,7 @@ constexpr std::uint32_t kStepsPerComparison = 16;
 constexpr float kStuck_s = 0.05F;
 // Sliding contacts make wheels disagree with each other for a while; beyond this share of the fastest speed it is no sliding.
 constexpr float kDisagreement_share = 0.06F;
+constexpr float kSameDisagreement_share = 0.02F;  // of a sample that does not change at all
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // A winding is never this many times its coldest resistance: 2 is copper at 280 degC.
 constexpr float kHotResistance_ratio = 2.0F;
@@ -58,10 +59,10 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
   WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
   const float sample = wheel.raw_speed_rad_per_s;
-  const float most_apart_rad_per_s = kDisagreement_share * config.fastest_wheel_rad_per_s;
+  const bool is_same = static_cast<float>(wheel.same_steps) * config.period_s > kStuck_s;
+  const float most_apart_rad_per_s = (is_same ? kSameDisagreement_share : kDisagreement_share) * config.fastest_wheel_rad_per_s;
   const bool contradicts = current_contradicts(config, wheel, input.motor_current_A[i], sample);
   const bool agrees = absolute(sample - believed.wheel[i].implied_rad_per_s) <= most_apart_rad_per_s && !contradicts;
-  const bool is_same = static_cast<float>(wheel.same_steps) * config.period_s > kStuck_s;
   // Up to kSteadyAgain_s beyond the threshold are kept, so that the sensor has to agree for that long before it is believed again.
   float& current_error_s = comparison.current_error_s[i];
   current_error_s = contradicts ? smaller(current_error_s + since_s, kStuck_s + kSteadyAgain_s) : larger(0.0F, current_error_s - since_s);
