@@ -1,0 +1,102 @@
+// Makes the tables and pictures of reports/drive_core anew: simulated, with real sensing; the same bytes on every run.
+//   heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard]]
+// FOLDER: reports/drive_core of the checkout unless given. Without a study's name all three run.
+#include "drive_core_studies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "base/diagnostic.h"
+#include "base/files.h"
+#include "support/shipped.h"
+
+namespace heatsoak::studies {
+
+Spread spread_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  const auto at = [&](double share) {
+    const double place = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return std::lerp(values[below], values[above], place - static_cast<double>(below));
+  };
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return {mean, at(0.05), at(0.95), values.back()};
+}
+
+std::string to_text(const Spread& spread, int decimals) {
+  return fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", spread.mean, decimals, spread.low, decimals, spread.high, decimals);
+}
+
+std::string Sheet::markdown() const {
+  std::string text = fmt::format("| {} |\n|", fmt::join(header, " | "));
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    text += "---|";
+  }
+  for (const std::vector<std::string>& row : rows) {
+    text += fmt::format("\n| {} |", fmt::join(row, " | "));
+  }
+  return text + "\n";
+}
+
+std::string Sheet::csv() const {
+  std::string text = fmt::format("{}\n", fmt::join(header, ","));
+  for (const std::vector<std::string>& row : rows) {
+    text += fmt::format("{}\n", fmt::join(row, ","));
+  }
+  return text;
+}
+
+void Report::write(const std::string& file, const std::string& text) const { write_file(folder / file, text); }
+void Report::draw(const std::string& file, const Chart& chart) const { write(file, draw_svg(chart)); }
+
+DriveOptions sensed_drive(const Robot& robot, std::uint64_t seed, bool has_current_sensor) {
+  DriveOptions options = real_drive(robot, seed);
+  options.sensing.has_motor_current = has_current_sensor;
+  return options;
+}
+
+namespace {
+
+struct Study {
+  std::string_view name;
+  void (*run)(const Subject& subject, const Report& report);
+};
+constexpr Study kStudies[] = {{"low_speed", study_low_speed}, {"planners", study_planners_in_match}, {"guard", study_guard}};
+
+int run(const std::vector<std::string>& words) {
+  const Report report{words.empty() ? kSource / "reports" / "drive_core" : std::filesystem::path(words.front())};
+  const Subject subject{twente(), ecx_32()};
+  bool has_run = false;
+  for (const Study& study : kStudies) {
+    if (words.size() > 1 && words[1] != study.name) {
+      continue;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    study.run(subject, report);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    fmt::print("{}: {:.0f} s\n", study.name, took.count());
+    has_run = true;
+  }
+  if (!has_run) {
+    fmt::print(stderr, "usage: heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard]]\n");
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace heatsoak::studies
+
+int main(int argc, char** argv) {
+  try {
+    return heatsoak::studies::run({argv + 1, argv + argc});
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "{}\n", problem.what());
+    return 70;
+  }
+}
