@@ -68,9 +68,9 @@ void spread_guards(const Config& config, State& state) {
 namespace {
 
 /// Stages 2 to 4.
-void find_references(const Config& config, State& state, const Input& input, const Believed& believed, BodyReference& body,
-                     WheelReferences& wheels, WheelVoltages& voltage) {
-  body = control_body_velocity(config, state, input, believed);
+BodyReference find_references(const Config& config, State& state, const Input& input, const Believed& believed, WheelReferences& wheels,
+                              WheelVoltages& voltage) {
+  const BodyReference body = control_body_velocity(config, state, input, believed);
   find_wheel_speeds(config, input, body, wheels);
   feed_forward(config, input, believed, body, wheels, voltage);
   HeldReference& held = state.held;
@@ -78,6 +78,7 @@ void find_references(const Config& config, State& state, const Input& input, con
     held.speed_rad_per_s[i] = wheels.wheel[i].speed_rad_per_s;
     held.feed_forward_V[i] = voltage.wheel[i].feed_forward_V;
   }
+  return body;
 }
 
 /// Once more what stages 2 to 4 found in the last period.
@@ -115,8 +116,7 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
     hold_references(config, state, believed, wheels, voltage);
     control_wheels(config, state, believed, kBodyVelocity, wheels, voltage, out);
   } else {
-    BodyReference body;
-    find_references(config, state, input, believed, body, wheels, voltage);
+    const BodyReference body = find_references(config, state, input, believed, wheels, voltage);
     state.held.is_fresh = is_body_velocity ? 1 : 0;
     control_wheels(config, state, believed, body, wheels, voltage, out);
   }

@@ -96,21 +96,12 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
   seal(guard);
 }
 
-}  // namespace
-
-void run_guards(const Config& config, State& state, const Input& input, const Believed& believed) {
-  if (config.guard == nullptr) {
-    return;
-  }
-  const int periods = periods_per_guard_step(config);
-  const auto weight = static_cast<float>(believed.elapsed_periods);
+/// Steps the guards that are due.
+void run_due_guards(const Config& config, State& state, const Input& input, const Believed& believed, int periods) {
   const bool is_gap = believed.robot_fault == Reason::time_jump;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
-    const float current_A = believed.wheel[i].current_A;
-    wheel.current_squared_A2 += weight * current_A * current_A;
-    const int steps = wheel.guard_steps + believed.elapsed_periods;
-    wheel.guard_steps = static_cast<std::uint16_t>(steps);
+    const int steps = wheel.guard_steps;
     if (is_gap) {
       heat_for_gap(config, wheel, state.guard[i], believed.elapsed_s);
     }
@@ -121,6 +112,28 @@ void run_guards(const Config& config, State& state, const Input& input, const Be
       wheel.guard_steps = static_cast<std::uint16_t>(steps - periods);
       wheel.current_squared_A2 *= static_cast<float>(steps - periods) / static_cast<float>(steps);
     }
+  }
+}
+
+}  // namespace
+
+void run_guards(const Config& config, State& state, const Input& input, const Believed& believed) {
+  if (config.guard == nullptr) {
+    return;
+  }
+  const int periods = periods_per_guard_step(config);
+  const auto weight = static_cast<float>(believed.elapsed_periods);
+  int most_steps = 0;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    WheelState& wheel = state.wheel[i];
+    const float current_A = believed.wheel[i].current_A;
+    wheel.current_squared_A2 += weight * current_A * current_A;
+    const int steps = wheel.guard_steps + believed.elapsed_periods;
+    wheel.guard_steps = static_cast<std::uint16_t>(steps);
+    most_steps = larger(most_steps, steps);
+  }
+  if (most_steps >= periods || believed.robot_fault == Reason::time_jump) {
+    run_due_guards(config, state, input, believed, periods);
   }
 }
 

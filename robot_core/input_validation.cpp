@@ -77,7 +77,7 @@ void validate_command(const Config& config, const Input& input, Believed& believ
 void validate_battery(const Config& config, State& state, const Input& input, Believed& believed) {
   const float sample_V = input.battery_V;
   const float sag_V = config.battery_resistance_ohm * larger(0.0F, state.battery_current_A);
-  constexpr float kSag_ratio = 1.5F;        // an old battery, and what it has to recover from
+  constexpr float kSag_ratio = 1.5F;         // an old battery, and what it has to recover from
   constexpr float kTolerance_share = 0.03F;  // of the full battery: noise
   constexpr float kFall_share_per_s = 0.004F;
   constexpr float kRise_s = 0.05F;
@@ -245,7 +245,23 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, B
   believed.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
 }
 
-/// Samples that speak against themselves: no number, out of range, a jump.
+/// A sample that speaks against itself (no number, out of range, a jump), that has not changed, or of a sensor with a fault.
+[[gnu::cold]] void take_doubtful_sample(const Config& config, WheelState& wheel, float sample, float jump_rad_per_s,
+                                        BelievedWheel& believed) {
+  const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
+  const int same = change_rad_per_s == 0.0F ? wheel.same_steps + 1 : 0;
+  wheel.same_steps = static_cast<std::uint16_t>(same < kMostSameSteps ? same : kMostSameSteps);
+  const bool is_possible = absolute(sample) <= config.fastest_wheel_rad_per_s;  // false for what is no number
+  wheel.raw_speed_rad_per_s = is_possible ? sample : 0.0F;
+  if (!is_possible || absolute(change_rad_per_s) > jump_rad_per_s) {
+    wheel.has_spoken_wrongly = 1;
+    const Reason fault = is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
+    wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;
+  }
+  believed.is_speed_sensed = wheel.speed_fault == 0;
+  believed.speed_rad_per_s = believed.is_speed_sensed ? sample : 0.0F;
+}
+
 void take_samples(const Config& config, State& state, const Input& input, Believed& believed) {
   const float most_rad_per_s = config.fastest_wheel_rad_per_s;
   const float jump_rad_per_s =
@@ -257,18 +273,16 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
     WheelState& wheel = state.wheel[i];
     const float sample = input.wheel_speed_rad_per_s[i];
     const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
-    const int same = change_rad_per_s == 0.0F ? wheel.same_steps + 1 : 0;
-    wheel.same_steps = static_cast<std::uint16_t>(same < kMostSameSteps ? same : kMostSameSteps);
-    const bool is_possible = absolute(sample) <= most_rad_per_s;  // false for what is no number
-    wheel.raw_speed_rad_per_s = is_possible ? sample : 0.0F;
-    if (!is_possible || absolute(change_rad_per_s) > jump_rad_per_s) {
-      wheel.has_spoken_wrongly = 1;
-      const Reason fault = is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
-      wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;
+    const bool is_plain = absolute(sample) <= most_rad_per_s && absolute(change_rad_per_s) <= jump_rad_per_s;
+    if (!is_plain || change_rad_per_s == 0.0F || wheel.speed_fault != 0) {
+      take_doubtful_sample(config, wheel, sample, jump_rad_per_s, believed.wheel[i]);
+      believed.are_all_sensed = believed.are_all_sensed && believed.wheel[i].is_speed_sensed;
+      continue;
     }
-    believed.wheel[i].is_speed_sensed = wheel.speed_fault == 0;
-    believed.wheel[i].speed_rad_per_s = believed.wheel[i].is_speed_sensed ? sample : 0.0F;
-    believed.are_all_sensed = believed.are_all_sensed && believed.wheel[i].is_speed_sensed;
+    wheel.same_steps = 0;
+    wheel.raw_speed_rad_per_s = sample;
+    believed.wheel[i].is_speed_sensed = true;
+    believed.wheel[i].speed_rad_per_s = sample;
   }
 }
 
@@ -291,19 +305,20 @@ void validate_currents(const Config& config, State& state, const Input& input, B
     const float sample_A = input.motor_current_A[i];
     const bool is_sample = absolute(sample_A) <= config.derived.most_sensed_A;  // false for what is no number
     wheel.current_fault = 0;
-    believed.wheel[i].is_current_sensed = is_sample && wheel.is_current_doubted == 0;
-    believed.wheel[i].current_A = sample_A;
     if (is_sample) {
       wheel.has_current = 1;
+      if (wheel.is_current_doubted == 0) {
+        believed.wheel[i].is_current_sensed = true;
+        believed.wheel[i].current_A = sample_A;
+        continue;
+      }
+      wheel.current_fault = code(Reason::current_implausible);
     } else if (wheel.has_current != 0) {
       wheel.current_fault = code(Reason::current_missing);
     }
-    if (!believed.wheel[i].is_current_sensed) {
-      const float largest_A = estimated_current_A(config, state, i, believed.wheel[i].speed_rad_per_s);
-      const bool is_larger = is_sample && absolute(sample_A) > absolute(largest_A);
-      believed.wheel[i].current_A = is_larger ? sample_A : largest_A;
-      wheel.current_fault = is_sample ? code(Reason::current_implausible) : wheel.current_fault;
-    }
+    const float estimate_A = estimated_current_A(config, state, i, believed.wheel[i].speed_rad_per_s);
+    believed.wheel[i].is_current_sensed = false;
+    believed.wheel[i].current_A = is_sample && absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
   }
 }
 
