@@ -142,13 +142,15 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
   for (int i = 0; i < config.wheel_count; ++i) {
     for (int j = i + 1; j < config.wheel_count; ++j, ++pair) {
       const bool is_usable = is_turning_known && response[i].is_usable && response[j].is_usable;
-      const float product =
-          is_usable ? (response[i].driving_V - response[j].driving_V) * (response[i].gained_rad_per_s - response[j].gained_rad_per_s)
-                    : 0.0F;
+      const float gained_rad_per_s = response[i].gained_rad_per_s - response[j].gained_rad_per_s;
+      const float product = is_usable ? (response[i].driving_V - response[j].driving_V) * gained_rad_per_s : 0.0F;
+      // Friction slows down against the drive; a difference that grows against the drive is none of its making.
+      const float apart_rad_per_s = state.wheel[i].raw_speed_rad_per_s - state.wheel[j].raw_speed_rad_per_s;
+      const bool grows = apart_rad_per_s * gained_rad_per_s > 0.0F;
       float& with = comparison.with_V_rad_per_s[pair];
       float& against = comparison.against_V_rad_per_s[pair];
       with = is_wheelwise ? kWheelwise_ratio * most : keep * with + larger(0.0F, product);
-      against = is_wheelwise ? 0.0F : keep * against + larger(0.0F, -product);
+      against = is_wheelwise ? 0.0F : keep * against + (grows ? larger(0.0F, -product) : 0.0F);
       if (against > kMuchMore_ratio * with && against > most) {
         most = against;
         worst[0] = i;
