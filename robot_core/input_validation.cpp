@@ -83,10 +83,12 @@ void validate_battery(const Config& config, State& state, const Input& input, Be
   constexpr float kRise_s = 0.05F;
   const float least_V = state.battery_source_V - kSag_ratio * sag_V;
   const bool is_possible = sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V;
-  state.battery_source_V = larger(0.0F, state.battery_source_V - kFall_share_per_s * config.battery_full_V * believed.elapsed_s);
+  // A timer that lies makes no battery empty.
+  const float since_s = smaller(believed.elapsed_s, kLongestGap_periods * config.period_s);
+  state.battery_source_V = larger(0.0F, state.battery_source_V - kFall_share_per_s * config.battery_full_V * since_s);
   if (is_possible && sample_V >= least_V - kTolerance_share * config.battery_full_V) {
     const float source_V = smaller(sample_V + sag_V, config.battery_full_V);
-    const float rise_ratio = state.steps == 0 ? 1.0F : smaller(1.0F, believed.elapsed_s / kRise_s);
+    const float rise_ratio = state.steps == 0 ? 1.0F : smaller(1.0F, since_s / kRise_s);
     state.battery_source_V += rise_ratio * larger(0.0F, source_V - state.battery_source_V);
     believed.battery_V = sample_V;
     believed.pwm_battery_V = larger(sample_V, least_V);
