@@ -15,6 +15,7 @@ void find_wheel_speeds(const Config& config, const Input& input, const BodyRefer
           input.command.mode == Mode::wheel_speed
               ? clamped(input.command.wheel_speed_rad_per_s[i], -config.fastest_wheel_rad_per_s, config.fastest_wheel_rad_per_s)
               : 0.0F;
+      wheels.wheel[i].acceleration_rad_per_s2 = 0.0F;
       continue;
     }
     wheels.wheel[i].speed_rad_per_s = per_rim * (wheel.rolling_x_share * body.velocity.x + wheel.rolling_y_share * body.velocity.y +
