@@ -24,7 +24,7 @@ elseif(NOT HEATSOAK_EMULATOR)
 endif()
 
 set(HEATSOAK_TARGET_PROCESSOR -mcpu=cortex-m7 -mthumb -mfpu=fpv5-sp-d16 -mfloat-abi=hard)
-set(HEATSOAK_TARGET_OPTIONS ${HEATSOAK_TARGET_PROCESSOR} -std=c++${CMAKE_CXX_STANDARD} -O2 -fpeel-loops ${HEATSOAK_CORE_OPTIONS}
+set(HEATSOAK_TARGET_OPTIONS ${HEATSOAK_TARGET_PROCESSOR} -std=c++${CMAKE_CXX_STANDARD} -O2 ${HEATSOAK_CORE_OPTIONS}
     -Wall -Wextra -Werror -ffunction-sections -fdata-sections -fstack-usage -fcallgraph-info=su -DROBOT_CORE_WITHOUT_DOUBLE)
 set(HEATSOAK_TARGET_FOLDER "${PROJECT_BINARY_DIR}/target")
 

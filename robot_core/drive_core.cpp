@@ -28,6 +28,9 @@ void spread_guards(const Config& config, State& state) {
 
 [[gnu::cold]] void reset(const Config& config, State& state, float body_C) {
   state = {};
+  for (WheelState& wheel : state.wheel) {
+    wheel.allowed_A = wheel.allowed_braking_A = std::numeric_limits<float>::max();
+  }
   for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
     WheelState& wheel = state.wheel[i];
     start_guard(*config.guard, state.guard[i], body_C);
@@ -74,6 +77,7 @@ BodyReference find_references(const Config& config, State& state, const Input& i
   find_wheel_speeds(config, input, body, wheels);
   feed_forward(config, input, believed, body, wheels, voltage);
   HeldReference& held = state.held;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     held.speed_rad_per_s[i] = wheels.wheel[i].speed_rad_per_s;
     held.feed_forward_V[i] = voltage.wheel[i].feed_forward_V;
@@ -86,6 +90,7 @@ void hold_references(const Config& config, State& state, const Believed& believe
   HeldReference& held = state.held;
   held.is_fresh = 0;
   held.since_s += believed.elapsed_s;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     wheels.wheel[i].speed_rad_per_s = held.speed_rad_per_s[i];
     voltage.wheel[i].feed_forward_V = held.feed_forward_V[i];

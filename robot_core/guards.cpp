@@ -124,6 +124,7 @@ void run_guards(const Config& config, State& state, const Input& input, const Be
   const int periods = periods_per_guard_step(config);
   const auto weight = static_cast<float>(believed.elapsed_periods);
   int most_steps = 0;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float current_A = believed.wheel[i].current_A;

@@ -150,6 +150,7 @@ void find_from_all(const Config& config, Believed& believed) {
   PerWheel rim_m_per_s = {};
   float x_m_per_s = 0.0F;
   float y_m_per_s = 0.0F;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s) - turning_m_per_s;
     x_m_per_s += config.wheel[i].rolling_x_share * rim_m_per_s[i];
@@ -157,6 +158,7 @@ void find_from_all(const Config& config, Believed& believed) {
   }
   believed.velocity = {derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s,
                        derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s, believed.yaw_rate_rad_per_s};
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
         rim_m_per_s[i] - config.wheel[i].rolling_x_share * believed.velocity.x - config.wheel[i].rolling_y_share * believed.velocity.y;
@@ -271,6 +273,7 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
       state.steps == 0 ? 2.0F * most_rad_per_s
                        : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (believed.elapsed_s - config.period_s);
   believed.are_all_sensed = true;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float sample = input.wheel_speed_rad_per_s[i];
@@ -302,6 +305,7 @@ float estimated_current_A(const Config& config, const State& state, int i, float
 }
 
 void validate_currents(const Config& config, State& state, const Input& input, Believed& believed) {
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float sample_A = input.motor_current_A[i];

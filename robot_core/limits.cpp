@@ -24,6 +24,17 @@ struct WheelDemand {
   Reason reason;    ///< of most_A; none: the smaller one of driver limit and grip
 };
 
+// What is seldom needed stands in functions of its own: the loops over the wheels are unrolled.
+
+/// Of a wheel without speed sensor.
+[[gnu::cold, gnu::noinline]] void limit_to_limp(const Config& config, const WheelState& state, WheelDemand& demand) {
+  if (config.limp_current_A < demand.most_A) {
+    demand.most_A = config.limp_current_A;
+    // A fault that has just been cleared counts from the next step on.
+    demand.reason = state.speed_fault != 0 ? static_cast<Reason>(state.speed_fault) : Reason::wheel_speed_missing;
+  }
+}
+
 /// Without the guard.
 void limit_demand(const Config& config, const WheelState& state, const Believed& believed, const BodyReference& body, int i,
                   WheelDemand& demand) {
@@ -33,24 +44,19 @@ void limit_demand(const Config& config, const WheelState& state, const Believed&
     demand.most_A = config.current_limit_A;
     demand.reason = Reason::driver_current;
   }
-  if (!believed.wheel[i].is_speed_sensed && config.limp_current_A < demand.most_A) {
-    demand.most_A = config.limp_current_A;
-    // A fault that has just been cleared counts from the next step on.
-    demand.reason = state.speed_fault != 0 ? static_cast<Reason>(state.speed_fault) : Reason::wheel_speed_missing;
+  if (!believed.wheel[i].is_speed_sensed) {
+    limit_to_limp(config, state, demand);
   }
 }
 
-[[gnu::cold]] Reason reason_of(const WheelConfig& wheel, const WheelDemand& demand) {
+[[gnu::cold, gnu::noinline]] Reason reason_of(const WheelConfig& wheel, const WheelDemand& demand) {
   const Reason own = wheel.is_grip_limit != 0 ? Reason::traction : Reason::driver_current;
   return demand.reason == Reason::none ? own : demand.reason;
 }
 
 /// What the guard leaves. In shadow mode it is counted instead; true if it would have limited.
-bool apply_guard(const Config& config, State& state, const WheelState& wheel, float speed_rad_per_s, float elapsed_s, WheelDemand& demand) {
-  // Braking is allowed at least as much.
-  if (wheel.allowed_A >= demand.most_A) {
-    return false;
-  }
+[[gnu::noinline]] bool apply_guard(const Config& config, State& state, const WheelState& wheel, float speed_rad_per_s, float elapsed_s,
+                                   WheelDemand& demand) {
   const bool brakes = demand.current_A * speed_rad_per_s < 0.0F;
   const float allowed_A = brakes ? wheel.allowed_braking_A : wheel.allowed_A;
   if (allowed_A >= demand.most_A) {
@@ -78,27 +84,21 @@ float share_of_battery(const Config& config, const State& state, const Believed&
   return power_W > most_W && config.derived.most_battery_sag_A > 0.0F ? most_W / power_W : 1.0F;
 }
 
-/// Finds the share of a wheel's current that its limits leave, and the reason. True if it is less than all.
-bool limit_wheel(const Config& config, const WheelConfig& wheel, float most_V, WheelDemand& demand, Reason& reason) {
-  const float size_A = absolute(demand.current_A);
-  const float room_V = demand.current_A > 0.0F ? most_V - demand.back_V : most_V + demand.back_V;
-  const float reachable_A = room_V * config.derived.per_lowest_resistance_A_per_V;
-  if (size_A <= demand.most_A && size_A <= reachable_A) {
-    return false;
-  }
+/// Finds the share of a wheel's current that its limits leave, and the reason.
+[[gnu::noinline]] void scale_wheel(const WheelConfig& wheel, float reachable_A, WheelDemand& demand, Reason& reason) {
   reason = reachable_A < demand.most_A ? Reason::voltage : reason_of(wheel, demand);
   const float most_A = smaller(demand.most_A, reachable_A);
-  demand.share = most_A > 0.0F ? most_A / size_A : 0.0F;
-  return true;
+  demand.share = most_A > 0.0F ? most_A / absolute(demand.current_A) : 0.0F;
 }
 
-/// Holds a voltage within the current limit for the implied speed too; for the sensed one it is. False where no voltage does.
-bool hold_window(const Config& config, const Believed& believed, const WheelDemand& demand, int i, float most_V, float& voltage_V) {
-  const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].implied_rad_per_s;
-  if (absolute(voltage_V - implied_V) < band_V) {
-    return true;
-  }
+/// Current in the demanded direction that the voltage reaches; negative: none.
+float reachable_current_A(const Config& config, const WheelDemand& demand, float most_V) {
+  const float room_V = demand.current_A > 0.0F ? most_V - demand.back_V : most_V + demand.back_V;
+  return room_V * config.derived.per_lowest_resistance_A_per_V;
+}
+
+[[gnu::cold, gnu::noinline]] bool move_into_window(const WheelDemand& demand, float implied_V, float band_V, float most_V,
+                                                   float& voltage_V) {
   if (!(demand.most_A > 0.0F)) {
     return false;
   }
@@ -107,8 +107,16 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
   return absolute(voltage_V) <= kRounding * most_V && absolute(voltage_V - demand.back_V) <= kRounding * band_V;
 }
 
+/// Holds a voltage within the current limit for the implied speed too; for the sensed one it is. False where no voltage does, or where the
+/// voltage is no number.
+bool hold_window(const Config& config, const Believed& believed, const WheelDemand& demand, int i, float most_V, float& voltage_V) {
+  const float band_V = config.lowest_resistance_ohm * demand.most_A;
+  const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].implied_rad_per_s;
+  return absolute(voltage_V - implied_V) < band_V || move_into_window(demand, implied_V, band_V, most_V, voltage_V);
+}
+
 /// Of a wheel whose speed nobody knows: into a standing motor no more than the limp current.
-[[gnu::cold]] bool limp_blindly(const Config& config, const Believed& believed, int i, float most_V, float& voltage_V) {
+[[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Believed& believed, int i, float most_V, float& voltage_V) {
   const float limp_V = smaller(config.lowest_resistance_ohm * config.limp_current_A, most_V);
   voltage_V = clamped(voltage_V, -limp_V, limp_V);
   return believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= config.limp_current_A;
@@ -126,10 +134,8 @@ void hold_sensed_current(const Config& config, const BelievedWheel& believed, co
   voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
 }
 
-bool is_overcurrent(const Config& config, const Believed& believed, WheelState& wheel, int i, float most_A) {
-  wheel.current_bound_A = larger(most_A, kBoundDecay * wheel.current_bound_A);
-  return believed.wheel[i].is_current_sensed &&
-         absolute(believed.wheel[i].current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
+bool is_overcurrent(const Config& config, const BelievedWheel& sensed, const WheelState& wheel) {
+  return absolute(sensed.current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
 }
 
 /// What every wheel wants and may have, and one factor for all of them, so that the direction of the force is kept.
@@ -138,6 +144,7 @@ float find_demands(const Config& config, State& state, const Believed& believed,
   float least = 1.0F;
   float power_W = 0.0F;
   bool would_limit = false;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const BelievedWheel& sensed = believed.wheel[i];
     WheelDemand& each = demand[i];
@@ -146,11 +153,15 @@ float find_demands(const Config& config, State& state, const Believed& believed,
     each.share = 1.0F;
     limited.wheel[i].reason = Reason::none;
     limit_demand(config, state.wheel[i], believed, body, i, each);
-    if (config.guard != nullptr) {
+    // Braking is allowed at least as much.
+    if (!(state.wheel[i].allowed_A >= each.most_A)) {
       would_limit = apply_guard(config, state, state.wheel[i], sensed.speed_rad_per_s, believed.elapsed_s, each) || would_limit;
     }
     if (sensed.is_speed_known) {
-      if (limit_wheel(config, config.wheel[i], most_V, each, limited.wheel[i].reason)) {
+      const float size_A = absolute(each.current_A);
+      const float reachable_A = reachable_current_A(config, each, most_V);
+      if (!(size_A <= each.most_A && size_A <= reachable_A)) {
+        scale_wheel(config.wheel[i], reachable_A, each, limited.wheel[i].reason);
         least = smaller(least, each.share);
       }
     }
@@ -179,21 +190,33 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   return static_cast<Reason>(wheel.speed_fault != 0 ? wheel.speed_fault : later);
 }
 
+/// Of a wheel with a current sensor, or without a speed: what is left of the wanted voltage; false if its bridge has to be opened.
+[[gnu::noinline]] bool hold_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i,
+                                  float most_V, float& voltage_V) {
+  const BelievedWheel& sensed = believed.wheel[i];
+  if (sensed.is_current_sensed && sensed.is_speed_sensed) {
+    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+  }
+  const bool is_held = sensed.is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V)
+                                             : limp_blindly(config, believed, i, most_V, voltage_V);
+  if (sensed.is_current_sensed && !sensed.is_speed_sensed) {
+    // Better evidence than speeds that others imply.
+    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+  }
+  wheel.current_bound_A = larger(demand.most_A, kBoundDecay * wheel.current_bound_A);
+  return is_held && is_finite(voltage_V) && !(sensed.is_current_sensed && is_overcurrent(config, sensed, wheel));
+}
+
 /// What is left of the wanted voltage of one wheel; true if its bridge has to be opened.
 bool finish_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i, float most_V,
                   float& voltage_V) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
   const BelievedWheel& sensed = believed.wheel[i];
-  if (sensed.is_current_sensed && sensed.is_speed_sensed) {
-    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+  if (sensed.is_speed_known && !sensed.is_current_sensed) {
+    wheel.current_bound_A = demand.most_A;
+    return !hold_window(config, believed, demand, i, most_V, voltage_V);
   }
-  const bool is_held = believed.wheel[i].is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V)
-                                                        : limp_blindly(config, believed, i, most_V, voltage_V);
-  if (sensed.is_current_sensed && !sensed.is_speed_sensed) {
-    // Better evidence than speeds that others imply.
-    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
-  }
-  return is_overcurrent(config, believed, wheel, i, demand.most_A) || !is_held || !is_finite(voltage_V);
+  return !hold_wheel(config, wheel, believed, demand, i, most_V, voltage_V);
 }
 
 }  // namespace
@@ -209,6 +232,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
   // The integrators follow the voltages that the wheels really get.
   const float feedback_share = smaller(1.0F, believed.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
