@@ -33,13 +33,16 @@ Origins wheel_origins(bool has_friction) {
       {"rolling_x_share", "robot file: wheels.axis_angles"},
       {"rolling_y_share", "robot file: wheels.axis_angles"},
       {"inverse_x_factor", "pseudo-inverse of the wheels' directions and contact_radius_m"},
+      {"inverse_y_factor", "pseudo-inverse of the wheels' directions and contact_radius_m"},
+      {"inverse_yaw_per_m", "pseudo-inverse of the wheels' directions and contact_radius_m"},
       {"slip_factor", "1: slip is not measured"},
       {"level_load_share", "robot file: wheels.axis_angles and the centre of gravity in [body]"},
       {"damping_V_s_per_rad",
        has_friction ? "back-EMF, and robot file: friction.wheel_damping, as voltage" : "back-EMF alone: the robot file has no [friction]"},
       {"sine_V", has_friction ? "robot file: [friction], as voltage of a turning wheel" : "0: the robot file has no [friction]"},
       {"sign_V", has_friction ? "robot file: [friction], as voltage of a turning wheel" : "0: the robot file has no [friction]"},
-      {"phase_cosine_ratio", has_friction ? "phase of robot file: [friction], or of the wheel's rolling direction" : ""},
+      {"phase_cosine_ratio", has_friction ? "cosine of the phase of robot file: [friction], or of the rolling direction" : "no friction"},
+      {"phase_sine_ratio", has_friction ? "sine of the phase" : "no friction"},
       {"rim_per_speed_m", "wheel_radius_m/slip_factor"},
       {"speed_per_rim_per_m", "slip_factor/wheel_radius_m"},
       {"per_damping_rad_per_V_s", "1/damping_V_s_per_rad"},
@@ -103,6 +106,16 @@ Origins control_origins(const CoreSource& source) {
   };
 }
 
+Origins derived_origins() {
+  return {{"per_lowest_resistance_A_per_V", "1/lowest_resistance_ohm"},
+          {"per_resistance_A_per_V", "1/resistance_ohm"},
+          {"volt_per_Nm", "resistance_ohm/(torque constant*gear ratio*gear efficiency)"},
+          {"per_tracking_time_per_s", "1/tracking_time_s"},
+          {"plane_xx_factor", "inverse of the sum of the wheels' directions times themselves"},
+          {"plane_xy_factor", "inverse of the sum of the wheels' directions times themselves"},
+          {"plane_yy_factor", "inverse of the sum of the wheels' directions times themselves"}};
+}
+
 /// A member as drive_core.h declares it.
 struct Member {
   std::string type;
@@ -154,7 +167,8 @@ class Writer {
         }
         text += indent + "    },\n";
       } else if (member.type == "DerivedConfig") {
-        text += fmt::format("{0}.{1} =\n{0}    {{\n{2}{0}    }},\n", indent, member.name, members(member.type, {}, indent + "        "));
+        text += fmt::format("{0}.{1} =\n{0}    {{\n{2}{0}    }},\n", indent, member.name,
+                            members(member.type, derived_origins(), indent + "        "));
       } else {
         text += fmt::format("{}.{} = {},{}\n", indent, member.name, value(member), comment(member, origins));
       }
@@ -168,7 +182,8 @@ class Writer {
     }
     const auto origin = origins.find(member.name);
     const std::string text = origin != origins.end() ? origin->second : member.meaning;
-    return text.empty() ? "" : "  // " + in_one_line(text);
+    // What is neither calculated here nor described follows from the rest.
+    return "  // " + in_one_line(text.empty() ? "robot_core::complete()" : text);
   }
 
   template <class Number>
@@ -219,7 +234,7 @@ std::string core_config_header(const CoreSource& source) {
       "// options  {}\n"
       "// inputs   {} {} of both files and the options\n"
       "//\n"
-      "// Meaning of each value: robot_core/drive_core.h. Equations: documentation of heatsoak, drive core configuration.\n"
+      "// Meaning of each value: robot_core/drive_core.h. Equations: src/firmware/core_config.h and wheel_loop.h of heatsoak.\n"
       "#pragma once\n\n#include \"motor_guard.h\"\n#include \"robot_core/drive_core.h\"\n\n"
       "/// Without the planner of pose targets.\n"
       "inline constexpr robot_core::Config kCoreConfig{{\n",

@@ -197,7 +197,12 @@ std::vector<std::string> calls_of(const std::string& function, const Names& want
 
 TEST(BlockDiagram, StagesAreTheCallsOfStep) {
   const std::vector<std::string> declared = all_matches(code().stages, R"(\n\w+ (\w+)\(const Config& config)");
-  const std::vector<std::string> expected = calls_of("step", {declared.begin(), declared.end()});
+  // A stage that several branches call counts where the last one does.
+  std::vector<std::string> expected;
+  for (const std::string& call : calls_of("step", {declared.begin(), declared.end()})) {
+    std::erase(expected, call);
+    expected.push_back(call);
+  }
   ASSERT_GE(expected.size(), 8U);
   std::vector<std::string> drawn;
   for (const BlockText& block : robot_core::kBlocks) {
