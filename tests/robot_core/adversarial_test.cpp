@@ -1,0 +1,294 @@
+// The drive core among liars: random episodes in which the true robot runs on while sensors, radio, timer and memory lie in the ways of
+// the fault table. A twin of the core sees the truth, and its allowed current is what no true motor's current may exceed.
+//
+// Margin: within a period the contact's largest force r·µ·N/J turns a wheel against its voltage, and samples have noise; both times
+// K_t·n/R. Excluded, because in principle nobody can know it:
+//   - a wheel that slips while its own sensor lies, without a current sensor: wheels and gyro know a wheel that rolls only. The excess is
+//     at most K_t·n·(speed − implied speed)/R, which slip_A() calculates from the truth and the test takes off;
+//   - two or more speed sensors (wheels, gyro) that lie at once, swapped ones among them until they are found: measured, not limited. See
+//     swapped_sensors_test.cpp for the time and the current until swapped sensors are found;
+//   - a battery sensor that is wrong by the same factor since the start, or sinks slower than a battery does (0.4 %/s);
+//   - a command that is wrong but possible: the twin gets it too.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "sabotage.h"
+
+namespace heatsoak::test_robot {
+namespace {
+
+using robot_core::Command;
+using robot_core::Config;
+using robot_core::Input;
+using robot_core::Mode;
+using robot_core::Output;
+using robot_core::State;
+
+constexpr float kNoise_rad_per_s = 0.3F;
+constexpr int kStepsPerEpisode = 2000;
+
+struct Tally {
+  long steps = 0;
+  long violations = 0;  ///< wheels and steps with a current above what the twin allows and the margin
+  double largest_excess_A = -1e9;
+  long non_finite = 0;
+  double hottest_C = 0.0;
+  long alarms_of_twin = 0;  ///< faults that the twin reports, to which nothing lies
+  long unexplained = 0;     ///< violations larger than what slip of the wheels explains
+  double largest_unexplained_A = -1e9;
+  unsigned worst_episode = 0;
+
+  void add(const Tally& other) {
+    steps += other.steps;
+    violations += other.violations;
+    worst_episode = other.largest_unexplained_A > largest_unexplained_A ? other.worst_episode : worst_episode;
+    unexplained += other.unexplained;
+    largest_unexplained_A = std::max(largest_unexplained_A, other.largest_unexplained_A);
+    largest_excess_A = std::max(largest_excess_A, other.largest_excess_A);
+    non_finite += other.non_finite;
+    hottest_C = std::max(hottest_C, other.hottest_C);
+    alarms_of_twin += other.alarms_of_twin;
+  }
+};
+
+Command random_command(Random& random) {
+  constexpr std::array<Mode, 10> kModes{Mode::body_velocity, Mode::body_velocity, Mode::body_velocity, Mode::body_velocity,
+                                        Mode::body_velocity, Mode::body_velocity, Mode::wheel_speed,   Mode::wheel_torque,
+                                        Mode::brake,         Mode::coast};
+  Command command;
+  command.mode = kModes.at(static_cast<std::size_t>(random.below(10)));
+  command.velocity = {random.between(-3.0F, 3.0F), random.between(-3.0F, 3.0F), random.between(-8.0F, 8.0F)};
+  command.acceleration = {random.between(-3.0F, 3.0F), random.between(-3.0F, 3.0F), random.between(-20.0F, 20.0F)};
+  for (int i = 0; i < kMostWheels; ++i) {
+    command.wheel_speed_rad_per_s[i] = random.between(-150.0F, 150.0F);
+    command.wheel_torque_Nm[i] = random.between(-0.4F, 0.4F);
+  }
+  return command;
+}
+
+bool is_finite(const Config& config, const Output& out) {
+  double sum = static_cast<double>(out.time_to_guard_limit_s);
+  for (int i = 0; i < config.wheel_count; ++i) {
+    sum += static_cast<double>(out.pwm_ratio[i]) + static_cast<double>(out.voltage_V[i]) + static_cast<double>(out.winding_C[i]) +
+           static_cast<double>(out.allowed_current_A[i]);
+  }
+  return std::isfinite(sum);
+}
+
+class Episode {
+ public:
+  Episode(const Config& config, const std::vector<Lie>& lies, unsigned seed)
+      : config_(config), random_(seed * 7919ULL + 13ULL), are_currents_fitted_(seed % 2 == 0), plant_(config, truth(random_)) {
+    const auto body_C = static_cast<double>(random_.happens(0.5F) ? random_.between(25.0F, 45.0F) : random_.between(90.0F, 145.0F));
+    plant_.warm_up(body_C);
+    const robot_core::StartUp start_up{.is_rested = true, .body_C = static_cast<float>(body_C)};
+    robot_core::start(config, state_, start_up);
+    robot_core::start(config, twin_, start_up);
+    for (const Lie lie : lies) {
+      const int first = random_.below(kStepsPerEpisode / 2);
+      sabotages_.emplace_back(lie, config, random_, first, first + random_.below(kStepsPerEpisode));
+    }
+    tally_.worst_episode = seed;
+  }
+
+  Tally run() {
+    for (int step = 0; step < kStepsPerEpisode; ++step) {
+      if (--until_command_ <= 0) {
+        command_ = random_command(random_);
+        until_command_ = 30 + random_.below(400);
+      }
+      Input truth = plant_.sense(random_, kNoise_rad_per_s, are_currents_fitted_);
+      truth.command = command_;
+      Input shown = truth;
+      for (Sabotage& each : sabotages_) {
+        each.spoil(config_, random_, step, shown, state_);
+      }
+      // A command that is wrong but possible is a command.
+      truth.command = shown.command;
+      truth.command_age_s = shown.command_age_s;
+      const Output out = robot_core::step(config_, state_, shown);
+      check(out, robot_core::step(config_, twin_, truth), truth.command.mode);
+    }
+    return tally_;
+  }
+
+ private:
+  static Truth truth(Random& random) {
+    Truth truth;
+    truth.battery_V = static_cast<double>(random.between(20.0F, 25.0F));
+    truth.winding_ohm *= static_cast<double>(random.between(0.96F, 1.04F));
+    return truth;
+  }
+
+  /// What the twin allows for the direction of the current that flows.
+  double allowed_A(Mode mode, int i, double current_A) const {
+    const robot_core::WheelState& wheel = twin_.wheel[i];
+    const bool is_wheelwise = mode == Mode::wheel_speed || mode == Mode::wheel_torque;
+    const float of_driver_A = is_wheelwise ? config_.current_limit_A : config_.wheel[i].body_limit_A;
+    const double speed_rad_per_s = plant_.wheel_speed_rad_per_s(i);
+    // Within the noise nobody knows whether a current brakes.
+    const bool brakes = current_A * speed_rad_per_s < 0.0 || std::abs(speed_rad_per_s) < static_cast<double>(kNoise_rad_per_s);
+    return static_cast<double>(std::min(of_driver_A, brakes ? wheel.allowed_braking_A : wheel.allowed_A));
+  }
+
+  /// Current that a wheel's speed makes which the other wheels and the gyro, all telling the truth, cannot know: they see a wheel that
+  /// rolls. Least squares of the body's velocity over the other wheels; of every two of them, because one may be left out as faulty.
+  double slip_A(int i) const {
+    double apart_rad_per_s = 0.0;
+    for (int left_out = 0; left_out < config_.wheel_count; ++left_out) {
+      if (left_out != i && config_.wheel_count == 3) {
+        continue;
+      }
+      double xx = 0.0, xy = 0.0, yy = 0.0, x = 0.0, y = 0.0;
+      for (int j = 0; j < config_.wheel_count; ++j) {
+        if (j != i && j != left_out) {
+          const auto t_x = static_cast<double>(config_.wheel[j].rolling_x_share);
+          const auto t_y = static_cast<double>(config_.wheel[j].rolling_y_share);
+          const double rim = static_cast<double>(config_.wheel_radius_m) * plant_.wheel_speed_rad_per_s(j) -
+                             static_cast<double>(config_.contact_radius_m) * plant_.yaw_rad_per_s();
+          xx += t_x * t_x, xy += t_x * t_y, yy += t_y * t_y, x += t_x * rim, y += t_y * rim;
+        }
+      }
+      const double determinant = xx * yy - xy * xy;
+      const double v_x = (x * yy - y * xy) / determinant;
+      const double v_y = (y * xx - x * xy) / determinant;
+      const double implied =
+          (static_cast<double>(config_.wheel[i].rolling_x_share) * v_x + static_cast<double>(config_.wheel[i].rolling_y_share) * v_y +
+           static_cast<double>(config_.contact_radius_m) * plant_.yaw_rad_per_s()) /
+          static_cast<double>(config_.wheel_radius_m);
+      apart_rad_per_s = std::max(apart_rad_per_s, std::abs(implied - plant_.wheel_speed_rad_per_s(i)));
+    }
+    return static_cast<double>(config_.derived.geared_constant_V_s_per_rad) * apart_rad_per_s /
+           static_cast<double>(config_.lowest_resistance_ohm);
+  }
+
+  void check(const Output& out, const Output& of_twin, Mode mode) {
+    // Within a period the contact may turn the wheel by so much against the voltage.
+    const double margin_A = static_cast<double>(config_.derived.geared_constant_V_s_per_rad) *
+                            (plant_.contact_change_rad_per_s() + static_cast<double>(kNoise_rad_per_s)) /
+                            static_cast<double>(config_.lowest_resistance_ohm);
+    tally_.non_finite += is_finite(config_, out) ? 0 : 1;
+    double allowed[kMostWheels] = {};
+    for (int i = 0; i < config_.wheel_count; ++i) {
+      const double current_A = plant_.coldest_current_A(out, i);
+      allowed[i] = allowed_A(mode, i, current_A);
+      const double excess_A = std::abs(current_A) - allowed[i] - margin_A;
+      tally_.violations += excess_A > 0.0 ? 1 : 0;
+      tally_.largest_excess_A = std::max(tally_.largest_excess_A, excess_A);
+      const double unexplained_A = excess_A - slip_A(i);
+      tally_.unexplained += unexplained_A > 0.0 ? 1 : 0;
+      tally_.largest_unexplained_A = std::max(tally_.largest_unexplained_A, unexplained_A);
+      tally_.alarms_of_twin += robot_core::is_fault(of_twin.reason[i]) && of_twin.reason[i] != robot_core::Reason::guard_unknown ? 1 : 0;
+      // The twin's State gets the voltage that was applied instead of its own.
+      twin_.wheel[i].voltage_V = out.is_open[i] ? 0.0F : static_cast<float>(static_cast<double>(out.pwm_ratio[i]) * plant_.battery_V());
+      twin_.wheel[i].is_open = out.is_open[i] ? 1 : 0;
+    }
+    seal(twin_);
+    plant_.move(out);
+    for (int i = 0; i < config_.wheel_count; ++i) {
+      tally_.hottest_C = std::max(tally_.hottest_C, plant_.winding_C(i));
+    }
+    ++tally_.steps;
+  }
+
+  const Config& config_;
+  Random random_;
+  bool are_currents_fitted_;
+  Plant plant_;
+  State state_;
+  State twin_;
+  std::vector<Sabotage> sabotages_;
+  Command command_;
+  int until_command_ = 0;
+  Tally tally_;
+};
+
+Tally run_all(const Config& config, const std::vector<Lie>& lies, int episodes, bool are_currents_fitted, unsigned first) {
+  Tally tally;
+  for (int e = 0; e < episodes; ++e) {
+    tally.add(Episode(config, lies, first + 2U * static_cast<unsigned>(e) + (are_currents_fitted ? 0U : 1U)).run());
+  }
+  return tally;
+}
+
+void print(const std::string& name, int wheels, bool are_currents_fitted, const Tally& tally) {
+  std::printf("%-28s | %d | %-7s | %9ld | %8ld | %7.3f | %8ld | %7.3f | %5.1f | %ld\n", name.c_str(), wheels,
+              are_currents_fitted ? "sensed" : "none", tally.steps, tally.violations, tally.largest_excess_A, tally.unexplained,
+              tally.largest_unexplained_A, tally.hottest_C, tally.alarms_of_twin);
+}
+
+void print_head() {
+  std::printf("%-28s | n | current | steps     | excesses | A       | not slip | A       | T / C | alarms of the twin\n", "lie");
+}
+
+int episodes_per_kind() {
+  const char* const factor = std::getenv("HEATSOAK_HOSTILE_FACTOR");
+  return 3 * (factor != nullptr ? std::atoi(factor) : 1);
+}
+
+TEST(Adversarial, SingleLiesDriveNoMoreCurrentThanTheTruthAllows) {
+  print_head();
+  for (int kind = 0; kind < kLies; ++kind) {
+    const auto lie = static_cast<Lie>(kind);
+    for (const int wheels : {4, 3}) {
+      const Config config = make_config(wheels);
+      for (const bool are_currents_fitted : {true, false}) {
+        const Tally tally = run_all(config, {lie}, episodes_per_kind(), are_currents_fitted, 1000U);
+        print(std::string(name_of(lie)), wheels, are_currents_fitted, tally);
+        EXPECT_EQ(tally.non_finite, 0) << name_of(lie);
+        EXPECT_LT(tally.hottest_C, kWindingLimit_C) << name_of(lie);
+        if (lie != Lie::wheel_swapped) {
+          EXPECT_EQ(tally.unexplained, 0) << name_of(lie) << ", worst in episode " << tally.worst_episode;
+        }
+        if (lie == Lie::none) {
+          EXPECT_EQ(tally.violations, 0);
+          EXPECT_EQ(tally.alarms_of_twin, 0);
+        }
+      }
+    }
+  }
+}
+
+bool is_of_speed(Lie lie) { return (lie >= Lie::wheel_nan && lie <= Lie::wheel_biased) || (lie >= Lie::yaw_nan && lie <= Lie::yaw_biased); }
+
+/// Two or three lies; with `is_covered` at most one of them concerns a speed.
+TEST(Adversarial, CombinationsOfLies) {
+  print_head();
+  for (const bool is_covered : {true, false}) {
+    for (const int wheels : {4, 3}) {
+      const Config config = make_config(wheels);
+      for (const bool are_currents_fitted : {true, false}) {
+        Tally tally;
+        Random random(wheels);
+        for (int e = 0; e < 30 * episodes_per_kind(); ++e) {
+          std::vector<Lie> lies;
+          int of_speed = 0;
+          while (lies.size() < 3) {
+            const auto lie = static_cast<Lie>(1 + random.below(kLies - 1));
+            const bool fits = !is_covered || (lie != Lie::wheel_swapped && of_speed + (is_of_speed(lie) ? 1 : 0) <= 1);
+            of_speed += fits && is_of_speed(lie) ? 1 : 0;
+            if (fits) {
+              lies.push_back(lie);
+            }
+          }
+          tally.add(run_all(config, lies, 1, are_currents_fitted, 5000U + 2U * static_cast<unsigned>(e)));
+        }
+        print(is_covered ? "three, at most one of speed" : "three of any kind", wheels, are_currents_fitted, tally);
+        EXPECT_EQ(tally.non_finite, 0);
+        EXPECT_LT(tally.hottest_C, kWindingLimit_C);
+        if (is_covered) {
+          EXPECT_EQ(tally.unexplained, 0) << "worst in episode " << tally.worst_episode;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak::test_robot
