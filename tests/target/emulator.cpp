@@ -18,9 +18,10 @@ double Replay::mean_instructions() const {
 
 std::uint32_t Replay::most_instructions() const { return instructions.empty() ? 0 : *std::ranges::max_element(instructions); }
 
-Replay replay(const std::string& image, const std::string& input) {
+Replay replay(const std::string& image, const std::string& input, const std::string& start) {
   const TemporaryFolder folder;
   write(folder.path() / kInputFile, input);
+  write(folder.path() / kStartFile, start);
   RunOptions options;
   options.folder = folder.path();
   options.program = HEATSOAK_EMULATOR;

@@ -40,8 +40,8 @@ struct Replay {
   [[nodiscard]] std::uint32_t most_instructions() const;
 };
 
-/// Runs the image under QEMU with these bytes as its input. Fails the test if it does not end with exit code 0.
-Replay replay(const std::string& image, const std::string& input);
+/// Runs the image under QEMU with these bytes as its input, and as what it starts from. Fails the test if it does not end with exit code 0.
+Replay replay(const std::string& image, const std::string& input, const std::string& start = "");
 
 /// What a tool of the cross compiler prints: `tool` is "nm", "size", … or "g++".
 std::string output_of_tool(const std::string& tool, const Words& arguments);

@@ -12,10 +12,10 @@ DriveRun& drive_run() {
 
 void run_step(const robot_core::Input& input, DriveResult&) {
   DriveRun& run = drive_run();
-  run.output = robot_core::step(run.config, run.state, input);
+  robot_core::step(run.config, run.state, input, run.output);
 }
 
-void copy_result(DriveResult& result) { copy_output(drive_run(), result); }
+void copy_result(DriveResult& result) { copy_output(drive_run().output, drive_run().state, result); }
 
 }  // namespace
 

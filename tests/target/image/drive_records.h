@@ -47,8 +47,7 @@ inline std::uint32_t digest(const robot_core::State& state) {
 }
 
 /// Without padding, whose bytes would be anything.
-inline void copy_output(const DriveRun& run, DriveResult& result) {
-  const robot_core::Output& output = run.output;
+inline void copy_output(const robot_core::Output& output, const robot_core::State& state, DriveResult& result) {
   for (int i = 0; i < robot_core::kMostWheels; ++i) {
     result.pwm_ratio[i] = output.pwm_ratio[i];
     result.voltage_V[i] = output.voltage_V[i];
@@ -61,7 +60,14 @@ inline void copy_output(const DriveRun& run, DriveResult& result) {
   result.is_warning = output.is_warning ? 1 : 0;
   result.robot_reason = static_cast<std::uint8_t>(output.robot_reason);
   result.unused[0] = result.unused[1] = 0;
-  result.state_digest = digest(run.state);
+  result.state_digest = digest(state);
 }
+
+/// Where a recorded match goes on.
+struct MatchStart {
+  std::uint32_t config_check_sum = 0;
+  std::uint32_t unused = 0;
+  robot_core::State state;
+};
 
 }  // namespace heatsoak::target

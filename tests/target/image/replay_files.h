@@ -6,6 +6,7 @@
 namespace heatsoak::target {
 
 inline constexpr const char* kInputFile = "input.bin";                ///< records, one behind the other
+inline constexpr const char* kStartFile = "start.bin";                ///< what some programs need before the first record
 inline constexpr const char* kOutputFile = "output.bin";              ///< one result for each record
 inline constexpr const char* kInstructionsFile = "instructions.bin";  ///< std::uint32_t for each record
 inline constexpr const char* kSummaryFile = "summary.bin";            ///< one ReplaySummary

@@ -1,0 +1,108 @@
+// Records a minute of a match for the drive core on the target: record_match FOLDER writes there
+//   core_config.h, motor_guard.h, motor_guard.cpp   as `heatsoak generate core` writes them
+//   match_start.bin   MatchStart: Config's check sum and State at the beginning of the minute
+//   match_input.bin   inputs of every step: real sensing and radio in the closed loop with the plant
+//   match_output.bin  DriveResult of every step, by the host's drive core with the guard of host_guard.h
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "firmware/core_files.h"
+#include "simulate/guarded_core.h"
+#include "simulate/match_run.h"
+#include "support/shipped.h"
+#include "target/image/drive_records.h"
+
+namespace heatsoak::target {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+constexpr double kSegment_s = 60.0;
+constexpr double kAmbient_C = 25.0;
+
+void write_bytes(const std::filesystem::path& file, const void* data, std::size_t size) {
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+  if (!stream.flush()) {
+    throw Failure(ExitCode::bug, fmt::format("{} cannot be written", file.string()));
+  }
+}
+
+template <typename Value>
+void write_all(const std::filesystem::path& file, const std::vector<Value>& values) {
+  write_bytes(file, values.data(), values.size() * sizeof(Value));
+}
+
+/// Configuration and guard as source for the target.
+void write_sources(const std::filesystem::path& folder, const Robot& robot, const Motor& motor, const Derating& derating) {
+  for (const CoreFile& file : core_files(robot, motor, with_tolerance({}, motor), derating, "test").files) {
+    if (file.path == "core_config.h" || file.path.starts_with("motor_guard.")) {
+      write_bytes(folder / file.path, file.content.data(), file.content.size());
+    }
+  }
+}
+
+/// Whole seconds; the first minute that is play for the larger part and has a duel in it, not at the very start.
+double segment_start_s(const Game& game) {
+  for (double from_s = 10.0; from_s + kSegment_s < game.duration_s; from_s += 1.0) {
+    double play_s = 0.0;
+    double duel_s = 0.0;
+    for (std::size_t i = 0; i < game.script.size(); ++i) {
+      const double end_s = i + 1 < game.script.size() ? game.script[i + 1].time_s : game.duration_s;
+      const double inside_s = std::min(end_s, from_s + kSegment_s) - std::max(game.script[i].time_s, from_s);
+      play_s += game.script[i].phase == Phase::running ? std::max(0.0, inside_s) : 0.0;
+      duel_s += game.script[i].command.duel ? std::max(0.0, inside_s) : 0.0;
+    }
+    if (play_s > 0.5 * kSegment_s && duel_s > 1.0) {
+      return from_s;
+    }
+  }
+  throw Failure(ExitCode::bug, "the match has no minute of play with a duel");
+}
+
+void record(const std::filesystem::path& folder) {
+  const Robot robot = twente();
+  const Motor motor = ecx_32();
+  const MotorGuard guard = make_guard(motor, robot, kAmbient_C, 1);
+  const GuardedCore core(robot, motor, GuardUse::on, guard);
+  write_sources(folder, robot, motor, *guard.derating);
+  const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
+  Game game = play_game(dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs(), robot, kSeed);
+  const double start_s = segment_start_s(game);
+  game.duration_s = start_s + kSegment_s;
+  std::erase_if(game.script, [&](const ScheduledCommand& each) { return each.time_s >= game.duration_s; });
+  MatchRunOptions options;
+  options.ambient_C = kAmbient_C;
+  options.drive = real_drive(robot, kSeed);
+  MatchStart start{};
+  std::vector<robot_core::Input> inputs;
+  std::vector<DriveResult> results;
+  run_match(game, robot, motor, core.config(), options, [&](const LoopMoment& moment) {
+    const double since_s = moment.time_s - start_s;
+    if (since_s > 0.5 * SimulatedRobot::kPeriod_s) {
+      inputs.push_back(moment.drive->input());
+      copy_output(moment.drive->output(), moment.drive->state(), results.emplace_back());
+    } else if (since_s > -0.5 * SimulatedRobot::kPeriod_s) {
+      start = {moment.drive->config().check_sum, 0, moment.drive->state()};
+    }
+  });
+  write_bytes(folder / "match_start.bin", &start, sizeof(start));
+  write_all(folder / "match_input.bin", inputs);
+  write_all(folder / "match_output.bin", results);
+}
+
+}  // namespace
+}  // namespace heatsoak::target
+
+int main(int count, char** arguments) {
+  try {
+    heatsoak::target::record(count == 2 ? arguments[1] : ".");
+    return 0;
+  } catch (const std::exception& failure) {
+    std::cerr << "record_match: " << failure.what() << "\n";
+    return 1;
+  }
+}

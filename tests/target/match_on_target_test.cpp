@@ -1,0 +1,95 @@
+// A minute of a recorded match on the target: bits against the closed loop on the host, instructions, memory, stack and code against their
+// budgets. See match/record_match.cpp.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core_graph.h"
+#include "drive_budgets.h"
+#include "emulator.h"
+#include "image/drive_records.h"
+
+namespace heatsoak::target {
+namespace {
+
+using robot_core::Input;
+
+const std::string kMatch = HEATSOAK_MATCH "/";
+
+std::vector<Input> recorded_inputs() {
+  const std::string bytes = content_of(kMatch + "match_input.bin");
+  std::vector<Input> inputs(bytes.size() / sizeof(Input));
+  std::memcpy(inputs.data(), bytes.data(), inputs.size() * sizeof(Input));
+  return inputs;
+}
+
+const Replay& replayed() {
+  static const Replay replay_of_match =
+      replay(HEATSOAK_MATCH_IMAGE, content_of(kMatch + "match_input.bin"), content_of(kMatch + "match_start.bin"));
+  return replay_of_match;
+}
+
+TEST(MatchOnTarget, RecordIsAMinuteOfPlayWithADuel) {
+  SKIP_WITHOUT_COMPILER();
+  const std::vector<Input> inputs = recorded_inputs();
+  ASSERT_EQ(inputs.size(), 60000U);
+  int moving = 0;
+  int pushing = 0;
+  for (const Input& input : inputs) {
+    const robot_core::Command& command = input.command;
+    moving += command.mode == robot_core::Mode::body_velocity && std::hypot(command.velocity.x, command.velocity.y) > 0.5F ? 1 : 0;
+    pushing += std::hypot(command.push.x, command.push.y) > 1.0F ? 1 : 0;
+  }
+  EXPECT_GT(moving, 20000);
+  EXPECT_GT(pushing, 1000);
+}
+
+TEST(MatchOnTarget, OutputsAndStateAgreeBitForBit) {
+  SKIP_WITHOUT_EMULATOR();
+  const Replay& target = replayed();
+  const std::string expected = content_of(kMatch + "match_output.bin");
+  ASSERT_EQ(target.summary.record_size, sizeof(Input));
+  ASSERT_EQ(target.summary.result_size, sizeof(DriveResult));
+  ASSERT_EQ(target.output.size(), expected.size());
+  EXPECT_EQ(first_difference(target.output, expected, sizeof(DriveResult)), target.summary.record_count);
+  std::set<std::uint32_t> digests;
+  for (std::size_t at = 0; at < expected.size(); at += sizeof(DriveResult)) {
+    DriveResult result;
+    std::memcpy(&result, expected.data() + at, sizeof(result));
+    digests.insert(result.state_digest);
+    for (const std::uint8_t reason : result.reason) {
+      // No sensor of the record fails.
+      EXPECT_TRUE(reason < 110 || reason > 141) << "reason " << int{reason} << " in step " << at / sizeof(DriveResult);
+    }
+  }
+  EXPECT_GT(digests.size(), expected.size() / sizeof(DriveResult) / 2);
+}
+
+TEST(MatchOnTarget, InstructionsStayWithinTheBudget) {
+  SKIP_WITHOUT_EMULATOR();
+  const Replay& target = replayed();
+  ASSERT_EQ(target.summary.known_loop_instructions, kLoopInstructions);
+  ASSERT_EQ(target.instructions.size(), 60000U);
+  EXPECT_LE(target.mean_instructions(), kMeanInstructions);
+  const auto most = std::ranges::max_element(target.instructions);
+  EXPECT_LE(*most, kMostInstructions) << "in step " << most - target.instructions.begin();
+  RecordProperty("mean_instructions", std::to_string(target.mean_instructions()));
+  RecordProperty("most_instructions", std::to_string(*most));
+}
+
+TEST(MatchOnTarget, MemoryStaysWithinTheBudget) {
+  SKIP_WITHOUT_EMULATOR();
+  EXPECT_LE(replayed().summary.memory_bytes, kMostMemory_bytes);
+  EXPECT_LE(replayed().summary.most_stack_bytes, kMostStack_bytes);
+  RecordProperty("memory_bytes", std::to_string(replayed().summary.memory_bytes));
+  RecordProperty("stack_bytes", std::to_string(replayed().summary.most_stack_bytes));
+}
+
+}  // namespace
+}  // namespace heatsoak::target
