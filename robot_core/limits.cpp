@@ -196,6 +196,9 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   const BelievedWheel& sensed = believed.wheel[i];
   if (sensed.is_current_sensed && sensed.is_speed_sensed) {
     hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+    // A current sensor may lie too: it never takes the voltage out of the window of the sensed speed.
+    const float band_V = config.lowest_resistance_ohm * demand.most_A;
+    voltage_V = clamped(voltage_V, demand.back_V - band_V, demand.back_V + band_V);
   }
   const bool is_held = sensed.is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V)
                                              : limp_blindly(config, believed, i, most_V, voltage_V);
