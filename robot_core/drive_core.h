@@ -205,6 +205,8 @@ struct alignas(8) ComparisonState {
   float last_rad_per_s[kMostWheels] = {};   ///< speed samples of the last comparison of pairs
   float with_V_rad_per_s[6] = {};           ///< per pair of wheels: leaky sum of how much its currents accelerate its difference of speeds
   float against_V_rad_per_s[6] = {};        ///< and of how much they seem to decelerate it
+  float residual_m2_per_s2 = 0.0F;          ///< leaky mean square by which the samples contradict each other as speeds of one body
+  std::uint32_t unused = 0;
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
 };

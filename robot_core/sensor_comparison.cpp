@@ -22,6 +22,9 @@ constexpr float kMuchMore_ratio = 4.0F;
 constexpr float kWheelwise_ratio = 10.0F;
 // A wheel that changes its speed faster than this multiple of the limits of acceleration slides.
 constexpr float kGripping_ratio = 2.0F;
+// Speeds of four wheels that do not slide contradict each other by less.
+constexpr float kLeastResidual_m_per_s = 0.03F;
+
 struct CurrentRange {
   float low_A = 0.0F;
   float high_A = 0.0F;
@@ -123,6 +126,25 @@ void find_responses(const Config& config, State& state, const Believed& believed
   }
 }
 
+/// Mean square of what is left of the speed samples, as rim speeds, that one motion of the body should explain. 0 for three wheels,
+/// whose speeds and yaw rate any exchange of two samples explains as well.
+[[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const State& state, const Believed& believed) {
+  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  float x = 0.0F;
+  float y = 0.0F;
+  float all = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const float rim_m_per_s = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
+    x += config.wheel[i].rolling_x_share * rim_m_per_s;
+    y += config.wheel[i].rolling_y_share * rim_m_per_s;
+    all += rim_m_per_s * rim_m_per_s;
+  }
+  // Σ r² − bᵀ·P·b, b = Σ t·r: the residual of least squares.
+  const DerivedConfig& derived = config.derived;
+  const float explained = derived.plane_xx_factor * x * x + 2.0F * derived.plane_xy_factor * x * y + derived.plane_yy_factor * y * y;
+  return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
+}
+
 /// Swapped sensors: the difference of two wheels' currents accelerates the difference of their speeds. If the sensors are swapped it
 /// seems to decelerate it: then the control makes the difference grow, until the product of both is large. Only where the body is
 /// controlled: wheels that are driven against each other move as the strongest want.
@@ -135,6 +157,10 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
   const bool is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
   const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
+  // The body couples its wheels, so a current may well slow its wheel down. Four samples then still fit one motion of the body.
+  float& residual_m2_per_s2 = comparison.residual_m2_per_s2;
+  residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, believed) - residual_m2_per_s2);
+  const bool is_contradiction = config.wheel_count < 4 || residual_m2_per_s2 > kLeastResidual_m_per_s * kLeastResidual_m_per_s;
   WheelResponse response[kMostWheels];
   find_responses(config, state, believed, since_s, response);
   int worst[2] = {-1, -1};
@@ -151,7 +177,7 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
       float& against = comparison.against_V_rad_per_s[pair];
       with = is_wheelwise ? kWheelwise_ratio * most : keep * with + larger(0.0F, product);
       against = is_wheelwise ? 0.0F : keep * against + (grows ? larger(0.0F, -product) : 0.0F);
-      if (against > kMuchMore_ratio * with && against > most) {
+      if (is_contradiction && against > kMuchMore_ratio * with && against > most) {
         most = against;
         worst[0] = i;
         worst[1] = j;

@@ -71,7 +71,7 @@ CallGraph::Depth depth_of_step(const std::string& function, bool with_planner) {
 
 TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
   SKIP_WITHOUT_EMULATOR();
-  const std::vector<Input> inputs = minute_of_play(2, false);
+  const std::vector<Input> inputs = minute_of_play(1, false);
   const std::vector<DriveResult> host = on_host(inputs);
   const std::set<Reason> reasons = reasons_of(host);
   for (const Reason reason : {Reason::none, Reason::driver_current, Reason::traction, Reason::guard, Reason::other_wheel, Reason::time_jump,
@@ -92,7 +92,7 @@ TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
 
 TEST(DriveCoreOnTarget, PoseTargetsAgreeBitForBit) {
   SKIP_WITHOUT_EMULATOR();
-  std::vector<Input> inputs = minute_of_play(2, true);
+  std::vector<Input> inputs = minute_of_play(1, true);
   inputs.resize(inputs.size() / 10);  // the planner takes its time
   const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
   expect_same(target, inputs, on_host(inputs));
