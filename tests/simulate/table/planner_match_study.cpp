@@ -21,7 +21,7 @@ struct Value {
   const char* column;
   int decimals;
   double (*of)(const DriveScore& score);
-  std::array<double, 2> before;  ///< README's mean of the stand-in controller without sensors, by planner; NaN: not told
+  std::array<double, 2> before;  ///< mean of an earlier plain controller with exact sensors, by planner; NaN: not reported
 };
 
 constexpr Value kValues[] = {
@@ -108,7 +108,8 @@ std::string before(const Value& value, std::size_t planner) {
 }
 
 Sheet summary(const Scores& scores) {
-  Sheet sheet{{"real sensing", "bang-bang", "jerk-limited", "difference in the same match", "README: bang-bang", "README: jerk-limited"},
+  Sheet sheet{{"real sensing", "bang-bang", "jerk-limited", "difference in the same match", "earlier controller: bang-bang",
+               "earlier controller: jerk-limited"},
               {}};
   for (const Value& value : kValues) {
     std::vector<double> differences = values_of(scores[1], value);
@@ -129,7 +130,7 @@ Sheet causes(const Scores& scores, std::size_t planner) {
   for (const Setting& setting : kSettings) {
     sheet.header.emplace_back(setting.name);
   }
-  sheet.header.emplace_back("README");
+  sheet.header.emplace_back("earlier controller");
   for (const Value& value : kValues) {
     sheet.rows.push_back({value.name});
     for (std::size_t s = 0; s < kSettings.size(); ++s) {
@@ -162,13 +163,12 @@ Chart picture(const Scores& scores) {
   const Value& slid = kValues[2];
   const Value& heat = kValues[4];
   const auto mean = [&](std::size_t planner, const Value& value) { return spread_of(values_of(scores.at(planner), value)).mean; };
-  Chart chart{
-      .title = fmt::format("Jerk limit: wheels slide {:.0f} s instead of {:.0f} s, copper heat {:.1f} instead of {:.1f} kJ", mean(1, slid),
-                           mean(0, slid), mean(1, heat), mean(0, heat)),
-      .subtitle = "division A match, Twente v2024, ECX FLAT 32 L, simulated with real sensing; README: the earlier controller, mean",
-      .x_label = "seed of the match",
-      .panels = {},
-      .panel_height_px = 270};
+  Chart chart{.title = fmt::format("Jerk limit: wheels slide {:.0f} s instead of {:.0f} s, copper heat {:.1f} instead of {:.1f} kJ",
+                                   mean(1, slid), mean(0, slid), mean(1, heat), mean(0, heat)),
+              .subtitle = "division A match, Twente v2024, ECX FLAT 32 L, simulated with real sensing; earlier: a plain controller, mean",
+              .x_label = "seed of the match",
+              .panels = {},
+              .panel_height_px = 270};
   struct Shown {
     const char* title;
     const char* label;
@@ -188,7 +188,7 @@ Chart picture(const Scores& scores) {
       curve.y = values_of(scores.at(p), kValues[shown.value]);
       const double before = kValues[shown.value].before.at(p);
       if (!std::isnan(before)) {
-        panel.curves.push_back({.name = chart.panels.empty() ? fmt::format("{}, README", kNames.at(p)) : "",
+        panel.curves.push_back({.name = chart.panels.empty() ? fmt::format("{}, earlier", kNames.at(p)) : "",
                                 .x = {0.5, static_cast<double>(kSeeds) + 0.5},
                                 .y = {before, before},
                                 .color_index = static_cast<int>(p),
@@ -207,11 +207,10 @@ void study_planners_in_match(const Subject& subject, const Report& report) {
   const Duty duty = read_duty(kSource / "duty_profiles" / "division_a_match.toml");
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
   const Scores scores = play_all(subject, match->inputs(), duty.ambient_C.value);
-  report.write(
-      "planners.md",
-      fmt::format("Means of {} matches; in brackets 5th and 95th percentile. *README*: means of its ten matches, in which an earlier "
-                  "plain controller with exact sensors drove.\n\n{}\n{}\n{}",
-                  kSeeds, summary(scores).markdown(), causes(scores, 1).markdown(), causes(scores, 0).markdown()));
+  report.write("planners.md",
+               fmt::format("Means of {} matches; in brackets 5th and 95th percentile. *Earlier controller*: means of ten matches that "
+                           "a plain controller with exact sensors drove.\n\n{}\n{}\n{}",
+                           kSeeds, summary(scores).markdown(), causes(scores, 1).markdown(), causes(scores, 0).markdown()));
   report.write("planners.csv", all_runs(scores).csv());
   report.draw("planners.svg", picture(scores));
 }
