@@ -43,7 +43,8 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   // Of a wheel without a speed nothing is known, but then the current is the limp current, which every speed bears.
   signal[guard_speed_rad_per_s] = sensed.is_speed_known ? speed_rad_per_s : kNoSample;
   signal[guard_ambient_C] = believed.ambient_C;
-  signal[guard_vehicle_speed_m_per_s] = 0.0F;
+  // Nobody measures it: laws that depend on it take the speed that heats most.
+  signal[guard_vehicle_speed_m_per_s] = kNoSample;
   signal[guard_neighbour_C] = model.belief[guard_neighbour_C].is_used ? hottest_neighbour_C(config, state, i) : 0.0F;
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;

@@ -144,8 +144,10 @@ std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const 
   }
   const Observer& observer = derating.observer;
   if (observer.uses(firmware::vehicle_speed)) {
-    notes.push_back(fmt::format("{} depends on the robot's speed through the air, which the core does not know: it assumes still air",
-                                effects_with(motor, Signal::vehicle_speed)));
+    notes.push_back(
+        fmt::format("{} depends on the robot's speed through the air, which the core does not know: it takes the speed that heats most, "
+                    "still air where wind cools",
+                    effects_with(motor, Signal::vehicle_speed)));
   }
   if (observer.uses(firmware::neighbour)) {
     notes.push_back(fmt::format("{} depends on the motors beside it: the core takes the hottest of the other wheels' guards",
