@@ -109,7 +109,8 @@ void control_wheels(const Config& config, State& state, const Believed& believed
 /// once.
 void step_valid(const Config& config, State& state, const Input& input, bool was_corrupted, Output& out) {
   Believed believed = validate_input(config, state, input);
-  if (was_corrupted) {
+  // The bridges stay open where the period is invalid, too.
+  if (was_corrupted && believed.robot_fault != Reason::period_invalid) {
     believed.robot_fault = Reason::state_corrupted;
   }
   run_guards(config, state, input, believed);

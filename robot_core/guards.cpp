@@ -50,8 +50,10 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
   const float cold_ratio = cold_current_ratio(config, guard.winding_C);
-  wheel.allowed_A = sensed.is_speed_known ? cold_ratio * guard.allowed_A : config.limp_current_A;
-  wheel.allowed_braking_A = sensed.is_speed_known ? cold_ratio * guard.allowed_braking_A : config.limp_current_A;
+  // A winding bears the limp current for good, but not where it is at its limit already.
+  const float limp_A = guard.winding_C + config.braking_reserve_K < model.winding_limit_C ? config.limp_current_A : 0.0F;
+  wheel.allowed_A = sensed.is_speed_known ? cold_ratio * guard.allowed_A : limp_A;
+  wheel.allowed_braking_A = sensed.is_speed_known ? cold_ratio * guard.allowed_braking_A : limp_A;
   if (!guard.was_started) {
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
   } else if (wheel.guard_fault == static_cast<std::uint8_t>(Reason::guard_unknown) &&

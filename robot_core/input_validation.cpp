@@ -18,13 +18,16 @@ void validate_time(const Config& config, const Input& input, Believed& believed)
   if (elapsed_s != elapsed_s) {
     return;  // not measured
   }
-  if (!is_finite(elapsed_s) || elapsed_s <= 0.0F) {
+  constexpr float kShortest_share = 0.5F;
+  if (!is_finite(elapsed_s) || elapsed_s < kShortest_share * config.period_s) {
     believed.robot_fault = Reason::period_invalid;
   } else if (elapsed_s > kLongestGap_periods * config.period_s) {
     believed.robot_fault = Reason::time_jump;
     believed.elapsed_s = elapsed_s;
   } else {
-    believed.elapsed_periods = static_cast<int>(clamped(elapsed_s / config.period_s + 0.5F, 1.0F, kLongestGap_periods));
+    // Rounded up, so that the guard misses no heat; a tenth is the timer's jitter.
+    constexpr float kRoundUp_share = 0.9F;
+    believed.elapsed_periods = static_cast<int>(clamped(elapsed_s / config.period_s + kRoundUp_share, 1.0F, kLongestGap_periods));
     believed.elapsed_s = static_cast<float>(believed.elapsed_periods) * config.period_s;
   }
 }

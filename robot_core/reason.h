@@ -7,7 +7,7 @@
 // |--------|-------------------------------------------------------------|---------------------------------------------------|---------------------------------|
 // | 100 R  | Config fails its check sum or holds an impossible value     | all bridges open                                  | start() with a valid Config     |
 // | 101 R  | State fails its check sum (bit flip, never started)         | State is started anew, guard as hot as its limit  | next step; the guard cools down |
-// | 102 R  | Input::elapsed_s is zero, negative or infinite              | all bridges open for this step                    | next valid step                 |
+// | 102 R  | Input::elapsed_s infinite or below half a period            | all bridges open for this step                    | next valid step                 |
 // | 103 R  | Input::elapsed_s above kLongestGap_periods periods          | integrators and references start anew; the guard  | next valid step                 |
 // |        |                                                             | heats for the gap with the largest current        |                                 |
 // | 104 R  | command with a value that is not finite, or unknown mode    | brake to a stand, then open                       | next valid command              |

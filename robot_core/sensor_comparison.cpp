@@ -204,6 +204,15 @@ float yaw_rate_of_wheels(const Config& config, const Believed& believed) {
 void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(comparison); }
 
 void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed) {
+  if (believed.robot_fault == Reason::time_jump) {
+    // Nothing of before the gap can be compared with what comes after it.
+    state.comparison = {};
+    for (int i = 0; i < config.wheel_count; ++i) {
+      state.comparison.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
+    }
+    seal(state.comparison);
+    return;
+  }
   // Even steps; wheels 0, 4, 8, 12, pairs 2, yaw rate 6.
   const std::uint32_t turn = state.steps % kStepsPerComparison;
   const bool is_wheel = turn % 4 == 0 && turn / 4 < static_cast<std::uint32_t>(config.wheel_count);
@@ -212,7 +221,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
   }
   if (state.comparison.check_sum != check_sum_of(state.comparison)) {
     state.comparison = {};  // what it had found stands in the faults
-    believed.robot_fault = Reason::state_corrupted;
+    believed.robot_fault = believed.robot_fault == Reason::period_invalid ? believed.robot_fault : Reason::state_corrupted;
   }
   const float since_s = believed.elapsed_s * static_cast<float>(kStepsPerComparison);
   if (is_wheel) {
