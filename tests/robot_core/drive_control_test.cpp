@@ -334,5 +334,34 @@ TEST(Commands, ThatStopComingStopTheRobot) {
   EXPECT_TRUE(loop.output().is_open[0]);
 }
 
+// Whenever it comes, a gap clears with the next step: no sensor is suspected of what the robot did in the gap.
+TEST(TimeJump, LeavesNoFaultBehind) {
+  for (int phase = 0; phase < 16; ++phase) {
+    Loop loop(make_config(4));
+    loop.run(velocity(1.0F, 0.5F, 2.0F), 0.3 + phase * kPeriod_s);
+    Random random(1);
+    Input input = loop.plant().sense(random, 0.0F, true);
+    input.command = velocity(-1.0F, 0.5F, -2.0F);
+    input.elapsed_s = 0.05F;
+    EXPECT_EQ(robot_core::step(loop.config(), loop.state(), input).robot_reason, Reason::time_jump);
+    loop.run(velocity(-1.0F, 0.5F, -2.0F), 0.5);
+    for (const robot_core::WheelState& wheel : loop.state().wheel) {
+      EXPECT_EQ(wheel.speed_fault, 0) << phase;
+    }
+  }
+}
+
+// A timer with the wrong prescaler must not let the observer cool.
+TEST(ShortPeriod, OpensTheBridges) {
+  Loop loop(make_config(4));
+  Random random(1);
+  Input input = loop.plant().sense(random, 0.0F, true);
+  input.command = velocity(1.0F, 0.0F);
+  input.elapsed_s = 1e-6F;
+  const Output output = robot_core::step(loop.config(), loop.state(), input);
+  EXPECT_EQ(output.robot_reason, Reason::period_invalid);
+  EXPECT_TRUE(output.is_open[0]);
+}
+
 }  // namespace
 }  // namespace heatsoak::test_robot
