@@ -43,7 +43,7 @@ bool limit(Vector3& v, float most_plane, float most_yaw) {
   return is_long || is_fast;
 }
 
-/// What the command asks for now: continued by its acceleration, seen from a robot that has turned since.
+/// Reference of the command for the present: extrapolated by its acceleration and turned into the robot's present heading.
 void follow_command(const Config& config, State& state, const Input& input, const Believed& believed, BodyReference& body) {
   if (believed.mode == Mode::body_velocity) {
     const Command& command = input.command;

@@ -1,4 +1,4 @@
-// Whether a Config can be driven with.
+// Checks a Config, and fills in the values that follow from others.
 #include "robot_core/drive_core.h"
 
 namespace robot_core {
@@ -122,7 +122,7 @@ bool all(const float (&values)[count]) {
     const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
     const float nominal_A = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
                             absolute(wheel.sign_V) / config.resistance_ohm;
-    // Of the nominal motor: the grip protects nothing, so the lowest resistance need not count.
+    // The grip limit uses the nominal resistance, because it protects no part.
     const float grip_A = nominal_A * config.resistance_ohm / config.lowest_resistance_ohm;
     wheel.is_grip_limit = config.traction_ratio > 0.0F && grip_A < config.current_limit_A ? 1 : 0;
     wheel.body_limit_A = wheel.is_grip_limit != 0 ? grip_A : config.current_limit_A;

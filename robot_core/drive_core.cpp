@@ -9,7 +9,7 @@ constexpr std::uint32_t kStarted = 0x4452564EU;
 // So that a state of zeros is none.
 constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
 
-/// Of what stands between the sum and the comparisons.
+/// Check sum of the State, from the member after the sum up to the comparisons.
 [[gnu::noinline]] std::uint64_t state_check_sum(const State& state) {
   static_assert(__builtin_offsetof(State, comparison) % sizeof(std::uint64_t) == 0);
   return kSeed + sum_of_words<1, __builtin_offsetof(State, comparison) / sizeof(std::uint64_t)>(&state);
