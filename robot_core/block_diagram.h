@@ -112,7 +112,7 @@ inline constexpr SignalText kSignals[] = {
     {"Believed", "pwm_battery_V", "V", validate_input, apply_limits | make_output},
     {"Believed", "ambient_C", "°C", validate_input, only(run_guards)},
     {"Believed", "elapsed_s", "s", validate_input, run_guards | control_body_velocity | control_wheel_speeds | apply_limits},
-    {"Believed", "elapsed_periods", "count", validate_input, only(run_guards)},
+    {"Believed", "guard_periods", "count", validate_input, only(run_guards)},
     {"Believed", "mode", "code", validate_input, control_body_velocity | feed_forward | control_wheel_speeds},
     {"Believed", "command_fault", "code", validate_input, control_body_velocity | make_output},
     {"Believed", "robot_fault", "code", validate_input,

@@ -28,7 +28,7 @@ bool is_standing(const Vector3& v) { return length(v) < kStanding_m_per_s && abs
 Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, v.y * plane, v.yaw * yaw}; }
 
 /// Length of the plane part and size of the yaw part at most as given, directions kept. Whether there was anything to do.
-bool limit(Vector3& v, float most_plane, float most_yaw) {
+[[gnu::always_inline]] inline bool limit(Vector3& v, float most_plane, float most_yaw) {
   const float square = v.x * v.x + v.y * v.y;
   const bool is_long = square > most_plane * most_plane;
   if (is_long) {

@@ -160,7 +160,7 @@ struct Input {
   float ambient_C = kNoSample;                                              ///< air at the motors
   PerWheel stator_C = {kNoSample, kNoSample, kNoSample, kNoSample};
   Vector3 pose{kNoSample, kNoSample, kNoSample};  ///< field frame; for pose targets
-  float elapsed_s = kNoSample;                    ///< since the last call, by the caller's timer; none: one period
+  float elapsed_s = kNoSample;                    ///< since the last call, by the caller's timer; without a timer Config::period_s
   float command_age_s = 0.0F;                     ///< since `command` was received
   Command command;
 };
@@ -206,9 +206,12 @@ struct alignas(8) ComparisonState {
   float with_V_rad_per_s[6] = {};           ///< per pair of wheels: leaky sum of how much its currents accelerate its difference of speeds
   float against_V_rad_per_s[6] = {};        ///< and of how much they seem to decelerate it
   float residual_m2_per_s2 = 0.0F;          ///< leaky mean square by which the samples contradict each other as speeds of one body
-  std::uint32_t unused = 0;
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
+  /// Copies of WheelState::speed_fault and State::yaw_fault: they outlast a flipped bit in the rest of State.
+  std::uint8_t speed_fault[kMostWheels] = {};
+  std::uint8_t yaw_fault = 0;
+  std::uint8_t unused[7] = {};
 };
 
 /// What evolves. Only start() and step() write it; a copy can be logged. The check sum covers what follows it up to `comparison`;
@@ -227,6 +230,8 @@ struct alignas(8) State {
   float raw_yaw_rate_rad_per_s = 0.0F;
   float battery_current_A = 0.0F;  ///< of the last period, estimated
   float battery_source_V = 0.0F;   ///< voltage without load that samples have shown, slowly sinking
+  float late_periods = 0.0F;       ///< delays of less than a tenth of a period, added up
+  std::uint32_t unused_word = 0;   ///< keeps the size a multiple of 8 without padding
   Vector3 plan_velocity;           ///< of the pose target's plan, field frame
   Vector3 plan_acceleration;
   std::uint32_t shadow_steps = 0;   ///< in which the guard would have limited

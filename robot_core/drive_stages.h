@@ -26,7 +26,7 @@ struct Believed {
   float pwm_battery_V = 0.0F;  ///< for the PWM ratio: never less
   float ambient_C = 0.0F;
   float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
-  int elapsed_periods = 1;
+  int guard_periods = 1;  ///< the same as periods, and one more as often as small delays add up to one
   bool are_all_sensed = true;
   bool are_samples_compared = false;  ///< too few are believed: implied speeds are those of all samples
   Mode mode = Mode::coast;            ///< after faults of the command
@@ -95,6 +95,16 @@ float yaw_rate_of_wheels(const Config& config, const Believed& believed);
 
 /// Compares sensors with each other: stuck and swapped ones, and those that are believed again.
 void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed);
+
+/// Copies the faults of wheel speeds and yaw rate to where a flipped bit in the rest of State does not reach them.
+void note_faults(State& state);
+
+/// What outlasts a flipped bit in State: faults that are known, so that no sensor is believed again by accident.
+struct KnownFaults {
+  ComparisonState comparison;
+  float battery_source_V;
+};
+void recall_faults(const KnownFaults& known, State& state);
 
 /// Sets the check sum of the comparisons.
 void seal(ComparisonState& comparison);

@@ -125,14 +125,14 @@ void run_guards(const Config& config, State& state, const Input& input, const Be
     return;
   }
   const int periods = periods_per_guard_step(config);
-  const auto weight = static_cast<float>(believed.elapsed_periods);
+  const auto weight = static_cast<float>(believed.guard_periods);
   int most_steps = 0;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float current_A = believed.wheel[i].current_A;
     wheel.current_squared_A2 += weight * current_A * current_A;
-    const int steps = wheel.guard_steps + believed.elapsed_periods;
+    const int steps = wheel.guard_steps + believed.guard_periods;
     wheel.guard_steps = static_cast<std::uint16_t>(steps);
     most_steps = larger(most_steps, steps);
   }

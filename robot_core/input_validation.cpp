@@ -1,6 +1,9 @@
 // Stage 1: which samples are believed, and what stands in for the others.
 #include "robot_core/drive_stages.h"
 
+// For size, which here is faster, too: less is inlined that is seldom needed.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 namespace {
 
@@ -11,24 +14,30 @@ constexpr int kMostSameSteps = 60000;
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
 
-void validate_time(const Config& config, const Input& input, Believed& believed) {
-  believed.elapsed_periods = 1;
+void validate_time(const Config& config, State& state, const Input& input, Believed& believed) {
   believed.elapsed_s = config.period_s;
+  believed.guard_periods = 1;
   const float elapsed_s = input.elapsed_s;
-  if (elapsed_s != elapsed_s) {
-    return;  // not measured
-  }
   constexpr float kShortest_share = 0.5F;
-  if (!is_finite(elapsed_s) || elapsed_s < kShortest_share * config.period_s) {
+  // Written so that what is no number is invalid.
+  if (!(elapsed_s >= kShortest_share * config.period_s) || !is_finite(elapsed_s)) {
     believed.robot_fault = Reason::period_invalid;
   } else if (elapsed_s > kLongestGap_periods * config.period_s) {
     believed.robot_fault = Reason::time_jump;
     believed.elapsed_s = elapsed_s;
   } else {
-    // Rounded up, so that the guard misses no heat; a tenth is the timer's jitter.
+    // Rounded up, so that nothing is integrated over too short a time; a tenth is the timer's jitter.
     constexpr float kRoundUp_share = 0.9F;
-    believed.elapsed_periods = static_cast<int>(clamped(elapsed_s / config.period_s + kRoundUp_share, 1.0F, kLongestGap_periods));
-    believed.elapsed_s = static_cast<float>(believed.elapsed_periods) * config.period_s;
+    const float periods = elapsed_s / config.period_s;
+    believed.guard_periods = static_cast<int>(clamped(periods + kRoundUp_share, 1.0F, kLongestGap_periods));
+    const auto whole = static_cast<float>(believed.guard_periods);
+    believed.elapsed_s = whole * config.period_s;
+    // A loop that is always a little late would lose that share of its heat.
+    state.late_periods += larger(0.0F, periods - whole);
+    if (state.late_periods >= 1.0F) {
+      state.late_periods -= 1.0F;
+      ++believed.guard_periods;
+    }
   }
 }
 
@@ -76,7 +85,8 @@ void validate_command(const Config& config, const Input& input, Believed& believ
   }
 }
 
-/// A sample below what the battery has shown, less its sag, would make the PWM ratio too large: so low it cannot have become so soon.
+/// The battery's voltage for limits, where a lower one is safe, and for the PWM ratio, where a higher one is. A sample that is lower than
+/// the known load explains is no fault: a kicker may charge. The limits take it, the PWM ratio keeps to what the battery has shown.
 void validate_battery(const Config& config, State& state, const Input& input, Believed& believed) {
   const float sample_V = input.battery_V;
   const float sag_V = config.battery_resistance_ohm * larger(0.0F, state.battery_current_A);
@@ -84,21 +94,26 @@ void validate_battery(const Config& config, State& state, const Input& input, Be
   constexpr float kTolerance_share = 0.03F;  // of the full battery: noise
   constexpr float kFall_share_per_s = 0.004F;
   constexpr float kRise_s = 0.05F;
-  const float least_V = state.battery_source_V - kSag_ratio * sag_V;
-  const bool is_possible = sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V;
+  const float shown_V = state.battery_source_V;
+  const float least_V = shown_V - kSag_ratio * sag_V;
   // A timer that lies makes no battery empty.
   const float since_s = smaller(believed.elapsed_s, kLongestGap_periods * config.period_s);
-  state.battery_source_V = larger(0.0F, state.battery_source_V - kFall_share_per_s * config.battery_full_V * since_s);
-  if (is_possible && sample_V >= least_V - kTolerance_share * config.battery_full_V) {
-    const float source_V = smaller(sample_V + sag_V, config.battery_full_V);
-    const float rise_ratio = state.steps == 0 ? 1.0F : smaller(1.0F, since_s / kRise_s);
-    state.battery_source_V += rise_ratio * larger(0.0F, source_V - state.battery_source_V);
-    believed.battery_V = sample_V;
-    believed.pwm_battery_V = larger(sample_V, least_V);
-  } else {
+  state.battery_source_V = larger(0.0F, shown_V - kFall_share_per_s * config.battery_full_V * since_s);
+  if (!(sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V)) {
     believed.battery_V = config.battery_lowest_V;
     believed.pwm_battery_V = 1.1F * config.battery_full_V;
     believed.robot_fault = believed.robot_fault == Reason::none ? Reason::battery_voltage_missing : believed.robot_fault;
+    return;
+  }
+  believed.battery_V = sample_V;
+  if (sample_V >= least_V - kTolerance_share * config.battery_full_V) {
+    const float source_V = smaller(sample_V + sag_V, config.battery_full_V);
+    const float rise_ratio = state.steps == 0 ? 1.0F : smaller(1.0F, since_s / kRise_s);
+    state.battery_source_V += rise_ratio * larger(0.0F, source_V - state.battery_source_V);
+    believed.pwm_battery_V = larger(sample_V, least_V);
+  } else {
+    // Motors that brake may charge it by as much as the tolerance.
+    believed.pwm_battery_V = smaller(shown_V, config.battery_full_V) + kTolerance_share * config.battery_full_V;
   }
 }
 
@@ -239,6 +254,7 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, B
   if (!is_possible || is_jump) {
     state.yaw_fault = code(Reason::yaw_rate_missing);
     state.has_yaw_spoken_wrongly = 1;
+    note_faults(state);
   }
   state.is_yaw_same = sample == state.raw_yaw_rate_rad_per_s ? 1 : 0;
   state.raw_yaw_rate_rad_per_s = is_possible ? sample : 0.0F;
@@ -284,6 +300,9 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
     const bool is_plain = absolute(sample) <= most_rad_per_s && absolute(change_rad_per_s) <= jump_rad_per_s;
     if (!is_plain || change_rad_per_s == 0.0F || wheel.speed_fault != 0) {
       take_doubtful_sample(config, wheel, sample, jump_rad_per_s, believed.wheel[i]);
+      if (wheel.speed_fault != state.comparison.speed_fault[i]) {
+        note_faults(state);
+      }
       believed.are_all_sensed = believed.are_all_sensed && believed.wheel[i].is_speed_sensed;
       continue;
     }
@@ -335,7 +354,7 @@ void validate_currents(const Config& config, State& state, const Input& input, B
 
 Believed validate_input(const Config& config, State& state, const Input& input) {
   Believed believed;
-  validate_time(config, input, believed);
+  validate_time(config, state, input, believed);
   validate_command(config, input, believed);
   validate_battery(config, state, input, believed);
   validate_ambient(config, state, input, believed);

@@ -54,11 +54,8 @@ void limit_demand(const Config& config, const WheelState& state, const Believed&
   return demand.reason == Reason::none ? own : demand.reason;
 }
 
-/// What the guard leaves. In shadow mode it is counted instead; true if it would have limited.
-[[gnu::noinline]] bool apply_guard(const Config& config, State& state, const WheelState& wheel, float speed_rad_per_s, float elapsed_s,
-                                   WheelDemand& demand) {
-  const bool brakes = demand.current_A * speed_rad_per_s < 0.0F;
-  const float allowed_A = brakes ? wheel.allowed_braking_A : wheel.allowed_A;
+/// What the guard leaves to one wheel. In shadow mode it is counted instead; true if it would have limited.
+bool apply_guard(const Config& config, State& state, float allowed_A, float elapsed_s, WheelDemand& demand) {
   if (allowed_A >= demand.most_A) {
     return false;
   }
@@ -98,10 +95,11 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
 }
 
 [[gnu::cold, gnu::noinline]] bool move_into_window(const WheelDemand& demand, float implied_V, float band_V, float most_V,
-                                                   float& voltage_V) {
+                                                   float& voltage_V, Reason& reason) {
   if (!(demand.most_A > 0.0F)) {
     return false;
   }
+  reason = Reason::slip;
   voltage_V = clamped(voltage_V, implied_V - band_V, implied_V + band_V);
   constexpr float kRounding = 1.0001F;
   return absolute(voltage_V) <= kRounding * most_V && absolute(voltage_V - demand.back_V) <= kRounding * band_V;
@@ -109,17 +107,19 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
 
 /// Holds a voltage within the current limit for the implied speed too; for the sensed one it is. False where no voltage does, or where the
 /// voltage is no number.
-bool hold_window(const Config& config, const Believed& believed, const WheelDemand& demand, int i, float most_V, float& voltage_V) {
+bool hold_window(const Config& config, const Believed& believed, const WheelDemand& demand, int i, float most_V, float& voltage_V,
+                 Reason& reason) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
   const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].implied_rad_per_s;
-  return absolute(voltage_V - implied_V) < band_V || move_into_window(demand, implied_V, band_V, most_V, voltage_V);
+  return absolute(voltage_V - implied_V) < band_V || move_into_window(demand, implied_V, band_V, most_V, voltage_V, reason);
 }
 
-/// Of a wheel whose speed nobody knows: into a standing motor no more than the limp current.
-[[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Believed& believed, int i, float most_V, float& voltage_V) {
-  const float limp_V = smaller(config.lowest_resistance_ohm * config.limp_current_A, most_V);
+/// Of a wheel whose speed nobody knows: into a standing motor no more than the limp current, or what the guard leaves of it.
+[[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Believed& believed, const WheelDemand& demand, int i,
+                                               float most_V, float& voltage_V) {
+  const float limp_V = smaller(config.lowest_resistance_ohm * demand.most_A, most_V);
   voltage_V = clamped(voltage_V, -limp_V, limp_V);
-  return believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= config.limp_current_A;
+  return demand.most_A > 0.0F && believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= demand.most_A;
 }
 
 /// Holds a voltage within the current limit by what the sensor shows: the current that flowed, changed by the change of the voltage. True
@@ -138,12 +138,45 @@ bool is_overcurrent(const Config& config, const BelievedWheel& sensed, const Whe
   return absolute(sensed.current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
 }
 
+/// Scales a wheel that wants more than it may have; the smaller one of `least` and the wheel's share.
+float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& demand, Reason& reason, float least) {
+  const float size_A = absolute(demand.current_A);
+  const float reachable_A = reachable_current_A(config, demand, most_V);
+  if (size_A <= demand.most_A && size_A <= reachable_A) {
+    return least;
+  }
+  scale_wheel(config.wheel[i], reachable_A, demand, reason);
+  return smaller(least, demand.share);
+}
+
+/// The guards of a robot with a hot motor. A stopping robot brakes as a whole: a wheel that turns over or is pulled along drives for a
+/// moment, and without current for it the common factor would leave none to the others. So all wheels may use the braking reserve while the
+/// wanted currents take power out of the body, and a wheel that brakes may always. Returns the new least share.
+[[gnu::noinline]] float apply_guards(const Config& config, State& state, const Believed& believed, const BodyReference& body, float most_V,
+                                     WheelDemand* demand, LimitedVoltages& limited, float least) {
+  float body_W = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    body_W += demand[i].back_V * demand[i].current_A;
+  }
+  bool would_limit = false;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const bool brakes = demand[i].back_V * demand[i].current_A < 0.0F || (body_W < 0.0F && !body.is_wheelwise);
+    const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
+    would_limit = apply_guard(config, state, allowed_A, believed.elapsed_s, demand[i]) || would_limit;
+    if (believed.wheel[i].is_speed_known) {
+      least = share_of_wheel(config, i, most_V, demand[i], limited.wheel[i].reason, least);
+    }
+  }
+  state.shadow_steps += would_limit ? 1U : 0U;
+  return least;
+}
+
 /// What every wheel wants and may have, and one factor for all of them, so that the direction of the force is kept.
 float find_demands(const Config& config, State& state, const Believed& believed, const BodyReference& body, const WheelVoltages& voltage,
                    float most_V, WheelDemand* demand, LimitedVoltages& limited) {
   float least = 1.0F;
   float power_W = 0.0F;
-  bool would_limit = false;
+  bool is_hot = false;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const BelievedWheel& sensed = believed.wheel[i];
@@ -154,20 +187,15 @@ float find_demands(const Config& config, State& state, const Believed& believed,
     limited.wheel[i].reason = Reason::none;
     limit_demand(config, state.wheel[i], believed, body, i, each);
     // Braking is allowed at least as much.
-    if (!(state.wheel[i].allowed_A >= each.most_A)) {
-      would_limit = apply_guard(config, state, state.wheel[i], sensed.speed_rad_per_s, believed.elapsed_s, each) || would_limit;
-    }
+    is_hot = is_hot || !(state.wheel[i].allowed_A >= each.most_A);
     if (sensed.is_speed_known) {
-      const float size_A = absolute(each.current_A);
-      const float reachable_A = reachable_current_A(config, each, most_V);
-      if (!(size_A <= each.most_A && size_A <= reachable_A)) {
-        scale_wheel(config.wheel[i], reachable_A, each, limited.wheel[i].reason);
-        least = smaller(least, each.share);
-      }
+      least = share_of_wheel(config, i, most_V, each, limited.wheel[i].reason, least);
     }
     power_W += (each.back_V + config.lowest_resistance_ohm * each.current_A) * each.current_A;
   }
-  state.shadow_steps += would_limit ? 1U : 0U;
+  if (is_hot) {
+    least = apply_guards(config, state, believed, body, most_V, demand, limited, least);
+  }
   // The power of the scaled currents is at most as much smaller.
   const float of_battery = share_of_battery(config, state, believed, least * power_W);
   const float factor = least * of_battery;
@@ -192,16 +220,20 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 
 /// Of a wheel with a current sensor, or without a speed: what is left of the wanted voltage; false if its bridge has to be opened.
 [[gnu::noinline]] bool hold_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i,
-                                  float most_V, float& voltage_V) {
+                                  float most_V, float& voltage_V, Reason& reason) {
   const BelievedWheel& sensed = believed.wheel[i];
   if (sensed.is_current_sensed && sensed.is_speed_sensed) {
+    const float asked_V = voltage_V;
     hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+    if (voltage_V != asked_V && reason == Reason::none) {
+      reason = reason_of(config.wheel[i], demand);
+    }
     // A current sensor may lie too: it never takes the voltage out of the window of the sensed speed.
     const float band_V = config.lowest_resistance_ohm * demand.most_A;
     voltage_V = clamped(voltage_V, demand.back_V - band_V, demand.back_V + band_V);
   }
-  const bool is_held = sensed.is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V)
-                                             : limp_blindly(config, believed, i, most_V, voltage_V);
+  const bool is_held = sensed.is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V, reason)
+                                             : limp_blindly(config, believed, demand, i, most_V, voltage_V);
   if (sensed.is_current_sensed && !sensed.is_speed_sensed) {
     // Better evidence than speeds that others imply.
     hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
@@ -212,14 +244,14 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 
 /// What is left of the wanted voltage of one wheel; true if its bridge has to be opened.
 bool finish_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i, float most_V,
-                  float& voltage_V) {
+                  float& voltage_V, Reason& reason) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
   const BelievedWheel& sensed = believed.wheel[i];
   if (sensed.is_speed_known && !sensed.is_current_sensed) {
     wheel.current_bound_A = demand.most_A;
-    return !hold_window(config, believed, demand, i, most_V, voltage_V);
+    return !hold_window(config, believed, demand, i, most_V, voltage_V, reason);
   }
-  return !hold_wheel(config, wheel, believed, demand, i, most_V, voltage_V);
+  return !hold_wheel(config, wheel, believed, demand, i, most_V, voltage_V, reason);
 }
 
 }  // namespace
@@ -240,7 +272,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
     end.allowed_A = demand[i].most_A;
-    end.is_open = finish_wheel(config, wheel, believed, demand[i], i, most_V, end.voltage_V) || is_all_open;
+    end.is_open = finish_wheel(config, wheel, believed, demand[i], i, most_V, end.voltage_V, end.reason) || is_all_open;
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;

@@ -2,6 +2,22 @@
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
+namespace {
+
+/// The guards check their State when they are stepped; until then a flipped bit must not reach the telemetry as what is no number.
+[[gnu::cold, gnu::noinline]] float doubtful_C(const Config& config, float winding_C) {
+  constexpr float kMost_C = 1000.0F;
+  const float limit_C = config.guard != nullptr ? config.guard->winding_limit_C : 0.0F;
+  return winding_C <= kMost_C && winding_C >= -kMost_C ? winding_C : limit_C;
+}
+
+float reported_C(const Config& config, float winding_C) {
+  // Positive numbers are ordered like their bits; one comparison of integers finds all that needs a second look.
+  constexpr auto kMost = __builtin_bit_cast(std::uint32_t, 1000.0F);
+  return __builtin_bit_cast(std::uint32_t, winding_C) <= kMost ? winding_C : doubtful_C(config, winding_C);
+}
+
+}  // namespace
 
 void make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited, Output& out) {
   float time_to_limit_s = kLongTime_s;
@@ -15,7 +31,7 @@ void make_output(const Config& config, const State& state, const Believed& belie
     out.pwm_ratio[i] = absolute(pwm_ratio) > 1.0F ? clamped(pwm_ratio, -1.0F, 1.0F) : pwm_ratio;
     out.reason[i] = wheel.reason;
     out.allowed_current_A[i] = wheel.allowed_A;
-    out.winding_C[i] = guard.state_C[0];
+    out.winding_C[i] = reported_C(config, guard.state_C[0]);
     time_to_limit_s = smaller(time_to_limit_s, guard.time_to_limit_s);
   }
   for (int i = config.wheel_count; i < kMostWheels; ++i) {
@@ -23,7 +39,7 @@ void make_output(const Config& config, const State& state, const Believed& belie
     out.reason[i] = Reason::none;
     out.is_open[i] = true;
   }
-  out.time_to_guard_limit_s = config.guard == nullptr ? kLongTime_s : time_to_limit_s;
+  out.time_to_guard_limit_s = config.guard == nullptr ? kLongTime_s : larger(0.0F, time_to_limit_s);
   out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;
   out.robot_reason = believed.robot_fault != Reason::none ? believed.robot_fault : believed.command_fault;
 }

@@ -5,9 +5,11 @@
 //
 // | code   | condition                                                   | reaction                                          | clears                          |
 // |--------|-------------------------------------------------------------|---------------------------------------------------|---------------------------------|
-// | 100 R  | Config fails its check sum or holds an impossible value     | all bridges open                                  | start() with a valid Config     |
-// | 101 R  | State fails its check sum (bit flip, never started)         | State is started anew, guard as hot as its limit  | next step; the guard cools down |
-// | 102 R  | Input::elapsed_s infinite or below half a period            | all bridges open for this step                    | next valid step                 |
+// | 100 R  | start() found that Config fails its check sum or holds an   | all bridges open                                  | start() with a valid Config     |
+// |        | impossible value                                            |                                                   |                                 |
+// | 101 R  | State fails its check sum (bit flip, never started)         | State is started anew with the sensor faults that | next step; the guard cools down |
+// |        |                                                             | were known, guard as hot as its limit             |                                 |
+// | 102 R  | Input::elapsed_s not finite or below half a period          | all bridges open for this step                    | next valid step                 |
 // | 103 R  | Input::elapsed_s above kLongestGap_periods periods          | integrators and references start anew; the guard  | next valid step                 |
 // |        |                                                             | heats for the gap with the largest current        |                                 |
 // | 104 R  | command with a value that is not finite, or unknown mode    | brake to a stand, then open                       | next valid command              |
@@ -31,10 +33,16 @@
 // | 160 W  | guard state unknown: power returned, rest unknown, bit flip | guard as hot as its limit                         | the guard cools down            |
 // clang-format on
 //
-// A battery sample also counts as missing (130) if it is lower than the battery can have become since its last samples. Not covered,
-// because nothing else measures it (tests/robot_core/adversarial_test.cpp has the sizes):
+// A robot fault hides those below it: 102, 101, 103, 130, 140 or 141, 150, then the command's. 160 comes with 101.
+// A battery sample that is lower than the known load explains is no fault, because a kicker may charge: limits take the sample, the PWM
+// ratio keeps to the voltage that the battery has shown before.
+//
+// Not covered, because nothing else measures it (tests/robot_core/adversarial_test.cpp has the sizes):
+//   - swapped wheel sensors until they are found, after 0.1 to 0.4 s of driving on average: exchanged samples of opposite wheels, or of any
+//     two of three, are those of another motion of the body, and only the answer to the currents tells them apart;
+//   - two or more speed sensors (wheels, gyro) that lie at once for another reason;
 //   - a wheel that slips while its own speed sensor lies and its current is not sensed: its speed is taken for that of a rolling wheel;
-//   - two or more speed sensors (wheels, gyro) that lie at once; swapped ones are found after 0.1 to 0.4 s of driving on average;
+//   - a gyro with a wrong sign or scale, without a jump: the robot turns wrongly, its currents stay within their limits;
 //   - a battery sensor that is wrong by the same factor since the start, or sinks more slowly than 0.4 % of the full battery per second;
 //   - a command that is wrong but possible.
 #pragma once
@@ -53,6 +61,7 @@ enum class Reason : std::uint8_t {
   traction = 13,        ///< the contact cannot pass on more
   guard = 14,           ///< allowed current of the thermal guard
   other_wheel = 15,     ///< scaled with a limited wheel, so that the direction of travel is kept
+  slip = 16,            ///< the current is within its limit for the wheel's speed, but not for the speed that the other wheels imply
   // Faults.
   config_invalid = 100,
   state_corrupted = 101,

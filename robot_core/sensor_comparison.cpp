@@ -2,6 +2,9 @@
 // all of them.
 #include "robot_core/drive_stages.h"
 
+// For size: a part of it runs in every third step.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 namespace {
 
@@ -36,6 +39,13 @@ constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(re
 
 std::uint64_t check_sum_of(const ComparisonState& comparison) {
   return kSeed + sum_of_words<1, sizeof(ComparisonState) / sizeof(std::uint64_t)>(&comparison);
+}
+
+void copy_faults(State& state) {
+  for (int i = 0; i < kMostWheels; ++i) {
+    state.comparison.speed_fault[i] = state.wheel[i].speed_fault;
+  }
+  state.comparison.yaw_fault = state.yaw_fault;
 }
 
 /// Current that a voltage explains at a speed, whatever the winding's temperature.
@@ -201,6 +211,28 @@ float yaw_rate_of_wheels(const Config& config, const Believed& believed) {
   return yaw_rate_rad_per_s;
 }
 
+[[gnu::cold]] void note_faults(State& state) {
+  ComparisonState& comparison = state.comparison;
+  if (comparison.check_sum == check_sum_of(comparison)) {
+    copy_faults(state);
+    seal(comparison);
+  }  // else damaged: its next comparison reports it
+}
+
+[[gnu::cold]] void recall_faults(const KnownFaults& known, State& state) {
+  if (known.comparison.check_sum == check_sum_of(known.comparison)) {
+    state.comparison = known.comparison;
+    for (int i = 0; i < kMostWheels; ++i) {
+      state.wheel[i].speed_fault = known.comparison.speed_fault[i];
+      state.wheel[i].is_current_doubted = known.comparison.current_error_s[i] > kStuck_s ? 1 : 0;
+    }
+    state.yaw_fault = known.comparison.yaw_fault;
+  }
+  if (known.battery_source_V > 0.0F && is_finite(known.battery_source_V)) {
+    state.battery_source_V = known.battery_source_V;
+  }
+}
+
 void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(comparison); }
 
 void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed) {
@@ -210,6 +242,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
     for (int i = 0; i < config.wheel_count; ++i) {
       state.comparison.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
     }
+    copy_faults(state);
     seal(state.comparison);
     return;
   }
@@ -231,6 +264,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
   } else {
     compare_yaw_rate(config, state, believed, since_s);
   }
+  copy_faults(state);
   seal(state.comparison);
 }
 

@@ -178,6 +178,7 @@ float find_time_to_limit_s(const GuardModel& model, const GuardState& state, con
 
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
   GuardOutput out;
+  out.allowed_A = out.allowed_braking_A = 0.0F;
   out.was_started = is_started(model, state);
   if (!out.was_started) {
     start_guard(model, state, model.winding_limit_C);

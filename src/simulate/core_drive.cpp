@@ -32,6 +32,7 @@ CoreDrive::CoreDrive(const robot_core::Config& config, const SimulatedRobot& rob
       ambient_C_(robot.ambient_C()),
       battery_V_(open_circuit_V(robot.plant().battery, robot.state().battery_charge_A_s)),
       periods_per_step_(plant_periods(static_cast<double>(config.period_s))) {
+  input_.elapsed_s = config.period_s;
   double hottest_C = robot.winding_C(0);
   for (int i = 1; i < robot.wheel_count(); ++i) {
     hottest_C = std::max(hottest_C, robot.winding_C(i));

@@ -33,6 +33,7 @@ class Blocks {
   /// One period; what a call computes acts one period later.
   robot_core::Output step(const robot_core::Config& config, robot_core::State& state, const robot_core::Command& command) {
     robot_core::Input input;
+    input.elapsed_s = config.period_s;
     input.command = command;
     input.battery_V = static_cast<float>(battery_V_);
     input.ambient_C = 25.0F;
@@ -129,6 +130,7 @@ TEST(CoreLoop, ReachesItsSpeedOnTheGround) {
       double worst_m_per_s = 0.0;
       for (int k = 0; k < 3000; ++k) {
         robot_core::Input input;
+        input.elapsed_s = config.period_s;
         input.battery_V = static_cast<float>(measured.battery_V);
         input.ambient_C = 25.0F;
         input.yaw_rate_rad_per_s = static_cast<float>(at.velocity.yaw_rad_per_s);

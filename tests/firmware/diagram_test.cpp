@@ -429,6 +429,7 @@ TEST(BlockDiagram, RatesAreThoseOfTheCore) {
   robot_core::State state{};
   ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
   robot_core::Input input;
+  input.elapsed_s = config.period_s;
   input.battery_V = 22.0F;
   input.pose = {0.0F, 0.0F, 0.0F};
   const auto run = [&](robot_core::Mode mode) {

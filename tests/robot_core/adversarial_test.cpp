@@ -92,7 +92,10 @@ class Episode {
     robot_core::start(config, twin_, start_up);
     for (const Lie lie : lies) {
       const int first = random_.below(kStepsPerEpisode / 2);
-      sabotages_.emplace_back(lie, config, random_, first, first + random_.below(kStepsPerEpisode));
+      const int last = first + random_.below(kStepsPerEpisode);
+      // Plugs are swapped while the power is off.
+      const bool is_wiring = lie == Lie::wheel_swapped;
+      sabotages_.emplace_back(lie, config, random_, is_wiring ? 0 : first, is_wiring ? kStepsPerEpisode : last);
     }
     tally_.worst_episode = seed;
   }
@@ -126,15 +129,24 @@ class Episode {
     return truth;
   }
 
-  /// What the twin allows for the direction of the current that flows.
-  double allowed_A(Mode mode, int i, double current_A) const {
-    const robot_core::WheelState& wheel = twin_.wheel[i];
+  /// What the twin allows to each wheel, more where a wheel or the robot as a whole brakes: if its motors together take power out of it.
+  /// Within the noise nobody knows.
+  void find_allowed(Mode mode, const double* current_A, double* allowed_A) const {
     const bool is_wheelwise = mode == Mode::wheel_speed || mode == Mode::wheel_torque;
-    const float of_driver_A = is_wheelwise ? config_.current_limit_A : config_.wheel[i].body_limit_A;
-    const double speed_rad_per_s = plant_.wheel_speed_rad_per_s(i);
-    // Within the noise nobody knows whether a current brakes.
-    const bool brakes = current_A * speed_rad_per_s < 0.0 || std::abs(speed_rad_per_s) < static_cast<double>(kNoise_rad_per_s);
-    return static_cast<double>(std::min(of_driver_A, brakes ? wheel.allowed_braking_A : wheel.allowed_A));
+    double body_A_per_s = 0.0;
+    for (int i = 0; i < config_.wheel_count; ++i) {
+      body_A_per_s += braking_A_per_s(i, current_A[i]);
+    }
+    for (int i = 0; i < config_.wheel_count; ++i) {
+      const robot_core::WheelState& wheel = twin_.wheel[i];
+      const float of_driver_A = is_wheelwise ? config_.current_limit_A : config_.wheel[i].body_limit_A;
+      const bool brakes = braking_A_per_s(i, current_A[i]) > 0.0 || (body_A_per_s > 0.0 && !is_wheelwise);
+      allowed_A[i] = static_cast<double>(std::min(of_driver_A, brakes ? wheel.allowed_braking_A : wheel.allowed_A));
+    }
+  }
+  /// Of one wheel, per torque constant: power taken out of the wheel, noise of its speed included.
+  double braking_A_per_s(int i, double current_A) const {
+    return static_cast<double>(kNoise_rad_per_s) * std::abs(current_A) - plant_.wheel_speed_rad_per_s(i) * current_A;
   }
 
   /// Current that a wheel's speed makes which the other wheels and the gyro, all telling the truth, cannot know: they see a wheel that
@@ -174,11 +186,14 @@ class Episode {
                             (plant_.contact_change_rad_per_s() + static_cast<double>(kNoise_rad_per_s)) /
                             static_cast<double>(config_.lowest_resistance_ohm);
     tally_.non_finite += is_finite(config_, out) ? 0 : 1;
-    double allowed[kMostWheels] = {};
+    double current_A[kMostWheels] = {};
+    double allowed_A[kMostWheels] = {};
     for (int i = 0; i < config_.wheel_count; ++i) {
-      const double current_A = plant_.coldest_current_A(out, i);
-      allowed[i] = allowed_A(mode, i, current_A);
-      const double excess_A = std::abs(current_A) - allowed[i] - margin_A;
+      current_A[i] = plant_.coldest_current_A(out, i);
+    }
+    find_allowed(mode, current_A, allowed_A);
+    for (int i = 0; i < config_.wheel_count; ++i) {
+      const double excess_A = std::abs(current_A[i]) - allowed_A[i] - margin_A;
       tally_.violations += excess_A > 0.0 ? 1 : 0;
       tally_.largest_excess_A = std::max(tally_.largest_excess_A, excess_A);
       const double unexplained_A = excess_A - slip_A(i);

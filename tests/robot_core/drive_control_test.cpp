@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
+#include <string>
 
 #include "robot_core/drive_stages.h"
 #include "test_robot.h"
@@ -361,6 +363,94 @@ TEST(ShortPeriod, OpensTheBridges) {
   const Output output = robot_core::step(loop.config(), loop.state(), input);
   EXPECT_EQ(output.robot_reason, Reason::period_invalid);
   EXPECT_TRUE(output.is_open[0]);
+}
+
+/// Winding of the guard after 20 s of a constant measured current, the loop's period being this multiple of Config::period_s.
+float guarded_winding_C(float period_ratio) {
+  const Config config = make_config(4);
+  State state;
+  EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+  Input input;
+  input.battery_V = 24.0F;
+  input.ambient_C = 25.0F;
+  input.elapsed_s = period_ratio * config.period_s;
+  std::ranges::fill(input.motor_current_A, 4.0F);
+  const auto steps = static_cast<int>(20.0F / input.elapsed_s);
+  for (int k = 0; k < steps; ++k) {
+    robot_core::step(config, state, input);
+  }
+  return state.guard[0].state_C[0];
+}
+
+// Small delays are no fault, but all of their heat counts.
+TEST(LatePeriod, LosesNoHeat) {
+  const float punctual_C = guarded_winding_C(1.0F);
+  EXPECT_GT(punctual_C, 60.0F);
+  for (const float ratio : {1.05F, 1.09F, 1.5F, 2.0F, 2.9F}) {
+    EXPECT_GT(guarded_winding_C(ratio), punctual_C - 0.01F * (punctual_C - 25.0F)) << ratio;
+  }
+}
+
+/// How a robot stops that drives at an angle to its axes, with motors and guard at `body_C`.
+struct Stop {
+  double way_m = 0.0;
+  int periods = 0;
+  int without_current = 0;  ///< periods in which the robot is fast and no motor carries current
+};
+
+Stop stop_from_diagonal(double body_C) {
+  Loop loop(make_config(4));
+  loop.plant().set_velocity(1.3, 0.7, 0.0);
+  loop.plant().warm_up(body_C);
+  EXPECT_TRUE(robot_core::start(loop.config(), loop.state(), {.is_rested = true, .body_C = static_cast<float>(body_C)}));
+  Command brake;
+  brake.mode = Mode::brake;
+  Stop stop;
+  for (; loop.speed_m_per_s() > 0.1 && stop.periods < 3000; ++stop.periods) {
+    loop.run(brake, kPeriod_s);
+    double sum_A = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      sum_A += std::abs(loop.plant().current_A(i));
+    }
+    stop.without_current += loop.speed_m_per_s() > 0.3 && sum_A < 0.05 ? 1 : 0;
+  }
+  stop.way_m = std::hypot(loop.plant().x_m(), loop.plant().y_m());
+  return stop;
+}
+
+// At 154 degC nothing is left for driving. A wheel that is pulled along for a moment must not take the brakes from all the others.
+TEST(Guard, KeepsBrakingAuthorityInEveryDirection) {
+  const Stop cold = stop_from_diagonal(25.0);
+  const Stop hot = stop_from_diagonal(154.0);
+  EXPECT_EQ(cold.without_current, 0);
+  EXPECT_LE(hot.without_current, hot.periods / 20);
+  EXPECT_LT(hot.periods, 3000);
+  RecordProperty("cold_way_m", std::to_string(cold.way_m));
+  RecordProperty("hot_way_m", std::to_string(hot.way_m));
+  std::printf("stop from 1.5 m/s: cold %.2f m in %d ms, at 154 degC %.2f m in %d ms, %d of them without current\n", cold.way_m,
+              cold.periods, hot.way_m, hot.periods, hot.without_current);
+}
+
+// A kicker that charges takes a tenth of the voltage. That is no fault, and the robot drives on.
+TEST(Battery, UnknownLoadIsNoFault) {
+  Loop loop(make_config(4));
+  loop.run(velocity(1.0F, 0.3F), 1.0);
+  loop.plant().set_battery_V(0.9 * 24.0);
+  double slowest_m_per_s = 2.0;
+  for (int i = 0; i < 1000; ++i) {
+    loop.run(velocity(1.0F, 0.3F), kPeriod_s);
+    EXPECT_EQ(loop.output().robot_reason, Reason::none);
+    slowest_m_per_s = std::min(slowest_m_per_s, loop.speed_m_per_s());
+  }
+  EXPECT_GT(slowest_m_per_s, 0.9 * std::hypot(1.0, 0.3));
+  // A first sample that was too high is no fault of the later ones.
+  Loop other(make_config(4));
+  other.plant().set_battery_V(25.2);
+  other.run(velocity(0.0F, 0.0F), kPeriod_s);
+  other.plant().set_battery_V(22.0);
+  other.run(velocity(1.0F, 0.3F), 1.5);
+  EXPECT_EQ(other.output().robot_reason, Reason::none);
+  EXPECT_GT(other.speed_m_per_s(), 0.9 * std::hypot(1.0, 0.3));
 }
 
 }  // namespace

@@ -74,6 +74,8 @@ class Plant {
   robot_core::Input sense(Random& random, float noise_rad_per_s, bool are_currents_fitted) const;
 
   void warm_up(double body_C);
+  /// Open circuit; a load that the core does not know lowers it.
+  void set_battery_V(double battery_V) { truth_.battery_V = battery_V; }
   void set_velocity(double x_m_per_s, double y_m_per_s, double yaw_rad_per_s);
   double wheel_speed_rad_per_s(int i) const { return speed_[i]; }
   double rolling_speed_rad_per_s(int i) const;             ///< of a wheel that does not slip

@@ -30,6 +30,7 @@ heatsoak_core_input standing() {
   input.battery_V = @BATTERY_V@;
   input.yaw_rate_rad_per_s = 0.0F;
   input.ambient_C = 25.0F;
+  input.elapsed_s = HEATSOAK_CORE_PERIOD_S;
   return input;
 }
 
