@@ -34,7 +34,7 @@ constexpr std::array kDefaults{
     // Remanence of the magnets and the air gap.
     DefaultRow{"torque_constant", {0.93, 1.07}, {0.93, 1.07}, {0.90, 1.10}, {0.85, 1.15}},
     // Bearing friction and iron loss differ most of all between parts, upwards more than downwards.
-    DefaultRow{"no_load_current", {0.70, 1.50}, {0.70, 1.50}, {0.65, 2.00}, {0.55, 2.00}},
+    DefaultRow{"no_load_current", {0.65, 1.55}, {0.65, 1.55}, {0.65, 2.05}, {0.55, 2.05}},
     // Impregnation of the winding.
     DefaultRow{"thermal_resistance_winding_stator", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {0.55, 1.80}},
     // Mounting, position and air movement.
