@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "derate/derating.h"
-#include "support/shipped.h"
+#include "guarded_motor.h"
+#include "input/data_folders.h"
 
 namespace heatsoak {
 namespace {
@@ -28,22 +29,40 @@ Motor stripped(Motor motor, unsigned seed) {
   return motor;
 }
 
-TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
-  // One motor of each kind of origin: estimates, a sheet, third parties, a brushed one with derived values.
-  for (const char* const id : {"maxon_ecx_flat_32l_48v", "maxon_ec45_flat_70w_24v", "maxon_eci40_70w_36v_496655", "maxon_dcx19s_24v"}) {
+// Of every shipped motor: with the same guard and the same draws, motors of the stripped file get as hot or hotter and exceed a limit as
+// often or more often. So the search can find no smaller reserve for it.
+TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
+  constexpr double kPeriod_s = 0.05;
+  GuaranteeOptions options;
+  options.samples = 200;
+  for (const std::string& id : ids_in(kSource / "motor_db")) {
     const Motor honest = shipped_motor(id);
-    const Derating with = derate(honest, twente(), few_samples());
-    for (const unsigned seed : {0U, 1U}) {
-      const Derating without = derate(stripped(honest, seed), twente(), few_samples());
-      EXPECT_THAT(without.default_spreads, Not(IsEmpty())) << id;
-      // The search finds the reserve within 1 %.
-      EXPECT_GE(without.observer.heat_reserve_ratio(), 0.99 * with.observer.heat_reserve_ratio()) << id << ", " << seed;
-      EXPECT_LE(limp_current_A(without), 1.005 * limp_current_A(with)) << id << ", " << seed;
-      for (std::size_t i = 0; i < with.table.current_A.size(); ++i) {
-        EXPECT_LE(without.table.current_A[i], 1.01 * with.table.current_A[i] + 1e-3) << id << ", " << seed << ", place " << i;
+    const GuardedMotor guarded(honest, rules_for(honest), 1.2);
+    std::vector<UsePlayed> uses;
+    for (const Use& use : hardest_uses(guarded.observer, guarded.rules)) {
+      if (uses.size() < 5) {
+        uses.push_back(play(guarded.observer, guarded.table, guarded.rules, honest, twente(), use, kPeriod_s));
       }
     }
-    EXPECT_THAT(with.default_spreads, IsEmpty()) << id;
+    const Guarantee with = check(honest, guarded.rules.limits, uses, options, 0);
+    for (const unsigned seed : {0U, 1U}) {
+      const Guarantee without = check(with_default_spreads(stripped(honest, seed)), guarded.rules.limits, uses, options, 0);
+      EXPECT_GE(without.over, with.over) << id << ", " << seed;
+      EXPECT_GE(without.winding_p95_C, with.winding_p95_C) << id << ", " << seed;
+    }
+  }
+}
+
+TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
+  const Motor honest = ecx_32();
+  const Derating with = derate(honest, twente(), few_samples());
+  const Derating without = derate(stripped(honest, 0), twente(), few_samples());
+  EXPECT_THAT(with.default_spreads, IsEmpty());
+  EXPECT_THAT(without.default_spreads, Not(IsEmpty()));
+  EXPECT_GE(without.observer.heat_reserve_ratio(), with.observer.heat_reserve_ratio());
+  EXPECT_LE(limp_current_A(without), limp_current_A(with));
+  for (std::size_t i = 0; i < with.table.current_A.size(); ++i) {
+    EXPECT_LE(without.table.current_A[i], with.table.current_A[i] + 1e-3) << "place " << i;
   }
 }
 

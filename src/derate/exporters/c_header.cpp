@@ -144,8 +144,8 @@ std::string structures(const Derating& derating, const std::string& prefix) {
       "}} {0}_reason;\n\n"
       "typedef struct {{\n"
       "  float allowed_current_A; /* A, equivalent DC current, magnitude, until the next step */\n"
-      "  float guarded_winding_C; /* degC, pessimistic: heat counts {2:.3g} times, for the worst motor of the tolerances; decides what is "
-      "allowed */\n"
+      "  float guarded_winding_C; /* degC, pessimistic: heat counts {2:.3g} times, as the hottest of the drawn motors need it; decides "
+      "what is allowed */\n"
       "  float nominal_winding_C; /* degC, of a motor of nominal values, heat counts once; to show and log, decides nothing. An unknown "
       "input\n                              is as hot as it may be here too */\n"
       "  {0}_reason reason;\n}} {0}_output;\n\n",
