@@ -18,19 +18,20 @@ DerateOptions few_samples() {
   return options;
 }
 
-/// Without all of its spreads, or a random half of them.
+/// Without all spreads that temperatures depend on, or a random half of them. The others stay: each takes a number of the stream of chance,
+/// so without them the remaining values would be other draws.
 Motor stripped(Motor motor, unsigned seed) {
   std::mt19937 engine(seed);
   for (auto& [key, figure] : motor.figures) {
-    if (seed == 0 || engine() % 2 == 0) {
+    if (needs_spread(key) && (seed == 0 || engine() % 2 == 0)) {
       figure.spread.reset();
     }
   }
   return motor;
 }
 
-// Of every shipped motor: with the same guard and the same draws, motors of the stripped file get as hot or hotter and exceed a limit as
-// often or more often. So the search can find no smaller reserve for it.
+// Of every shipped motor: with the same guard and the same draws, the 95th percentile of the stripped file's motors is as hot or hotter.
+// By that percentile the search finds its reserve.
 TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
   constexpr double kPeriod_s = 0.05;
   GuaranteeOptions options;
@@ -45,9 +46,8 @@ TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
       }
     }
     const Guarantee with = check(honest, guarded.rules.limits, uses, options, 0);
-    for (const unsigned seed : {0U, 1U}) {
+    for (const unsigned seed : {0U, 1U, 2U}) {
       const Guarantee without = check(with_default_spreads(stripped(honest, seed)), guarded.rules.limits, uses, options, 0);
-      EXPECT_GE(without.over, with.over) << id << ", " << seed;
       EXPECT_GE(without.winding_p95_C, with.winding_p95_C) << id << ", " << seed;
     }
   }

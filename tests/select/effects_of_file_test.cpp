@@ -137,8 +137,7 @@ TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples
 
 /// As good as exact. Without any spread a default one would take its place.
 void make_certain(Figure& figure) {
-  const double half = 1e-9 * std::abs(figure.value);
-  figure.spread = Spread{Spread::Kind::tolerance, figure.value - half, figure.value + half, true};
+  figure.spread = Spread{Spread::Kind::range, figure.value - 1e-9 * std::abs(figure.value), figure.value, figure.value > 0.0};
 }
 
 /// Samples with hardly any spread are the nominal run: the ensemble knows own nodes and all quantities too.
