@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/default_spreads.h"
 #include "cli/silent_effects.h"
 #include "cli/verdict_words.h"
 #include "report/chart.h"
@@ -365,7 +366,8 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
       session.say(fmt::format("{}: {}\n", to_string(each.planner), why));
     }
   }
-  session.say(silent_effects({&wanted.motor, 1}));
+  const bool is_guarded = wanted.guard != GuardUse::off;
+  session.say(silent_effects({&wanted.motor, 1}) + (is_guarded ? default_spreads_text({&wanted.motor, 1}) : ""));
   for (const std::string& file : {wanted.out, wanted.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }
@@ -390,6 +392,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
                   {"data_quality", data_quality(wanted.motor)},
                   {"sensing", wanted.is_sensing_ideal ? "ideal" : "real"},
                   {"guard", guard_json(wanted, guard)},
+                  {"default_spreads", is_guarded ? default_spreads_json({&wanted.motor, 1}) : nlohmann::ordered_json::array()},
                   {"planners", planners}});
   return verdict(wanted, all) != "pass" ? ExitCode::limit_exceeded : ExitCode::done;
 }

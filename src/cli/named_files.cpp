@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "motor/default_spread.h"
+
 namespace heatsoak {
 
 template <class Read>
@@ -20,6 +22,14 @@ auto NamedFiles::attempt(const Read& read) -> std::optional<decltype(read())> {
 }
 
 std::optional<Motor> NamedFiles::motor(const std::string& name) {
+  return attempt([&] {
+    Motor motor = read_motor(file(FileKind::motor, name));
+    require_sound(motor);
+    return motor;
+  });
+}
+
+std::optional<Motor> NamedFiles::motor_as_written(const std::string& name) {
   return attempt([&] { return read_motor(file(FileKind::motor, name)); });
 }
 
@@ -71,7 +81,7 @@ std::filesystem::path NamedFiles::file(FileKind kind, const std::string& name) c
 
 Motor motor_named(const DataFolders& folders, const std::string& name) {
   NamedFiles named(folders);
-  const std::optional<Motor> motor = named.motor(name);
+  const std::optional<Motor> motor = named.motor_as_written(name);
   named.throw_if_any();
   return *motor;
 }

@@ -19,8 +19,11 @@ class NamedFiles {
  public:
   explicit NamedFiles(DataFolders folders) : folders_(std::move(folders)) {}
 
-  /// Nothing where there is a problem, which throw_if_any() then tells.
+  /// Nothing where there is a problem, which throw_if_any() then tells. A motor whose values contradict each other is one
+  /// (require_sound()): verdicts and firmware need one that can be.
   std::optional<Motor> motor(const std::string& name);
+  /// As its file has it, contradictions included: for verbs that measure the motor.
+  std::optional<Motor> motor_as_written(const std::string& name);
   std::optional<Robot> robot(const std::string& name);
   std::optional<Duty> duty(const std::string& name);
   std::optional<std::filesystem::path> motor_file(const std::string& name);
@@ -39,7 +42,7 @@ class NamedFiles {
   std::vector<Failure> problems_;
 };
 
-/// One alone, with the same problems.
+/// One alone, with the same problems; the motor as its file has it.
 Motor motor_named(const DataFolders& folders, const std::string& name);
 Robot robot_named(const DataFolders& folders, const std::string& name);
 

@@ -1,5 +1,7 @@
 #include "derate/belief.h"
 
+#include <algorithm>
+
 namespace heatsoak {
 namespace {
 
@@ -12,11 +14,13 @@ struct Bounds {
 Bounds bounds(const Derating& derating, firmware::Signal signal) {
   const auto most_current_A = static_cast<float>(derating.rules.most_current_A);
   const auto reachable_rad_per_s = static_cast<float>(derating.reachable_speed_rad_per_s);
+  // The table's last speed too: up to there the allowed current falls without a jump.
+  const float fastest_rad_per_s = std::max(1.25F * reachable_rad_per_s, static_cast<float>(derating.table.speed_rad_per_s.back()));
   switch (signal) {
     case firmware::current:
       return {-10.0F * most_current_A, 10.0F * most_current_A};
     case firmware::speed:
-      return {-1.25F * reachable_rad_per_s, 1.25F * reachable_rad_per_s};
+      return {-fastest_rad_per_s, fastest_rad_per_s};
     case firmware::ambient:
       // A dead sensor, or a structure that nobody filled in, shows just 0.
       return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F, 300.0F};

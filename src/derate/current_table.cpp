@@ -189,11 +189,13 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules) 
                      .stator_C = stator_axis_C(rules),
                      .winding_C = winding_axis_C(rules),
                      .current_A = {}};
+  table.speed_rad_per_s.push_back(std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s));
   Barrier barrier(observer, rules);
   for (const double speed_rad_per_s : table.speed_rad_per_s) {
     for (const double stator_C : table.stator_C) {
       for (const double winding_C : table.winding_C) {
-        const bool is_above = winding_C > rules.limits.winding_C || (rules.limits.stator_C && stator_C > *rules.limits.stator_C);
+        const bool is_above = speed_rad_per_s > rules.most_speed_rad_per_s || winding_C > rules.limits.winding_C ||
+                              (rules.limits.stator_C && stator_C > *rules.limits.stator_C);
         table.current_A.push_back(is_above ? 0.0 : barrier.current_A(speed_rad_per_s, stator_C, winding_C));
       }
     }

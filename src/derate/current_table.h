@@ -9,9 +9,14 @@
 
 namespace heatsoak {
 
+/// Beyond the highest speed of the rules the current falls in a straight line, so that a motor that is pushed can still brake and its
+/// current does not jump. It has fallen to none at rules.no_current_speed, at this ratio to the highest speed at least.
+inline constexpr double kSpeedFadeOut_ratio = 1.1;
+
 /// Ascending axes; between the points straight, below the first of an axis as at it, above the last no current. The last two places of
-/// winding and stator are their limits and 1 K above them, where the current has faded out. The least of all hot cases stands in it, and
-/// every node but the winding is as hot as the stator's axis says. Currents are whole numbers of single precision.
+/// winding and stator are their limits and 1 K above them, where the current has faded out; those of the speed are the rules' highest and
+/// that without current. The least of all hot cases stands in it, and every node but the winding is as hot as the stator's axis
+/// says. Currents are whole numbers of single precision.
 struct CurrentTable {
   std::vector<double> speed_rad_per_s;
   std::vector<double> stator_C;

@@ -20,6 +20,11 @@ constexpr double kReserveTolerance = 0.01;
 /// Streams of chance of the search and of each check, apart from each other.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
+/// Of a full battery; a robot that gives none has its nominal voltage always.
+double full_V(const Robot& robot) {
+  return std::isnan(robot.battery_full_V) ? robot.battery_V : std::max(robot.battery_V, robot.battery_full_V);
+}
+
 }  // namespace
 
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options) {
@@ -38,7 +43,10 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
   // Braking at full speed the back-EMF adds to the supply.
   rules.most_current_A = std::min(robot.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
   constexpr double kPushed = 1.1;  // a robot that is pushed may turn its motors faster than its battery can
-  rules.most_speed_rad_per_s = kPushed * robot.available_V() / values.torque_constant_Nm_per_A;
+  rules.most_speed_rad_per_s = kPushed * std::min(full_V(robot), robot.voltage_limit_V) / values.torque_constant_Nm_per_A;
+  // A driver whose command is limited can still be asked for the whole battery by other firmware.
+  rules.no_current_speed_rad_per_s = std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s,
+                                              kPushed * full_V(robot) / values.torque_constant_Nm_per_A);
   rules.most_vehicle_speed_m_per_s = rules.most_speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m;
   return rules;
 }
@@ -53,8 +61,9 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   OperatingPoint<Lanes> at;
   at.ambient_C = Lanes::Constant(options.hottest_ambient_C);
   at.current_rms_A = Lanes::Constant(rules.most_current_A);
-  // A speed is believed up to twice the most.
-  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(2.0 * rules.most_speed_rad_per_s);
+  // A speed is believed up to less than this (belief.cpp).
+  const double fastest_rad_per_s = std::max(2.0 * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
+  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(fastest_rad_per_s);
   const double longest_s = 0.2 * longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
   if (options.period_s > longest_s || options.period_s > 0.1 * options.approach_s) {
     throw Failure(ExitCode::bad_input,
@@ -101,6 +110,9 @@ class Search {
     Observer observer(network_, motor_.nominal, robot_, reserve);
     BarrierRules rules = reachable_;
     rules.most_speed_rad_per_s = bearable_speed_rad_per_s(observer, reachable_);
+    if (rules.most_speed_rad_per_s < reachable_.most_speed_rad_per_s) {
+      rules.no_current_speed_rad_per_s = 0.0;
+    }
     constexpr double kLeastShare = 0.2;
     if (rules.most_speed_rad_per_s < kLeastShare * reachable_.most_speed_rad_per_s) {
       return std::nullopt;
@@ -190,8 +202,9 @@ double limp_current_A(const Derating& derating) {
   return std::isinf(least_A) ? 0.0 : least_A;
 }
 
-Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress) {
+Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions& options, const Progress& progress) {
   require_samples(options.guarantee);
+  const Motor motor = with_default_spreads(as_written);
   Search search(motor, robot, options, progress);
   double reserve = search.reserve();
   constexpr double kRaise = 1.005;
@@ -217,7 +230,10 @@ Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& opt
                     .effects = {},
                     .guarantee = guarantee,
                     .uses = std::move(tried->uses),
-                    .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s};
+                    .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
+                    .default_spreads = default_spreads(as_written),
+                    .is_brushless = motor.type != "brushed",
+                    .heating_current_ratio = heating_factor(robot)};
     for (const EffectInPlace& effect : search.network().effects()) {
       const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
       result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "derate/guarantee.h"
+#include "motor/default_spread.h"
 
 namespace heatsoak {
 
@@ -17,7 +18,9 @@ struct DerateOptions {
   GuaranteeOptions guarantee;
 };
 
-/// What follows from motor, robot and options alone: before any reserve.
+/// What follows from motor, robot and options alone: before any reserve. The highest speed is 1.1·U/(K_t): U of a full battery within the
+/// driver's limit of the command, and 10 % for a push and for magnets weaker than nominal. The current has fallen to none at 1.1 times that,
+/// and at the same of the full battery where the command is limited.
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options);
 
 /// An effect that the observer reckons with.
@@ -41,17 +44,21 @@ struct Derating {
   std::vector<ActingEffect> effects;
   Guarantee guarantee;
   std::vector<UsePlayed> uses;
-  double reachable_speed_rad_per_s = 0.0;  ///< more than the table's most speed where beyond it the motor passes a limit without current
+  double reachable_speed_rad_per_s = 0.0;  ///< more than the rules' most speed where beyond it the motor passes a limit without current
+  /// Values of the motor's file without a tolerance, with what the drawn motors have in its place.
+  std::vector<DefaultSpread> default_spreads = {};
+  bool is_brushless = true;
+  double heating_current_ratio = 1.0;  ///< heating_factor() of the robot: current that heats per equivalent DC current
 };
 
 /// The current that the motor bears for good at every speed and in every hot case, in A ≥ 0: for a wheel whose speed nobody knows.
 /// Derivation: each held use draws all that the table allows, at one speed in one hot case, until the slowest body has settled (four
 /// slowest time constants, 900 s at least). The current that still flows at the end is the one at which the observer, which counts heat
 /// heat_reserve_ratio times, rests at its limits. The smallest of these over all held uses. 0 without held uses. The fastest held use is at
-/// 0.98 of the table's highest speed: above what a battery drives, because the table reaches to 1.1 times that.
+/// 0.98 of the rules' highest speed: above what a full battery drives, because that is 1.1 times as fast.
 double limp_current_A(const Derating& derating);
 
-/// Finds the smallest reserve of heat with which the share of motors that is asked for keeps every limit in every use, and checks it on
+/// Values without a spread get a default one first (with_default_spreads()). Finds the smallest reserve of heat with which the share of motors that is asked for keeps every limit in every use, and checks it on
 /// motors that the search has not seen. Throws Failure: bad_input where the period is too long for the
 /// motor or the samples are too few for the confidence, limit_exceeded where no
 /// reserve helps, because the motor passes a limit without current.

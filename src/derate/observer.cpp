@@ -48,11 +48,15 @@ Observer::Observer(const Network& network, const MotorValues& motor, const Robot
   std::vector<TracedHeat> heat(temperature_C.size());
   network.trace(at, temperature_C, heat);
   const std::vector<double> values = network.values();
-  for (int node = 0; node < network.state_count(); ++node) {
-    const TracedHeat& here = heat[static_cast<std::size_t>(node)];
-    const Traced rate = (heat_reserve_ratio * here.made_W + here.moved_W) / values[static_cast<std::size_t>(network.capacity_index(node))];
-    rate_steps_.push_back(rate.step_in(formula_));
-  }
+  const auto add_rates = [&](double heat_ratio, std::vector<int>& steps) {
+    for (int node = 0; node < network.state_count(); ++node) {
+      const TracedHeat& here = heat[static_cast<std::size_t>(node)];
+      const Traced rate = (heat_ratio * here.made_W + here.moved_W) / values[static_cast<std::size_t>(network.capacity_index(node))];
+      steps.push_back(rate.step_in(formula_));
+    }
+  };
+  add_rates(heat_reserve_ratio, rate_steps_);
+  add_rates(1.0, nominal_rate_steps_);
   const std::vector<char> needed = formula_.needed_for(rate_steps_);
   for (std::size_t i = 0; i < needed.size(); ++i) {
     const Formula::Step& step = formula_.steps()[i];

@@ -55,6 +55,8 @@ class Observer {
   [[nodiscard]] const Formula& formula() const { return formula_; }
   /// One step of the formula per state: dT/dt in K/s.
   [[nodiscard]] std::span<const int> rate_steps() const { return rate_steps_; }
+  /// The same of the nominal motor, whose heat counts once: temperatures to show, not to guard by.
+  [[nodiscard]] std::span<const int> nominal_rate_steps() const { return nominal_rate_steps_; }
   [[nodiscard]] std::span<const std::string> state_names() const { return state_names_; }
   [[nodiscard]] std::size_t state_count() const { return state_names_.size(); }
   /// Whether a law looks at it; the first three always count as used.
@@ -64,6 +66,7 @@ class Observer {
  private:
   Formula formula_;
   std::vector<int> rate_steps_;
+  std::vector<int> nominal_rate_steps_;
   std::vector<std::string> state_names_;
   std::array<char, firmware::kSignalCount> is_used_{};
   double heat_reserve_ratio_ = 1.0;

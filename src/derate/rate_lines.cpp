@@ -6,9 +6,9 @@
 
 namespace heatsoak {
 
-RateLines::RateLines(const Observer& observer, const LineStyle& style) : style_(style) {
+RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style) : style_(style) {
   const Formula& formula = observer.formula();
-  const std::vector<char> needed = formula.needed_for(observer.rate_steps());
+  const std::vector<char> needed = formula.needed_for(rate_steps);
   for (std::size_t i = 0; i < needed.size(); ++i) {
     const Formula::Step& step = formula.steps()[i];
     if (needed[i] != 0 && step.operation != Operation::constant && step.operation != Operation::input) {
@@ -16,7 +16,7 @@ RateLines::RateLines(const Observer& observer, const LineStyle& style) : style_(
     }
   }
   for (std::size_t node = 0; node < observer.state_count(); ++node) {
-    text_ += fmt::format("  rate_K_per_s[{}] = {};\n", node, operand(formula, observer.rate_steps()[node]));
+    text_ += fmt::format("  rate_K_per_s[{}] = {};\n", node, operand(formula, rate_steps[node]));
   }
 }
 

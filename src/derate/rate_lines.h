@@ -1,6 +1,7 @@
 // The observer's rates as straight-line statements of a C-like language, for generated code.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,8 @@ struct LineStyle {
 /// In single precision without contraction they have the bits of FormulaRun<float>.
 class RateLines {
  public:
-  RateLines(const Observer& observer, const LineStyle& style);
+  /// `rate_steps`: one of the observer's sets, one step per state.
+  RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style);
 
   [[nodiscard]] const std::string& text() const { return text_; }
   /// Whether a law needs the square root, which is one instruction and has the same bits everywhere.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "motor/datasheet_network.h"
+#include "motor/default_spread.h"
 #include "robot/driver.h"
 #include "thermal/copper.h"
 
@@ -176,9 +177,8 @@ std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const B
 }  // namespace
 
 CoreOptions with_tolerance(CoreOptions options, const Motor& motor) {
-  const auto found = motor.figures.find("terminal_resistance");
-  if (found != motor.figures.end() && found->second.spread) {
-    options.lowest_resistance_ratio = found->second.spread->low / found->second.value;
+  if (const std::optional<Spread> spread = spread_or_default(motor, "terminal_resistance")) {
+    options.lowest_resistance_ratio = spread->low / motor.nominal.terminal_resistance_ohm;
   }
   return options;
 }

@@ -18,7 +18,7 @@ struct CoreOptions {
   bool has_pose_targets = true;          ///< robot_core::plan_to_pose is linked
 };
 
-/// The options with the lower end of the declared tolerance or range of the motor's terminal_resistance; 1 where it declares none.
+/// The options with the lower end of the tolerance or range of the motor's terminal_resistance, a default one where it declares none.
 CoreOptions with_tolerance(CoreOptions options, const Motor& motor);
 
 /// Without guard. Needs the tables body, wheels, drive, battery, traction and limits of the robot's file and the rotor inertia of the

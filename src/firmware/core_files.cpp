@@ -163,6 +163,10 @@ std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const 
                                   effect.name, effect.column));
     }
   }
+  if (!derating.default_spreads.empty()) {
+    notes.push_back(fmt::format("the motor's file gives no tolerance for these values, defaults by origin are assumed: {}",
+                                to_string(derating.default_spreads)));
+  }
   for (const auto& [key, value] : motor.assumed) {
     notes.push_back(fmt::format("the guard holds only where {} is {}, as --condition says", key, value));
   }

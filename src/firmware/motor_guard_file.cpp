@@ -81,6 +81,10 @@ std::string guarantee(const Derating& derating) {
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(),
       checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / std::max(1, checked.samples),
       100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_most_C);
+  if (!derating.default_spreads.empty()) {
+    text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors have defaults by origin:\n//   {}\n",
+                        to_string(derating.default_spreads));
+  }
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format("// ONLY WHERE {} is {}: that was stated (--condition).\n", in_one_line(key), in_one_line(value));
   }
@@ -98,7 +102,8 @@ std::string motor_guard_header(const CoreSource& source) {
 
 std::string motor_guard_source(const CoreSource& source) {
   const robot_core::GuardModel& guard = source.guard;
-  const RateLines lines(source.derating.observer, kStyle);
+  const Observer& observer = source.derating.observer;
+  const RateLines lines(observer, observer.rate_steps(), kStyle);
   std::string nodes;
   for (const std::string& name : source.derating.observer.state_names()) {
     nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", in_one_line(name));

@@ -89,6 +89,7 @@ void sources(const Motor& motor, Findings& findings);
 void confirmations(const Motor& motor, Findings& findings);
 void estimates(const Motor& motor, Findings& findings);
 void spreads(const Motor& motor, Findings& findings);
+void exact_values(const Motor& motor, Findings& findings);
 void heat_counted_twice(const Motor& motor, Findings& findings);
 
 }  // namespace heatsoak::lint_checks

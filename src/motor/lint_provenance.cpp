@@ -5,6 +5,7 @@
 
 #include "base/quantity.h"
 #include "motor/datasheet_network.h"
+#include "motor/default_spread.h"
 #include "motor/lint_checks.h"
 
 namespace heatsoak::lint_checks {
@@ -85,6 +86,18 @@ void spreads(const Motor& motor, Findings& findings) {
           key, fmt::format("{} of {} has neither tolerance nor range; expected one of both (see motor_db/README.md)", key, figure.printed));
     }
   }
+}
+
+/// Nothing that is built is exact. Whoever means "hardly any" can state a small tolerance.
+void exact_values(const Motor& motor, Findings& findings) {
+  for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
+    if (is_exact(figure) && !is_agreed(key)) {
+      findings.error_at(figure.at,
+                        fmt::format("{} of {} has a tolerance or range of zero, expected how far a real motor may be from it; state that, "
+                                    "or leave tolerance and range out and a default by its origin is assumed",
+                                    key, figure.printed));
+    }
+  });
 }
 
 void heat_counted_twice(const Motor& motor, Findings& findings) {

@@ -6,12 +6,14 @@
 #include <array>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <tuple>
 
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
+#include "motor/default_spread.h"
 #include "select/bearable_current.h"
 #include "select/drive_profile.h"
 #include "select/spread.h"
@@ -433,11 +435,13 @@ std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std:
 
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                       std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress) {
+  std::vector<Motor> complete;
+  std::ranges::transform(motors, std::back_inserter(complete), with_default_spreads);
   const auto samples = static_cast<std::size_t>(options.samples);
   const std::size_t blocks = (samples + kLanes - 1) / kLanes;
   std::vector<Work> works(motors.size());
   for (std::size_t i = 0; i < motors.size(); ++i) {
-    works[i].motor = &motors[i];
+    works[i].motor = &complete[i];
     works[i].winding_peak_C.resize(samples);
     works[i].stator_peak_C.resize(samples);
     works[i].over_limit.resize(samples);

@@ -103,7 +103,8 @@ double nearest_margin_K(const MotorEvaluation& motor);
 
 /// Best first: pass, marginal, fail, infeasible; within them by margin. Without draws the nominal figures decide fail and
 /// infeasible; with draws, where the nominal run is one of many games, more than half of the samples do. `wheels` is the duty's demand;
-/// every figure is of the wheel whose winding gets hottest. `progress` is called from one thread at a time.
+/// every figure is of the wheel whose winding gets hottest. Values of a motor without a spread are drawn from a default one
+/// (motor/default_spread.h), never as exact. `progress` is called from one thread at a time.
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                       std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress = {});
 

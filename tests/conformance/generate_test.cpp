@@ -300,7 +300,8 @@ TEST(GenerateCore, TellsWhatTheCoreDoesNotKnow) {
   write_motor_with(folder.path() / "windy.toml", {typical("vehicle_airflow"), typical("neighbour_coupling")});
   const ProgramRun done = run(generate((folder.path() / "windy.toml").string(), folder.path() / "core") + Words{"--json", "-"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.json()["notes"], SizeIs(2));
+  EXPECT_THAT(done.json()["notes"], SizeIs(3));
+  EXPECT_THAT(done.json()["notes"][2].get<std::string>(), HasSubstr("effects.my_vehicle_airflow.conductance -33 to +50 % (estimated)"));
   EXPECT_THAT(done.err, AllOf(HasSubstr("note: my_vehicle_airflow depends on"), HasSubstr("still air"),
                               HasSubstr("note: my_neighbour_coupling depends on"), HasSubstr("other wheels' guards")));
   EXPECT_THAT(content_of(folder.path() / "core/README.md"), HasSubstr("my_vehicle_airflow"));

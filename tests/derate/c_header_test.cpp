@@ -11,18 +11,20 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <sstream>
 
 #include "derate/exporter.h"
 #include "guarded_motor.h"
+#include "robot/motor_drive.h"
 
 namespace heatsoak {
 namespace {
 
 using testing::HasSubstr;
 
-/// Reads a line of inputs, `current speed ambient`, or a command: "start C", "zero", "break", and answers each input with the bits of
-/// allowed current, winding and stator, and the reason.
+/// Reads a line of inputs, `current speed ambient`, or a command: "start C", "zero", "break", "iq" before a line whose current is an i_q,
+/// and answers each input with the bits of allowed current, winding, stator and nominal winding, and the reason.
 constexpr const char* kProgram = R"(
 #include "guard.h"
 #include <stdio.h>
@@ -45,11 +47,12 @@ int main(void) {
       guarded_input in;
       guarded_output out;
       if (scanf("%lf %lf %lf", &a, &b, &c) != 3) return 1;
-      in.current_A = (float)a;
+      in.current_A = strcmp(word, "iq") == 0 ? guarded_current_from_iq_A((float)a) : (float)a;
       in.speed_rad_per_s = (float)b;
       in.ambient_C = (float)c;
       out = guarded_step(&state, &in);
-      printf("%x %x %x %d\n", bits(out.allowed_current_A), bits(out.winding_C), bits(state.state_C[1]), (int)out.reason);
+      printf("%x %x %x %x %d\n", bits(out.allowed_current_A), bits(out.guarded_winding_C), bits(state.state_C[1]),
+             bits(out.nominal_winding_C), (int)out.reason);
     }
   }
   return 0;
@@ -62,6 +65,7 @@ struct Answer {
   float allowed_A = 0.0F;
   float winding_C = 0.0F;
   float stator_C = 0.0F;
+  float nominal_C = 0.0F;
   int reason = -1;
 };
 
@@ -104,8 +108,17 @@ class CHeader : public testing::TestWithParam<const char*> {
     build("");
   }
   /// The motor with effects in place of the bare one.
-  void build(const std::string& lines) {
-    std::ofstream(folder_ / "guard.h") << header_text(lines);
+  void build(const std::string& lines) { build_header(header_text(lines)); }
+  /// The bare motor in another robot.
+  void build_for(const Robot& robot) {
+    Derating derating = guarded_ecx_32();
+    const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
+    derating.observer = Observer(network, ecx_32().nominal, robot, 1.5);
+    derating.heating_current_ratio = heating_factor(robot);
+    build_header(std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating));
+  }
+  void build_header(const std::string& header) {
+    std::ofstream(folder_ / "guard.h") << header;
     const std::string warnings =
         " -O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wunused -Werror -ffp-contract=off ";
     const std::string command = std::string(GetParam()) + warnings + "-o '" + (folder_ / "guard").string() + "' '" +
@@ -127,8 +140,10 @@ class CHeader : public testing::TestWithParam<const char*> {
     std::uint32_t allowed = 0;
     std::uint32_t winding = 0;
     std::uint32_t stator = 0;
-    for (int reason = 0; answered >> std::hex >> allowed >> winding >> stator >> std::dec >> reason;) {
-      answers.push_back({std::bit_cast<float>(allowed), std::bit_cast<float>(winding), std::bit_cast<float>(stator), reason});
+    std::uint32_t nominal = 0;
+    for (int reason = 0; answered >> std::hex >> allowed >> winding >> stator >> nominal >> std::dec >> reason;) {
+      answers.push_back({std::bit_cast<float>(allowed), std::bit_cast<float>(winding), std::bit_cast<float>(stator),
+                         std::bit_cast<float>(nominal), reason});
     }
     return answers;
   }
@@ -144,6 +159,10 @@ INSTANTIATE_TEST_SUITE_P(Compilers, CHeader, testing::Values("cc -std=c99", "c++
 TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
   const Derating derating = guarded_ecx_32();
   ObserverRun<float> run(derating.observer, 0.01F, 31.0F);
+  // An observer of its own that counts heat once.
+  const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
+  const Observer nominal_observer(network, ecx_32().nominal, twente(), 1.0);
+  ObserverRun<float> nominal(nominal_observer, 0.01F, 31.0F);
   std::ostringstream lines;
   lines << "start 31\n";
   std::vector<Answer> expected;
@@ -154,9 +173,11 @@ TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
     const float speed_rad_per_s = 900.0F * (uniform(engine) - 0.5F);
     const float ambient_C = 20.0F + 10.0F * uniform(engine);
     lines << fmt::format("in {:.9g} {:.9g} {:.9g}\n", current_A, speed_rad_per_s, ambient_C);
-    run.step(std::array<float, firmware::kSignalCount>{current_A, speed_rad_per_s, ambient_C, 0.0F, 0.0F, 0.0F, 0.0F});
+    const std::array<float, firmware::kSignalCount> signals{current_A, speed_rad_per_s, ambient_C, 0.0F, 0.0F, 0.0F, 0.0F};
+    run.step(signals);
+    nominal.step(signals);
     expected.push_back({derating.table.allowed_A(std::abs(speed_rad_per_s), run.hottest_body_C(), run.state_C()[0]), run.state_C()[0],
-                        run.state_C()[1], 0});
+                        run.state_C()[1], nominal.state_C()[0], 0});
   }
   const std::vector<Answer> answers = ask(lines.str());
   ASSERT_EQ(answers.size(), expected.size());
@@ -164,6 +185,63 @@ TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
     ASSERT_EQ(answers[i].winding_C, expected[i].winding_C) << "in step " << i;
     ASSERT_EQ(answers[i].stator_C, expected[i].stator_C) << "in step " << i;
     ASSERT_EQ(answers[i].allowed_A, expected[i].allowed_A) << "in step " << i;
+    ASSERT_EQ(answers[i].nominal_C, expected[i].nominal_C) << "in step " << i;
+  }
+}
+
+// The guard's temperature is the pessimistic one of the two, and both cool to the same air.
+TEST_P(CHeader, tells_the_guarded_from_the_nominal_temperature) {
+  std::string lines = "start 40\n";
+  for (int i = 0; i < 6000; ++i) {
+    lines += "in 3 200 40\n";
+  }
+  for (int i = 0; i < 200'000; ++i) {
+    lines += "in 0 0 40\n";
+  }
+  const std::vector<Answer> answers = ask(lines);
+  for (const Answer& each : answers) {
+    ASSERT_GE(each.winding_C, each.nominal_C - 1e-3F);
+  }
+  EXPECT_GT(answers[5999].winding_C, answers[5999].nominal_C + 10.0F);
+  EXPECT_NEAR(answers.back().winding_C, 40.0F, 0.2F);
+  EXPECT_NEAR(answers.back().nominal_C, 40.0F, 0.2F);
+}
+
+// Copper loss of three sinusoidal phase currents, averaged over a turn, against what the header's observer takes in one step from 25 °C,
+// where resistance is the sheet's. Torque by the same average against block commutation of the same back-EMF.
+TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_never_below_its_heat) {
+  constexpr double kIq_A = 5.0;
+  constexpr int kTurn = 3600;
+  const MotorValues motor = ecx_32().nominal;
+  double copper_W = 0.0;
+  double torque_per_emf = 0.0;
+  for (int i = 0; i < kTurn; ++i) {
+    for (int phase = 0; phase < 3; ++phase) {
+      const double angle_rad = 2.0 * std::numbers::pi * (static_cast<double>(i) / kTurn + phase / 3.0);
+      const double phase_A = kIq_A * std::cos(angle_rad);
+      copper_W += phase_A * phase_A * 0.5 * motor.terminal_resistance_ohm / kTurn;
+      torque_per_emf += std::cos(angle_rad) * phase_A / kTurn;
+    }
+  }
+  double block_per_emf = 0.0;  // one ampere through the two phases with the largest difference of back-EMF
+  for (int i = 0; i < kTurn; ++i) {
+    const double angle_rad = 2.0 * std::numbers::pi * i / kTurn;
+    const auto emf = [&](int phase) { return std::cos(angle_rad + 2.0 * std::numbers::pi * phase / 3.0); };
+    block_per_emf += (std::max({emf(0), emf(1), emf(2)}) - std::min({emf(0), emf(1), emf(2)})) / kTurn;
+  }
+  const double equivalent_A = torque_per_emf / block_per_emf;
+  for (const std::string robot : {"roboteam_twente_v2024", "tigers_v2020"}) {
+    build_for(shipped_robot(robot));
+    const auto heating_K = [&](const std::string& line) { return ask("start 25\n" + line)[0].nominal_C - 25.0F; };
+    const double by_iq_K = heating_K(fmt::format("iq {} 0 25\n", kIq_A));
+    EXPECT_NEAR(by_iq_K, heating_K(fmt::format("in {:.9g} 0 25\n", equivalent_A)), 1e-5) << robot;
+    const double capacity_J_per_K = motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W;
+    const double counted_W = by_iq_K * capacity_J_per_K / 0.01;
+    EXPECT_GE(counted_W, 0.999 * copper_W) << robot;
+    EXPECT_LE(counted_W, 1.1 * copper_W) << robot;
+    if (shipped_robot(robot).commutation == Commutation::sinusoidal) {
+      EXPECT_NEAR(counted_W, copper_W, 1e-3 * copper_W) << robot;
+    }
   }
 }
 
@@ -268,8 +346,11 @@ TEST_P(CHeader, does_not_believe_air_colder_than_declared) {
 
 TEST_P(CHeader, gives_no_current_beyond_its_table) {
   const double most_rad_per_s = rules_for(ecx_32()).most_speed_rad_per_s;
-  EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", 1.1 * most_rad_per_s))[0].reason, no_current);
-  EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", -1.1 * most_rad_per_s))[0].allowed_A, 0.0F);
+  const double last_rad_per_s = rules_for(ecx_32()).no_current_speed_rad_per_s;
+  EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", last_rad_per_s))[0].reason, no_current);
+  EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", -1.1 * last_rad_per_s))[0].allowed_A, 0.0F);
+  // It can still brake when it is pushed beyond the table's last full row.
+  EXPECT_GT(ask(fmt::format("start 30\nin -3 {} 25\n", 1.05 * most_rad_per_s))[0].allowed_A, 3.0F);
   EXPECT_EQ(ask("start 170\nin 0 0 25\n")[0].allowed_A, 0.0F);
   EXPECT_GT(ask("start 30\nin 0 -300 25\n")[0].allowed_A, 5.0F);
 }
@@ -306,6 +387,21 @@ TEST(CHeaderText, SaysWhatWasAssumed) {
   derating.effects.push_back({"gripper", "tabulated", "P = curve", "gripper_ratio"});
   EXPECT_THAT(text(), HasSubstr("ONLY WHERE cooling is fan"));
   EXPECT_THAT(text(), HasSubstr("over gripper_ratio of the logs, at its hottest"));
+}
+
+TEST(CHeaderText, SaysInItsFirstLinesWhichSpreadsItAssumed) {
+  Derating derating = guarded_ecx_32();
+  const auto text = [&] { return std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating); };
+  EXPECT_THAT(text(), testing::Not(HasSubstr("DEFAULT SPREADS")));
+  derating.default_spreads = {{"effects.a */ b.loss", Origin::estimated, 2.0, {Spread::Kind::range, 1.0, 3.0, true}}};
+  EXPECT_LT(text().find("DEFAULT SPREADS"), 300U);
+  EXPECT_THAT(text(), HasSubstr("effects.a * / b.loss -50 to +50 % (estimated)"));
+}
+
+TEST(CHeaderText, ConvertsNoCurrentOfABrushedMotor) {
+  Derating derating = guarded_ecx_32();
+  derating.is_brushless = false;
+  EXPECT_THAT(std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating), testing::Not(HasSubstr("_iq_")));
 }
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {

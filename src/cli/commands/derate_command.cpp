@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/default_spreads.h"
 #include "cli/guard_options.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
@@ -94,8 +95,8 @@ std::string report(const Derating& derating) {
       checked.winding_most_C);
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
-    text += fmt::format("beyond {:.0f} of {:.0f} rad/s the motor may pass a limit without any current: none is allowed there\n",
-                        derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s);
+    text += fmt::format("beyond {:.0f} of {:.0f} rad/s the motor may pass a limit without any current: what is allowed falls to 0 A at {:.0f} rad/s\n",
+                        derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.speed_rad_per_s.back());
   }
   std::string asked;
   for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
@@ -106,7 +107,7 @@ std::string report(const Derating& derating) {
   return text + (asked.empty() ? "" : fmt::format("besides current, speed and air the firmware is asked for {}\n", asked));
 }
 
-Json json(const Derating& derating, const Options& options) {
+Json json(const Derating& derating, const Motor& motor, const Options& options) {
   const Guarantee& checked = derating.guarantee;
   const CurrentTable& table = derating.table;
   Json effects = Json::array();
@@ -134,6 +135,7 @@ Json json(const Derating& derating, const Options& options) {
       {"approach_s", derating.options.approach_s},
       {"heat_reserve_ratio", rounded(derating.observer.heat_reserve_ratio(), 4)},
       {"conditions", derating.assumed},
+      {"default_spreads", default_spreads_json({&motor, 1})},
       {"nodes", nodes},
       {"effects", effects},
       {"guarantee",
@@ -160,9 +162,9 @@ ExitCode run(const Options& options, Session& session) {
   const Motor motor = guarded_motor(options.guard, named);
   const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
   session.write(options.out, exporter.write(derating));
-  session.say(report(derating) + columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}) +
+  session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}) +
               fmt::format("\n{}: {}\n", exporter.name, options.out));
-  session.answer(json(derating, options));
+  session.answer(json(derating, motor, options));
   return ExitCode::done;
 }
 

@@ -13,6 +13,7 @@
 #include "cli/closed_loop_rank.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
+#include "cli/default_spreads.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
@@ -243,7 +244,8 @@ ExitCode run(Options& options, Session& session) {
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
-  session.say(report(results, robot, duty, wheels.front().duration_s(), options) + slip_text(wheels.front()) + silent_effects(motors));
+  session.say(report(results, robot, duty, wheels.front().duration_s(), options) + slip_text(wheels.front()) + silent_effects(motors) +
+              default_spreads_text(motors));
   if (options.is_closed_loop) {
     session.say(closed_loop_text(ranks, options.games, options.evaluate.seed));
   }
@@ -254,6 +256,7 @@ ExitCode run(Options& options, Session& session) {
                                 {"conditions", options.conditions},    {"duty", duty.id},
                                 {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
                                 {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
+  answer["default_spreads"] = default_spreads_json(motors);
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < results.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/default_spreads.h"
 #include "cli/guard_options.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
@@ -53,7 +54,7 @@ std::string report(const CoreFolder& folder, const Derating& derating, const Opt
   return text + fmt::format("next: make -C {0} host   and   make -C {0} firmware\n", options.out);
 }
 
-Json json(const CoreFolder& folder, const Derating& derating, const Options& options) {
+Json json(const CoreFolder& folder, const Derating& derating, const Motor& motor, const Options& options) {
   const Guarantee& checked = derating.guarantee;
   Json files = Json::array();
   for (const CoreFile& file : folder.files) {
@@ -80,6 +81,7 @@ Json json(const CoreFolder& folder, const Derating& derating, const Options& opt
             {"limp_current_A", rounded(folder.limp_current_A, 4)},
             {"braking_reserve_K", rounded(folder.braking_reserve_K, 3)},
             {"nodes", derating.observer.state_names()}}},
+          {"default_spreads", default_spreads_json({&motor, 1})},
           {"notes", folder.notes}};
 }
 
@@ -97,7 +99,7 @@ ExitCode run(Options& options, Session& session) {
   const auto staged = std::make_shared<StagedFolder>(options.out, folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
   session.say(report(folder, derating, options));
-  session.answer(json(folder, derating, options));
+  session.answer(json(folder, derating, motor, options));
   return ExitCode::done;
 }
 

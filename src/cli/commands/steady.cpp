@@ -15,6 +15,7 @@
 #include "cli/silent_effects.h"
 #include "motor/conditions.h"
 #include "motor/datasheet_network.h"
+#include "motor/default_spread.h"
 #include "motor/motor.h"
 #include "thermal/periodic_state.h"
 #include "thermal/steady_state.h"
@@ -84,7 +85,9 @@ std::string in_words(const MotorValues& values, const OnOffSteadyState& rms, boo
 }
 
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = under(motor_named(session.folders(), options.motor), options.conditions);
+  const Motor as_written = motor_named(session.folders(), options.motor);
+  require_sound(as_written);
+  const Motor motor = under(as_written, options.conditions);
   const MotorValues& values = motor.nominal;
   const Network network = datasheet_network(motor, nominal_sample(motor));
   const bool is_bare = network.effects().size() == kDatasheetEffects.size();

@@ -59,7 +59,8 @@ typedef struct heatsoak_core_command {
 
 typedef struct heatsoak_core_input {
   float wheel_speed_rad_per_s[HEATSOAK_CORE_MOST_WHEELS]; /* at the wheel */
-  float motor_current_A[HEATSOAK_CORE_MOST_WHEELS];       /* equivalent DC: torque per torque constant */
+  float motor_current_A[HEATSOAK_CORE_MOST_WHEELS];       /* equivalent DC: torque per torque constant; of field-oriented control
+                                                             0.907 * i_q, sqrt(3) * pi / 6, with i_q the peak of a phase current */
   float battery_V;                                        /* at the drivers */
   float yaw_rate_rad_per_s;                               /* gyro */
   float ambient_C;                                        /* air at the motors */

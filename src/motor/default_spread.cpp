@@ -1,0 +1,158 @@
+#include "motor/default_spread.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "motor/lint.h"
+
+namespace heatsoak {
+namespace {
+
+/// Bounds as ratios to the value.
+struct Ratios {
+  double low = 1.0;
+  double high = 1.0;
+};
+
+/// A row per key. `sheet` also serves measured values: a measurement without an interval is trusted as a data sheet is.
+struct DefaultRow {
+  std::string_view key;
+  Ratios sheet;
+  Ratios third_party;
+  Ratios derived;
+  Ratios estimated;
+};
+
+// Manufacturers publish nominal values without bands. The sheet's column holds the engineering defaults of motor_db/README.md; the others
+// enclose the widest range that motor_db derives for that origin from similar motors.
+constexpr std::array kDefaults{
+    // Production tolerance of the wire's cross-section and length, and the contacts.
+    DefaultRow{"terminal_resistance", {0.90, 1.10}, {0.90, 1.10}, {0.85, 1.25}, {0.80, 1.30}},
+    // Remanence of the magnets and the air gap.
+    DefaultRow{"torque_constant", {0.93, 1.07}, {0.93, 1.07}, {0.90, 1.10}, {0.85, 1.15}},
+    // Bearing friction and iron loss differ most of all between parts, upwards more than downwards.
+    DefaultRow{"no_load_current", {0.65, 1.55}, {0.65, 1.55}, {0.65, 2.05}, {0.55, 2.05}},
+    // Impregnation of the winding.
+    DefaultRow{"thermal_resistance_winding_stator", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {0.55, 1.80}},
+    // Mounting, position and air movement.
+    DefaultRow{"thermal_resistance_stator_ambient", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {0.50, 1.80}},
+    // Products of a resistance above and a heat capacity.
+    DefaultRow{"thermal_time_constant_winding", {0.75, 1.25}, {0.60, 1.60}, {0.60, 1.60}, {0.45, 2.05}},
+    DefaultRow{"thermal_time_constant_stator", {0.75, 1.25}, {0.60, 1.60}, {0.60, 1.60}, {0.45, 2.05}},
+    // A property of copper; other alloys have their own sheet.
+    DefaultRow{"temperature_coefficient", {0.98, 1.02}, {0.98, 1.02}, {0.95, 1.05}, {0.90, 1.10}},
+};
+
+/// Parameters of effects are of many kinds, so only the origin counts: an estimate may be wrong by a factor of 1.5.
+constexpr DefaultRow kEffectDefault{"", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {1.0 / 1.5, 1.5}};
+
+const Ratios& ratios(const DefaultRow& row, Origin origin) {
+  switch (origin) {
+    case Origin::measured:
+    case Origin::datasheet:
+      return row.sheet;
+    case Origin::third_party:
+      return row.third_party;
+    case Origin::derived:
+      return row.derived;
+    case Origin::estimated:
+      break;
+  }
+  return row.estimated;
+}
+
+const DefaultRow* row_of(std::string_view key) {
+  const auto* const found = std::ranges::find(kDefaults, key, &DefaultRow::key);
+  return found == kDefaults.end() ? nullptr : found;
+}
+
+bool lacks_spread(const Figure& figure) { return figure.value != 0.0 && (!figure.spread || is_exact(figure)); }
+
+/// Within what the declaration allows, so that no draw leaves it.
+Spread spread_of(const DefaultRow& row, const Figure& figure, const Range& range) {
+  const Ratios& by = ratios(row, figure.origin);
+  const double one = figure.value * by.low;
+  const double other = figure.value * by.high;
+  return {Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high), figure.value > 0.0};
+}
+
+/// Places on a curve's axis and temperatures are chosen, not found: no factor applies to them.
+bool takes_default(const EffectType& type, std::size_t place) {
+  const ParameterSpec& spec = type.parameters[place];
+  return spec.choices.empty() && spec.unit != "degC" && !spec.key.ends_with("_knot");
+}
+
+/// Calls `visit(key, figure, spread)` for every value without a spread.
+template <class AnyMotor, class Visit>
+void for_each_missing(AnyMotor& motor, const Visit& visit) {
+  for (const MotorFigureSpec& each : motor_figure_specs()) {
+    const DefaultRow* const row = row_of(each.spec.key);
+    const auto found = motor.figures.find(each.spec.key);
+    if (row && found != motor.figures.end() && lacks_spread(found->second)) {
+      visit(std::string(each.spec.key), found->second, spread_of(*row, found->second, each.spec.range));
+    }
+  }
+  for (auto& effect : motor.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (takes_default(*effect.type, i) && lacks_spread(effect.parameters[i])) {
+        const ParameterSpec& spec = effect.type->parameters[i];
+        visit(fmt::format("effects.{}.{}", effect.name, spec.key), effect.parameters[i],
+              spread_of(kEffectDefault, effect.parameters[i], spec.range));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool is_exact(const Figure& figure) { return figure.spread && figure.value != 0.0 && !(figure.spread->high > figure.spread->low); }
+
+bool needs_spread(std::string_view key) { return row_of(key) != nullptr; }
+
+std::vector<DefaultSpread> default_spreads(const Motor& motor) {
+  std::vector<DefaultSpread> missing;
+  for_each_missing(motor, [&](const std::string& key, const Figure& figure, const Spread& spread) {
+    missing.push_back({key, figure.origin, figure.value, spread});
+  });
+  return missing;
+}
+
+Motor with_default_spreads(Motor motor) {
+  for_each_missing(motor, [](const std::string&, Figure& figure, const Spread& spread) { figure.spread = spread; });
+  return motor;
+}
+
+std::optional<Spread> spread_or_default(const Motor& motor, std::string_view key) {
+  const auto found = motor.figures.find(key);
+  const auto spec = std::ranges::find(motor_figure_specs(), key, [](const MotorFigureSpec& each) { return each.spec.key; });
+  if (found == motor.figures.end() || spec == motor_figure_specs().end()) {
+    return std::nullopt;
+  }
+  const DefaultRow* const row = row_of(key);
+  return row && lacks_spread(found->second) ? spread_of(*row, found->second, spec->spec.range) : found->second.spread;
+}
+
+std::string to_string(std::span<const DefaultSpread> spreads) {
+  std::string text;
+  for (const DefaultSpread& each : spreads) {
+    const auto percent = [&](double bound) { return 100.0 * (bound / each.value - 1.0); };
+    const auto [low, high] = std::minmax({percent(each.spread.low), percent(each.spread.high)});
+    text += fmt::format("{}{} {:+.0f} to {:+.0f} % ({})", text.empty() ? "" : ", ", each.key, low, high, heatsoak::to_string(each.origin));
+  }
+  return text;
+}
+
+void require_sound(const Motor& motor) {
+  Diagnostics diagnostics;
+  for (const LintFinding& each : lint(motor)) {
+    if (each.level == LintFinding::Level::error && each.check != "spreads") {
+      diagnostics.add(each.at, each.check, each.message);
+    }
+  }
+  diagnostics.throw_if_any();
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,109 @@
+// The way that was unsafe: a motor's file without tolerances must not be allowed more current than the same file with them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "derate/derating.h"
+#include "guarded_motor.h"
+#include "input/data_folders.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::IsEmpty;
+using testing::Not;
+
+DerateOptions few_samples() {
+  DerateOptions options;
+  options.guarantee.samples = 100;
+  return options;
+}
+
+/// Without all spreads that temperatures depend on, or a random half of them. The others stay: each takes a number of the stream of chance,
+/// so without them the remaining values would be other draws.
+Motor stripped(Motor motor, unsigned seed) {
+  std::mt19937 engine(seed);
+  for (auto& [key, figure] : motor.figures) {
+    if (needs_spread(key) && (seed == 0 || engine() % 2 == 0)) {
+      figure.spread.reset();
+    }
+  }
+  return motor;
+}
+
+// Of every shipped motor: with the same guard and the same draws, the 95th percentile of the stripped file's motors is as hot or hotter.
+// By that percentile the search finds its reserve.
+TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
+  constexpr double kPeriod_s = 0.05;
+  GuaranteeOptions options;
+  options.samples = 200;
+  for (const std::string& id : ids_in(kSource / "motor_db")) {
+    const Motor honest = shipped_motor(id);
+    const GuardedMotor guarded(honest, rules_for(honest), 1.2);
+    std::vector<UsePlayed> uses;
+    for (const Use& use : hardest_uses(guarded.observer, guarded.rules)) {
+      if (uses.size() < 5) {
+        uses.push_back(play(guarded.observer, guarded.table, guarded.rules, honest, twente(), use, kPeriod_s));
+      }
+    }
+    const Guarantee with = check(honest, guarded.rules.limits, uses, options, 0);
+    for (const unsigned seed : {0U, 1U, 2U}) {
+      const Guarantee without = check(with_default_spreads(stripped(honest, seed)), guarded.rules.limits, uses, options, 0);
+      EXPECT_GE(without.winding_p95_C, with.winding_p95_C) << id << ", " << seed;
+    }
+  }
+}
+
+TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
+  const Motor honest = ecx_32();
+  const Derating with = derate(honest, twente(), few_samples());
+  const Derating without = derate(stripped(honest, 0), twente(), few_samples());
+  EXPECT_THAT(with.default_spreads, IsEmpty());
+  EXPECT_THAT(without.default_spreads, Not(IsEmpty()));
+  EXPECT_GE(without.observer.heat_reserve_ratio(), with.observer.heat_reserve_ratio());
+  EXPECT_LE(limp_current_A(without), limp_current_A(with));
+  for (std::size_t i = 0; i < with.table.current_A.size(); ++i) {
+    EXPECT_LE(without.table.current_A[i], with.table.current_A[i] + 1e-3) << "place " << i;
+  }
+}
+
+TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
+  Motor exact = ecx_32();
+  for (auto& [key, figure] : exact.figures) {
+    if (needs_spread(key)) {
+      figure.spread = Spread{Spread::Kind::tolerance, figure.value, figure.value, true};
+    }
+  }
+  Motor missing = ecx_32();
+  for (auto& [key, figure] : missing.figures) {
+    if (needs_spread(key)) {
+      figure.spread.reset();
+    }
+  }
+  const Derating one = derate(exact, twente(), few_samples());
+  const Derating other = derate(missing, twente(), few_samples());
+  EXPECT_EQ(one.table.current_A, other.table.current_A);
+  EXPECT_GT(one.observer.heat_reserve_ratio(), 1.5);
+}
+
+TEST(DerateWithoutSpreads, CountsAnEffectWithoutOneToo) {
+  // Cooling that somebody guessed and gave no range for.
+  const auto with_plate = [](const char* range) {
+    Motor motor = ecx_32();
+    const auto type = std::ranges::find(all_effects(), "conduction", &EffectType::name);
+    Figure resistance;
+    resistance.value = 6.0;
+    if (*range != 0) {
+      resistance.spread = Spread{Spread::Kind::tolerance, 5.9, 6.1, true};
+    }
+    motor.effects.push_back({"plate", &*type, {"stator", "ambient"}, {resistance}});
+    return motor;
+  };
+  const Derating known = derate(with_plate("narrow"), twente(), few_samples());
+  const Derating guessed = derate(with_plate(""), twente(), few_samples());
+  EXPECT_GE(guessed.observer.heat_reserve_ratio(), known.observer.heat_reserve_ratio());
+  ASSERT_EQ(guessed.default_spreads.size(), 1U);
+  EXPECT_EQ(guessed.default_spreads[0].key, "effects.plate.thermal_resistance");
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,170 @@
+// A tolerance that a file does not give never makes a motor look better than an honest one does.
+#include "motor/default_spread.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/files.h"
+#include "input/data_folders.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::vector<Motor> all_shipped() {
+  std::vector<Motor> motors;
+  for (const std::string& id : ids_in(kSource / "motor_db")) {
+    motors.push_back(shipped_motor(id));
+  }
+  return motors;
+}
+
+const DefaultSpread* find(const std::vector<DefaultSpread>& all, std::string_view key) {
+  const auto found = std::ranges::find(all, key, &DefaultSpread::key);
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::string message_of_refusal(const Motor& motor) {
+  try {
+    require_sound(motor);
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    return failure.what();
+  }
+  return {};
+}
+
+TEST(DefaultSpread, ShippedMotorsNeedNoneAndAreSound) {
+  for (const Motor& motor : all_shipped()) {
+    EXPECT_THAT(default_spreads(motor), IsEmpty()) << motor.id;
+    EXPECT_NO_THROW(require_sound(motor)) << motor.id;
+  }
+}
+
+// First-order stochastic dominance on both sides: at the same place of the draw the default lies no nearer to the nominal value than the
+// spread that the file of the same motor states. So every tail of every temperature is at least as heavy.
+TEST(DefaultSpread, StandsOutsideOfEveryHonestSpreadThatItReplaces) {
+  std::mt19937 engine(7);
+  for (const Motor& honest : all_shipped()) {
+    for (int round = 0; round < 20; ++round) {
+      Motor stripped = honest;
+      std::size_t count = 0;
+      for (auto& [key, figure] : stripped.figures) {
+        if (needs_spread(key) && (round == 0 || engine() % 2 == 0)) {
+          figure.spread.reset();
+          ++count;
+        }
+      }
+      EXPECT_THAT(default_spreads(stripped), SizeIs(count));
+      const Motor filled = with_default_spreads(stripped);
+      for (const auto& [key, figure] : honest.figures) {
+        if (!needs_spread(key)) {
+          continue;
+        }
+        for (int i = 1; i < 100; ++i) {
+          const double uniform = 0.01 * i;
+          const double distance = std::abs(figure.quantile(uniform) - figure.value);
+          EXPECT_GE(std::abs(filled.figures.at(key).quantile(uniform) - figure.value), distance * (1.0 - 1e-12))
+              << honest.id << ", " << key << " at " << uniform;
+        }
+      }
+    }
+  }
+}
+
+TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
+  Motor motor = ecx_32();
+  for (auto& [key, figure] : motor.figures) {
+    figure.spread.reset();
+  }
+  std::vector<DefaultSpread> before;
+  for (const Origin origin : {Origin::measured, Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated}) {
+    for (auto& [key, figure] : motor.figures) {
+      figure.origin = origin;
+    }
+    const std::vector<DefaultSpread> now = default_spreads(motor);
+    ASSERT_THAT(now, SizeIs(7));
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      EXPECT_LE(now[i].spread.low, before[i].spread.low) << now[i].key;
+      EXPECT_GE(now[i].spread.high, before[i].spread.high) << now[i].key;
+    }
+    before = now;
+  }
+}
+
+TEST(DefaultSpread, OfEverythingThatTemperaturesDependOn) {
+  // Of the declared thermal values only limits are agreed and have none.
+  for (const MotorFigureSpec& each : motor_figure_specs()) {
+    EXPECT_EQ(each.is_thermal && !is_agreed(each.spec.key), needs_spread(each.spec.key) && each.spec.key != "temperature_coefficient")
+        << each.spec.key;
+  }
+}
+
+TEST(DefaultSpread, AZeroToleranceCountsAsMissingAndIsRefused) {
+  for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
+    Motor motor = ecx_32();
+    Figure& figure = motor.figures.at(key);
+    figure.spread = Spread{Spread::Kind::tolerance, figure.value, figure.value, true};
+    ASSERT_THAT(default_spreads(motor), SizeIs(1)) << key;
+    EXPECT_LT(with_default_spreads(motor).figures.at(key).spread->low, figure.value);
+    EXPECT_THAT(message_of_refusal(motor), AllOf(HasSubstr(".toml:"), HasSubstr("exact_values"), HasSubstr(key), HasSubstr("state that")));
+  }
+}
+
+TEST(DefaultSpread, MissingOnesAreNoReasonToRefuse) {
+  Motor motor = ecx_32();
+  for (auto& [key, figure] : motor.figures) {
+    figure.spread.reset();
+  }
+  EXPECT_EQ(message_of_refusal(motor), "");
+  EXPECT_THAT(to_string(default_spreads(motor)), HasSubstr("thermal_resistance_stator_ambient -50 to +80 % (estimated)"));
+}
+
+TEST(DefaultSpread, ContradictionsAreRefusedWithTheirPlace) {
+  const std::string message = message_of_refusal(read_motor(kSource / "tests/data/lint_df45l_phase_resistance.toml"));
+  EXPECT_THAT(message, AllOf(HasSubstr("lint_df45l_phase_resistance.toml:"), HasSubstr(": error: nominal_speed: "), HasSubstr("expected")));
+}
+
+TEST(DefaultSpread, ParametersOfEffectsStayWithinTheirDeclaration) {
+  Motor motor = ecx_32();
+  const auto add = [&motor](const EffectType& type) {
+    MotorEffect effect{std::string(type.name), &type, {}, {}};
+    for (const ParameterSpec& spec : type.parameters) {
+      Figure figure;
+      figure.value = std::isfinite(spec.range.high) ? spec.range.high : std::max(1.0, spec.range.low);
+      effect.parameters.push_back(figure);
+    }
+    motor.effects.push_back(effect);
+  };
+  for (const EffectType& type : all_effects()) {
+    add(type);
+  }
+  const Motor filled = with_default_spreads(motor);
+  std::size_t drawn = 0;
+  for (const MotorEffect& effect : filled.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      const ParameterSpec& spec = effect.type->parameters[i];
+      const std::optional<Spread>& spread = effect.parameters[i].spread;
+      EXPECT_FALSE(spread && !spec.choices.empty()) << effect.name << "." << spec.key;
+      if (spread) {
+        ++drawn;
+        EXPECT_GE(spread->low, spec.range.low) << effect.name << "." << spec.key;
+        EXPECT_LE(spread->high, spec.range.high) << effect.name << "." << spec.key;
+        EXPECT_LT(spread->low, spread->high) << effect.name << "." << spec.key;
+      }
+    }
+  }
+  EXPECT_GT(drawn, filled.effects.size() / 2);
+  EXPECT_EQ(find(default_spreads(filled), "effects.third_node.conductance"), nullptr);
+  EXPECT_NE(find(default_spreads(motor), "effects.third_node.conductance"), nullptr);
+}
+
+}  // namespace
+}  // namespace heatsoak
