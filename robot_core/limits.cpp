@@ -99,7 +99,7 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   if (!(demand.most_A > 0.0F)) {
     return false;
   }
-  reason = Reason::slip;
+  reason = reason == Reason::none ? Reason::slip : reason;
   voltage_V = clamped(voltage_V, implied_V - band_V, implied_V + band_V);
   constexpr float kRounding = 1.0001F;
   return absolute(voltage_V) <= kRounding * most_V && absolute(voltage_V - demand.back_V) <= kRounding * band_V;
