@@ -45,8 +45,8 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
   constexpr double kPushed = 1.1;  // a robot that is pushed may turn its motors faster than its battery can
   rules.most_speed_rad_per_s = kPushed * std::min(full_V(robot), robot.voltage_limit_V) / values.torque_constant_Nm_per_A;
   // A driver whose command is limited can still be asked for the whole battery by other firmware.
-  rules.no_current_speed_rad_per_s = std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s,
-                                              kPushed * full_V(robot) / values.torque_constant_Nm_per_A);
+  rules.no_current_speed_rad_per_s =
+      std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, kPushed * full_V(robot) / values.torque_constant_Nm_per_A);
   rules.most_vehicle_speed_m_per_s = rules.most_speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m;
   return rules;
 }

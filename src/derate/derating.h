@@ -19,8 +19,8 @@ struct DerateOptions {
 };
 
 /// What follows from motor, robot and options alone: before any reserve. The highest speed is 1.1·U/(K_t): U of a full battery within the
-/// driver's limit of the command, and 10 % for a push and for magnets weaker than nominal. The current has fallen to none at 1.1 times that,
-/// and at the same of the full battery where the command is limited.
+/// driver's limit of the command, and 10 % for a push and for magnets weaker than nominal. The current has fallen to none at 1.1 times
+/// that, and at the same of the full battery where the command is limited.
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options);
 
 /// An effect that the observer reckons with.
@@ -58,10 +58,10 @@ struct Derating {
 /// 0.98 of the rules' highest speed: above what a full battery drives, because that is 1.1 times as fast.
 double limp_current_A(const Derating& derating);
 
-/// Values without a spread get a default one first (with_default_spreads()). Finds the smallest reserve of heat with which the share of motors that is asked for keeps every limit in every use, and checks it on
-/// motors that the search has not seen. Throws Failure: bad_input where the period is too long for the
-/// motor or the samples are too few for the confidence, limit_exceeded where no
-/// reserve helps, because the motor passes a limit without current.
+/// Values without a spread get a default one first (with_default_spreads()). Finds the smallest reserve of heat with which the share of
+/// motors that is asked for keeps every limit in every use, and checks it on motors that the search has not seen. Throws Failure: bad_input
+/// where the period is too long for the motor or the samples are too few for the confidence, limit_exceeded where no reserve helps, because
+/// the motor passes a limit without current.
 Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress = {});
 
 }  // namespace heatsoak

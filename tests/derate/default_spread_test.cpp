@@ -41,7 +41,7 @@ TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
     const GuardedMotor guarded(honest, rules_for(honest), 1.2);
     std::vector<UsePlayed> uses;
     for (const Use& use : hardest_uses(guarded.observer, guarded.rules)) {
-      if (uses.size() < 5) {
+      if (uses.size() < 3) {
         uses.push_back(play(guarded.observer, guarded.table, guarded.rules, honest, twente(), use, kPeriod_s));
       }
     }

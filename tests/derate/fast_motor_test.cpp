@@ -59,7 +59,8 @@ TEST(FastMotor, HasACurrentThatFallsToNoneWithoutAJump) {
       double before_A = at_most_A;
       constexpr int kSteps = 1000;
       for (int i = 1; i <= kSteps; ++i) {
-        const double now_A = fast.table.allowed_A(std::lerp(most_rad_per_s, last_rad_per_s, static_cast<double>(i) / kSteps), 60.0, winding_C);
+        const double now_A =
+            fast.table.allowed_A(std::lerp(most_rad_per_s, last_rad_per_s, static_cast<double>(i) / kSteps), 60.0, winding_C);
         EXPECT_LE(now_A, before_A);
         EXPECT_NEAR(now_A, before_A, 1.01 * at_most_A / kSteps);
         before_A = now_A;

@@ -95,8 +95,9 @@ std::string report(const Derating& derating) {
       checked.winding_most_C);
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
-    text += fmt::format("beyond {:.0f} of {:.0f} rad/s the motor may pass a limit without any current: what is allowed falls to 0 A at {:.0f} rad/s\n",
-                        derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.speed_rad_per_s.back());
+    text += fmt::format(
+        "beyond {:.0f} of {:.0f} rad/s the motor may pass a limit without any current: what is allowed falls to 0 A at {:.0f} rad/s\n",
+        derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.speed_rad_per_s.back());
   }
   std::string asked;
   for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
@@ -162,8 +163,8 @@ ExitCode run(const Options& options, Session& session) {
   const Motor motor = guarded_motor(options.guard, named);
   const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
   session.write(options.out, exporter.write(derating));
-  session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}) +
-              fmt::format("\n{}: {}\n", exporter.name, options.out));
+  session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
+              effects_under_conditions({&motor, 1}) + fmt::format("\n{}: {}\n", exporter.name, options.out));
   session.answer(json(derating, motor, options));
   return ExitCode::done;
 }
