@@ -35,7 +35,7 @@ constexpr std::string_view kWithoutMeasured =
     "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
 
 /// Options that name what a verb writes.
-constexpr std::array kOutputs{"--out", "--plot", "--json"};
+constexpr std::array kOutputs{"--out", "--plot", "--json", "--junit"};
 
 /// An option that stands where a file should is none.
 bool is_output(std::string_view word) { return word == "-" || !word.starts_with('-'); }
@@ -106,6 +106,18 @@ Failure with_places(const Failure& failure) {
     }
   }
   return {failure.code(), failure.message(), std::move(all)};
+}
+
+/// So that a change of the numbers can be told from an upgrade of the program.
+nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
+  nlohmann::ordered_json result;
+  for (const auto& [key, value] : answer.items()) {
+    result[key] = value;
+    if (key == "schema" || key == "error") {
+      result["version"] = HEATSOAK_VERSION;
+    }
+  }
+  return result;
 }
 
 int fail(Session& session, const Failure& found) {
@@ -189,7 +201,7 @@ void Session::answer(const nlohmann::ordered_json& json) {
   if (json_target_.empty()) {
     return;
   }
-  std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  std::string text = with_version(json).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (json_target_ == "-") {
     json_text_ = std::move(text);
   } else {
@@ -218,6 +230,7 @@ void Session::finish() {
     throw Failure(ExitCode::bad_input, "", std::move(read));
   }
   const std::vector<std::filesystem::path> made = made_folders(folders_);
+  files_.insert(files_.end(), rewritten_.begin(), rewritten_.end());
   try {
     write_files(files_, streams_);
     if (last_) {
@@ -239,6 +252,7 @@ void Session::answer_failure(const Failure& failure) {
   json_text_.clear();
   folders_.clear();
   files_.clear();
+  rewritten_.clear();
   streams_.clear();
   last_ = nullptr;
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();

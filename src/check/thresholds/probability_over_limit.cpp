@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/quantity.h"
+#include "check/binomial_bound.h"
+#include "check/computations.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+constexpr double kConfidence = 0.95;
+
+Measured measure(const Check& check, Computations& computations) {
+  const MotorEvaluation& result = computations.feasible_evaluation(check);
+  const int draws = Computations::independent_draws(check);
+  const bool is_drawn = draws != check.samples;
+  const double share = result.probability_over_limit;
+  double bound = upper_bound_share(share * draws, draws, kConfidence);
+  std::string detail = fmt::format("{} of {} samples over, bound of {:.0f} % confidence", std::lround(share * check.samples), check.samples,
+                                   100.0 * kConfidence);
+  if (is_drawn) {
+    // Samples of one game share its load: they count as one draw, which errs on the safe side.
+    detail += fmt::format(" by {} games", draws);
+  }
+  for (const Limit& limit : check.limits) {
+    if (limit.type->name != "probability_over_limit" || bound <= limit.value) {
+      continue;
+    }
+    const std::optional<long> needed = draws_needed(share, limit.value, kConfidence);
+    const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
+    detail += needed ? fmt::format("; {} samples or more could keep {} % with this share", *needed * per_draw, significant(100.0 * limit.value, 3))
+                     : "; no number of samples keeps the limit with this share";
+  }
+  return {bound, 0.0, detail};
+}
+
+}  // namespace
+
+ThresholdType probability_over_limit() {
+  return {.name = {},
+          .unit = "",
+          .is_share = true,
+          .range = Range::between(0.0, 1.0),
+          .meaning = "probability that winding or stator exceeds its limit: the exact upper confidence bound (Clopper and Pearson, 95 %, "
+                     "one-sided) of the share of samples that do, so that few samples cannot keep a tight limit. Where the duty is drawn, as "
+                     "a match is, its draws count in place of the samples",
+          .example = "at most 5 %",
+          .needs = {Setting::robot, Setting::duty, Setting::motor},
+          .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds
