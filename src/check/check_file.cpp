@@ -120,7 +120,8 @@ class CheckReader {
     if (const auto seed = whole(table_, {"seed", "", Range::between(0.0, kMostExact), "of draws and games"})) {
       check_.seed = static_cast<std::uint64_t>(*seed);
     }
-    if (const auto given_C = table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "that time is counted above"}, Need::optional)) {
+    if (const auto given_C =
+            table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "that time is counted above"}, Need::optional)) {
       check_.temperature_C = *given_C;
     }
     if (const auto given_C = table_.quantity({"air", "degC", Range::between(-60.0, 200.0), "where a log has none"}, Need::optional)) {
@@ -162,7 +163,8 @@ class CheckReader {
       options.guarantee.seed = static_cast<std::uint64_t>(*seed);
     }
     if (options.coldest_ambient_C >= options.hottest_ambient_C) {
-      table->problem("coldest", fmt::format("{:.4g} °C is not below the hottest air, {:.4g} °C", options.coldest_ambient_C, options.hottest_ambient_C));
+      table->problem("coldest", fmt::format("{:.4g} °C is not below the hottest air, {:.4g} °C", options.coldest_ambient_C,
+                                            options.hottest_ambient_C));
     }
     table->finish();
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "check/limit.h"
@@ -18,12 +19,26 @@ std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+/// The blank behind which a line may go on: none between a number and its unit.
+std::size_t next_break(std::string_view text, std::size_t from) {
+  constexpr std::size_t kLongestUnit = 6;
+  std::size_t blank = text.find(' ', from);
+  while (blank != std::string_view::npos && blank > 0 && std::isdigit(static_cast<unsigned char>(text[blank - 1])) != 0) {
+    const std::size_t next = std::min(text.find(' ', blank + 1), text.size());
+    if (width_of(text.substr(blank + 1, next - blank - 1)) > kLongestUnit) {
+      break;
+    }
+    blank = next == text.size() ? std::string_view::npos : next;
+  }
+  return std::min(blank, text.size());
+}
+
 /// Broken at blanks, every line indented.
 std::string wrapped(std::string_view text) {
   std::string result;
   std::size_t column = 0;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t end = next_break(text, at);
     const std::string_view word = text.substr(at, end - at);
     if (column > 0 && column + 1 + width_of(word) > kWidth) {
       result += '\n';
@@ -80,10 +95,9 @@ std::string things_of(const Check& check) {
 
 /// What could not be evaluated says only why.
 std::string explanation(const Outcome& outcome) {
-  return !outcome.is_evaluated ? outcome.reason
-         : outcome.passed || outcome.measured.detail.empty()
-             ? outcome.measured.detail
-             : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
+  return !outcome.is_evaluated                               ? outcome.reason
+         : outcome.passed || outcome.measured.detail.empty() ? outcome.measured.detail
+                                                             : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
 }
 
 /// What XML does not allow at all is left out; what is no UTF-8 becomes a question mark.
@@ -205,8 +219,9 @@ std::string table_text(std::span<const Outcome> outcomes) {
       const auto right = [](const std::string& cell, std::size_t width) {
         return std::string(width - std::min(width, width_of(cell)), ' ') + cell;
       };
-      text += fmt::format("{:5} {:24}{}  {} {}\n", result_of(each), each.limit.type->name, right(shown(each.measured.value, *each.limit.type), 11),
-                          right(limit_text(each), 20), right(margin_text(each), 12));
+      text +=
+          fmt::format("{:5} {:24}{}  {} {}\n", result_of(each), each.limit.type->name,
+                      right(shown(each.measured.value, *each.limit.type), 11), right(limit_text(each), 20), right(margin_text(each), 12));
       const std::string why = explanation(each);
       text += why.empty() ? "" : wrapped(why);
       text += each.before.empty() ? "" : wrapped(fmt::format("limit {} → {}", each.before, each.limit.text));
@@ -221,8 +236,9 @@ std::string junit_xml(std::span<const Outcome> outcomes, std::string_view versio
   std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"heatsoak check\" {}>\n",
                                  count_attributes(counts_of(outcomes)));
   for (const std::span<const Outcome> group : by_check(outcomes)) {
-    text += fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
-                        escaped_xml(group.front().check->name), count_attributes(counts_of(group)), escaped_xml(version));
+    text +=
+        fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
+                    escaped_xml(group.front().check->name), count_attributes(counts_of(group)), escaped_xml(version));
     for (const Outcome& each : group) {
       text += test_case(each);
     }
@@ -233,10 +249,10 @@ std::string junit_xml(std::span<const Outcome> outcomes, std::string_view versio
 
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version) {
   const Counts counts = counts_of(outcomes);
-  std::string text = fmt::format("### heatsoak check: {}\n\n", counts.exceeded + counts.not_evaluated == 0
-                                                                    ? fmt::format("all {} limits hold", counts.all)
-                                                                    : fmt::format("{} of {} limits do not hold",
-                                                                                  counts.exceeded + counts.not_evaluated, counts.all));
+  std::string text = fmt::format("### heatsoak check: {}\n\n",
+                                 counts.exceeded + counts.not_evaluated == 0
+                                     ? fmt::format("all {} limits hold", counts.all)
+                                     : fmt::format("{} of {} limits do not hold", counts.exceeded + counts.not_evaluated, counts.all));
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const Outcome& each : outcomes) {
     text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed ? "✅" : "❌", in_markdown(each.check->name),

@@ -28,7 +28,9 @@ std::string key_of(const DerateOptions& options) {
                      guarantee.confidence, guarantee.samples, guarantee.seed);
 }
 
-std::string key_of_load(const Check& check) { return fmt::format("{}|{}|{}", check.robot->file.string(), check.duty->file.string(), check.seed); }
+std::string key_of_load(const Check& check) {
+  return fmt::format("{}|{}|{}", check.robot->file.string(), check.duty->file.string(), check.seed);
+}
 
 }  // namespace
 
@@ -61,11 +63,12 @@ const MotorEvaluation& Computations::evaluation(const Check& check, const Motor&
 const MotorEvaluation& Computations::feasible_evaluation(const Check& check) {
   const MotorEvaluation& result = evaluation(check, *check.motor);
   if (result.verdict == Verdict::infeasible) {
-    throw Failure(ExitCode::limit_exceeded,
-                  fmt::format("{} cannot deliver what the duty demands ({}): {:.0f} % of the demanded current at the worst moment, too little for "
-                              "{:.0f} % of the time",
-                              result.motor_id, to_string(result.limiting_factor), 100.0 * result.least_torque_share,
-                              100.0 * result.short_time_share));
+    throw Failure(
+        ExitCode::limit_exceeded,
+        fmt::format("{} cannot deliver what the duty demands ({}): {:.0f} % of the demanded current at the worst moment, too little for "
+                    "{:.0f} % of the time",
+                    result.motor_id, to_string(result.limiting_factor), 100.0 * result.least_torque_share,
+                    100.0 * result.short_time_share));
   }
   return result;
 }
@@ -81,8 +84,8 @@ const Derating& Computations::derating(const Check& check, const DerateOptions& 
 const GuardedDrive& Computations::guarded_drive(const Check& check) {
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(check.duty->shape_data);
   if (!match) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("the drive core drives matches; {} is {}. Expected a duty of the shape match", check.duty->id, check.duty->shape));
+    throw Failure(ExitCode::bad_input, fmt::format("the drive core drives matches; {} is {}. Expected a duty of the shape match",
+                                                   check.duty->id, check.duty->shape));
   }
   if (std::isnan(check.motor->nominal.rotor_inertia_kg_m2)) {
     throw Failure(ExitCode::bad_input, fmt::format("{} has no rotor_inertia: without it no acceleration of a wheel can be calculated",

@@ -71,7 +71,8 @@ class Computations {
 
   /// `motor` alone on the check's robot and duty: `heatsoak evaluate` gives the same numbers with any other motors beside it.
   const MotorEvaluation& evaluation(const Check& check, const Motor& motor);
-  /// Of the check's motor, where it delivers what is demanded; else throws, for the temperatures of a motor that does not are worth nothing.
+  /// Of the check's motor, where it delivers what is demanded; else throws, for the temperatures of a motor that does not are worth
+  /// nothing.
   const MotorEvaluation& feasible_evaluation(const Check& check);
   /// Draws that are independent of each other: games where the duty is drawn, else samples.
   [[nodiscard]] static int independent_draws(const Check& check);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/quantity.h"
 
@@ -15,7 +16,9 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-std::string expected(const ThresholdType& type) { return fmt::format("expected {} and a value, such as \"{}\"", to_string(type.direction), type.example); }
+std::string expected(const ThresholdType& type) {
+  return fmt::format("expected {} and a value, such as \"{}\"", to_string(type.direction), type.example);
+}
 
 /// Where the unit begins behind the number.
 std::string unit_behind(std::string_view quantity) {
@@ -27,11 +30,12 @@ std::string unit_behind(std::string_view quantity) {
 /// UDUNITS adds an offset for temperatures, so the distance of two is taken.
 double in_unit(double value, std::string_view from, std::string_view to) { return convert(value, from, to.empty() ? from : to); }
 
-/// Three significant digits of the distance to the origin, away from the value.
-double rounded_away(double value, double distance, bool is_up) {
-  const double size = std::max(std::abs(distance), 1e-9);
-  const double step = std::pow(10.0, std::floor(std::log10(size)) - 2.0);
-  constexpr double kRounding = 1e-9;  // 150 stays 150 where it is 150.0000000001
+/// Three significant digits of a distance.
+double step_of(double distance) { return std::pow(10.0, std::floor(std::log10(std::max(std::abs(distance), 1e-9))) - 2.0); }
+
+/// Away from the value that has to keep the limit; 150 stays 150 where it is 150.0000000001.
+double rounded_away(double value, double step, bool is_up) {
+  constexpr double kRounding = 1e-9;
   return is_up ? step * std::ceil(value / step - kRounding) : step * std::floor(value / step + kRounding);
 }
 
@@ -66,20 +70,23 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
 
 std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share) {
   const bool is_up = type.direction == Bound::at_most;
-  const double distance = measured.value - measured.origin_value;
-  double limit = measured.value;
-  if (type.room == Room::share) {
-    const double room = margin_share * std::abs(distance);
-    limit += is_up ? room : -room;
+  const auto text_of = [&](double value) {
+    return fmt::format("{} {}{}{}", to_string(type.direction), significant(value, 6), unit.empty() ? "" : " ", unit);
+  };
+  if (type.room == Room::none) {
+    return text_of(in_unit(measured.value, type.unit, unit));
   }
-  double shown_value = in_unit(limit, type.unit, unit);
-  if (type.room == Room::share) {
-    const double shown_distance = shown_value - in_unit(measured.origin_value, type.unit, unit);
-    shown_value = rounded_away(shown_value, shown_distance, is_up);
-    const double most = in_unit(type.range.high, type.unit, unit);
-    shown_value = std::min(shown_value, std::isfinite(most) ? most : shown_value);
+  const double room = margin_share * std::abs(measured.value - measured.origin_value);
+  const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
+  const double step = step_of(limit - in_unit(measured.origin_value, type.unit, unit));
+  const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();
+  const double rounded = rounded_away(limit, step, is_up);
+  std::string text = text_of(std::min(rounded, most));
+  // Without room the rounding of the last digit may have taken the value's own side.
+  if (!keeps(type.direction, measured.value, parse_limit(text, type).value)) {
+    text = text_of(std::min(is_up ? rounded + step : rounded - step, most));
   }
-  return fmt::format("{} {}{}{}", to_string(type.direction), significant(shown_value, 6), unit.empty() ? "" : " ", unit);
+  return text;
 }
 
 std::string shown(double value, const ThresholdType& type) {

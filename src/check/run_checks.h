@@ -12,9 +12,9 @@ namespace heatsoak {
 struct Outcome {
   const Check* check = nullptr;
   Limit limit;
-  Measured measured;           ///< value NaN where it could not be evaluated
-  std::string reason;          ///< why it fails; empty where it passes
-  std::string before = {};     ///< the limit's text before --update, where that changed it
+  Measured measured;        ///< value NaN where it could not be evaluated
+  std::string reason;       ///< why it fails; empty where it passes
+  std::string before = {};  ///< the limit's text before --update, where that changed it
   bool is_evaluated = false;
   bool passed = false;
 
@@ -22,8 +22,8 @@ struct Outcome {
   [[nodiscard]] double margin_value() const;
 };
 
-/// In the order of the file. Thresholds that cannot be evaluated fail and say why; the others are evaluated all the same. The results do not
-/// depend on `threads`, 0: all cores. `progress` counts checks.
+/// In the order of the file. Thresholds that cannot be evaluated fail and say why; the others are evaluated all the same. The results do
+/// not depend on `threads`, 0: all cores. `progress` counts checks.
 std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Progress& progress = {});
 
 /// Compares the value with the limit again, after the limit was changed.

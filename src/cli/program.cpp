@@ -10,12 +10,14 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
 
 #include "base/files.h"
+#include "check/check_text.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
 #include "cli/usage.h"
@@ -120,9 +122,24 @@ nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
   return result;
 }
 
+/// In GitHub Actions a mark at each line that is wrong.
+std::string annotations_of(const Failure& failure) {
+  const auto environment = [](const char* name) {
+    const char* const value = std::getenv(name);
+    return std::string(value ? value : "");
+  };
+  std::string text;
+  for (const Diagnostic& each : failure.diagnostics()) {
+    if (each.at.line > 0 && environment("GITHUB_ACTIONS") == "true") {
+      text += annotation(each.at, environment("GITHUB_WORKSPACE"), each.key.empty() ? "heatsoak" : each.key, each.message);
+    }
+  }
+  return text;
+}
+
 int fail(Session& session, const Failure& found) {
   const Failure failure = with_places(found);
-  put(stderr, std::string(failure.what()) + "\n");
+  put(stderr, std::string(failure.what()) + "\n" + annotations_of(failure));
   session.answer_failure(failure);
   return static_cast<int>(failure.code());
 }

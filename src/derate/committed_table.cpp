@@ -21,13 +21,16 @@ namespace {
 
 constexpr std::size_t kLargestTable_bytes = 10'000'000;
 
-int line_at(std::string_view text, std::size_t place) { return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n')); }
+int line_at(std::string_view text, std::size_t place) {
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
+}
 
 /// Throws where the table is none: an axis that does not ascend, a current below 0 or that is no number.
 void require_sound(const CommittedTable& committed, int line) {
   const CurrentTable& table = committed.table;
   const Location at{committed.file.string(), line, 1};
-  for (const auto& [name, axis] : {std::pair("speed", &table.speed_rad_per_s), {"stator", &table.stator_C}, {"winding", &table.winding_C}}) {
+  for (const auto& [name, axis] :
+       {std::pair("speed", &table.speed_rad_per_s), {"stator", &table.stator_C}, {"winding", &table.winding_C}}) {
     if (axis->size() < 2 || std::ranges::adjacent_find(*axis, std::greater_equal<>()) != axis->end()) {
       throw bad_input(at, name, "the axis of the table does not ascend; expected a file that `heatsoak derate` wrote");
     }
@@ -56,8 +59,8 @@ void read_header(const std::string& text, CommittedTable& committed) {
     const int line = line_at(text, currents.begin);
     if (currents.values.size() != speeds->values.size() * stators->values.size() * windings->values.size()) {
       throw bad_input({committed.file.string(), line, 1}, currents.name,
-                      fmt::format("holds {} currents; expected {} × {} × {} of them, as many as its axes have places", currents.values.size(),
-                                  speeds->values.size(), stators->values.size(), windings->values.size()));
+                      fmt::format("holds {} currents; expected {} × {} × {} of them, as many as its axes have places",
+                                  currents.values.size(), speeds->values.size(), stators->values.size(), windings->values.size()));
     }
     committed.table = {speeds->values, stators->values, windings->values, currents.values};
     committed.code = text;
@@ -86,7 +89,8 @@ void read_csv_table(CommittedTable& committed) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t windings = table.winding_C.size();
     const std::size_t stators = table.stator_C.size();
-    const bool is_of_grid = i < table.speed_rad_per_s.size() * stators * windings && rows[i][0] == table.speed_rad_per_s[i / windings / stators] &&
+    const bool is_of_grid = i < table.speed_rad_per_s.size() * stators * windings &&
+                            rows[i][0] == table.speed_rad_per_s[i / windings / stators] &&
                             rows[i][1] == table.stator_C[i / windings % stators] && rows[i][2] == table.winding_C[i % windings];
     if (!is_of_grid) {
       throw bad_input({committed.file.string(), lines[i], 1}, "",

@@ -12,9 +12,10 @@ namespace heatsoak {
 std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
   std::vector<LintFinding> findings;
   if (robot.drive_motor != "none" && std::ranges::find(known_motors, robot.drive_motor) == known_motors.end()) {
-    findings.push_back({LintFinding::Level::warning, "motor",
-                        fmt::format("drive.motor: there is no motor '{}'{}", robot.drive_motor, did_you_mean(robot.drive_motor, known_motors)),
-                        place_of(robot.file, "drive.motor")});
+    findings.push_back(
+        {LintFinding::Level::warning, "motor",
+         fmt::format("drive.motor: there is no motor '{}'{}", robot.drive_motor, did_you_mean(robot.drive_motor, known_motors)),
+         place_of(robot.file, "drive.motor")});
   }
   try {
     MotorValues any;

@@ -14,10 +14,9 @@ inline TableComparison compared(const Check& check, Computations& computations) 
 }
 
 inline std::string place_text(const TablePlace& place) {
-  return place.difference_A == 0.0
-             ? std::string()
-             : fmt::format("at {:.0f} rad/s, stator {:.0f} °C, winding {:.0f} °C: {:.3f} A, a fresh table {:.3f} A", place.speed_rad_per_s,
-                           place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
+  return place.difference_A == 0.0 ? std::string()
+                                   : fmt::format("at {:.0f} rad/s, stator {:.0f} °C, winding {:.0f} °C: {:.3f} A, a fresh table {:.3f} A",
+                                                 place.speed_rad_per_s, place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
 }
 
 }  // namespace heatsoak::thresholds

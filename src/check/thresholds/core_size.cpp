@@ -25,8 +25,9 @@ ThresholdType core_size() {
   return {.name = {},
           .unit = "byte",
           .range = Range::non_negative(),
-          .meaning = "size of the drive core that `generate core` writes for robot and motor: all its source files together, before any "
-                     "compiler",
+          .meaning =
+              "size of the drive core that `generate core` writes for robot and motor: all its source files together, before any "
+              "compiler",
           .example = "at most 400 kbyte",
           .needs = {Setting::robot, Setting::motor},
           .takes = {Setting::conditions, Setting::derate},

@@ -19,8 +19,9 @@ ThresholdType current_margin() {
   return {.name = {},
           .unit = "A",
           .direction = Bound::at_least,
-          .meaning = "how much more rms current the nominal motor bears at the same speeds until winding or stator is at its limit, as far as "
-                     "voltage and driver let it through; negative where the limit is exceeded",
+          .meaning =
+              "how much more rms current the nominal motor bears at the same speeds until winding or stator is at its limit, as far as "
+              "voltage and driver let it through; negative where the limit is exceeded",
           .example = "at least 0.5 A",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},

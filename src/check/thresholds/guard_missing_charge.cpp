@@ -17,8 +17,9 @@ ThresholdType guard_missing_charge() {
   return {.name = {},
           .unit = "A s",
           .range = Range::non_negative(),
-          .meaning = "current over time that the thermal guard would take away in a match, all wheels together; the same drive as of "
-                     "guard_active_share",
+          .meaning =
+              "current over time that the thermal guard would take away in a match, all wheels together; the same drive as of "
+              "guard_active_share",
           .example = "at most 0 A s",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},

@@ -29,7 +29,8 @@ Measured measure(const Check& check, Computations& computations) {
     }
     const std::optional<long> needed = draws_needed(share, limit.value, kConfidence);
     const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
-    detail += needed ? fmt::format("; {} samples or more could keep {} % with this share", *needed * per_draw, significant(100.0 * limit.value, 3))
+    detail += needed ? fmt::format("; {} samples or more could keep {} % with this share", *needed * per_draw,
+                                   significant(100.0 * limit.value, 3))
                      : "; no number of samples keeps the limit with this share";
   }
   return {bound, 0.0, detail};
@@ -42,9 +43,10 @@ ThresholdType probability_over_limit() {
           .unit = "",
           .is_share = true,
           .range = Range::between(0.0, 1.0),
-          .meaning = "probability that winding or stator exceeds its limit: the exact upper confidence bound (Clopper and Pearson, 95 %, "
-                     "one-sided) of the share of samples that do, so that few samples cannot keep a tight limit. Where the duty is drawn, as "
-                     "a match is, its draws count in place of the samples",
+          .meaning =
+              "probability that winding or stator exceeds its limit: the exact upper confidence bound (Clopper and Pearson, 95 %, "
+              "one-sided) of the share of samples that do, so that few samples cannot keep a tight limit. Where the duty is drawn, as "
+              "a match is, its draws count in place of the samples",
           .example = "at most 5 %",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},

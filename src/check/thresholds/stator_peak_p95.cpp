@@ -5,8 +5,9 @@ namespace heatsoak::thresholds {
 ThresholdType stator_peak_p95() {
   return {.name = {},
           .unit = "degC",
-          .meaning = "95th percentile over the samples of the stator's highest temperature, of the wheel whose winding gets hottest; 20 "
-                     "samples or more",
+          .meaning =
+              "95th percentile over the samples of the stator's highest temperature, of the wheel whose winding gets hottest; 20 "
+              "samples or more",
           .example = "at most 80 degC",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},

@@ -33,8 +33,8 @@ Measured measure(const Check& check, Computations& computations) {
     sum_s += above_s(before.winding_C, row.winding_C, check.temperature_C, row.time_s - before.time_s);
   }
   return {sum_s, 0.0,
-          fmt::format("winding above {:.0f} °C in {:.0f} s, nominal peak {:.1f} °C", check.temperature_C, hottest.duration_s(),
-                      result.winding_peak_C.nominal)};
+          fmt::format("counted above {:.0f} °C over {:.0f} s; the nominal winding reaches {:.1f} °C", check.temperature_C,
+                      hottest.duration_s(), result.winding_peak_C.nominal)};
 }
 
 }  // namespace

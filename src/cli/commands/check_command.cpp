@@ -154,9 +154,10 @@ Command check_command() {
             app.add_option("--junit", options->junit, "write the result as JUnit XML, for CI services")->type_name("FILE.xml");
             app.add_flag("--update", options->is_update,
                          "rewrite the limits in the files: the present values with some room; what cannot be evaluated stays");
-            add_quantity(app, "--margin", options->margin_share,
-                         {"margin", "", Range::between(0.0, 10.0),
-                          "of --update: room as a share of the value, of a temperature as a share of its rise over the air; 5 % unless given"});
+            add_quantity(
+                app, "--margin", options->margin_share,
+                {"margin", "", Range::between(0.0, 10.0),
+                 "of --update: room as a share of the value, of a temperature as a share of its rise over the air; 5 % unless given"});
             app.add_option("--threads", options->threads, "0: all cores; the result does not depend on it")
                 ->check(whole_number(1024))
                 ->capture_default_str();

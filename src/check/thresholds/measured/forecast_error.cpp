@@ -64,8 +64,9 @@ ThresholdType forecast_error() {
   return {.name = {},
           .unit = "K",
           .range = Range::non_negative(),
-          .meaning = "how far the motor's model is off committed logs (root mean square, the worst of the measured temperatures): it runs "
-                     "freely over each run with the log's currents, speeds and air from the start that its first samples decide",
+          .meaning =
+              "how far the motor's model is off committed logs (root mean square, the worst of the measured temperatures): it runs "
+              "freely over each run with the log's currents, speeds and air from the start that its first samples decide",
           .example = "at most 5 K",
           .needs = {Setting::motor, Setting::logs},
           .takes = {Setting::conditions, Setting::mapping, Setting::air},
