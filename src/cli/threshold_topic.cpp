@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/quantity.h"
-#include "check/limit.h"
 #include "check/threshold.h"
 
 namespace heatsoak {
@@ -44,8 +42,7 @@ Topic topic_of(const ThresholdType& type) {
   Topic topic;
   topic.id = type.name;
   topic.summary = fmt::format("\"{}\": {}", type.example, type.meaning.substr(0, type.meaning.find_first_of(":;,(")));
-  topic.text = fmt::format("{}: a threshold of `heatsoak check`, {} {}\n\n{}\n{}{}{}", type.name, to_string(type.direction),
-                           type.unit.empty() ? "a pure number" : unit_for_display(type.unit), type.meaning,
+  topic.text = fmt::format("{}: a threshold of `heatsoak check`, such as \"{}\"\n\n{}\n{}{}{}", type.name, type.example, type.meaning,
                            settings_text("needs in the check", type.needs), settings_text("takes besides", type.takes), example_of(type));
   topic.json = [&type] {
     return nlohmann::ordered_json{{"kind", "threshold"},

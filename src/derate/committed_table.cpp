@@ -158,7 +158,7 @@ std::string fresh_header(const Derating& fresh) {
 CommittedTable read_committed_table(const std::filesystem::path& file) {
   CommittedTable committed{file, {}, {}, {}};
   const std::string text = read_file(file, kLargestTable_bytes);
-  static const std::regex kVersion(R"(heatsoak (\d+\.\d+\.\d+))");
+  static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
   std::smatch version;
   const std::string head = text.substr(0, 4000);
   if (std::regex_search(head, version, kVersion)) {

@@ -41,7 +41,13 @@ std::size_t end_of_token(std::string_view text, std::size_t i) {
   return end;
 }
 
-/// Comments and tables are left out: they do not run, or are compared by what they allow.
+/// "#define …VERSION …": the program's own, which an upgrade changes.
+bool is_version_line(std::string_view line) {
+  line = line.substr(0, line.find('\n'));
+  return line.starts_with("#define") && line.find("VERSION") != std::string_view::npos;
+}
+
+/// Comments, tables and the program's version are left out: they do not run, or are compared by what they allow.
 std::vector<Token> tokens(std::string_view text) {
   std::vector<HeaderArray> arrays = header_arrays(text);
   // What an input may be is no part of the table.
@@ -52,7 +58,7 @@ std::vector<Token> tokens(std::string_view text) {
     if (text.substr(i, 2) == "/*") {
       const std::size_t end = text.find("*/", i + 2);
       i = end == std::string_view::npos ? text.size() : end + 2;
-    } else if (text.substr(i, 2) == "//") {
+    } else if (text.substr(i, 2) == "//" || is_version_line(text.substr(i))) {
       i = std::min(text.find('\n', i), text.size());
     } else if (array != arrays.end()) {
       i = array->end;
