@@ -142,6 +142,46 @@ TEST_F(CheckFiles, FewSamplesCannotKeepATightProbability) {
   EXPECT_FALSE(with(64, "at most 4 %").passed);
 }
 
+// Samples of one game share its load, so games count.
+TEST_F(CheckFiles, ProbabilityOnAMatchCountsGames) {
+  const auto with = [&](const std::string& limit) {
+    return outcomes(
+               "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = "
+               "\"maxon_ecx_flat_42m_24v\"\nsamples = \"16\"\n[check.limits]\nprobability_over_limit = \"" +
+               limit + "\"\n")
+        .front();
+  };
+  const Outcome found = with("at most 5 %");
+  EXPECT_NEAR(found.measured.value, 1.0 - std::sqrt(0.05), 1e-9);
+  EXPECT_THAT(found.measured.detail, testing::AllOf(HasSubstr("by 2 games"), HasSubstr("472 samples or more")));
+  EXPECT_THAT(with("at most 0.1 %").measured.detail, HasSubstr("games would be needed"));
+}
+
+// The guard reckons with the hottest air that it is made for, whatever air the match has.
+TEST_F(CheckFiles, GuardMadeForHotAirEngages) {
+  const std::vector<Outcome> found = outcomes(
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = "
+      "\"maxon_ecx_flat_32l_48v\"\nderate = { samples = \"60\", ambient = \"105 degC\" }\n[check.limits]\nguard_active_share = \"at "
+      "most 0 %\"\nguard_missing_charge = \"at most 0 A s\"\n");
+  for (const Outcome& each : found) {
+    EXPECT_TRUE(each.is_evaluated) << each.reason;
+    EXPECT_GT(each.measured.value, 0.0);
+    EXPECT_FALSE(each.passed);
+  }
+  EXPECT_LT(found[0].measured.value, 1.0);
+}
+
+TEST_F(CheckFiles, LintFindsWhatAFileOfAnyKindHolds) {
+  const std::string data = (kSource / "tests/data").string();
+  const std::vector<Outcome> found =
+      outcomes("[[check]]\nname = \"x\"\nfiles = [\"" + data + "/lint_df45l_wiki.toml\", \"" +
+               (kSource / "robot_core/robots/tigers_v2020.toml").string() + "\", \"" +
+               (kSource / "duty_profiles/division_a_match.toml").string() + "\"]\n[check.limits]\nlint_problems = \"at most 0\"\n");
+  EXPECT_GE(found.front().measured.value, 2.0);
+  EXPECT_FALSE(found.front().passed);
+  EXPECT_THAT(found.front().measured.detail, HasSubstr("lint_df45l_wiki.toml:"));
+}
+
 TEST_F(CheckFiles, MotorThatCannotDeliverFailsWithTheReason) {
   const std::vector<Outcome> found = outcomes(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_dcx19s_24v\"\n"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "check/computations.h"
-#include "input/document.h"
+#include "duty/file_kind.h"
 #include "motor/lint.h"
 #include "robot/robot_lint.h"
 
@@ -19,13 +19,15 @@ std::vector<LintFinding> findings_of(const Check& check) {
   // A robot's motor may lie anywhere, so that it is known is for `heatsoak lint` to say.
   const auto of_robot = [&take](const Robot& robot) { take(lint(robot, std::vector{robot.drive_motor})); };
   for (const std::filesystem::path& file : check.files) {
-    const Value root = read_toml(file);
-    if (root.find("wheels") || root.find("drive")) {
-      of_robot(read_robot(file));
-    } else if (root.find("shape")) {
-      read_duty(file);
-    } else {
-      take(lint(read_motor(file)));
+    switch (file_kind(file)) {
+      case FileKind::robot:
+        of_robot(read_robot(file));
+        break;
+      case FileKind::duty:
+        read_duty(file);
+        break;
+      case FileKind::motor:
+        take(lint(read_motor(file)));
     }
   }
   if (check.files.empty()) {

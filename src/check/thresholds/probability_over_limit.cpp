@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "base/quantity.h"
 #include "check/binomial_bound.h"
@@ -10,6 +11,21 @@ namespace heatsoak::thresholds {
 namespace {
 
 constexpr double kConfidence = 0.95;
+
+/// How many samples could keep the limit.
+std::string what_would_do(const Check& check, double over_share, double limit_share, int draws) {
+  const std::optional<long> needed = draws_needed(over_share, limit_share, kConfidence);
+  if (!needed) {
+    return "no number of samples keeps the limit with this share";
+  }
+  const bool is_drawn = draws != check.samples;
+  const long most_games = draw_count(*check.duty, std::numeric_limits<int>::max() / 2);
+  if (is_drawn && *needed > most_games) {
+    return fmt::format("{} games would be needed, and no more than {} are drawn: expected a limit that is less tight", *needed, most_games);
+  }
+  const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
+  return fmt::format("{} samples or more could keep {} % with this share", *needed * per_draw, significant(100.0 * limit_share, 3));
+}
 
 Measured measure(const Check& check, Computations& computations) {
   const MotorEvaluation& result = computations.feasible_evaluation(check);
@@ -27,11 +43,7 @@ Measured measure(const Check& check, Computations& computations) {
     if (limit.type->name != "probability_over_limit" || bound <= limit.value) {
       continue;
     }
-    const std::optional<long> needed = draws_needed(share, limit.value, kConfidence);
-    const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
-    detail += needed ? fmt::format("; {} samples or more could keep {} % with this share", *needed * per_draw,
-                                   significant(100.0 * limit.value, 3))
-                     : "; no number of samples keeps the limit with this share";
+    detail += "; " + what_would_do(check, share, limit.value, draws);
   }
   return {bound, 0.0, detail};
 }

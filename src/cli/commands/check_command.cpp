@@ -88,9 +88,9 @@ void refuse_shipped(const std::filesystem::path& path, const Options& options) {
 std::string conclusion(const std::vector<Outcome>& outcomes, const Options& options) {
   const auto failed = std::ranges::count(outcomes, false, &Outcome::passed);
   const auto changed = std::ranges::count_if(outcomes, [](const Outcome& each) { return !each.before.empty(); });
-  std::string text = failed == 0 ? fmt::format("{} hold\n", counted(outcomes.size(), "limit"))
-                                 : fmt::format("{} of {} not hold\n", failed == 1 ? "1" : fmt::format("{}", failed),
-                                               counted(outcomes.size(), "limit") + (failed == 1 ? " does" : " do"));
+  const std::string all = counted(outcomes.size(), "limit");
+  std::string text = failed == 0 ? all + (outcomes.size() == 1 ? " holds\n" : " hold\n")
+                                 : fmt::format("{} of {} {} not hold\n", failed, all, failed == 1 ? "does" : "do");
   if (options.is_update) {
     text += fmt::format("{} rewritten\n", counted(static_cast<std::size_t>(changed), "limit"));
   }
@@ -157,7 +157,8 @@ Command check_command() {
             add_quantity(
                 app, "--margin", options->margin_share,
                 {"margin", "", Range::between(0.0, 10.0),
-                 "of --update: room as a share of the value, of a temperature as a share of its rise over the air; 5 % unless given"});
+                 "of --update: room as a share of the value, of a temperature as a share of its rise over the air; 5 % unless given"})
+                ->type_name("SHARE");
             app.add_option("--threads", options->threads, "0: all cores; the result does not depend on it")
                 ->check(whole_number(1024))
                 ->capture_default_str();

@@ -10,7 +10,7 @@
 #include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/effect_topic.h"
-#include "cli/file_kind.h"
+#include "duty/file_kind.h"
 #include "cli/threshold_topic.h"
 #include "duty/duty.h"
 #include "duty/match/match_duty.h"

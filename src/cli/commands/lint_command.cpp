@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/file_kind.h"
+#include "duty/file_kind.h"
 #include "duty/duty.h"
 #include "input/document.h"
 #include "motor/lint.h"
