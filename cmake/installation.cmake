@@ -3,7 +3,7 @@
 include(GNUInstallDirs)
 
 set(HEATSOAK_SHARE "${CMAKE_INSTALL_DATADIR}/heatsoak")
-set(DATA_ONLY FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv" PATTERN "*.md")
+set(DATA_ONLY FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv" PATTERN "*.md" PATTERN "*.h")
 
 install(TARGETS heatsoak RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(TARGETS heatsoak_charts LIBRARY DESTINATION "${CMAKE_INSTALL_BINDIR}/../lib/heatsoak")

@@ -185,7 +185,10 @@ class CheckReader {
       const ThresholdType* type = find_threshold(key);
       if (!type) {
         limits->pass_over(key);
-        limits->problem(key, fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", did_you_mean(key, known)));
+        limits->problem(
+            key, key == "forecast_error"
+                     ? "this program was built without measured data and knows no logs; `./bootstrap build` adds it"
+                     : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", did_you_mean(key, known)));
         continue;
       }
       const std::optional<std::string> text = limits->text(key, Need::required);

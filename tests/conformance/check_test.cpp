@@ -35,7 +35,10 @@ std::string check_with(double peak_C, double margin_A) { return fmt::format(fmt:
 
 class CheckCommand : public testing::Test {
  protected:
-  CheckCommand() { options_.folder = folder_.path(); }
+  CheckCommand() {
+    options_.folder = folder_.path();
+    options_.environment = {"GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"};  // also where these tests run in a CI job
+  }
 
   [[nodiscard]] ProgramRun check(const std::string& text, const Words& more = {}) const {
     write(folder_.path() / "robot.check.toml", text);
@@ -93,7 +96,7 @@ TEST_F(CheckCommand, SummaryThatCannotBeWrittenIsNoFailure) {
 
 TEST_F(CheckCommand, WrongFilesAreExitTwoAllAtOnceAndLeaveNothing) {
   write(folder_.path() / "other.toml", "[[check]]\nname = \"x\"\nrobot = \"nobody\"\n[check.limits]\nlint_problems = \"at most 0\"\n");
-  options_.environment = {"GITHUB_ACTIONS=true"};
+  options_.environment = {"GITHUB_ACTIONS=true", "GITHUB_WORKSPACE"};
   const ProgramRun done = check("[[check]]\nname = \"y\"\n[check.limits]\nwinding_paek_p95 = \"at most 1 degC\"\n",
                                 {"other.toml", "missing.toml", "--junit", "check.xml", "--json", "-"});
   EXPECT_EQ(done.exit_code, 2);
