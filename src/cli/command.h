@@ -32,13 +32,15 @@ class Session {
   void say(std::string_view text) { text_ += text; }
   /// A file that the user asked for.
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
+  /// A file of the user's that this command has read and changes in place, because it was asked to.
+  void rewrite(const std::filesystem::path& path, std::string content) { rewritten_.push_back({path, std::move(content)}); }
   /// The same for content that is put out as it is made. Lives as long as the session.
   StreamedFile& stream(const std::filesystem::path& path) { return *streams_.emplace_back(std::make_unique<StreamedFile>(path)); }
   /// A folder for files, made with them or not at all.
   void make_folder(std::filesystem::path path) { folders_.push_back(std::move(path)); }
   /// Runs once all files are written, before the text: for the rename that completes a folder.
   void complete_with(std::function<void()> last) { last_ = std::move(last); }
-  /// The answer, for where --json asks for it; nothing without --json.
+  /// The answer, for where --json asks for it; nothing without --json. The program's version is added behind its schema.
   void answer(const nlohmann::ordered_json& json);
   void finish();
   /// Instead of everything else.
@@ -52,6 +54,7 @@ class Session {
   std::string json_text_;  ///< for stdout
   std::vector<std::filesystem::path> folders_;
   std::vector<OutputFile> files_;
+  std::vector<OutputFile> rewritten_;
   std::vector<std::unique_ptr<StreamedFile>> streams_;
   std::function<void()> last_;
 };

@@ -314,21 +314,6 @@ Chart picture(const MatchSimulation& wanted, const std::vector<Played>& all) {
 
 }  // namespace
 
-std::string not_driven(const DriveScore& score) {
-  constexpr double kRobot_m = 0.18;
-  constexpr double kMostLifted_share = 0.01;
-  if (score.battery_empty_s > 0.0) {
-    return fmt::format("the battery is empty after {:.0f} s; the rest of the match is a standstill", score.time_s - score.battery_empty_s);
-  }
-  if (score.lifted_s > kMostLifted_share * score.time_s) {
-    return fmt::format("wheels are off the ground for {:.0f} s: the robot tips", score.lifted_s);
-  }
-  return score.tracking_rms_m > kRobot_m
-             ? fmt::format("the robot is {:.1f} m (rms) off its plan, more than its own size: motors, driver or grip are too weak",
-                           score.tracking_rms_m)
-             : std::string();
-}
-
 std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
 
 ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {

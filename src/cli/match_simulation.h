@@ -26,9 +26,6 @@ struct MatchSimulation {
 
 std::string_view to_string(Planner planner);
 
-/// Why a match was not driven, whatever the motors' temperatures are; empty where it was.
-std::string not_driven(const DriveScore& score);
-
 ExitCode simulate_match(const MatchSimulation& wanted, Session& session);
 
 }  // namespace heatsoak

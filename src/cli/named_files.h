@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "cli/file_kind.h"
+#include "duty/file_kind.h"
 #include "duty/duty.h"
 #include "input/data_folders.h"
 #include "motor/motor.h"

@@ -10,12 +10,14 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
 
 #include "base/files.h"
+#include "check/check_text.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
 #include "cli/usage.h"
@@ -35,7 +37,7 @@ constexpr std::string_view kWithoutMeasured =
     "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
 
 /// Options that name what a verb writes.
-constexpr std::array kOutputs{"--out", "--plot", "--json"};
+constexpr std::array kOutputs{"--out", "--plot", "--json", "--junit"};
 
 /// An option that stands where a file should is none.
 bool is_output(std::string_view word) { return word == "-" || !word.starts_with('-'); }
@@ -108,9 +110,36 @@ Failure with_places(const Failure& failure) {
   return {failure.code(), failure.message(), std::move(all)};
 }
 
+/// So that a change of the numbers can be told from an upgrade of the program.
+nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
+  nlohmann::ordered_json result;
+  for (const auto& [key, value] : answer.items()) {
+    result[key] = value;
+    if (key == "schema" || key == "error") {
+      result["version"] = HEATSOAK_VERSION;
+    }
+  }
+  return result;
+}
+
+/// In GitHub Actions a mark at each line that is wrong.
+std::string annotations_of(const Failure& failure) {
+  const auto environment = [](const char* name) {
+    const char* const value = std::getenv(name);
+    return std::string(value ? value : "");
+  };
+  std::string text;
+  for (const Diagnostic& each : failure.diagnostics()) {
+    if (each.at.line > 0 && environment("GITHUB_ACTIONS") == "true") {
+      text += annotation(each.at, environment("GITHUB_WORKSPACE"), each.key.empty() ? "heatsoak" : each.key, each.message);
+    }
+  }
+  return text;
+}
+
 int fail(Session& session, const Failure& found) {
   const Failure failure = with_places(found);
-  put(stderr, std::string(failure.what()) + "\n");
+  put(stderr, std::string(failure.what()) + "\n" + annotations_of(failure));
   session.answer_failure(failure);
   return static_cast<int>(failure.code());
 }
@@ -189,7 +218,7 @@ void Session::answer(const nlohmann::ordered_json& json) {
   if (json_target_.empty()) {
     return;
   }
-  std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  std::string text = with_version(json).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (json_target_ == "-") {
     json_text_ = std::move(text);
   } else {
@@ -218,6 +247,7 @@ void Session::finish() {
     throw Failure(ExitCode::bad_input, "", std::move(read));
   }
   const std::vector<std::filesystem::path> made = made_folders(folders_);
+  files_.insert(files_.end(), rewritten_.begin(), rewritten_.end());
   try {
     write_files(files_, streams_);
     if (last_) {
@@ -239,6 +269,7 @@ void Session::answer_failure(const Failure& failure) {
   json_text_.clear();
   folders_.clear();
   files_.clear();
+  rewritten_.clear();
   streams_.clear();
   last_ = nullptr;
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();

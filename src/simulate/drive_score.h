@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "simulate/drive_script.h"
 
@@ -42,6 +43,9 @@ struct DriveScore {
   double lost_packets_share = 0.0;
   EnergyAccount energy;
 };
+
+/// Why a match was not driven, whatever the motors' temperatures are; empty where it was.
+std::string not_driven(const DriveScore& score);
 
 /// Takes every moment of a run.
 class DriveScorer {

@@ -52,6 +52,8 @@ const std::set<std::string, std::less<>> kPureNumbers{"count",
 /// The unit is not known where the name is written, but stands beside it.
 const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit
                                                      "value", "values", "low", "high", "absolute", "kUnknown", "slope", "intercept",
+                                                     // of a threshold: its ThresholdType has the unit
+                                                     "limit_value", "origin_value",
                                                      // of a distribution: the variable of that type has the unit
                                                      "nominal", "p05", "p50", "p95",
                                                      // of a log's column: the log has the unit

@@ -15,6 +15,7 @@
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
 #include "cli/verdict_words.h"
+#include "derate/committed_table.h"
 #include "derate/exporter.h"
 #include "motor/datasheet_network.h"
 
@@ -28,6 +29,7 @@ struct Options {
   std::string robot;
   std::string to = "c_header";
   std::string out;
+  std::string committed;  ///< table of --check
 };
 
 const ExporterType& exporter_named(const std::string& name) {
@@ -152,8 +154,53 @@ Json json(const Derating& derating, const Motor& motor, const Options& options) 
        {{"speed_rad_per_s", table.speed_rad_per_s}, {"stator_C", table.stator_C}, {"winding_C", table.winding_C}, {"current_A", current}}}};
 }
 
+std::string place_text(const TablePlace& place) {
+  return fmt::format("  at {:.0f} rad/s, stator {:.1f} °C, winding {:.1f} °C: {:.3f} A, a fresh table {:.3f} A\n", place.speed_rad_per_s,
+                     place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
+}
+
+Json json(const TablePlace& place) {
+  return {{"difference_A", rounded(place.difference_A, 4)}, {"committed_A", rounded(place.committed_A, 4)},
+          {"fresh_A", rounded(place.fresh_A, 4)},           {"speed_rad_per_s", rounded(place.speed_rad_per_s, 3)},
+          {"stator_C", rounded(place.stator_C, 2)},         {"winding_C", rounded(place.winding_C, 2)}};
+}
+
+/// What changed since the file was written, and whether it is still safe.
+ExitCode tell_comparison(const CommittedTable& committed, const Derating& derating, Session& session, Json& answer) {
+  const TableComparison found = compare(committed, derating);
+  const bool holds = found.excess.difference_A == 0.0 && found.differing_line == 0;
+  std::string text =
+      fmt::format("\n{}: {}\n", committed.file.string(), holds ? "still holds" : "no longer holds; write it anew with --out");
+  if (found.excess.difference_A > 0.0) {
+    text += fmt::format("unsafe: it allows up to {:.3f} A more than a fresh table\n", found.excess.difference_A) + place_text(found.excess);
+  }
+  if (found.differing_line > 0) {
+    text += fmt::format(
+        "unsafe: its observer is not the one of a fresh header, so the table means something else\n  line {}: {}\n  fresh:  {}\n",
+        found.differing_line, found.differing_text, found.differing_fresh_text);
+  }
+  if (found.lost.difference_A > 0.0) {
+    text += fmt::format("safe, but it allows up to {:.3f} A less than a fresh table\n", found.lost.difference_A) + place_text(found.lost);
+  }
+  if (!holds && !committed.version.empty() && committed.version != HEATSOAK_VERSION) {
+    text += fmt::format("it was written by heatsoak {}, this is {}: an upgrade may explain the difference\n", committed.version,
+                        HEATSOAK_VERSION);
+  }
+  session.say(text);
+  answer["check"] = {{"file", committed.file.string()},
+                     {"written_by", committed.version.empty() ? Json() : Json(committed.version)},
+                     {"holds", holds},
+                     {"excess", json(found.excess)},
+                     {"lost", json(found.lost)},
+                     {"differing_line", found.differing_line > 0 ? Json(found.differing_line) : Json()}};
+  return holds ? ExitCode::done : ExitCode::limit_exceeded;
+}
+
 ExitCode run(const Options& options, Session& session) {
   const ExporterType& exporter = exporter_named(options.to);
+  if (options.out.empty() && options.committed.empty()) {
+    throw Failure(ExitCode::bad_input, "expected --out FILE to write, or --check FILE to compare with");
+  }
   if (options.out == "-") {
     throw Failure(ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
   }
@@ -161,12 +208,20 @@ ExitCode run(const Options& options, Session& session) {
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
   const Motor motor = guarded_motor(options.guard, named);
+  // Before the work: a file that is no table needs none.
+  const std::optional<CommittedTable> committed =
+      options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
   const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
-  session.write(options.out, exporter.write(derating));
   session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
-              effects_under_conditions({&motor, 1}) + fmt::format("\n{}: {}\n", exporter.name, options.out));
-  session.answer(json(derating, motor, options));
-  return ExitCode::done;
+              effects_under_conditions({&motor, 1}));
+  if (!options.out.empty()) {
+    session.write(options.out, exporter.write(derating));
+    session.say(fmt::format("\n{}: {}\n", exporter.name, options.out));
+  }
+  Json answer = json(derating, motor, options);
+  const ExitCode code = committed ? tell_comparison(*committed, derating, session, answer) : ExitCode::done;
+  session.answer(answer);
+  return code;
 }
 
 }  // namespace
@@ -181,7 +236,11 @@ Command derate_command() {
         add_motor_options(app, options->guard);
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--to", options->to, "form (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
-        app.add_option("--out", options->out, "file to write")->required()->type_name("FILE");
+        app.add_option("--out", options->out, "file to write")->type_name("FILE");
+        app.add_option(
+               "--check", options->committed,
+               "a C header or CSV table that was written earlier, with the same options: exit 1 where it allows more than a fresh one")
+            ->type_name("FILE");
         add_quantity(app, "--period", options->guard.derate.period_s,
                      {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
         add_derate_options(app, options->guard.derate);

@@ -30,6 +30,9 @@
 namespace heatsoak::commands {
 namespace {
 
+/// From the verdict that is named on, exit 1: those behind it are worse. In the order of Verdict, without pass.
+const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
+
 struct Options {
   std::string robot;
   std::string duty;
@@ -41,6 +44,7 @@ struct Options {
   bool is_closed_loop = false;
   int games = 3;
   std::string guard = "shadow";
+  std::string fail_on = "fail";
 };
 
 /// A file whose name has commas is one motor.
@@ -257,6 +261,7 @@ ExitCode run(Options& options, Session& session) {
                                 {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
                                 {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
   answer["default_spreads"] = default_spreads_json(motors);
+  const Verdict least_bad = static_cast<Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -266,7 +271,7 @@ ExitCode run(Options& options, Session& session) {
       answer["motors"].back()["closed_loop"] = closed_loop_json(ranks[i], options.evaluate.seed);
       verdict = ranks[i].verdict;
     }
-    exceeded = exceeded || verdict == Verdict::fail || verdict == Verdict::infeasible;
+    exceeded = exceeded || verdict >= least_bad;
   }
   session.answer(answer);
   return exceeded ? ExitCode::limit_exceeded : ExitCode::done;
@@ -304,6 +309,10 @@ Command evaluate_command() {
             ->capture_default_str();
         app.add_option("--games", options->games, "of --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
+            ->capture_default_str();
+        app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: marginal, fail, infeasible")
+            ->check(CLI::IsMember(kFailOn))
+            ->type_name("VERDICT")
             ->capture_default_str();
         add_seed(app, options->evaluate.seed, "of the draws and games; same seed, same bytes");
         app.add_option("--threads", options->evaluate.threads, "0: all cores; the result does not depend on it")

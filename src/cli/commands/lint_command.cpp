@@ -6,42 +6,16 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/file_kind.h"
+#include "duty/file_kind.h"
 #include "duty/duty.h"
 #include "input/document.h"
 #include "motor/lint.h"
 #include "motor/motor.h"
-#include "robot/body.h"
 #include "robot/robot.h"
+#include "robot/robot_lint.h"
 
 namespace heatsoak::commands {
 namespace {
-
-/// What only the robot's use would find: whether it can stand and drive, and whether its motor is known.
-std::vector<LintFinding> lint(const Robot& robot, const DataFolders& folders) {
-  std::vector<LintFinding> findings;
-  const std::vector<std::string> known = ids_in(folders.motors);
-  if (robot.drive_motor != "none" && std::ranges::find(known, robot.drive_motor) == known.end()) {
-    findings.push_back({LintFinding::Level::warning, "motor",
-                        fmt::format("drive.motor: there is no motor '{}'{}", robot.drive_motor, did_you_mean(robot.drive_motor, known)),
-                        place_of(robot.file, "drive.motor")});
-  }
-  try {
-    MotorValues any;
-    any.rotor_inertia_kg_m2 = 0.0;
-    make_body(robot, any);
-  } catch (const Failure& failure) {
-    if (std::ranges::any_of(robot.figures, [](const auto& each) { return each.first.starts_with("body."); })) {
-      throw;
-    }
-    for (const Diagnostic& each : failure.diagnostics()) {
-      findings.push_back({LintFinding::Level::note, "motion",
-                          each.key + " " + each.message + "; a match needs it, a prescribed duty does not",
-                          place_of(robot.file, each.key)});
-    }
-  }
-  return findings;
-}
 
 /// Reads the file as what its keys say it is; the findings of a motor's figures are the lint proper.
 std::vector<LintFinding> look_into(const std::filesystem::path& file, const DataFolders& folders) {
@@ -50,7 +24,7 @@ std::vector<LintFinding> look_into(const std::filesystem::path& file, const Data
       read_duty(file);
       return {};
     case FileKind::robot:
-      return lint(read_robot(file), folders);
+      return lint(read_robot(file), ids_in(folders.motors));
     case FileKind::motor:
       break;
   }

@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/effect_topic.h"
+#include "cli/threshold_topic.h"
 #include "derate/exporter.h"
 #include "duty/duty.h"
 #include "duty/log_type.h"
@@ -56,6 +57,10 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
     for (const Topic& topic : all_topics()) {
       result.push_back({topic.id, topic.summary});
     }
+  } else if (what == "thresholds") {
+    for (const Topic& topic : threshold_topics()) {
+      result.push_back({topic.id, topic.summary});
+    }
   } else {
     for (const ShapeType& shape : all_shapes()) {
       result.push_back({std::string(shape.name), fmt::format("duty: {}", shape.summary)});
@@ -75,7 +80,8 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
 
 ExitCode run(const std::string& what, Session& session) {
   if (what.empty()) {
-    throw Failure(ExitCode::bad_input, "list what? Expected one of motors, robots, duties, effects, formats: `heatsoak list motors`");
+    throw Failure(ExitCode::bad_input,
+                  "list what? Expected one of motors, robots, duties, effects, formats, thresholds: `heatsoak list motors`");
   }
   const std::vector<Row> all = rows(what, session.folders());
   std::string text;
@@ -93,12 +99,12 @@ ExitCode run(const std::string& what, Session& session) {
 
 Command list() {
   return {.name = {},
-          .summary = "Lists what there is: motors, robots, duties, effects or formats",
+          .summary = "Lists what there is: motors, robots, duties, effects, formats or thresholds of checks",
           .example = "heatsoak list motors",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto what = std::make_shared<std::string>();
-            app.add_option("kind", *what, "motors, robots, duties, effects or formats")
-                ->check(CLI::IsMember({"motors", "robots", "duties", "effects", "formats"}));
+            app.add_option("kind", *what, "motors, robots, duties, effects, formats or thresholds")
+                ->check(CLI::IsMember({"motors", "robots", "duties", "effects", "formats", "thresholds"}));
             session.add_data_option(app);
             session.add_json_option(app);
             return [what, &session] { return run(*what, session); };

@@ -1,4 +1,4 @@
-#include "cli/file_kind.h"
+#include "duty/file_kind.h"
 
 #include <algorithm>
 

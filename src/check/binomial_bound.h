@@ -1,0 +1,16 @@
+// How large a probability may be that was seen in a few draws.
+#pragma once
+
+#include <optional>
+
+namespace heatsoak {
+
+/// Upper confidence bound of a probability, one-sided and exact (Clopper and Pearson 1934): were the probability higher, so few of `draws`
+/// would be over with a chance of less than 1 − `confidence`. `over_count` of them were; it need not be whole. 1 without draws.
+double upper_bound_share(double over_count, double draws_count, double confidence);
+
+/// The fewest draws with which a limit can be kept if the same share of them is over, "over_share" of each; nothing where no number
+/// suffices because the share itself is at the limit or above it.
+std::optional<long> draws_needed(double over_share, double limit_share, double confidence);
+
+}  // namespace heatsoak

@@ -1,0 +1,277 @@
+#include "check/check_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "check/limit.h"
+#include "input/reader.h"
+#include "motor/conditions.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// More would be a file that somebody generated; each has a robot and a duty that are read.
+constexpr std::size_t kMostChecks = 1000;
+
+class CheckReader {
+ public:
+  /// `told`: problems of other files that were reported before; several checks may name one file.
+  CheckReader(Reader table, fs::path folder, const DataFolders& folders, std::set<std::string>& told)
+      : table_(std::move(table)), folder_(std::move(folder)), folders_(folders), told_(told) {}
+
+  Check read() {
+    check_.name = table_.text("name", Need::required).value_or("");
+    check_.at = table_.at("name");
+    read_limits();
+    read_things();
+    read_numbers();
+    read_artefacts();
+    read_derate();
+    table_.finish();
+    compare_settings();
+    return std::move(check_);
+  }
+
+ private:
+  /// A path of the user's own begins at the check file, like every path in it.
+  [[nodiscard]] std::string from_here(const std::string& name) const {
+    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".toml");
+    return is_path ? (folder_ / name).lexically_normal().string() : name;
+  }
+
+  /// Problems of a name are reported where the check file has it, those inside of another file at their own place.
+  template <class Read>
+  auto named(std::string_view key, const Read& read) -> std::optional<decltype(read())> {
+    try {
+      return read();
+    } catch (const Failure& failure) {
+      if (failure.code() != ExitCode::bad_input) {
+        throw;
+      }
+      if (failure.diagnostics().empty()) {
+        table_.problem(key, failure.message());
+      }
+      for (Diagnostic each : failure.diagnostics()) {
+        if (each.at.line == 0 && !each.key.empty()) {
+          each.at = place_of(each.at.file, each.key);
+        }
+        if (told_.insert(to_string(each)).second) {
+          table_.add(each);
+        }
+      }
+      return std::nullopt;
+    }
+  }
+
+  std::optional<Motor> motor(std::string_view key, const std::string& name) {
+    return named(key, [&] { return under(read_motor(file_of(folders_.motors, "motor", from_here(name))), check_.conditions); });
+  }
+
+  void read_things() {
+    if (std::optional<Reader> stated = table_.table("conditions", Need::optional)) {
+      for (const std::string& key : stated->keys()) {
+        check_.conditions[key] = stated->text(key, Need::required).value_or("");
+      }
+    }
+    if (const auto name = table_.text("robot", Need::optional)) {
+      check_.robot = named("robot", [&] { return read_robot(file_of(folders_.robots, "robot", from_here(*name))); });
+    }
+    if (const auto name = table_.text("duty", Need::optional)) {
+      check_.duty = named("duty", [&] { return read_duty(file_of(folders_.duties, "duty", from_here(*name))); });
+    }
+    if (const auto name = table_.text("motor", Need::optional)) {
+      check_.motor = motor("motor", *name);
+    } else if (check_.robot && check_.robot->drive_motor != "none" && !has("motor") && is_used(Setting::motor)) {
+      check_.motor = motor("robot", check_.robot->drive_motor);
+    }
+    std::vector<std::string> others = table_.texts("against", Need::optional);
+    if (others == std::vector<std::string>{"all"}) {
+      others = ids_in(folders_.motors);
+    }
+    for (const std::string& name : others) {
+      std::optional<Motor> other = named("against", [&] { return read_motor(file_of(folders_.motors, "motor", from_here(name))); });
+      if (other && (!check_.motor || other->id != check_.motor->id)) {
+        check_.against.push_back(std::move(*other));
+      }
+    }
+  }
+
+  /// A number of things: whole, and written as text like every other number.
+  std::optional<double> whole(Reader& table, const ParameterSpec& spec) {
+    const std::optional<double> value = table.quantity(spec, Need::optional);
+    if (value && *value != std::floor(*value)) {
+      table.problem(spec.key, fmt::format("{} is no whole number", significant_text(*value)));
+      return std::nullopt;
+    }
+    return value;
+  }
+  static std::string significant_text(double value) { return fmt::format("{:.6g}", value); }
+
+  void read_numbers() {
+    constexpr double kMostExact = 9007199254740992.0;
+    if (const auto samples = whole(table_, {"samples", "", Range::between(1.0, 1e6), "draws of every declared tolerance"})) {
+      check_.samples = static_cast<int>(*samples);
+    }
+    if (const auto seed = whole(table_, {"seed", "", Range::between(0.0, kMostExact), "of draws and games"})) {
+      check_.seed = static_cast<std::uint64_t>(*seed);
+    }
+    if (const auto given_C =
+            table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "that time is counted above"}, Need::optional)) {
+      check_.temperature_C = *given_C;
+    }
+    if (const auto given_C = table_.quantity({"air", "degC", Range::between(-60.0, 200.0), "where a log has none"}, Need::optional)) {
+      check_.air_C = *given_C;
+    }
+  }
+
+  void read_artefacts() {
+    const auto path = [&](std::string_view key) {
+      const std::optional<std::string> name = table_.text(key, Need::optional);
+      return name ? (folder_ / *name).lexically_normal() : fs::path();
+    };
+    check_.table = path("table");
+    check_.mapping = path("map");
+    for (const std::string& name : table_.texts("files", Need::optional)) {
+      check_.files.push_back((folder_ / name).lexically_normal());
+    }
+    for (const std::string& name : table_.texts("logs", Need::optional)) {
+      check_.logs.push_back((folder_ / name).lexically_normal());
+    }
+  }
+
+  void read_derate() {
+    std::optional<Reader> table = table_.table("derate", Need::optional);
+    if (!table) {
+      return;
+    }
+    const auto take = [&](const ParameterSpec& spec, double& value) { value = table->quantity(spec, Need::optional).value_or(value); };
+    DerateOptions& options = check_.derate;
+    take({"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor"}, options.hottest_ambient_C);
+    take({"coldest", "degC", Range::between(-60.0, 120.0), "coldest air"}, options.coldest_ambient_C);
+    take({"approach", "s", Range::between(0.01, 100.0), "in which the winding may come near its limit"}, options.approach_s);
+    take({"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware"}, options.period_s);
+    take({"confidence", "", Range::between(0.5, 0.999), "share of motors that keep their limits"}, options.guarantee.confidence);
+    if (const auto samples = whole(*table, {"samples", "", Range::between(1.0, 1e5), "motors drawn to find the reserve"})) {
+      options.guarantee.samples = static_cast<int>(*samples);
+    }
+    if (const auto seed = whole(*table, {"seed", "", Range::between(0.0, 9007199254740992.0), "of the draws"})) {
+      options.guarantee.seed = static_cast<std::uint64_t>(*seed);
+    }
+    if (options.coldest_ambient_C >= options.hottest_ambient_C) {
+      table->problem("coldest", fmt::format("{:.4g} °C is not below the hottest air, {:.4g} °C", options.coldest_ambient_C,
+                                            options.hottest_ambient_C));
+    }
+    table->finish();
+  }
+
+  void read_limits() {
+    std::optional<Reader> limits = table_.table("limits", Need::required);
+    if (!limits) {
+      return;
+    }
+    std::vector<std::string> known;
+    for (const ThresholdType& type : all_thresholds()) {
+      known.emplace_back(type.name);
+    }
+    if (limits->keys().empty()) {
+      table_.problem("limits", fmt::format("is empty; expected one of {}", known.front()));
+    }
+    for (const std::string& key : limits->keys()) {
+      const ThresholdType* type = find_threshold(key);
+      if (!type) {
+        limits->pass_over(key);
+        limits->problem(
+            key, key == "forecast_error"
+                     ? "this program was built without measured data and knows no logs; `./bootstrap build` adds it"
+                     : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", did_you_mean(key, known)));
+        continue;
+      }
+      const std::optional<std::string> text = limits->text(key, Need::required);
+      if (!text) {
+        continue;
+      }
+      ParsedLimit parsed = parse_limit(*text, *type);
+      if (!parsed.problem.empty()) {
+        limits->problem(key, parsed.problem);
+        continue;
+      }
+      check_.limits.push_back({type, parsed.value, std::move(parsed.unit), *text, limits->at(key)});
+    }
+  }
+
+  [[nodiscard]] bool has(std::string_view key) const {
+    const std::vector<std::string> keys = table_.keys();
+    return std::ranges::find(keys, key) != keys.end();
+  }
+
+  [[nodiscard]] bool is_used(Setting setting) const {
+    return std::ranges::any_of(check_.limits, [&](const Limit& limit) {
+      return std::ranges::find(limit.type->needs, setting) != limit.type->needs.end() ||
+             std::ranges::find(limit.type->takes, setting) != limit.type->takes.end();
+    });
+  }
+
+  void compare_settings() {
+    std::set<Setting> missing;
+    for (const Limit& limit : check_.limits) {
+      for (const Setting setting : limit.type->needs) {
+        const SettingText& text = all_settings()[static_cast<std::size_t>(setting)];
+        const bool is_there = has(text.key) || (setting == Setting::motor && check_.robot && check_.robot->drive_motor != "none");
+        if (!is_there && missing.insert(setting).second) {
+          table_.problem("limits", fmt::format("{} needs '{}' in this check: {}", limit.type->name, text.key, text.meaning));
+        }
+      }
+    }
+    if (check_.limits.empty()) {
+      return;  // what they would have used is not known
+    }
+    for (std::size_t i = 0; i < all_settings().size(); ++i) {
+      const std::string_view key = all_settings()[i].key;
+      if (has(key) && !is_used(static_cast<Setting>(i))) {
+        table_.problem(key, "is used by none of this check's limits; take it out or move it to the check that needs it");
+      }
+    }
+  }
+
+  Reader table_;
+  fs::path folder_;
+  const DataFolders& folders_;
+  std::set<std::string>& told_;
+  Check check_;
+};
+
+}  // namespace
+
+CheckFile read_check_file(const fs::path& path, const DataFolders& folders) {
+  const Value root = read_toml(path);
+  Diagnostics diagnostics;
+  Reader top(root, "", diagnostics);
+  CheckFile file{path, {}};
+  std::vector<Reader> tables = top.tables("check");
+  if (tables.size() > kMostChecks) {
+    throw bad_input({path.string(), 1, 1}, "check", fmt::format("holds {} checks; expected at most {}", tables.size(), kMostChecks));
+  }
+  if (tables.empty() && diagnostics.empty()) {
+    diagnostics.add({path.string(), 1, 1}, "", "has no [[check]] table; `heatsoak check --help` shows an example");
+  }
+  std::set<std::string> names;
+  std::set<std::string> told;
+  for (Reader& each : tables) {
+    const Location at = each.at("name");
+    file.checks.push_back(CheckReader(std::move(each), path.parent_path(), folders, told).read());
+    const std::string& name = file.checks.back().name;
+    if (!name.empty() && !names.insert(name).second) {
+      diagnostics.add(at, "check.name", fmt::format("\"{}\" is the name of another check, too; give each its own", name));
+    }
+  }
+  top.finish();
+  diagnostics.throw_if_any();
+  return file;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,60 @@
+// A check file: [[check]] tables, each a robot, a duty, a motor … and limits on what is computed of them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "check/threshold.h"
+#include "derate/derating.h"
+#include "duty/duty.h"
+#include "input/data_folders.h"
+#include "motor/motor.h"
+#include "robot/robot.h"
+
+namespace heatsoak {
+
+struct Limit {
+  const ThresholdType* type = nullptr;
+  double value = 0.0;  ///< in the type's unit
+  std::string unit;    ///< as the file writes it
+  std::string text;    ///< of the file: "at most 150 degC"
+  Location at;         ///< of that text
+};
+
+struct Check {
+  std::string name;
+  Location at;
+  std::optional<Robot> robot;
+  std::optional<Duty> duty;
+  std::optional<Motor> motor;
+  std::vector<Motor> against;
+  std::map<std::string, std::string> conditions;
+  int samples = 500;
+  std::uint64_t seed = 1;
+  double temperature_C = std::numeric_limits<double>::quiet_NaN();
+  std::filesystem::path table;
+  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> logs;
+  std::filesystem::path mapping;
+  double air_C = std::numeric_limits<double>::quiet_NaN();  ///< where a log has none; NaN: not stated
+  DerateOptions derate;
+  std::vector<Limit> limits;
+};
+
+struct CheckFile {
+  std::filesystem::path path;
+  std::vector<Check> checks;
+};
+
+/// Reads the file and the robots, duties and motors that it names. Throws Failure (bad_input) with every problem of all of them: unknown
+/// keys with "did you mean", limits that are none, a setting that a limit needs and that is missing, a setting that no limit uses.
+/// Committed tables, logs and linted files are not opened here: where one is missing its threshold fails.
+CheckFile read_check_file(const std::filesystem::path& path, const DataFolders& folders);
+
+}  // namespace heatsoak

@@ -1,0 +1,286 @@
+#include "check/check_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "check/limit.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::size_t kWidth = 80;
+constexpr std::size_t kIndent = 6;
+
+/// Characters, not bytes.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// The blank behind which a line may go on: none between a number and its unit.
+std::size_t next_break(std::string_view text, std::size_t from) {
+  constexpr std::size_t kLongestUnit = 6;
+  std::size_t blank = text.find(' ', from);
+  while (blank != std::string_view::npos && blank > 0 && std::isdigit(static_cast<unsigned char>(text[blank - 1])) != 0) {
+    const std::size_t next = std::min(text.find(' ', blank + 1), text.size());
+    if (width_of(text.substr(blank + 1, next - blank - 1)) > kLongestUnit) {
+      break;
+    }
+    blank = next == text.size() ? std::string_view::npos : next;
+  }
+  return std::min(blank, text.size());
+}
+
+/// Broken at blanks, every line indented.
+std::string wrapped(std::string_view text) {
+  std::string result;
+  std::size_t column = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = next_break(text, at);
+    const std::string_view word = text.substr(at, end - at);
+    if (column > 0 && column + 1 + width_of(word) > kWidth) {
+      result += '\n';
+      column = 0;
+    }
+    if (column == 0) {
+      result += std::string(kIndent, ' ');
+      column = kIndent;
+    } else {
+      result += ' ';
+      ++column;
+    }
+    result += word;
+    column += width_of(word);
+    at = end + 1;
+  }
+  return result + "\n";
+}
+
+std::string margin_text(const Outcome& outcome) {
+  const double margin = outcome.margin_value();
+  if (!std::isfinite(margin)) {
+    return "–";
+  }
+  const ThresholdType& type = *outcome.limit.type;
+  if (type.unit == "degC") {
+    return fmt::format("{:+.1f} K", margin);
+  }
+  const std::string text = shown(margin, type);
+  return margin > 0.0 ? "+" + text : text;
+}
+
+std::string_view result_of(const Outcome& outcome) { return outcome.passed ? "ok" : outcome.is_evaluated ? "FAIL" : "ERROR"; }
+
+std::string limit_text(const Outcome& outcome) {
+  return fmt::format("{} {}", to_string(outcome.limit.type->direction), shown(outcome.limit.value, *outcome.limit.type));
+}
+
+/// Robot, duty and motor, as far as the check has them.
+std::string things_of(const Check& check) {
+  std::string text;
+  const auto add = [&text](const std::string& id) { text += (text.empty() ? "" : ", ") + id; };
+  if (check.motor) {
+    add(check.motor->id);
+  }
+  if (check.robot) {
+    add(check.robot->id);
+  }
+  if (check.duty) {
+    add(check.duty->id);
+  }
+  return text;
+}
+
+/// What could not be evaluated says only why.
+std::string explanation(const Outcome& outcome) {
+  return !outcome.is_evaluated                               ? outcome.reason
+         : outcome.passed || outcome.measured.detail.empty() ? outcome.measured.detail
+                                                             : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
+}
+
+/// What XML does not allow at all is left out; what is no UTF-8 becomes a question mark.
+std::string escaped_xml(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const std::size_t length = c < 0x80 ? 1 : c >= 0xF0 ? 4 : c >= 0xE0 ? 3 : c >= 0xC2 ? 2 : 0;
+    const std::string_view rest = text.substr(std::min(i + 1, text.size()), length > 0 ? length - 1 : 0);
+    const bool is_whole = length > 0 && c < 0xF5 && rest.size() == length - 1 &&
+                          std::ranges::all_of(rest, [](char each) { return (static_cast<unsigned char>(each) & 0xC0U) == 0x80U; });
+    if (c < 0x20 && c != '\n' && c != '\t') {
+      continue;
+    }
+    if (!is_whole) {
+      result += '?';
+      continue;
+    }
+    switch (text[i]) {
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '&':
+        result += "&amp;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      case '\n':
+        result += "&#10;";
+        break;
+      default:
+        result += text.substr(i, length);
+        i += length - 1;
+    }
+  }
+  return result;
+}
+
+struct Counts {
+  std::size_t all = 0;
+  std::size_t exceeded = 0;
+  std::size_t not_evaluated = 0;
+};
+
+Counts counts_of(std::span<const Outcome> outcomes) {
+  Counts counts;
+  for (const Outcome& each : outcomes) {
+    ++counts.all;
+    counts.exceeded += !each.passed && each.is_evaluated ? 1 : 0;
+    counts.not_evaluated += each.is_evaluated ? 0 : 1;
+  }
+  return counts;
+}
+
+/// The outcomes of one check follow each other.
+std::vector<std::span<const Outcome>> by_check(std::span<const Outcome> outcomes) {
+  std::vector<std::span<const Outcome>> groups;
+  for (std::size_t begin = 0; begin < outcomes.size();) {
+    std::size_t end = begin + 1;
+    while (end < outcomes.size() && outcomes[end].check == outcomes[begin].check) {
+      ++end;
+    }
+    groups.push_back(outcomes.subspan(begin, end - begin));
+    begin = end;
+  }
+  return groups;
+}
+
+std::string count_attributes(const Counts& counts) {
+  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\"", counts.all, counts.exceeded, counts.not_evaluated);
+}
+
+std::string test_case(const Outcome& each) {
+  std::string text = fmt::format("    <testcase name=\"{}\" classname=\"{}\" file=\"{}\" line=\"{}\"", each.limit.type->name,
+                                 escaped_xml(each.check->name), escaped_xml(each.limit.at.file), each.limit.at.line);
+  const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", shown(each.measured.value, *each.limit.type), limit_text(each),
+                                        margin_text(each), each.measured.detail);
+  if (each.passed) {
+    return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", escaped_xml(facts));
+  }
+  const std::string_view element = each.is_evaluated ? "failure" : "error";
+  return text + fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\">{3}:{4}: {5}</{0}>\n    </testcase>\n", element,
+                            each.is_evaluated ? "limit_exceeded" : "not_evaluated", escaped_xml(each.reason),
+                            escaped_xml(each.limit.at.file), each.limit.at.line, escaped_xml(facts));
+}
+
+/// Of text in a cell.
+std::string in_markdown(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    result += c == '|' ? "\\|" : c == '\n' ? "<br>" : c == '<' ? "&lt;" : std::string(1, c);
+  }
+  return result;
+}
+
+/// As GitHub reads the data of a command, and the properties in front of it.
+std::string escaped_command(std::string_view text, bool is_property) {
+  std::string result;
+  for (const char c : text) {
+    const bool is_special = c == '%' || c == '\r' || c == '\n' || (is_property && (c == ':' || c == ','));
+    result += is_special ? fmt::format("%{:02X}", static_cast<unsigned char>(c)) : std::string(1, c);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string table_text(std::span<const Outcome> outcomes) {
+  std::string text;
+  for (const std::span<const Outcome> group : by_check(outcomes)) {
+    const Check& check = *group.front().check;
+    const std::string things = things_of(check);
+    text += fmt::format("{}\n{}", check.name, things.empty() ? "" : wrapped(things));
+    for (const Outcome& each : group) {
+      const auto right = [](const std::string& cell, std::size_t width) {
+        return std::string(width - std::min(width, width_of(cell)), ' ') + cell;
+      };
+      text +=
+          fmt::format("{:5} {:24}{}  {} {}\n", result_of(each), each.limit.type->name,
+                      right(shown(each.measured.value, *each.limit.type), 11), right(limit_text(each), 20), right(margin_text(each), 12));
+      const std::string why = explanation(each);
+      text += why.empty() ? "" : wrapped(why);
+      text += each.before.empty() ? "" : wrapped(fmt::format("limit {} → {}", each.before, each.limit.text));
+    }
+    text += "\n";
+  }
+  const std::string header = fmt::format("{:5} {:24}{:>11}  {:>20} {:>12}\n", "", "threshold", "value", "limit", "margin");
+  return header + text;
+}
+
+std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version) {
+  std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"heatsoak check\" {}>\n",
+                                 count_attributes(counts_of(outcomes)));
+  for (const std::span<const Outcome> group : by_check(outcomes)) {
+    text +=
+        fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
+                    escaped_xml(group.front().check->name), count_attributes(counts_of(group)), escaped_xml(version));
+    for (const Outcome& each : group) {
+      text += test_case(each);
+    }
+    text += "  </testsuite>\n";
+  }
+  return text + "</testsuites>\n";
+}
+
+std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version) {
+  const Counts counts = counts_of(outcomes);
+  std::string text = fmt::format("### heatsoak check: {}\n\n",
+                                 counts.exceeded + counts.not_evaluated == 0
+                                     ? fmt::format("all {} limits hold", counts.all)
+                                     : fmt::format("{} of {} limits do not hold", counts.exceeded + counts.not_evaluated, counts.all));
+  text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
+  for (const Outcome& each : outcomes) {
+    text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed ? "✅" : "❌", in_markdown(each.check->name),
+                        each.limit.type->name, shown(each.measured.value, *each.limit.type), limit_text(each), margin_text(each),
+                        in_markdown(explanation(each)));
+  }
+  return text + fmt::format("\nheatsoak {}\n", version);
+}
+
+std::string annotation(const Location& at, const std::filesystem::path& workspace, std::string_view title, std::string_view message) {
+  std::filesystem::path file = at.file;
+  if (!workspace.empty()) {
+    std::error_code unreachable;
+    const std::filesystem::path inside = std::filesystem::proximate(file, workspace, unreachable);
+    file = unreachable || inside.string().starts_with("..") ? file : inside;
+  }
+  return fmt::format("::error file={},line={},col={},title={}::{}\n", escaped_command(file.string(), true), std::max(1, at.line),
+                     std::max(1, at.column), escaped_command(title, true), escaped_command(message, false));
+}
+
+std::string annotations(std::span<const Outcome> outcomes, const std::filesystem::path& workspace) {
+  std::string text;
+  for (const Outcome& each : outcomes) {
+    if (!each.passed) {
+      text += annotation(each.limit.at, workspace, fmt::format("{}: {}", each.check->name, each.limit.type->name), explanation(each));
+    }
+  }
+  return text;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,29 @@
+// The outcomes of checks for people and for the programs of a CI service.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "check/run_checks.h"
+
+namespace heatsoak {
+
+/// A table of at most 80 columns, but for names and paths that are longer: result, threshold, value, limit, margin, and what is behind it.
+std::string table_text(std::span<const Outcome> outcomes);
+
+/// One <testsuite> per check and one <testcase> per threshold, as GitHub, GitLab and Jenkins read it. A limit that is exceeded is a
+/// <failure>, a threshold that could not be evaluated an <error>.
+std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version);
+
+/// A Markdown table for $GITHUB_STEP_SUMMARY.
+std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version);
+
+/// Workflow commands of GitHub Actions, "::error file=…,line=…,col=…,title=…::…": one line for each threshold that fails. Paths below
+/// `workspace` are written relative to it, as GitHub wants them; it may be empty.
+std::string annotations(std::span<const Outcome> outcomes, const std::filesystem::path& workspace);
+/// One of them.
+std::string annotation(const Location& at, const std::filesystem::path& workspace, std::string_view title, std::string_view message);
+
+}  // namespace heatsoak

@@ -1,0 +1,117 @@
+#include "check/computations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "duty/match/match_duty.h"
+#include "motor/default_spread.h"
+#include "simulate/core_drive.h"
+#include "simulate/guarded_core.h"
+#include "simulate/match_run.h"
+
+namespace heatsoak {
+namespace {
+
+std::string key_of(const Motor& motor) {
+  std::string key = motor.file.string();
+  for (const auto& [name, value] : motor.assumed) {
+    key += fmt::format("|{}={}", name, value);
+  }
+  return key;
+}
+
+std::string key_of(const DerateOptions& options) {
+  const GuaranteeOptions& guarantee = options.guarantee;
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s, options.approach_s,
+                     guarantee.confidence, guarantee.samples, guarantee.seed);
+}
+
+std::string key_of_load(const Check& check) {
+  return fmt::format("{}|{}|{}", check.robot->file.string(), check.duty->file.string(), check.seed);
+}
+
+}  // namespace
+
+int Computations::independent_draws(const Check& check) {
+  const int games = draw_count(*check.duty, check.samples);
+  return games > 0 ? games : check.samples;
+}
+
+const std::vector<WheelDemand>& Computations::demand(const Check& check) {
+  return demands_.get(key_of_load(check), [&] { return check.duty->demand(*check.robot, check.seed); });
+}
+
+const std::vector<WheelDemand>& Computations::draws(const Check& check) {
+  const int count = draw_count(*check.duty, check.samples);
+  return draws_.get(fmt::format("{}|{}", key_of_load(check), count),
+                    [&] { return draw_demands(*check.duty, *check.robot, check.seed, count, threads_); });
+}
+
+const MotorEvaluation& Computations::evaluation(const Check& check, const Motor& motor) {
+  return evaluations_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(motor), check.samples), [&] {
+    require_sound(motor);
+    EvaluateOptions options;
+    options.samples = check.samples;
+    options.seed = check.seed;
+    options.threads = threads_;
+    options.draws = draws(check);
+    return evaluate(*check.robot, *check.duty, demand(check), std::span(&motor, 1), options).front();
+  });
+}
+
+const MotorEvaluation& Computations::feasible_evaluation(const Check& check) {
+  const MotorEvaluation& result = evaluation(check, *check.motor);
+  if (result.verdict == Verdict::infeasible) {
+    throw Failure(
+        ExitCode::limit_exceeded,
+        fmt::format("{} cannot deliver what the duty demands ({}): {:.0f} % of the demanded current at the worst moment, too little for "
+                    "{:.0f} % of the time",
+                    result.motor_id, to_string(result.limiting_factor), 100.0 * result.least_torque_share,
+                    100.0 * result.short_time_share));
+  }
+  return result;
+}
+
+const Derating& Computations::derating(const Check& check, const DerateOptions& options) {
+  return deratings_.get(fmt::format("{}|{}|{}", check.robot->file.string(), key_of(*check.motor), key_of(options)), [&] {
+    require_sound(*check.motor);
+    DerateOptions with_threads = options;
+    with_threads.guarantee.threads = threads_;
+    return derate(*check.motor, *check.robot, with_threads);
+  });
+}
+
+const GuardedDrive& Computations::guarded_drive(const Check& check) {
+  const auto match = std::dynamic_pointer_cast<const MatchDuty>(check.duty->shape_data);
+  if (!match) {
+    throw Failure(ExitCode::bad_input, fmt::format("the drive core drives matches; {} is {}. Expected a duty of the shape match",
+                                                   check.duty->id, check.duty->shape));
+  }
+  if (std::isnan(check.motor->nominal.rotor_inertia_kg_m2)) {
+    throw Failure(ExitCode::bad_input, fmt::format("{} has no rotor_inertia: without it no acceleration of a wheel can be calculated",
+                                                   check.motor->file.string()));
+  }
+  DerateOptions options = check.derate;
+  options.hottest_ambient_C = std::max(options.hottest_ambient_C, check.duty->ambient_C.value);
+  options.coldest_ambient_C = std::min(options.coldest_ambient_C, check.duty->ambient_C.value);
+  return drives_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(*check.motor), key_of(options)), [&] {
+    MotorGuard guard;
+    guard.derating.emplace(derating(check, options));
+    guard.guard.emplace(*guard.derating);
+    const GuardedCore core(*check.robot, *check.motor, GuardUse::shadow, guard);
+    const Game game = play_game(match->inputs(), *check.robot, check.seed);
+    MatchRunOptions run;
+    run.ambient_C = check.duty->ambient_C.value;
+    run.drive = real_drive(*check.robot, check.seed);
+    const DriveScore score = run_match(game, *check.robot, *check.motor, core.config(), run).score;
+    if (const std::string why = not_driven(score); !why.empty()) {
+      throw Failure(ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", why));
+    }
+    return GuardedDrive{score, score.time_s};
+  });
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,95 @@
+// What thresholds are compared with, computed once and kept for the next threshold that needs the same.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "check/check_file.h"
+#include "derate/derating.h"
+#include "select/evaluate.h"
+#include "simulate/drive_score.h"
+
+namespace heatsoak {
+
+/// Values by key. The first who asks for a key computes it, others wait; a Failure is kept and thrown to all of them.
+template <class T>
+class Kept {
+ public:
+  const T& get(const std::string& key, const std::function<T()>& make) {
+    Place* place = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      std::unique_ptr<Place>& own = places_[key];
+      if (!own) {
+        own = std::make_unique<Place>();
+      }
+      place = own.get();
+    }
+    const std::lock_guard lock(place->mutex);
+    if (!place->value && !place->failure) {
+      try {
+        place->value.emplace(make());
+      } catch (const Failure& failure) {
+        place->failure.emplace(failure);
+      }
+    }
+    if (place->failure) {
+      throw Failure(*place->failure);
+    }
+    return *place->value;
+  }
+
+ private:
+  struct Place {
+    std::mutex mutex;
+    std::optional<T> value;
+    std::optional<Failure> failure;
+  };
+  std::mutex mutex_;
+  std::map<std::string, std::unique_ptr<Place>> places_;
+};
+
+/// The match of a check as the drive core drives it, its thermal guard in shadow mode: it counts what it would limit and limits nothing.
+struct GuardedDrive {
+  DriveScore score;
+  double duration_s = 0.0;
+};
+
+/// Any thread may ask. A function needs what it reads of the check to be there (ThresholdType::needs), and throws Failure with the reason
+/// where it has no result.
+class Computations {
+ public:
+  explicit Computations(int threads) : threads_(threads) {}
+
+  /// `motor` alone on the check's robot and duty: `heatsoak evaluate` gives the same numbers with any other motors beside it.
+  const MotorEvaluation& evaluation(const Check& check, const Motor& motor);
+  /// Of the check's motor, where it delivers what is demanded; else throws, for the temperatures of a motor that does not are worth
+  /// nothing.
+  const MotorEvaluation& feasible_evaluation(const Check& check);
+  /// Draws that are independent of each other: games where the duty is drawn, else samples.
+  [[nodiscard]] static int independent_draws(const Check& check);
+  /// One demand per wheel.
+  const std::vector<WheelDemand>& demand(const Check& check);
+  const Derating& derating(const Check& check, const DerateOptions& options);
+  const GuardedDrive& guarded_drive(const Check& check);
+
+ private:
+  const std::vector<WheelDemand>& draws(const Check& check);
+
+  int threads_ = 0;
+  Kept<std::vector<WheelDemand>> demands_;
+  Kept<std::vector<WheelDemand>> draws_;
+  Kept<MotorEvaluation> evaluations_;
+  Kept<Derating> deratings_;
+  Kept<GuardedDrive> drives_;
+};
+
+}  // namespace heatsoak

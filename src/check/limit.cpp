@@ -1,0 +1,109 @@
+#include "check/limit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string expected(const ThresholdType& type) {
+  return fmt::format("expected {} and a value, such as \"{}\"", to_string(type.direction), type.example);
+}
+
+/// Where the unit begins behind the number.
+std::string unit_behind(std::string_view quantity) {
+  const std::size_t end = quantity.find_first_not_of("+-0123456789.eE \t");
+  // The "e" of a unit such as "eV" is none of a number's; units of this program do not begin with one.
+  return end == std::string_view::npos ? std::string() : std::string(trimmed(quantity.substr(end)));
+}
+
+/// UDUNITS adds an offset for temperatures, so the distance of two is taken.
+double in_unit(double value, std::string_view from, std::string_view to) { return convert(value, from, to.empty() ? from : to); }
+
+/// Three significant digits of a distance.
+double step_of(double distance) { return std::pow(10.0, std::floor(std::log10(std::max(std::abs(distance), 1e-9))) - 2.0); }
+
+/// Away from the value that has to keep the limit; 150 stays 150 where it is 150.0000000001.
+double rounded_away(double value, double step, bool is_up) {
+  constexpr double kRounding = 1e-9;
+  return is_up ? step * std::ceil(value / step - kRounding) : step * std::floor(value / step + kRounding);
+}
+
+}  // namespace
+
+std::string_view to_string(Bound direction) { return direction == Bound::at_most ? "at most" : "at least"; }
+
+bool keeps(Bound direction, double value, double limit_value) {
+  return direction == Bound::at_most ? value <= limit_value : value >= limit_value;
+}
+
+ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
+  const std::string_view all = trimmed(text);
+  const std::string_view words = to_string(type.direction);
+  const std::string_view others = to_string(type.direction == Bound::at_most ? Bound::at_least : Bound::at_most);
+  if (all.starts_with(others)) {
+    return {0.0, {}, fmt::format("\"{}\" limits the wrong side of {}; {}", all, type.name, expected(type))};
+  }
+  if (!all.starts_with(words) || (all.size() > words.size() && all[words.size()] != ' ')) {
+    return {0.0, {}, fmt::format("\"{}\" is no limit; {}", all, expected(type))};
+  }
+  const std::string_view quantity = trimmed(all.substr(words.size()));
+  const ParsedQuantity parsed = parse_quantity(quantity, type.unit);
+  if (!parsed.ok()) {
+    return {0.0, {}, fmt::format("{} (\"{}\")", parsed.problem, type.example)};
+  }
+  if (!type.range.contains(parsed.value)) {
+    return {0.0, {}, fmt::format("\"{}\" is out of range; expected {}", all, to_string(type.range, type.unit))};
+  }
+  return {parsed.value, unit_behind(quantity), {}};
+}
+
+std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share) {
+  const bool is_up = type.direction == Bound::at_most;
+  const auto text_of = [&](double value) {
+    return fmt::format("{} {}{}{}", to_string(type.direction), significant(value, 6), unit.empty() ? "" : " ", unit);
+  };
+  if (type.room == Room::none) {
+    return text_of(in_unit(measured.value, type.unit, unit));
+  }
+  const double room = margin_share * std::abs(measured.value - measured.origin_value);
+  const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
+  const double step = step_of(limit - in_unit(measured.origin_value, type.unit, unit));
+  const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();
+  const double rounded = rounded_away(limit, step, is_up);
+  std::string text = text_of(std::min(rounded, most));
+  // Without room the rounding of the last digit may have taken the value's own side.
+  if (!keeps(type.direction, measured.value, parse_limit(text, type).value)) {
+    text = text_of(std::min(is_up ? rounded + step : rounded - step, most));
+  }
+  return text;
+}
+
+std::string shown(double value, const ThresholdType& type) {
+  if (!std::isfinite(value)) {
+    return "–";
+  }
+  if (type.unit.empty() && type.is_share) {
+    return significant(100.0 * value, 3) + " %";
+  }
+  if (type.unit == "degC") {
+    return fmt::format("{:.1f} °C", value);
+  }
+  if (type.unit == "byte") {
+    return fmt::format("{:.1f} kB", 1e-3 * value);
+  }
+  const std::string number = std::abs(value) < 1e-12 ? "0" : significant(value, 3);
+  return type.unit.empty() ? number : fmt::format("{} {}", number, unit_for_display(type.unit));
+}
+
+}  // namespace heatsoak

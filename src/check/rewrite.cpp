@@ -1,0 +1,72 @@
+#include "check/rewrite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "check/limit.h"
+
+namespace heatsoak {
+namespace {
+
+/// Where a place in characters lies in bytes; npos where the text has no such place.
+std::size_t byte_at(std::string_view content, const Location& at) {
+  std::size_t i = 0;
+  for (int line = 1; line < at.line; ++line) {
+    i = content.find('\n', i);
+    if (i == std::string_view::npos) {
+      return i;
+    }
+    ++i;
+  }
+  for (int column = 1; column < at.column && i < content.size(); ++column) {
+    ++i;
+    while (i < content.size() && (static_cast<unsigned char>(content[i]) & 0xC0U) == 0x80U) {
+      ++i;
+    }
+  }
+  return i;
+}
+
+}  // namespace
+
+std::string with_new_limits(const std::string& content, std::span<Outcome> outcomes, double margin_share) {
+  std::map<std::size_t, std::pair<std::size_t, std::string>> by_place;  // begin -> length, text
+  for (Outcome& outcome : outcomes) {
+    if (!outcome.is_evaluated) {
+      continue;
+    }
+    Limit& limit = outcome.limit;
+    const std::string text = updated_limit(outcome.measured, *limit.type, limit.unit, margin_share);
+    const ParsedLimit parsed = parse_limit(text, *limit.type);
+    if (!parsed.problem.empty()) {
+      // A value that no limit may have, such as an error of the numerics: it stays as it is and fails.
+      outcome.reason = fmt::format("no limit can be set to {}: {}", shown(outcome.measured.value, *limit.type), parsed.problem);
+      continue;
+    }
+    if (text == limit.text) {
+      continue;
+    }
+    const std::size_t begin = byte_at(content, limit.at);
+    const bool is_plain = begin != std::string::npos && begin < content.size() && (content[begin] == '"' || content[begin] == '\'') &&
+                          content.compare(begin + 1, limit.text.size(), limit.text) == 0 &&
+                          content.compare(begin + 1 + limit.text.size(), 1, content, begin, 1) == 0;
+    if (!is_plain) {
+      throw bad_input(limit.at, std::string(limit.type->name),
+                      fmt::format("cannot be rewritten in place; write it as \"{}\" on one line without escapes", limit.text));
+    }
+    by_place[begin + 1] = {limit.text.size(), text};
+    outcome.before = limit.text;
+    limit.text = text;
+    limit.value = parsed.value;
+    judge(outcome);
+  }
+  std::string result = content;
+  for (auto each = by_place.rbegin(); each != by_place.rend(); ++each) {
+    result.replace(each->first, each->second.first, each->second.second);
+  }
+  return result;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,79 @@
+#include "check/run_checks.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include "base/parallel.h"
+#include "check/computations.h"
+#include "check/limit.h"
+
+namespace heatsoak {
+namespace {
+
+/// Diagnostics of a committed file in one line each.
+std::string reason_of(const Failure& failure) {
+  std::string text = failure.message();
+  for (const Diagnostic& each : failure.diagnostics()) {
+    const std::string place = each.at.line > 0 ? fmt::format("{}:{}:{}", each.at.file, each.at.line, each.at.column) : each.at.file;
+    text += fmt::format("{}{}{}{}{}{}", text.empty() ? "" : "; ", place, place.empty() ? "" : ": ", each.key, each.key.empty() ? "" : ": ",
+                        each.message);
+  }
+  return text;
+}
+
+void evaluate_one(Outcome& outcome, Computations& computations) {
+  outcome.measured.value = std::numeric_limits<double>::quiet_NaN();
+  try {
+    outcome.measured = outcome.limit.type->measure(*outcome.check, computations);
+    outcome.is_evaluated = std::isfinite(outcome.measured.value);
+    outcome.reason = outcome.is_evaluated ? "" : "the calculation gave no number";
+  } catch (const Failure& failure) {
+    outcome.reason = reason_of(failure);
+  } catch (const std::bad_alloc&) {
+    outcome.reason = "out of memory";
+  }
+  judge(outcome);
+}
+
+}  // namespace
+
+double Outcome::margin_value() const {
+  return limit.type->direction == Bound::at_most ? limit.value - measured.value : measured.value - limit.value;
+}
+
+void judge(Outcome& outcome) {
+  if (!outcome.is_evaluated) {
+    outcome.passed = false;
+    return;
+  }
+  const ThresholdType& type = *outcome.limit.type;
+  outcome.passed = keeps(type.direction, outcome.measured.value, outcome.limit.value);
+  outcome.reason = outcome.passed ? std::string()
+                                  : fmt::format("{} is {} the limit of {}", shown(outcome.measured.value, type),
+                                                type.direction == Bound::at_most ? "above" : "below", shown(outcome.limit.value, type));
+}
+
+std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Progress& progress) {
+  std::vector<Outcome> outcomes;
+  std::vector<std::pair<std::size_t, std::size_t>> ranges;
+  for (const Check& check : file.checks) {
+    const std::size_t first = outcomes.size();
+    for (const Limit& limit : check.limits) {
+      outcomes.push_back({.check = &check, .limit = limit, .measured = {}, .reason = {}});
+    }
+    ranges.emplace_back(first, outcomes.size());
+  }
+  Computations computations(threads);
+  // Thresholds of one check mostly need the same results, so each check is one job.
+  in_parallel(ranges.size(), threads, 0, ranges.size(), progress, [&](std::size_t job) {
+    for (std::size_t i = ranges[job].first; i < ranges[job].second; ++i) {
+      evaluate_one(outcomes[i], computations);
+    }
+  });
+  return outcomes;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,47 @@
+#include "check/threshold.h"
+
+#include <algorithm>
+#include <array>
+
+#include "check/thresholds_registry.h"
+
+namespace heatsoak {
+
+std::span<const SettingText> all_settings() {
+  static constexpr std::array<SettingText, 14> kSettings{{
+      {"robot", "id or file"},
+      {"duty", "id or file"},
+      {"motor", "id or file; the robot's own unless given"},
+      {"against", "other motors that it is ranked with: ids or files, or all"},
+      {"conditions", "what is known to hold of the motor's effects, { cooling = \"fan\" }"},
+      {"samples", "draws of every declared tolerance, as of `evaluate`; 500 unless given"},
+      {"seed", "of draws and games; 1 unless given"},
+      {"temperature", "the one that time_above counts from"},
+      {"table", "a committed derating table: C header or CSV of `derate`; its path begins at the check file"},
+      {"files", "what is linted: files, beginning at the check file; the check's motor, robot and duty unless given"},
+      {"logs", "measured logs; their paths begin at the check file"},
+      {"map", "mapping of the logs' columns; LOG.map.toml beside a log is found by itself"},
+      {"air", "temperature of the air where a log has none"},
+      {"derate", "options of `derate`: ambient, coldest, approach, period, confidence, samples, seed; its own values unless given"},
+  }};
+  return kSettings;
+}
+
+const std::vector<ThresholdType>& all_thresholds() {
+  static const std::vector<ThresholdType> kAll = [] {
+    std::vector<ThresholdType> all;
+    for (const auto& [name, make] : thresholds::registry) {
+      all.push_back(make());
+      all.back().name = name;
+    }
+    return all;
+  }();
+  return kAll;
+}
+
+const ThresholdType* find_threshold(std::string_view name) {
+  const auto found = std::ranges::find(all_thresholds(), name, &ThresholdType::name);
+  return found == all_thresholds().end() ? nullptr : &*found;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,59 @@
+// What a check can put a limit on: one file in src/check/thresholds each.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/parameter.h"
+
+namespace heatsoak {
+
+class Computations;
+struct Check;
+
+enum class Bound { at_most, at_least };
+
+/// How --update leaves room between the value and its new limit.
+enum class Room {
+  share,  ///< a share of the value's distance to its origin, 5 % unless --margin says otherwise
+  none    ///< the limit is the value
+};
+
+/// Keys of a [[check]] table beside its name and limits.
+enum class Setting { robot, duty, motor, against, conditions, samples, seed, temperature, table, files, logs, mapping, air, derate };
+struct SettingText {
+  std::string_view key;
+  std::string_view meaning;
+};
+/// In the order of Setting.
+std::span<const SettingText> all_settings();
+
+struct Measured {
+  double value = 0.0;         ///< in the unit of the threshold
+  double origin_value = 0.0;  ///< from which a margin is counted, in the same unit: of a temperature the air
+  std::string detail = {};    ///< one line for people: what the value rests on; may be empty
+};
+
+struct ThresholdType {
+  std::string_view name;  ///< the file's name; set by all_thresholds()
+  std::string_view unit;  ///< UDUNITS text; "" is a pure number
+  bool is_share = false;  ///< a pure number that people read in per cent
+  Bound direction = Bound::at_most;
+  Range range = {};          ///< of limits
+  Room room = Room::share;   ///< of --update
+  std::string_view meaning;  ///< what is compared, exactly
+  std::string_view example;  ///< a limit that can be pasted
+  std::vector<Setting> needs;
+  std::vector<Setting> takes = {};  ///< others that change the value
+  /// Throws Failure with the reason where the value cannot be determined.
+  Measured (*measure)(const Check& check, Computations& computations) = nullptr;
+};
+
+/// Sorted by name; they live as long as the program.
+const std::vector<ThresholdType>& all_thresholds();
+/// Null where there is none of that name.
+const ThresholdType* find_threshold(std::string_view name);
+
+}  // namespace heatsoak

@@ -1,0 +1,22 @@
+// What the thresholds on a committed derating table share.
+#pragma once
+
+#include <fmt/format.h>
+
+#include "check/computations.h"
+#include "derate/committed_table.h"
+
+namespace heatsoak::thresholds {
+
+inline TableComparison compared(const Check& check, Computations& computations) {
+  const CommittedTable committed = read_committed_table(check.table);  // first: a missing file needs no minute of work
+  return compare(committed, computations.derating(check, check.derate));
+}
+
+inline std::string place_text(const TablePlace& place) {
+  return place.difference_A == 0.0 ? std::string()
+                                   : fmt::format("at {:.0f} rad/s, stator {:.0f} °C, winding {:.0f} °C: {:.3f} A, a fresh table {:.3f} A",
+                                                 place.speed_rad_per_s, place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
+}
+
+}  // namespace heatsoak::thresholds

@@ -1,0 +1,37 @@
+#include <fmt/format.h>
+
+#include "check/computations.h"
+#include "firmware/core_files.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+Measured measure(const Check& check, Computations& computations) {
+  CoreOptions core;
+  DerateOptions options = check.derate;
+  options.period_s = guard_period_s(core.period_s);
+  const Derating& derating = computations.derating(check, options);
+  const CoreFolder folder = core_files(*check.robot, *check.motor, core, derating, "heatsoak 0.0.0");
+  double size_byte = 0.0;
+  for (const CoreFile& file : folder.files) {
+    size_byte += static_cast<double>(file.content.size());
+  }
+  return {size_byte, 0.0, fmt::format("{} files, guard table of {} currents", folder.files.size(), derating.table.current_A.size())};
+}
+
+}  // namespace
+
+ThresholdType core_size() {
+  return {.name = {},
+          .unit = "byte",
+          .range = Range::non_negative(),
+          .meaning =
+              "size of the drive core that `generate core` writes for robot and motor: all its source files together, before any "
+              "compiler",
+          .example = "at most 400 kbyte",
+          .needs = {Setting::robot, Setting::motor},
+          .takes = {Setting::conditions, Setting::derate},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include "check/computations.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+Measured measure(const Check& check, Computations& computations) {
+  const MotorEvaluation& result = computations.feasible_evaluation(check);
+  if (!result.margin_A) {
+    throw Failure(ExitCode::cannot_answer, "no factor on the load brings the motor to its limit, so there is no margin to compare");
+  }
+  return {*result.margin_A, 0.0, fmt::format("the duty takes {:.2f} A rms, nominal motor", result.current_rms_A)};
+}
+
+}  // namespace
+
+ThresholdType current_margin() {
+  return {.name = {},
+          .unit = "A",
+          .direction = Bound::at_least,
+          .meaning =
+              "how much more rms current the nominal motor bears at the same speeds until winding or stator is at its limit, as far as "
+              "voltage and driver let it through; negative where the limit is exceeded",
+          .example = "at least 0.5 A",
+          .needs = {Setting::robot, Setting::duty, Setting::motor},
+          .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

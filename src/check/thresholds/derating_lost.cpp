@@ -1,0 +1,21 @@
+#include "check/thresholds/committed.h"
+
+namespace heatsoak::thresholds {
+
+ThresholdType derating_lost() {
+  return {.name = {},
+          .unit = "A",
+          .range = Range::non_negative(),
+          .meaning =
+              "how much less current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
+              "speed and temperatures where that is most: safe, but given away",
+          .example = "at most 0.5 A",
+          .needs = {Setting::robot, Setting::motor, Setting::table},
+          .takes = {Setting::conditions, Setting::derate},
+          .measure = [](const Check& check, Computations& computations) -> Measured {
+            const TablePlace lost = compared(check, computations).lost;
+            return {lost.difference_A, 0.0, place_text(lost)};
+          }};
+}
+
+}  // namespace heatsoak::thresholds

@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include "check/computations.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+Measured measure(const Check& check, Computations& computations) {
+  const GuardedDrive& drive = computations.guarded_drive(check);
+  return {drive.score.guard_limited_s / drive.duration_s, 0.0,
+          fmt::format("{:.1f} of {:.0f} s; its observer reached {:.1f} °C, the winding {:.1f} °C", drive.score.guard_limited_s,
+                      drive.duration_s, drive.score.guard_winding_peak_C, drive.score.winding_peak_C)};
+}
+
+}  // namespace
+
+ThresholdType guard_active_share() {
+  return {.name = {},
+          .unit = "",
+          .is_share = true,
+          .range = Range::between(0.0, 1.0),
+          .meaning =
+              "share of a match in which the motor's thermal guard would limit any wheel: one game of 'seed', driven by the drive core in "
+              "a closed loop with real sensing, the guard in shadow mode. \"at most 0 %\": the guard never engages",
+          .example = "at most 0 %",
+          .needs = {Setting::robot, Setting::duty, Setting::motor},
+          .takes = {Setting::seed, Setting::conditions, Setting::derate},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

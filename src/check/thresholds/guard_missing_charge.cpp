@@ -1,0 +1,29 @@
+#include <fmt/format.h>
+
+#include "check/computations.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+Measured measure(const Check& check, Computations& computations) {
+  const GuardedDrive& drive = computations.guarded_drive(check);
+  return {drive.score.guard_missing_A_s, 0.0,
+          fmt::format("the guard would limit for {:.1f} of {:.0f} s", drive.score.guard_limited_s, drive.duration_s)};
+}
+
+}  // namespace
+
+ThresholdType guard_missing_charge() {
+  return {.name = {},
+          .unit = "A s",
+          .range = Range::non_negative(),
+          .meaning =
+              "current over time that the thermal guard would take away in a match, all wheels together; the same drive as of "
+              "guard_active_share",
+          .example = "at most 0 A s",
+          .needs = {Setting::robot, Setting::duty, Setting::motor},
+          .takes = {Setting::seed, Setting::conditions, Setting::derate},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

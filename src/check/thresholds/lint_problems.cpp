@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/computations.h"
+#include "duty/file_kind.h"
+#include "motor/lint.h"
+#include "robot/robot_lint.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+bool is_problem(const LintFinding& finding) { return finding.level != LintFinding::Level::note; }
+
+/// The check's own things, or the files that it names, as what their keys say they are.
+std::vector<LintFinding> findings_of(const Check& check) {
+  std::vector<LintFinding> all;
+  const auto take = [&all](std::vector<LintFinding> findings) { std::ranges::move(findings, std::back_inserter(all)); };
+  // A robot's motor may lie anywhere, so that it is known is for `heatsoak lint` to say.
+  const auto of_robot = [&take](const Robot& robot) { take(lint(robot, std::vector{robot.drive_motor})); };
+  for (const std::filesystem::path& file : check.files) {
+    switch (file_kind(file)) {
+      case FileKind::robot:
+        of_robot(read_robot(file));
+        break;
+      case FileKind::duty:
+        read_duty(file);
+        break;
+      case FileKind::motor:
+        take(lint(read_motor(file)));
+    }
+  }
+  if (check.files.empty()) {
+    if (check.motor) {
+      take(lint(*check.motor));
+    }
+    if (check.robot) {
+      of_robot(*check.robot);
+    }
+  }
+  return all;
+}
+
+Measured measure(const Check& check, Computations& /*computations*/) {
+  const std::vector<LintFinding> all = findings_of(check);
+  const auto count = std::ranges::count_if(all, is_problem);
+  const auto first = std::ranges::find_if(all, is_problem);
+  return {static_cast<double>(count), 0.0,
+          first == all.end()
+              ? std::string()
+              : fmt::format("{}:{}:{}: {}: {}", first->at.file, first->at.line, first->at.column, first->check, first->message)};
+}
+
+}  // namespace
+
+ThresholdType lint_problems() {
+  return {.name = {},
+          .unit = "",
+          .range = Range::non_negative(),
+          .room = Room::none,
+          .meaning = "errors and warnings of `lint`, notes apart: of 'files', or of the check's own motor, robot and duty",
+          .example = "at most 0",
+          .needs = {},
+          .takes = {Setting::robot, Setting::duty, Setting::motor, Setting::conditions, Setting::files},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/quantity.h"
+#include "check/binomial_bound.h"
+#include "check/computations.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+constexpr double kConfidence = 0.95;
+
+/// How many samples could keep the limit.
+std::string what_would_do(const Check& check, double over_share, double limit_share, int draws) {
+  const std::optional<long> needed = draws_needed(over_share, limit_share, kConfidence);
+  if (!needed) {
+    return "no number of samples keeps the limit with this share";
+  }
+  const bool is_drawn = draws != check.samples;
+  const long most_games = draw_count(*check.duty, std::numeric_limits<int>::max() / 2);
+  if (is_drawn && *needed > most_games) {
+    return fmt::format("{} games would be needed, and no more than {} are drawn: expected a limit that is less tight", *needed, most_games);
+  }
+  const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
+  return fmt::format("{} samples or more could keep {} % with this share", *needed * per_draw, significant(100.0 * limit_share, 3));
+}
+
+Measured measure(const Check& check, Computations& computations) {
+  const MotorEvaluation& result = computations.feasible_evaluation(check);
+  const int draws = Computations::independent_draws(check);
+  const bool is_drawn = draws != check.samples;
+  const double share = result.probability_over_limit;
+  double bound = upper_bound_share(share * draws, draws, kConfidence);
+  std::string detail = fmt::format("{} of {} samples over, bound of {:.0f} % confidence", std::lround(share * check.samples), check.samples,
+                                   100.0 * kConfidence);
+  if (is_drawn) {
+    // Samples of one game share its load: they count as one draw, which errs on the safe side.
+    detail += fmt::format(" by {} games", draws);
+  }
+  for (const Limit& limit : check.limits) {
+    if (limit.type->name != "probability_over_limit" || bound <= limit.value) {
+      continue;
+    }
+    detail += "; " + what_would_do(check, share, limit.value, draws);
+  }
+  return {bound, 0.0, detail};
+}
+
+}  // namespace
+
+ThresholdType probability_over_limit() {
+  return {.name = {},
+          .unit = "",
+          .is_share = true,
+          .range = Range::between(0.0, 1.0),
+          .meaning =
+              "probability that winding or stator exceeds its limit: the exact upper confidence bound (Clopper and Pearson, 95 %, "
+              "one-sided) of the share of samples that do, so that few samples cannot keep a tight limit. Where the duty is drawn, as "
+              "a match is, its draws count in place of the samples",
+          .example = "at most 5 %",
+          .needs = {Setting::robot, Setting::duty, Setting::motor},
+          .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "check/computations.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+Measured measure(const Check& check, Computations& computations) {
+  const MotorEvaluation& own = computations.feasible_evaluation(check);
+  const auto order = [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); };
+  std::string better;
+  int place = 1;
+  for (const Motor& motor : check.against) {
+    const MotorEvaluation& other = computations.evaluation(check, motor);
+    if (order(other) < order(own)) {
+      ++place;
+      better += fmt::format("{}{}", better.empty() ? "" : ", ", other.motor_id);
+    }
+  }
+  return {static_cast<double>(place), 0.0,
+          fmt::format("of {} motors{}{}", check.against.size() + 1, better.empty() ? "" : "; before it: ", better)};
+}
+
+}  // namespace
+
+ThresholdType rank() {
+  return {.name = {},
+          .unit = "",
+          .range = Range::between(1.0, 1e4),
+          .room = Room::none,
+          .meaning =
+              "place of the motor among itself and those of 'against' in the order of `evaluate`: verdict, then the nominal margin to "
+              "the nearer limit. \"at most 1\": it stays first",
+          .example = "at most 1",
+          .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::against},
+          .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/computations.h"
+#include "select/trace.h"
+
+namespace heatsoak::thresholds {
+namespace {
+
+/// Time in which a straight line from `from_C` to `to_C` is above the temperature.
+double above_s(double from_C, double to_C, double limit_C, double duration_s) {
+  if (from_C > limit_C && to_C > limit_C) {
+    return duration_s;
+  }
+  if (from_C <= limit_C && to_C <= limit_C) {
+    return 0.0;
+  }
+  return duration_s * (std::max(from_C, to_C) - limit_C) / std::abs(to_C - from_C);
+}
+
+Measured measure(const Check& check, Computations& computations) {
+  const MotorEvaluation& result = computations.feasible_evaluation(check);
+  const std::vector<WheelDemand>& wheels = computations.demand(check);
+  const WheelDemand& hottest = *std::ranges::find(wheels, result.wheel, &WheelDemand::wheel);
+  constexpr double kEvery_s = 1.0;
+  const Trace trace = run_trace(*check.robot, *check.duty, hottest, *check.motor, kEvery_s);
+  double sum_s = 0.0;
+  for (std::size_t i = 1; i < trace.rows.size(); ++i) {
+    const TraceRow& before = trace.rows[i - 1];
+    const TraceRow& row = trace.rows[i];
+    sum_s += above_s(before.winding_C, row.winding_C, check.temperature_C, row.time_s - before.time_s);
+  }
+  return {sum_s, 0.0,
+          fmt::format("counted above {:.0f} °C over {:.0f} s; the nominal winding reaches {:.1f} °C", check.temperature_C,
+                      hottest.duration_s(), result.winding_peak_C.nominal)};
+}
+
+}  // namespace
+
+ThresholdType time_above() {
+  return {.name = {},
+          .unit = "s",
+          .range = Range::non_negative(),
+          .meaning = "time in which the winding of the hottest wheel is above 'temperature', of the nominal motor over the whole duty",
+          .example = "at most 60 s",
+          .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::temperature},
+          .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .measure = measure};
+}
+
+}  // namespace heatsoak::thresholds

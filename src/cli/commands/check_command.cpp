@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "check/check_text.h"
+#include "check/limit.h"
+#include "check/rewrite.h"
+#include "check/run_checks.h"
+#include "cli/command.h"
+#include "cli/quantity_option.h"
+
+namespace heatsoak::commands {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLargestFile_bytes = 1'000'000;
+
+struct Options {
+  std::vector<std::string> files;
+  std::string junit;
+  bool is_update = false;
+  double margin_share = 0.05;
+  int threads = 0;
+};
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value ? value : "";
+}
+
+Json json(const Outcome& each) {
+  const ThresholdType& type = *each.limit.type;
+  return {{"name", fmt::format("{}: {}", each.check->name, type.name)},
+          {"check", each.check->name},
+          {"threshold", type.name},
+          {"value", rounded(each.measured.value, 6)},
+          {"direction", type.direction == Bound::at_most ? "at_most" : "at_least"},
+          {"limit", rounded(each.limit.value, 6)},
+          {"margin", rounded(each.margin_value(), 6)},
+          {"unit", type.unit},
+          {"passed", each.passed},
+          {"evaluated", each.is_evaluated},
+          {"reason", each.reason},
+          {"detail", each.measured.detail},
+          {"limit_before", each.before.empty() ? Json() : Json(each.before)},
+          {"file", each.limit.at.file},
+          {"line", each.limit.at.line},
+          {"column", each.limit.at.column}};
+}
+
+/// All files are read, and all their problems are reported at once.
+std::vector<CheckFile> read_files(const std::vector<std::string>& names, const DataFolders& folders) {
+  std::vector<CheckFile> files;
+  std::string message;
+  std::vector<Diagnostic> problems;
+  for (const std::string& name : names) {
+    try {
+      // The one of the help came with the program.
+      files.push_back(read_check_file(log_named(folders, name), folders));
+    } catch (const Failure& failure) {
+      if (failure.code() != ExitCode::bad_input) {
+        throw;
+      }
+      message += failure.message();
+      problems.insert(problems.end(), failure.diagnostics().begin(), failure.diagnostics().end());
+    }
+  }
+  if (!problems.empty() || !message.empty()) {
+    throw Failure(ExitCode::bad_input, std::move(message), std::move(problems));
+  }
+  return files;
+}
+
+/// A file that was found beside the program is not the user's.
+void refuse_shipped(const std::filesystem::path& path, const Options& options) {
+  if (std::ranges::find(options.files, path.string()) == options.files.end()) {
+    throw Failure(ExitCode::bad_input, fmt::format("{} came with the program and is not rewritten; copy it first", path.string()));
+  }
+}
+
+std::string conclusion(const std::vector<Outcome>& outcomes, const Options& options) {
+  const auto failed = std::ranges::count(outcomes, false, &Outcome::passed);
+  const auto changed = std::ranges::count_if(outcomes, [](const Outcome& each) { return !each.before.empty(); });
+  const std::string all = counted(outcomes.size(), "limit");
+  std::string text = failed == 0 ? all + (outcomes.size() == 1 ? " holds\n" : " hold\n")
+                                 : fmt::format("{} of {} {} not hold\n", failed, all, failed == 1 ? "does" : "do");
+  if (options.is_update) {
+    text += fmt::format("{} rewritten\n", counted(static_cast<std::size_t>(changed), "limit"));
+  }
+  return text;
+}
+
+/// GitHub Actions: a line at each limit that does not hold, and a table on the page of the run. A page that cannot be written is no reason
+/// to fail.
+void tell_github(const std::vector<Outcome>& outcomes, Session& session) {
+  if (environment("GITHUB_ACTIONS") == "true") {
+    session.say(annotations(outcomes, environment("GITHUB_WORKSPACE")));
+  }
+  if (const std::string page = environment("GITHUB_STEP_SUMMARY"); !page.empty()) {
+    session.complete_with([page, text = summary_markdown(outcomes, HEATSOAK_VERSION)] {
+      std::ofstream file(page, std::ios::app | std::ios::binary);
+      if (!(file << text).flush()) {
+        fmt::print(stderr, "warning: the summary of the run is missing: {} cannot be written\n", page);
+      }
+    });
+  }
+}
+
+ExitCode run(const Options& options, Session& session) {
+  const std::vector<CheckFile> files = read_files(options.files, session.folders());
+  std::vector<Outcome> outcomes;
+  for (const CheckFile& file : files) {
+    std::vector<Outcome> of_file = run_checks(file, options.threads, progress_bar("checking"));
+    if (options.is_update) {
+      refuse_shipped(file.path, options);
+      const std::string before = read_file(file.path, kLargestFile_bytes);
+      if (std::string after = with_new_limits(before, of_file, options.margin_share); after != before) {
+        session.rewrite(file.path, std::move(after));
+      }
+    }
+    std::ranges::move(of_file, std::back_inserter(outcomes));
+  }
+  if (!options.junit.empty()) {
+    session.write(options.junit, junit_xml(outcomes, HEATSOAK_VERSION));
+  }
+  session.say(table_text(outcomes) + conclusion(outcomes, options));
+  session.say(options.junit.empty() ? "" : fmt::format("written: {}\n", options.junit));
+  tell_github(outcomes, session);
+  const bool passed = std::ranges::all_of(outcomes, &Outcome::passed);
+  Json thresholds = Json::array();
+  std::ranges::transform(outcomes, std::back_inserter(thresholds), json);
+  session.answer({{"schema", "heatsoak.check/1"}, {"files", options.files}, {"passed", passed}, {"thresholds", thresholds}});
+  return passed ? ExitCode::done : ExitCode::limit_exceeded;
+}
+
+}  // namespace
+
+Command check_command() {
+  return {.name = {},
+          .summary = "Compares what is computed with limits of your own, for CI; exit 1 if one does not hold or cannot be evaluated",
+          .example = "heatsoak check reports/check/twente.check.toml --junit check.xml",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("files", options->files, "check files (`heatsoak list thresholds` shows what can have a limit)")
+                ->required()
+                ->type_name("FILE.toml");
+            app.add_option("--junit", options->junit, "write the result as JUnit XML, for CI services")->type_name("FILE.xml");
+            app.add_flag("--update", options->is_update,
+                         "rewrite the limits in the files: the present values with some room; what cannot be evaluated stays");
+            add_quantity(
+                app, "--margin", options->margin_share,
+                {"margin", "", Range::between(0.0, 10.0),
+                 "of --update: room as a share of the value, of a temperature as a share of its rise over the air; 5 % unless given"})
+                ->type_name("SHARE");
+            app.add_option("--threads", options->threads, "0: all cores; the result does not depend on it")
+                ->check(whole_number(1024))
+                ->capture_default_str();
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
+}
+
+}  // namespace heatsoak::commands

@@ -1,0 +1,270 @@
+// Check files: what they mean, everything that is wrong with one at once, and limits that are rewritten in place.
+#include "check/check_file.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include "base/files.h"
+#include "check/rewrite.h"
+#include "check/run_checks.h"
+#include "support/source_folder.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const DataFolders kShipped{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
+
+const std::string kHead =
+    "[[check]]\nname = \"paper\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_42m_24v\"\n";
+
+class CheckFiles : public testing::Test {
+ protected:
+  CheckFiles() { fs::create_directory(folder_); }
+  ~CheckFiles() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] CheckFile read(const std::string& text) const {
+    write_file(folder_ / "a.check.toml", text);
+    return read_check_file(folder_ / "a.check.toml", kShipped);
+  }
+  [[nodiscard]] std::string message_of(const std::string& text) const {
+    try {
+      static_cast<void>(read(text));
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "nothing was wrong";
+  }
+  /// Of the only check.
+  [[nodiscard]] std::vector<Outcome> outcomes(const std::string& text) {
+    file_ = read(text);
+    return run_checks(file_, 1);
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("heatsoak_check_{}", static_cast<int>(getpid()));
+  CheckFile file_;
+};
+
+TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
+  const std::string said = message_of(
+      "[[check]]\n"                                // 1
+      "name = \"a\"\n"                             // 2
+      "robot = \"roboteam_twente_2024\"\n"         // 3
+      "sampels = \"5\"\n"                          // 4
+      "seed = 3\n"                                 // 5
+      "samples = \"3.5\"\n"                        // 6
+      "derate = { ambient = \"-10 degC\" }\n"      // 7
+      "[check.limits]\n"                           // 8
+      "winding_peak_p95 = \"at most nan degC\"\n"  // 9
+      "  winding_peak = \"at most 5 degC\"\n"      // 10
+      "rank = \"at most 1\"\n"                     // 11
+      "[[check]]\n"                                // 12
+      "name = \"a\"\n"                             // 13
+      "[surprise]\n");                             // 14
+  for (const char* each : {":3:9: error: check[0].robot: there is no robot 'roboteam_twente_2024'", "did you mean 'roboteam_twente_v2024'?",
+                           ":4:11: error: check[0].sampels: is not a key of this table; did you mean 'samples'?",
+                           ":5:8: error: check[0].seed: 3 is a bare number", ":6:11: error: check[0].samples: 3.5 is no whole number",
+                           ":7:10: error: check[0].derate.coldest", "is used by none of this check's limits",
+                           ":9:20: error: check[0].limits.winding_peak_p95: \"nan degC\" is not a finite number",
+                           ":10:18: error: check[0].limits.winding_peak: there is no such threshold; did you mean 'winding_peak_p95'?",
+                           "rank needs 'against' in this check", ":12:1: error: check[1].limits: is missing",
+                           ":13:8: error: check.name: \"a\" is the name of another", ":14:1: error: surprise: is not a key"}) {
+    EXPECT_THAT(said, HasSubstr(each));
+  }
+}
+
+TEST_F(CheckFiles, SettingThatNoLimitUsesIsAProblem) {
+  EXPECT_THAT(message_of(kHead + "temperature = \"90 degC\"\n[check.limits]\nrank = \"at most 1\"\n"),
+              testing::AllOf(HasSubstr("check[0].temperature: is used by none"), HasSubstr("needs 'against'")));
+}
+
+TEST_F(CheckFiles, WithoutChecksAreRefused) {
+  EXPECT_THAT(message_of("# nothing\n"), HasSubstr("has no [[check]] table"));
+  EXPECT_THAT(message_of(kHead + "[check.limits]\n"), HasSubstr("limits: is empty"));
+  EXPECT_THAT(message_of("[[check]\n"), HasSubstr("a.check.toml:1:"));
+}
+
+TEST_F(CheckFiles, MotorIsTheRobotsOwnUnlessNamed) {
+  const CheckFile file = read(
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\n[check.limits]\n"
+      "winding_peak_p95 = \"at most 100 degC\"\n");
+  EXPECT_EQ(file.checks.front().motor->id, "maxon_ecx_flat_32l_48v");
+}
+
+TEST_F(CheckFiles, PathsBeginAtTheFile) {
+  fs::create_directory(folder_ / "motors");
+  fs::copy_file(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml", folder_ / "motors/ours.toml");
+  const CheckFile file = read(
+      "[[check]]\nname = \"x\"\nmotor = \"motors/ours.toml\"\nlogs = [\"logs/a.csv\"]\n[check.limits]\n"
+      "forecast_error = \"at most 5 K\"\n");
+  EXPECT_EQ(file.checks.front().motor->id, "ours");
+  EXPECT_EQ(file.checks.front().logs.front(), folder_ / "logs/a.csv");
+}
+
+TEST_F(CheckFiles, BrokenMotorFileIsReportedOnceAtItsOwnLine) {
+  write_file(folder_ / "bad.toml", "manufacturer = \"x\"\n");
+  const std::string check = "[[check]]\nname = \"{}\"\nmotor = \"./bad.toml\"\n[check.limits]\nlint_problems = \"at most 0\"\n";
+  const std::string said = message_of(fmt::format(fmt::runtime(check), "a") + fmt::format(fmt::runtime(check), "b"));
+  EXPECT_THAT(said, HasSubstr("bad.toml:1:1: error: "));
+  const std::string first = said.substr(0, said.find('\n'));
+  EXPECT_EQ(said.find(first), said.rfind(first));
+}
+
+TEST_F(CheckFiles, WhatCannotBeEvaluatedFailsAndTheRestIsEvaluated) {
+  const std::vector<Outcome> found = outcomes(kHead +
+                                              "samples = \"24\"\ntable = \"missing.h\"\n[check.limits]\n"
+                                              "derating_excess = \"at most 0 A\"\n"
+                                              "guard_active_share = \"at most 0 %\"\n"
+                                              "winding_peak_p95 = \"at most 120 degC\"\n");
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_FALSE(found[0].passed);
+  EXPECT_FALSE(found[0].is_evaluated);
+  EXPECT_THAT(found[0].reason, HasSubstr("missing.h: cannot be read: No such file"));
+  EXPECT_THAT(found[1].reason, HasSubstr("the drive core drives matches"));
+  EXPECT_TRUE(found[2].passed);
+}
+
+TEST_F(CheckFiles, FewSamplesCannotKeepATightProbability) {
+  const auto with = [&](int samples, const std::string& limit) {
+    return outcomes(kHead + fmt::format("samples = \"{}\"\n[check.limits]\nprobability_over_limit = \"{}\"\n", samples, limit)).front();
+  };
+  const Outcome few = with(32, "at most 5 %");
+  EXPECT_FALSE(few.passed);
+  EXPECT_TRUE(few.is_evaluated);
+  EXPECT_NEAR(few.measured.value, 1.0 - std::pow(0.05, 1.0 / 32.0), 1e-9);
+  EXPECT_THAT(few.measured.detail, HasSubstr("59 samples or more"));
+  EXPECT_TRUE(with(64, "at most 5 %").passed);
+  EXPECT_FALSE(with(64, "at most 4 %").passed);
+}
+
+// Samples of one game share its load, so games count.
+TEST_F(CheckFiles, ProbabilityOnAMatchCountsGames) {
+  const auto with = [&](const std::string& limit) {
+    return outcomes(
+               "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = "
+               "\"maxon_ecx_flat_42m_24v\"\nsamples = \"16\"\n[check.limits]\nprobability_over_limit = \"" +
+               limit + "\"\n")
+        .front();
+  };
+  const Outcome found = with("at most 5 %");
+  EXPECT_NEAR(found.measured.value, 1.0 - std::sqrt(0.05), 1e-9);
+  EXPECT_THAT(found.measured.detail, testing::AllOf(HasSubstr("by 2 games"), HasSubstr("472 samples or more")));
+  EXPECT_THAT(with("at most 0.1 %").measured.detail, HasSubstr("games would be needed"));
+}
+
+// The guard reckons with the hottest air that it is made for, whatever air the match has.
+TEST_F(CheckFiles, GuardMadeForHotAirEngages) {
+  const std::vector<Outcome> found = outcomes(
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = "
+      "\"maxon_ecx_flat_32l_48v\"\nderate = { samples = \"60\", ambient = \"105 degC\" }\n[check.limits]\nguard_active_share = \"at "
+      "most 0 %\"\nguard_missing_charge = \"at most 0 A s\"\n");
+  for (const Outcome& each : found) {
+    EXPECT_TRUE(each.is_evaluated) << each.reason;
+    EXPECT_GT(each.measured.value, 0.0);
+    EXPECT_FALSE(each.passed);
+  }
+  EXPECT_LT(found[0].measured.value, 1.0);
+}
+
+TEST_F(CheckFiles, LintFindsWhatAFileOfAnyKindHolds) {
+  const std::string data = (kSource / "tests/data").string();
+  const std::vector<Outcome> found =
+      outcomes("[[check]]\nname = \"x\"\nfiles = [\"" + data + "/lint_df45l_wiki.toml\", \"" +
+               (kSource / "robot_core/robots/tigers_v2020.toml").string() + "\", \"" +
+               (kSource / "duty_profiles/division_a_match.toml").string() + "\"]\n[check.limits]\nlint_problems = \"at most 0\"\n");
+  EXPECT_GE(found.front().measured.value, 2.0);
+  EXPECT_FALSE(found.front().passed);
+  EXPECT_THAT(found.front().measured.detail, HasSubstr("lint_df45l_wiki.toml:"));
+}
+
+TEST_F(CheckFiles, MotorThatCannotDeliverFailsWithTheReason) {
+  const std::vector<Outcome> found = outcomes(
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_dcx19s_24v\"\n"
+      "samples = \"24\"\n[check.limits]\nwinding_peak_p95 = \"at most 900 degC\"\nlint_problems = \"at most 0\"\n");
+  EXPECT_FALSE(found[0].passed);
+  EXPECT_THAT(found[0].reason, HasSubstr("cannot deliver what the duty demands"));
+  EXPECT_TRUE(found[1].passed);
+}
+
+TEST_F(CheckFiles, TimeAboveATemperatureFallsWithIt) {
+  const auto time_s = [&](const std::string& temperature) {
+    return outcomes(kHead +
+                    fmt::format("samples = \"1\"\ntemperature = \"{}\"\n[check.limits]\ntime_above = \"at most 1 s\"\n", temperature))
+        .front()
+        .measured.value;
+  };
+  const double all_s = time_s("20 degC");
+  EXPECT_NEAR(all_s, 2400.0, 1.0);
+  const double some_s = time_s("45 degC");
+  EXPECT_LT(some_s, all_s);
+  EXPECT_GT(some_s, 0.0);
+  EXPECT_EQ(time_s("60 degC"), 0.0);
+}
+
+TEST_F(CheckFiles, RankCountsThoseBeforeTheMotor) {
+  const auto rank = [&](const std::string& motor) {
+    return outcomes(
+               "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"" + motor +
+               "\"\nagainst = [\"maxon_ecx_flat_42m_24v\", \"nanotec_df45l024048_a2\"]\nsamples = \"24\"\n[check.limits]\nrank = \"at most "
+               "1\"\n")
+        .front();
+  };
+  EXPECT_EQ(rank("maxon_ecx_flat_42m_24v").measured.value, 1.0);
+  EXPECT_EQ(rank("nanotec_df45l024048_a2").measured.value, 2.0);
+  const Outcome last = rank("maxon_ecx_flat_32l_48v");
+  EXPECT_EQ(last.measured.value, 3.0);
+  EXPECT_FALSE(last.passed);
+  EXPECT_THAT(last.measured.detail, HasSubstr("maxon_ecx_flat_42m_24v, nanotec_df45l024048_a2"));
+}
+
+TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
+  const std::string text = kHead + "samples = \"40\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n" +
+                           "[[check]]\nname = \"b\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nsamples = \"40\"\n"
+                           "[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n";
+  const CheckFile file = read(text);
+  const std::vector<Outcome> one = run_checks(file, 1);
+  const std::vector<Outcome> all = run_checks(file, 0);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].measured.value, all[i].measured.value);
+  }
+}
+
+// Comments, blanks, quotes, line ends and what cannot be evaluated stay.
+TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
+  std::string text = "# été\r\n" + kHead +
+                     "samples = \"40\"\r\n[check.limits] # limits\r\n"
+                     "  probability_over_limit   =   'at most 90 %' # ° generous\r\n"
+                     "winding_peak_p95=\"at most 30 degC\"# too tight\r\n"
+                     "guard_active_share = \"at most 1 %\"\r\n";
+  std::vector<Outcome> found = outcomes(text);
+  EXPECT_FALSE(found[1].passed);
+  const std::string after = with_new_limits(text, found, 0.05);
+  EXPECT_TRUE(found[0].passed);
+  EXPECT_TRUE(found[1].passed);
+  EXPECT_FALSE(found[2].passed);
+  EXPECT_EQ(found[1].before, "at most 30 degC");
+  std::string expected = text;
+  for (const Outcome& each : {found[0], found[1]}) {
+    expected.replace(expected.find(each.before), each.before.size(), each.limit.text);
+  }
+  EXPECT_EQ(after, expected);
+  EXPECT_NE(after, text);
+  // Once more: the same file, and all of its limits hold.
+  std::vector<Outcome> again = outcomes(after);
+  EXPECT_TRUE(again[0].passed);
+  EXPECT_TRUE(again[1].passed);
+  EXPECT_EQ(with_new_limits(after, again, 0.05), after);
+}
+
+TEST_F(CheckFiles, LimitWithAnEscapeIsNotRewritten) {
+  std::vector<Outcome> found = outcomes(kHead + "samples = \"40\"\n[check.limits]\nwinding_peak_p95 = \"at most 30\\u0020degC\"\n");
+  EXPECT_THROW(with_new_limits(read_file(folder_ / "a.check.toml", 100000), found, 0.05), Failure);
+}
+
+}  // namespace
+}  // namespace heatsoak

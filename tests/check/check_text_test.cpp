@@ -1,0 +1,138 @@
+// What people, CI services and GitHub get to read.
+#include "check/check_text.h"
+
+#include <expat.h>
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+namespace heatsoak {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+struct Element {
+  std::string name;
+  std::map<std::string, std::string> attributes;
+  std::string text;
+};
+
+/// Every element in document order; throws where the text is not well-formed XML.
+std::vector<Element> parsed(const std::string& xml) {
+  std::vector<Element> elements;
+  XML_Parser parser = XML_ParserCreate(nullptr);
+  XML_SetUserData(parser, &elements);
+  XML_SetStartElementHandler(parser, [](void* data, const XML_Char* name, const XML_Char** attributes) {
+    Element element{name, {}, {}};
+    for (; *attributes != nullptr; attributes += 2) {
+      element.attributes[attributes[0]] = attributes[1];
+    }
+    static_cast<std::vector<Element>*>(data)->push_back(element);
+  });
+  XML_SetCharacterDataHandler(parser, [](void* data, const XML_Char* text, int length) {
+    static_cast<std::vector<Element>*>(data)->back().text.append(text, static_cast<std::size_t>(length));
+  });
+  const bool is_well_formed = XML_Parse(parser, xml.data(), static_cast<int>(xml.size()), 1) == XML_STATUS_OK;
+  const XML_Error problem = XML_GetErrorCode(parser);
+  XML_ParserFree(parser);
+  if (!is_well_formed) {
+    throw std::runtime_error(std::string("not well-formed: ") + XML_ErrorString(problem));
+  }
+  return elements;
+}
+
+/// Two checks: one limit that holds and one that does not, and one that nothing is known of. Names are as nasty as a user's may be.
+class Outcomes : public testing::Test {
+ protected:
+  Outcomes() {
+    checks_[0].name = "a <b> & \"c\" | 100 %, d: \xC3\xA9\x01\xFF";
+    checks_[1].name = "second";
+    add(0, "winding_peak_p95", 100.0, 90.0, true, "");
+    add(0, "current_margin", 1.0, 0.5, true, "0.5 A is below the limit of 1 A");
+    add(1, "derating_excess", 0.0, std::numeric_limits<double>::quiet_NaN(), false, "guard.h:3:1: is\nno table, 100 %");
+  }
+
+  void add(std::size_t check, std::string_view threshold, double limit, double value, bool is_evaluated, std::string reason) {
+    Outcome outcome;
+    outcome.check = &checks_.at(check);
+    const int line = 10 + static_cast<int>(outcomes_.size());
+    outcome.limit = {find_threshold(threshold), limit, "", "", {"/repository/checks/robot,1.toml", line, 5}};
+    outcome.measured = {value, 0.0, is_evaluated ? "what it rests on" : ""};
+    outcome.is_evaluated = is_evaluated;
+    outcome.passed = reason.empty();
+    outcome.reason = std::move(reason);
+    outcomes_.push_back(std::move(outcome));
+  }
+
+  std::array<Check, 2> checks_;
+  std::vector<Outcome> outcomes_;
+};
+
+TEST_F(Outcomes, AreJunitThatParses) {
+  const std::vector<Element> elements = parsed(junit_xml(outcomes_, "1.2.3"));
+  std::map<std::string, std::vector<Element>> by_name;
+  for (const Element& each : elements) {
+    by_name[each.name].push_back(each);
+  }
+  EXPECT_EQ(elements.front().name, "testsuites");
+  EXPECT_EQ(elements.front().attributes.at("tests"), "3");
+  EXPECT_EQ(elements.front().attributes.at("failures"), "1");
+  EXPECT_EQ(elements.front().attributes.at("errors"), "1");
+  ASSERT_EQ(by_name["testsuite"].size(), 2U);
+  EXPECT_EQ(by_name["testsuite"][0].attributes.at("name"), "a <b> & \"c\" | 100 %, d: \xC3\xA9?");
+  EXPECT_EQ(by_name["testsuite"][0].attributes.at("tests"), "2");
+  EXPECT_EQ(by_name["property"][0].attributes.at("value"), "1.2.3");
+  ASSERT_EQ(by_name["testcase"].size(), 3U);
+  EXPECT_EQ(by_name["testcase"][1].attributes.at("name"), "current_margin");
+  EXPECT_EQ(by_name["testcase"][1].attributes.at("line"), "11");
+  ASSERT_EQ(by_name["failure"].size(), 1U);
+  EXPECT_EQ(by_name["failure"][0].attributes.at("message"), "0.5 A is below the limit of 1 A");
+  ASSERT_EQ(by_name["error"].size(), 1U);
+  EXPECT_EQ(by_name["error"][0].attributes.at("message"), "guard.h:3:1: is\nno table, 100 %");
+}
+
+TEST_F(Outcomes, AreAnnotationsAtFileAndLine) {
+  const std::string text = annotations(outcomes_, "/repository");
+  EXPECT_THAT(text, HasSubstr("::error file=checks/robot%2C1.toml,line=11,col=5,title=a <b> & \"c\" | 100 %25%2C d%3A "));
+  EXPECT_THAT(text, HasSubstr("derating_excess::guard.h:3:1: is%0Ano table, 100 %25\n"));
+  EXPECT_THAT(text, Not(HasSubstr("winding_peak_p95")));
+  EXPECT_THAT(annotations(outcomes_, "/elsewhere"), HasSubstr("file=/repository/checks/robot%2C1.toml,"));
+}
+
+TEST_F(Outcomes, AreAMarkdownTable) {
+  const std::string text = summary_markdown(outcomes_, "1.2.3");
+  EXPECT_THAT(text, HasSubstr("2 of 3 limits do not hold"));
+  std::istringstream lines(text);
+  int rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('|')) {
+      // Bars inside of a cell are escaped.
+      std::size_t bars = 0;
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\') ? 1 : 0;
+      }
+      EXPECT_EQ(bars, 8U) << line;
+      ++rows;
+    }
+  }
+  EXPECT_EQ(rows, 5);
+}
+
+TEST_F(Outcomes, FitATerminalOf80Columns) {
+  outcomes_[0].measured.detail =
+      "nominal 47.0 °C, median 47.2 °C, 500 samples of all declared tolerances and the wheel front_left of it, 10 A";
+  std::istringstream lines(table_text(outcomes_));
+  for (std::string line; std::getline(lines, line);) {
+    const auto characters = std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+    EXPECT_LE(characters, 80) << line;
+  }
+  EXPECT_THAT(table_text(outcomes_), HasSubstr("FAIL  current_margin"));
+  EXPECT_THAT(table_text(outcomes_), HasSubstr("ERROR derating_excess"));
+}
+
+}  // namespace
+}  // namespace heatsoak

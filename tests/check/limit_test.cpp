@@ -1,0 +1,112 @@
+// Limits as text, and how --update sets them.
+#include "check/limit.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "check/binomial_bound.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::HasSubstr;
+
+const ThresholdType& threshold(std::string_view name) { return *find_threshold(name); }
+
+TEST(Limit, IsReadInTheUnitOfItsThreshold) {
+  EXPECT_DOUBLE_EQ(parse_limit("at most 150 degC", threshold("winding_peak_p95")).value, 150.0);
+  EXPECT_NEAR(parse_limit("  at most   302 degF ", threshold("winding_peak_p95")).value, 150.0, 1e-9);
+  EXPECT_DOUBLE_EQ(parse_limit("at most 5 %", threshold("probability_over_limit")).value, 0.05);
+  EXPECT_DOUBLE_EQ(parse_limit("at most 2 min", threshold("time_above")).value, 120.0);
+  EXPECT_DOUBLE_EQ(parse_limit("at least -500 mA", threshold("current_margin")).value, -0.5);
+  EXPECT_DOUBLE_EQ(parse_limit("at most 400 kbyte", threshold("core_size")).value, 4e5);
+  EXPECT_EQ(parse_limit("at most 302 degF", threshold("winding_peak_p95")).unit, "degF");
+  EXPECT_EQ(parse_limit("at most 1", threshold("rank")).unit, "");
+}
+
+TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
+  const auto problem = [](std::string_view text, std::string_view name) { return parse_limit(text, threshold(name)).problem; };
+  EXPECT_THAT(problem("150 degC", "winding_peak_p95"), HasSubstr("expected at most and a value"));
+  EXPECT_THAT(problem("at mostly 150 degC", "winding_peak_p95"), HasSubstr("is no limit"));
+  EXPECT_THAT(problem("at most", "winding_peak_p95"), HasSubstr("does not begin with a number"));
+  EXPECT_THAT(problem("at least 150 degC", "winding_peak_p95"), HasSubstr("the wrong side"));
+  EXPECT_THAT(problem("at most 150", "winding_peak_p95"), HasSubstr("has no unit"));
+  EXPECT_THAT(problem("at most 150 A", "winding_peak_p95"), HasSubstr("a unit of something else"));
+  EXPECT_THAT(problem("at most nan degC", "winding_peak_p95"), HasSubstr("not a finite number"));
+  EXPECT_THAT(problem("at most inf degC", "winding_peak_p95"), HasSubstr("not a finite number"));
+  EXPECT_THAT(problem("at most 1e999 degC", "winding_peak_p95"), HasSubstr("too large"));
+  EXPECT_THAT(problem("at most 150 %", "probability_over_limit"), HasSubstr("out of range"));
+  EXPECT_THAT(problem("", "rank"), HasSubstr("is no limit"));
+}
+
+TEST(Limit, BothSidesOfAValue) {
+  EXPECT_TRUE(keeps(Bound::at_most, 150.0, 150.0));
+  EXPECT_FALSE(keeps(Bound::at_most, std::nextafter(150.0, 151.0), 150.0));
+  EXPECT_TRUE(keeps(Bound::at_least, 0.5, 0.5));
+  EXPECT_FALSE(keeps(Bound::at_least, std::nextafter(0.5, 0.0), 0.5));
+  EXPECT_FALSE(keeps(Bound::at_most, std::numeric_limits<double>::quiet_NaN(), 150.0));
+  EXPECT_FALSE(keeps(Bound::at_least, std::numeric_limits<double>::quiet_NaN(), 0.5));
+}
+
+TEST(UpdatedLimit, GivesATemperatureASharesOfItsRise) {
+  // 25 °C of air and a rise of 100 K: 5 K of room.
+  EXPECT_EQ(updated_limit({125.0, 25.0}, threshold("winding_peak_p95"), "degC", 0.05), "at most 130 degC");
+  EXPECT_EQ(updated_limit({125.0, 25.0}, threshold("winding_peak_p95"), "degF", 0.05), "at most 266 degF");
+  EXPECT_EQ(updated_limit({4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least 3.6 A");
+  EXPECT_EQ(updated_limit({-4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least -4.4 A");
+  EXPECT_EQ(updated_limit({3.0, 0.0}, threshold("rank"), "", 0.05), "at most 3");
+  EXPECT_EQ(updated_limit({0.0, 0.0}, threshold("derating_excess"), "A", 0.05), "at most 0 A");
+  EXPECT_EQ(updated_limit({1.0, 0.0}, threshold("probability_over_limit"), "%", 0.05), "at most 100 %");
+}
+
+// Whatever is measured, the new limit is one and is kept.
+TEST(UpdatedLimit, IsKeptByTheValueItWasMadeFrom) {
+  for (const ThresholdType& type : all_thresholds()) {
+    const std::string_view unit = type.is_share ? "%" : type.unit;
+    for (const double margin_share : {0.0, 0.05, 1.0}) {
+      for (double value = 1e-4; value < 1e6; value *= 1.37) {
+        const double measured = type.is_share ? std::min(1.0, value) : type.room == Room::none ? std::ceil(value) : value;
+        if (!type.range.contains(measured)) {
+          continue;
+        }
+        const std::string text = updated_limit({measured, 0.0}, type, unit, margin_share);
+        const ParsedLimit parsed = parse_limit(text, type);
+        EXPECT_EQ(parsed.problem, "") << type.name << " " << text;
+        EXPECT_TRUE(keeps(type.direction, measured, parsed.value)) << type.name << " " << measured << " " << text;
+      }
+    }
+  }
+}
+
+TEST(BinomialBound, WithoutAHitIsTheClosedForm) {
+  for (const double draws : {1.0, 10.0, 59.0, 500.0}) {
+    EXPECT_NEAR(upper_bound_share(0.0, draws, 0.95), 1.0 - std::pow(0.05, 1.0 / draws), 1e-12);
+  }
+  EXPECT_EQ(upper_bound_share(7.0, 7.0, 0.95), 1.0);
+}
+
+// By definition: with a probability at the bound, as few hits as were seen have a chance of 5 %.
+TEST(BinomialBound, LeavesAChanceOfFivePercent) {
+  constexpr int kDraws = 40;
+  for (int over = 0; over < kDraws; over += 7) {
+    const double p = upper_bound_share(over, kDraws, 0.95);
+    double chance = 0.0;
+    for (int k = 0; k <= over; ++k) {
+      chance += std::exp(std::lgamma(kDraws + 1.0) - std::lgamma(k + 1.0) - std::lgamma(kDraws - k + 1.0) + k * std::log(p) +
+                         (kDraws - k) * std::log1p(-p));
+    }
+    EXPECT_NEAR(chance, 0.05, 1e-9);
+  }
+}
+
+TEST(BinomialBound, FewestDrawsThatKeepALimit) {
+  EXPECT_EQ(draws_needed(0.0, 0.05, 0.95), 59);  // 0.95^59 < 0.05 < 0.95^58
+  EXPECT_EQ(draws_needed(0.05, 0.05, 0.95), std::nullopt);
+  const long needed = draws_needed(0.02, 0.05, 0.95).value();
+  EXPECT_LE(upper_bound_share(std::ceil(0.02 * static_cast<double>(needed)), static_cast<double>(needed), 0.95), 0.05);
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,170 @@
+// A table that was written earlier against a fresh one: C header and CSV, sound, tampered with, of another motor.
+#include "derate/committed_table.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "base/diagnostic.h"
+#include "base/files.h"
+#include "derate/exporter.h"
+#include "derate/header_text.h"
+#include "guarded_motor.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+Derating derating_of(const Motor& motor, double heat_reserve_ratio, double approach_s = 0.5) {
+  const GuardedMotor guarded(motor, rules_for(motor, approach_s), heat_reserve_ratio);
+  return {.motor_id = motor.id,
+          .robot_id = "a robot",
+          .data_quality = "estimated",
+          .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
+          .observer = guarded.observer,
+          .rules = guarded.rules,
+          .table = guarded.table,
+          .options = {},
+          .assumed = {},
+          .effects = {},
+          .guarantee = {},
+          .uses = {},
+          .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
+}
+
+std::string exported(const Derating& derating, std::string_view form) {
+  return std::ranges::find(all_exporters(), form, &ExporterType::name)->write(derating);
+}
+
+class Committed : public testing::TestWithParam<const char*> {
+ protected:
+  static void SetUpTestSuite() { fresh_ = new Derating(derating_of(ecx_32(), 1.5)); }
+  static void TearDownTestSuite() { delete fresh_; }
+  ~Committed() override { fs::remove(file_); }
+
+  [[nodiscard]] CommittedTable read(const std::string& content) const {
+    write_file(file_, content);
+    return read_committed_table(file_);
+  }
+  [[nodiscard]] std::string message_of(const std::string& content) const {
+    try {
+      static_cast<void>(read(content));
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "nothing was wrong";
+  }
+
+  static Derating* fresh_;
+  fs::path file_ = fs::path(testing::TempDir()) / fmt::format("heatsoak_committed_{}", static_cast<int>(getpid()));
+};
+Derating* Committed::fresh_ = nullptr;
+
+TEST_P(Committed, SaysTheSameAsTheOneThatWroteIt) {
+  const TableComparison found = compare(read(exported(*fresh_, GetParam())), *fresh_);
+  EXPECT_EQ(found.excess.difference_A, 0.0);
+  EXPECT_EQ(found.lost.difference_A, 0.0);
+  EXPECT_EQ(found.differing_line, 0) << found.differing_text << "\n" << found.differing_fresh_text;
+}
+
+TEST_P(Committed, OfABolderReserveIsUnsafe) {
+  const TableComparison found = compare(read(exported(derating_of(ecx_32(), 1.2), GetParam())), *fresh_);
+  EXPECT_GT(found.excess.difference_A, 0.5);
+  EXPECT_EQ(found.lost.difference_A, 0.0);
+  EXPECT_NEAR(found.excess.committed_A - found.excess.fresh_A, found.excess.difference_A, 1e-12);
+  EXPECT_NEAR(fresh_->table.allowed_A(found.excess.speed_rad_per_s, found.excess.stator_C, found.excess.winding_C), found.excess.fresh_A,
+              1e-12);
+}
+
+TEST_P(Committed, OfAMoreCarefulReserveGivesCurrentAway) {
+  const TableComparison found = compare(read(exported(derating_of(ecx_32(), 2.0), GetParam())), *fresh_);
+  EXPECT_EQ(found.excess.difference_A, 0.0);
+  EXPECT_GT(found.lost.difference_A, 0.5);
+}
+
+// The axes of the two have no point in common but the first: the difference is found between them, too.
+TEST_P(Committed, IsComparedBetweenThePointsOfOtherAxes) {
+  Derating other = *fresh_;
+  for (double& speed_rad_per_s : other.table.speed_rad_per_s) {
+    speed_rad_per_s *= 1.1;
+  }
+  const TableComparison found = compare(read(exported(other, GetParam())), *fresh_);
+  // Beyond its last speed the fresh table allows nothing.
+  EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.speed_rad_per_s.back());
+  EXPECT_EQ(found.excess.fresh_A, 0.0);
+  EXPECT_GT(found.excess.committed_A, 1.0);
+  double most_A = 0.0;
+  constexpr int kSteps = 40;
+  const double speed_end = other.table.speed_rad_per_s.back();
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int k = 0; k <= kSteps; ++k) {
+      const double speed = speed_end * i / kSteps;
+      const double winding_C = std::lerp(fresh_->table.winding_C.front(), fresh_->table.winding_C.back(), static_cast<double>(k) / kSteps);
+      const double stator_C = fresh_->table.stator_C.front();
+      most_A = std::max(most_A, other.table.allowed_A(speed, stator_C, winding_C) - fresh_->table.allowed_A(speed, stator_C, winding_C));
+    }
+  }
+  EXPECT_GE(found.excess.difference_A, most_A - 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(forms, Committed, testing::Values("c_header", "csv"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+using Tampered = Committed;
+
+TEST_F(Tampered, OneCurrentIsFoundAtItsPlace) {
+  std::string header = exported(*fresh_, "c_header");
+  const std::vector<HeaderArray> arrays = header_arrays(header);
+  const auto currents = std::ranges::find_if(arrays, [](const HeaderArray& each) { return each.name.ends_with("32l_48v_current_A"); });
+  ASSERT_NE(currents, arrays.end());
+  std::size_t comma = header.find('{', currents->begin);
+  constexpr int kNumber = 100;
+  for (int i = 0; i < kNumber; ++i) {
+    comma = header.find(',', comma + 1);
+  }
+  header.replace(comma, header.find(',', comma + 1) - comma, ", 55.5f");
+  const TableComparison found = compare(read(header), *fresh_);
+  EXPECT_NEAR(found.excess.committed_A, 55.5, 1e-6);
+  const CurrentTable& table = fresh_->table;
+  EXPECT_EQ(found.excess.winding_C, table.winding_C[kNumber % table.winding_C.size()]);
+  EXPECT_EQ(found.excess.stator_C, table.stator_C[kNumber / table.winding_C.size() % table.stator_C.size()]);
+  EXPECT_EQ(found.excess.speed_rad_per_s, table.speed_rad_per_s[kNumber / table.winding_C.size() / table.stator_C.size()]);
+  EXPECT_EQ(found.differing_line, 0);
+}
+
+TEST_F(Tampered, ObserverIsFoundAtItsLineWhereverCommentsSayOtherThings) {
+  std::string header = exported(*fresh_, "c_header");
+  header = std::regex_replace(header, std::regex("Generated by"), "Long ago made by\n * the old hands of");
+  EXPECT_EQ(compare(read(header), *fresh_).differing_line, 0);
+  const std::size_t at = header.find("_rates(");
+  const std::size_t number = header.find_first_of("123456789", header.find('{', at));
+  header[number] = header[number] == '9' ? '8' : static_cast<char>(header[number] + 1);
+  const TableComparison found = compare(read(header), *fresh_);
+  EXPECT_EQ(found.differing_line, 1 + std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(number), '\n'));
+  EXPECT_NE(found.differing_text, found.differing_fresh_text);
+}
+
+TEST_F(Tampered, VersionOfTheWriterIsRead) { EXPECT_EQ(read("/* heatsoak 9.8.7 */\n" + exported(*fresh_, "c_header")).version, "9.8.7"); }
+
+TEST_F(Tampered, WhatIsNoTableIsRefused) {
+  const std::string csv = exported(*fresh_, "csv");
+  const std::string header = exported(*fresh_, "c_header");
+  const std::size_t last_row = csv.rfind('\n', csv.size() - 2);
+  EXPECT_THAT(message_of(csv.substr(0, last_row + 1)), HasSubstr("missing at the end"));
+  EXPECT_THAT(message_of("speed,current\n1,2\n"), HasSubstr("speed_rad_per_s"));
+  EXPECT_THAT(message_of(std::regex_replace(csv, std::regex("\n0,"), "\n-0.5,", std::regex_constants::format_first_only)),
+              HasSubstr("grid"));
+  EXPECT_THAT(message_of("static const float x[2] = {1.0f, 2.0f};\n"), HasSubstr("holds no derating table"));
+  EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1")),
+              HasSubstr("as many as its axes"));
+  EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_current_A\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1nan,")),
+              HasSubstr("a current that is none"));
+  EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$01999.0f,")),
+              HasSubstr("does not ascend"));
+}
+
+}  // namespace
+}  // namespace heatsoak
