@@ -26,7 +26,7 @@ struct Believed {
   float pwm_battery_V = 0.0F;  ///< for the PWM ratio: never less
   float ambient_C = 0.0F;
   float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
-  int guard_periods = 1;  ///< the same as periods, and one more as often as small delays add up to one
+  int guard_periods = 1;   ///< the same as periods, and one more as often as small delays add up to one
   bool are_all_sensed = true;
   bool are_samples_compared = false;  ///< too few are believed: implied speeds are those of all samples
   Mode mode = Mode::coast;            ///< after faults of the command

@@ -94,8 +94,8 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   return room_V * config.derived.per_lowest_resistance_A_per_V;
 }
 
-[[gnu::cold, gnu::noinline]] bool move_into_window(const WheelDemand& demand, float implied_V, float band_V, float most_V,
-                                                   float& voltage_V, Reason& reason) {
+[[gnu::cold, gnu::noinline]] bool move_into_window(const WheelDemand& demand, float implied_V, float band_V, float most_V, float& voltage_V,
+                                                   Reason& reason) {
   if (!(demand.most_A > 0.0F)) {
     return false;
   }

@@ -81,12 +81,12 @@ struct GuardRow {
 
 /// Written by step_guard(), all of it.
 struct GuardOutput {
-  float allowed_A;                 ///< magnitude, until the next call
-  float allowed_braking_A;         ///< magnitude where the current brakes; at least allowed_A
-  float winding_C;                 ///< of the observer, which counts heat more than once: hotter than the nominal motor
-  float hottest_body_C;            ///< of the nodes other than the winding
-  bool is_unknown_input;           ///< a signal was not believed and its hottest case was taken
-  bool was_started;                ///< false: the state was none, and the guard began as hot as its limit
+  float allowed_A;          ///< magnitude, until the next call
+  float allowed_braking_A;  ///< magnitude where the current brakes; at least allowed_A
+  float winding_C;          ///< of the observer, which counts heat more than once: hotter than the nominal motor
+  float hottest_body_C;     ///< of the nodes other than the winding
+  bool is_unknown_input;    ///< a signal was not believed and its hottest case was taken
+  bool was_started;         ///< false: the state was none, and the guard began as hot as its limit
 };
 
 /// All nodes at `body_C`. Anything that cannot be a temperature counts as the winding's limit.

@@ -102,7 +102,7 @@ class CheckReader {
   }
 
   /// A number of things: whole, and written as text like every other number.
-  std::optional<double> whole(Reader& table, const ParameterSpec& spec) {
+  static std::optional<double> whole(Reader& table, const ParameterSpec& spec) {
     const std::optional<double> value = table.quantity(spec, Need::optional);
     if (value && *value != std::floor(*value)) {
       table.problem(spec.key, fmt::format("{} is no whole number", significant_text(*value)));

@@ -171,11 +171,11 @@ std::vector<std::span<const Outcome>> by_check(std::span<const Outcome> outcomes
 }
 
 std::string count_attributes(const Counts& counts) {
-  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\"", counts.all, counts.exceeded, counts.not_evaluated);
+  return fmt::format(R"(tests="{}" failures="{}" errors="{}" skipped="0")", counts.all, counts.exceeded, counts.not_evaluated);
 }
 
 std::string test_case(const Outcome& each) {
-  std::string text = fmt::format("    <testcase name=\"{}\" classname=\"{}\" file=\"{}\" line=\"{}\"", each.limit.type->name,
+  std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", each.limit.type->name,
                                  escaped_xml(each.check->name), escaped_xml(each.limit.at.file), each.limit.at.line);
   const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", shown(each.measured.value, *each.limit.type), limit_text(each),
                                         margin_text(each), each.measured.detail);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <functional>
 #include <map>
 
 #include "check/limit.h"
@@ -32,7 +32,8 @@ std::size_t byte_at(std::string_view content, const Location& at) {
 }  // namespace
 
 std::string with_new_limits(const std::string& content, std::span<Outcome> outcomes, double margin_share) {
-  std::map<std::size_t, std::pair<std::size_t, std::string>> by_place;  // begin -> length, text
+  // begin -> length, text; the last first, so that the places before it stay right
+  std::map<std::size_t, std::pair<std::size_t, std::string>, std::greater<>> by_place;
   for (Outcome& outcome : outcomes) {
     if (!outcome.is_evaluated) {
       continue;
@@ -63,8 +64,8 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
     judge(outcome);
   }
   std::string result = content;
-  for (auto each = by_place.rbegin(); each != by_place.rend(); ++each) {
-    result.replace(each->first, each->second.first, each->second.second);
+  for (const auto& [begin, replacement] : by_place) {
+    result.replace(begin, replacement.first, replacement.second);
   }
   return result;
 }

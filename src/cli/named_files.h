@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "duty/file_kind.h"
 #include "duty/duty.h"
+#include "duty/file_kind.h"
 #include "input/data_folders.h"
 #include "motor/motor.h"
 #include "robot/robot.h"

@@ -17,6 +17,7 @@
 #include <sstream>
 
 #include "base/files.h"
+#include "base/version.h"
 #include "check/check_text.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
@@ -25,8 +26,6 @@
 
 namespace heatsoak {
 namespace {
-
-constexpr std::string_view kVersion = "heatsoak " HEATSOAK_VERSION;
 
 constexpr std::string_view kFooter =
     "\nExit codes: 0 done and within limits, 1 a limit is exceeded, 2 bad input or usage,\n"
@@ -116,7 +115,7 @@ nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
   for (const auto& [key, value] : answer.items()) {
     result[key] = value;
     if (key == "schema" || key == "error") {
-      result["version"] = HEATSOAK_VERSION;
+      result["version"] = program_version();
     }
   }
   return result;
@@ -165,7 +164,7 @@ void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
 
 int parse_and_run(int argc, const char* const* argv, Session& session) {
   CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
-  app.set_version_flag("--version", std::string(kVersion));
+  app.set_version_flag("--version", fmt::format("heatsoak {}", program_version()));
   app.require_subcommand(1);
   const std::vector<Command> commands = all_commands();
   const bool reads_logs = std::ranges::find(commands, "log", &Command::name) != commands.end();

@@ -84,7 +84,7 @@ void read_csv_table(CommittedTable& committed) {
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     std::ranges::transform(rows, std::back_inserter(*axes[axis]), [axis](const auto& row) { return row.at(axis); });
     std::ranges::sort(*axes[axis]);
-    axes[axis]->erase(std::ranges::unique(*axes[axis]).begin(), axes[axis]->end());
+    axes[axis]->erase(std::unique(axes[axis]->begin(), axes[axis]->end()), axes[axis]->end());
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t windings = table.winding_C.size();
@@ -122,7 +122,7 @@ std::vector<double> joined(std::vector<double> one, const std::vector<double>& o
   }
   one.insert(one.end(), other.begin(), other.end());
   std::ranges::sort(one);
-  one.erase(std::ranges::unique(one).begin(), one.end());
+  one.erase(std::unique(one.begin(), one.end()), one.end());
   return one;
 }
 

@@ -249,8 +249,10 @@ TEST(FlippedBit, OfAnyByteHidesNoFault) {
         ASSERT_TRUE(std::isfinite(out.time_to_guard_limit_s)) << "byte " << byte << " bit " << bit;
         ASSERT_GE(out.time_to_guard_limit_s, 0.0F) << "byte " << byte << " bit " << bit;
         ASSERT_TRUE(is_fault(out.reason[0])) << "byte " << byte << " bit " << bit << " period " << k;
-        ASSERT_EQ(damaged.wheel[1].speed_fault, static_cast<std::uint8_t>(Reason::wheel_speed_swapped)) << "byte " << byte << " bit " << bit;
-        ASSERT_EQ(damaged.wheel[3].speed_fault, static_cast<std::uint8_t>(Reason::wheel_speed_swapped)) << "byte " << byte << " bit " << bit;
+        ASSERT_EQ(damaged.wheel[1].speed_fault, static_cast<std::uint8_t>(Reason::wheel_speed_swapped))
+            << "byte " << byte << " bit " << bit;
+        ASSERT_EQ(damaged.wheel[3].speed_fault, static_cast<std::uint8_t>(Reason::wheel_speed_swapped))
+            << "byte " << byte << " bit " << bit;
         ASSERT_NE(damaged.yaw_fault, 0) << "byte " << byte << " bit " << bit;
       }
     }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/version.h"
 #include "check/check_text.h"
 #include "check/limit.h"
 #include "check/rewrite.h"
@@ -104,7 +105,7 @@ void tell_github(const std::vector<Outcome>& outcomes, Session& session) {
     session.say(annotations(outcomes, environment("GITHUB_WORKSPACE")));
   }
   if (const std::string page = environment("GITHUB_STEP_SUMMARY"); !page.empty()) {
-    session.complete_with([page, text = summary_markdown(outcomes, HEATSOAK_VERSION)] {
+    session.complete_with([page, text = summary_markdown(outcomes, program_version())] {
       std::ofstream file(page, std::ios::app | std::ios::binary);
       if (!(file << text).flush()) {
         fmt::print(stderr, "warning: the summary of the run is missing: {} cannot be written\n", page);
@@ -128,7 +129,7 @@ ExitCode run(const Options& options, Session& session) {
     std::ranges::move(of_file, std::back_inserter(outcomes));
   }
   if (!options.junit.empty()) {
-    session.write(options.junit, junit_xml(outcomes, HEATSOAK_VERSION));
+    session.write(options.junit, junit_xml(outcomes, program_version()));
   }
   session.say(table_text(outcomes) + conclusion(outcomes, options));
   session.say(options.junit.empty() ? "" : fmt::format("written: {}\n", options.junit));

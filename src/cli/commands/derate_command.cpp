@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/version.h"
 #include "cli/command.h"
 #include "cli/default_spreads.h"
 #include "cli/guard_options.h"
@@ -182,9 +183,9 @@ ExitCode tell_comparison(const CommittedTable& committed, const Derating& derati
   if (found.lost.difference_A > 0.0) {
     text += fmt::format("safe, but it allows up to {:.3f} A less than a fresh table\n", found.lost.difference_A) + place_text(found.lost);
   }
-  if (!holds && !committed.version.empty() && committed.version != HEATSOAK_VERSION) {
+  if (!holds && !committed.version.empty() && committed.version != program_version()) {
     text += fmt::format("it was written by heatsoak {}, this is {}: an upgrade may explain the difference\n", committed.version,
-                        HEATSOAK_VERSION);
+                        program_version());
   }
   session.say(text);
   answer["check"] = {{"file", committed.file.string()},

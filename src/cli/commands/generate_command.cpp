@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/version.h"
 #include "cli/command.h"
 #include "cli/default_spreads.h"
 #include "cli/guard_options.h"
@@ -95,7 +96,7 @@ ExitCode run(Options& options, Session& session) {
   static_cast<void>(make_core_config(*robot, motor.nominal, options.core));
   options.guard.derate.period_s = guard_period_s(options.core.period_s);
   const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
-  const CoreFolder folder = core_files(*robot, motor, options.core, derating, "heatsoak " HEATSOAK_VERSION);
+  const CoreFolder folder = core_files(*robot, motor, options.core, derating, fmt::format("heatsoak {}", program_version()));
   const auto staged = std::make_shared<StagedFolder>(options.out, folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
   session.say(report(folder, derating, options));

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "duty/file_kind.h"
 #include "duty/duty.h"
+#include "duty/file_kind.h"
 #include "input/document.h"
 #include "motor/lint.h"
 #include "motor/motor.h"

@@ -1,0 +1,11 @@
+// The program's version, as answers and generated files carry it.
+#pragma once
+
+#include <string_view>
+
+namespace heatsoak {
+
+/// "0.1.0"; set by the project() line of CMakeLists.txt.
+std::string_view program_version();
+
+}  // namespace heatsoak
