@@ -24,7 +24,8 @@ elseif(NOT HEATSOAK_EMULATOR)
 endif()
 
 set(HEATSOAK_TARGET_PROCESSOR -mcpu=cortex-m7 -mthumb -mfpu=fpv5-sp-d16 -mfloat-abi=hard)
-set(HEATSOAK_TARGET_OPTIONS ${HEATSOAK_TARGET_PROCESSOR} -std=c++${CMAKE_CXX_STANDARD} -O2 ${HEATSOAK_CORE_OPTIONS}
+# In the order of the source GCC needs fewer registers and loads two words with one instruction: 1.5 % fewer instructions per step.
+set(HEATSOAK_TARGET_OPTIONS ${HEATSOAK_TARGET_PROCESSOR} -std=c++${CMAKE_CXX_STANDARD} -O2 -fno-schedule-insns ${HEATSOAK_CORE_OPTIONS}
     -Wall -Wextra -Werror -ffunction-sections -fdata-sections -fstack-usage -fcallgraph-info=su -DROBOT_CORE_WITHOUT_DOUBLE)
 set(HEATSOAK_TARGET_FOLDER "${PROJECT_BINARY_DIR}/target")
 

@@ -20,7 +20,7 @@ enum class Block : unsigned char {
 
 enum class BlockRate : unsigned char {
   every_period,             ///< Config::period_s
-  every_second_period,      ///< two of them while a body velocity is commanded, else one: the result serves both
+  every_second_period,      ///< every second period while a body velocity is commanded, else every period
   every_guard_period,       ///< GuardModel::period_s, once per wheel
   every_period_of_command,  ///< Config::period_s as long as the command is of one mode
 };

@@ -123,9 +123,11 @@ void close_loop(const Config& config, State& state, const Believed& believed, fl
 
 BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Believed& believed) {
   BodyReference body;
-  const float since_s = state.held.since_s + believed.elapsed_s;
+  // After a gap or a restart of State the references start anew, and go on for one period.
+  const bool is_anew = believed.robot_fault == Reason::time_jump || believed.robot_fault == Reason::state_corrupted;
+  const float since_s = is_anew ? config.period_s : state.held.since_s + believed.elapsed_s;
   state.held.since_s = 0.0F;
-  if (believed.robot_fault == Reason::time_jump) {
+  if (is_anew) {
     state.velocity_reference = believed.velocity;
     state.acceleration_reference = {};
     state.yaw_integral_rad = 0.0F;

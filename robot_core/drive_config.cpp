@@ -100,9 +100,8 @@ bool all(const float (&values)[count]) {
     yy += wheel.rolling_y_share * wheel.rolling_y_share;
   }
   constexpr float kJump_share = 0.03F;     // of the fastest speed: encoder steps and noise
-  constexpr float kCurrent_share = 0.15F;  // of the driver's limit: noise, delay and settling of the current
+  constexpr float kCurrent_share = 0.15F;  // noise, delay and settling of the current
   derived.jump_rad_per_s = config.largest_acceleration_rad_per_s2 * config.period_s + kJump_share * config.fastest_wheel_rad_per_s;
-  derived.current_margin_A = kCurrent_share * config.current_limit_A;
   derived.most_sensed_A = 2.5F * config.battery_full_V / config.lowest_resistance_ohm;  // braking, the back-EMF adds to the battery
   const float per_determinant = 1.0F / (xx * yy - xy * xy);
   derived.plane_xx_factor = yy * per_determinant;
@@ -126,6 +125,8 @@ bool all(const float (&values)[count]) {
     const float grip_A = nominal_A * config.resistance_ohm / config.lowest_resistance_ohm;
     wheel.is_grip_limit = config.traction_ratio > 0.0F && grip_A < config.current_limit_A ? 1 : 0;
     wheel.body_limit_A = wheel.is_grip_limit != 0 ? grip_A : config.current_limit_A;
+    // A robot without a driver limit still has a current that it drives with.
+    derived.current_margin_A = larger(derived.current_margin_A, kCurrent_share * wheel.body_limit_A);
   }
   config.check_sum = config_check_sum(config);
 }

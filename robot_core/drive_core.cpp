@@ -2,9 +2,6 @@
 
 #include "robot_core/drive_stages.h"
 
-// In the order of the source GCC loads two words of the State with one instruction.
-#pragma GCC optimize("no-schedule-insns")
-
 namespace robot_core {
 namespace {
 

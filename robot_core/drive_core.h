@@ -2,7 +2,7 @@
 // robot.
 //
 //   State state{};
-//   start(config, state, {.rested = true, .body_C = board_C});
+//   start(config, state, {.is_rested = true, .body_C = board_C});
 //   every config.period_s:  Output out = step(config, state, input);
 //
 // step() is pure: no clock, no heap, no globals, no exceptions, no C library, single precision, bounded time. The seven stages and the
@@ -54,7 +54,8 @@ struct WheelConfig {
   float rim_per_speed_m = 0.0F;          ///< r/slip factor
   float speed_per_rim_per_m = 0.0F;      ///< and back
   float per_damping_rad_per_V_s = 0.0F;  ///< 1/d
-  float others_factor = 0.0F;       ///< 1/(1 − tᵀ·P·t): residual against the other wheels per residual against all; 0: cannot be had
+  /// 1/(1 − tᵀ·P·t): turns the residual of the fit over all wheels into that of a fit without this wheel; 0: no such fit.
+  float others_factor = 0.0F;
   float body_limit_A = 0.0F;        ///< smaller one of driver limit and grip on level ground
   std::uint32_t is_grip_limit = 0;  ///< grip is the smaller one
 };
@@ -72,7 +73,7 @@ struct DerivedConfig {
   float plane_xx_factor = 0.0F;
   float plane_xy_factor = 0.0F;
   float plane_yy_factor = 0.0F;
-  float jump_rad_per_s = 0.0F;    ///< change of a wheel speed within a period that no motor can make
+  float jump_rad_per_s = 0.0F;    ///< largest change of a wheel speed per period that is believed
   float current_margin_A = 0.0F;  ///< by which current sensor and motor equation may differ
   float most_sensed_A = 0.0F;     ///< more no battery can drive
 };
@@ -174,7 +175,7 @@ struct WheelState {
   float current_squared_A2 = 0.0F;  ///< sum since the guard's last step
   float allowed_A = 0.0F;           ///< by the guard, as the current of a motor with the lowest resistance
   float allowed_braking_A = 0.0F;   ///< the same where the current brakes
-  float current_bound_A = 0.0F;     ///< limit of the last steps, decaying: a sensed current far above it opens the bridge
+  float current_bound_A = 0.0F;     ///< recent current limit, decaying; a sensed current of 1.3 times this and a margin opens the bridge
   std::uint16_t guard_steps = 0;    ///< periods since the guard's last step
   std::uint16_t same_steps = 0;     ///< periods in which the speed sample has not changed by a bit, up to kMostSameSteps
   std::uint8_t speed_fault = 0;     ///< Reason, or 0
@@ -187,7 +188,7 @@ struct WheelState {
   std::uint8_t has_stator = 0;          ///< a stator temperature has been seen: its absence is a fault from then on
 };
 
-/// Stages 2 to 4 of a body velocity serve two periods: what they found last.
+/// Result of stages 2 to 4. With a body velocity it serves two periods.
 struct HeldReference {
   PerWheel speed_rad_per_s = {};
   PerWheel feed_forward_V = {};
@@ -205,6 +206,8 @@ struct alignas(8) ComparisonState {
   float last_rad_per_s[kMostWheels] = {};   ///< speed samples of the last comparison of pairs
   float with_V_rad_per_s[6] = {};           ///< per pair of wheels: leaky sum of how much its currents accelerate its difference of speeds
   float against_V_rad_per_s[6] = {};        ///< and of how much they seem to decelerate it
+  float driven_V2[kMostWheels] = {};        ///< leaky mean square of the voltage less the back-EMF
+  float sensed_A2[kMostWheels] = {};        ///< and of the sensed current; both 0 while the sensor is not believed
   float residual_m2_per_s2 = 0.0F;          ///< leaky mean square by which the samples contradict each other as speeds of one body
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
@@ -238,10 +241,9 @@ struct alignas(8) State {
   float shadow_deficit_A_s = 0.0F;  ///< current time integral that it would have taken away
   std::uint8_t is_limited = 0;      ///< a limit scaled the wheels in the last period
   std::uint8_t yaw_fault = 0;
-  std::uint8_t has_ambient = 0;             ///< an air temperature has been seen: its absence is a fault from then on
   std::uint8_t is_yaw_same = 0;             ///< the last two samples of the yaw rate are equal to the bit
   std::uint8_t has_yaw_spoken_wrongly = 0;  ///< a sample spoke against itself since the last comparison
-  std::uint8_t unused[3] = {};
+  float ambient_C = kNoSample;              ///< last believed; not a number before the first sample, whose absence is no fault
   ComparisonState comparison;
   GuardState guard[kMostWheels];
 };

@@ -5,6 +5,9 @@
 // over to one constant, by the share γ = s²·(3 − 2·s), s = min(1, R·|yaw rate|/|v|).
 #include "robot_core/drive_stages.h"
 
+// For size: it runs in every second step.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 namespace {
 

@@ -31,12 +31,18 @@ float cold_current_ratio(const Config& config, float winding_C) {
                 config.resistance_ohm * (1.0F + config.resistance_rise_per_K * warm_K) * config.derived.per_lowest_resistance_A_per_V);
 }
 
+/// Mean square of the current that voltage and speed explain through a winding as warm as the observer's, beyond what the sensor shows.
+float missing_A2(const Config& config, const State& state, int i) {
+  const float per_ohm = config.derived.per_lowest_resistance_A_per_V / cold_current_ratio(config, state.guard[i].state_C[0]);
+  return larger(0.0F, state.comparison.driven_V2[i] * per_ohm * per_ohm - state.comparison.sensed_A2[i]);
+}
+
 /// `periods`: that current_squared_A2 is the sum of.
 void step_wheel_guard(const Config& config, State& state, const Believed& believed, int i, float periods) {
   WheelState& wheel = state.wheel[i];
   const GuardModel& model = *config.guard;
   const BelievedWheel& sensed = believed.wheel[i];
-  const float rms_A = square_root(wheel.current_squared_A2 / periods);
+  const float rms_A = square_root(wheel.current_squared_A2 / periods + missing_A2(config, state, i));
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
   float signal[kGuardSignals];
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;

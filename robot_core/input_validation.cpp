@@ -117,14 +117,18 @@ void validate_battery(const Config& config, State& state, const Input& input, Be
   }
 }
 
+/// Air does not become cold at once: a sample below the last one is approached slowly, in case the sensor has come off.
 void validate_ambient(const Config& config, State& state, const Input& input, Believed& believed) {
+  constexpr float kCooling_K_per_s = 0.02F;
   const float coldest_C = config.guard != nullptr ? config.guard->coldest_ambient_C : -40.0F;
   // A dead sensor shows just 0.
   const bool is_believed = input.ambient_C >= coldest_C + 0.05F && input.ambient_C <= kHottestAir_C;
-  believed.ambient_C = is_believed ? input.ambient_C : kNoSample;
+  believed.ambient_C = kNoSample;
   if (is_believed) {
-    state.has_ambient = 1;
-  } else if (state.has_ambient != 0 && believed.robot_fault == Reason::none) {
+    const float least_C = state.ambient_C - kCooling_K_per_s * config.period_s;
+    state.ambient_C = least_C > input.ambient_C ? least_C : input.ambient_C;
+    believed.ambient_C = state.ambient_C;
+  } else if (state.ambient_C == state.ambient_C && believed.robot_fault == Reason::none) {
     believed.robot_fault = Reason::ambient_missing;
   }
 }
@@ -137,7 +141,7 @@ struct PlaneFit {
   float x_m_per_s = 0.0F;
   float y_m_per_s = 0.0F;
 
-  void add(const WheelConfig& wheel, float rim_m_per_s, float sign) {
+  [[gnu::noinline]] void add(const WheelConfig& wheel, float rim_m_per_s, float sign) {
     const float t_x = sign * wheel.rolling_x_share;
     const float t_y = sign * wheel.rolling_y_share;
     xx += t_x * wheel.rolling_x_share;

@@ -30,8 +30,7 @@ struct WheelDemand {
 [[gnu::cold, gnu::noinline]] void limit_to_limp(const Config& config, const WheelState& state, WheelDemand& demand) {
   if (config.limp_current_A < demand.most_A) {
     demand.most_A = config.limp_current_A;
-    // A fault that has just been cleared counts from the next step on.
-    demand.reason = state.speed_fault != 0 ? static_cast<Reason>(state.speed_fault) : Reason::wheel_speed_missing;
+    demand.reason = static_cast<Reason>(state.speed_fault);
   }
 }
 

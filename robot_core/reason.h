@@ -1,6 +1,7 @@
 // Why a wheel gets less than was asked for: limits, which are normal, and faults, which are not.
 //
-// Fault table. W concerns one wheel, R the whole robot. Every reaction leads to less current than without the fault.
+// Fault table. W concerns one wheel, R the whole robot. No reaction allows more current than the limits allow without the fault. Braking to
+// a stand takes current, and so do the other wheels where one is limited to Config::limp_current_A.
 // clang-format off
 //
 // | code   | condition                                                   | reaction                                          | clears                          |
@@ -20,12 +21,14 @@
 // |        |                                                             | current at most Config::limp_current_A            |                                 |
 // | 111 W  | wheel speed jumps by more than the motor can accelerate     | as 110                                            | as 110                          |
 // | 112 W  | wheel speed stays at one value against all other evidence   | as 110                                            | as 110                          |
-// | 113 W  | wheel speeds answer to each other's currents (swapped)      | as 110, both wheels                               | start()                         |
-// | 114 W  | speed unknown: too few other wheels to estimate it          | voltage that drives at most limp_current_A into a | as 110                          |
-// |        |                                                             | standing motor; open where current is not sensed  |                                 |
+// | 113 W  | speed of one wheel changes with the current of another      | as 110, both wheels                               | start()                         |
+// |        | (swapped)                                                   |                                                   |                                 |
+// | 114 W  | speed unknown: too few other wheels to estimate it          | voltage of at most limp_current_A times the       | as 110                          |
+// |        |                                                             | resistance; open where current is not sensed      |                                 |
 // | 120 W  | motor current not finite or beyond what the battery drives  | current from voltage, speed and guard temperature | next valid sample               |
 // | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard takes the larger of both        | kSteadyAgain_s of agreement     |
-// | 130 R  | battery voltage not finite or outside of the declared range | PWM as for a full battery, limits as for an empty | next valid sample               |
+// | 130 R  | battery voltage not finite, below half of the lowest or     | PWM as for a full battery, limits as for an empty | next valid sample               |
+// |        | above 1.1 times the full voltage                            |                                                   |                                 |
 // | 140 R  | yaw rate not finite, beyond the sensor, or jumping          | yaw rate from the wheels                          | kSteadyAgain_s of agreement     |
 // | 141 R  | yaw rate stays at one value while the wheels turn the robot | as 140                                            | as 140                          |
 // | 150 R  | air temperature seen once, now not finite or out of range   | hottest declared air                              | next valid sample               |
@@ -34,17 +37,28 @@
 // clang-format on
 //
 // A robot fault hides those below it: 102, 101, 103, 130, 140 or 141, 150, then the command's. 160 comes with 101.
-// A battery sample that is lower than the known load explains is no fault, because a kicker may charge: limits take the sample, the PWM
-// ratio keeps to the voltage that the battery has shown before.
 //
-// Not covered, because nothing else measures it (tests/robot_core/adversarial_test.cpp has the sizes):
-//   - swapped wheel sensors until they are found, after 0.1 to 0.4 s of driving on average: exchanged samples of opposite wheels, or of any
-//     two of three, are those of another motion of the body, and only the answer to the currents tells them apart;
-//   - two or more speed sensors (wheels, gyro) that lie at once for another reason;
-//   - a wheel that slips while its own speed sensor lies and its current is not sensed: its speed is taken for that of a rolling wheel;
-//   - a gyro with a wrong sign or scale, without a jump: the robot turns wrongly, its currents stay within their limits;
-//   - a battery sensor that is wrong by the same factor since the start, or sinks more slowly than 0.4 % of the full battery per second;
-//   - a command that is wrong but possible.
+// Without a code:
+//   - A low battery sample is no fault: a kicker may be charging. Limits use the sample. The PWM ratio uses the last voltage without load.
+//   - A current sensor that reads too little hides no heat from the guard, which compares it with voltage and speed.
+//   - An air temperature that falls is followed by 0.02 K/s at most.
+//
+// Not recognised (tests/robot_core/adversarial_test.cpp has the sizes); current limits and guard hold unless stated:
+//   - Swapped wheel sensors until they are found, after 0.1 to 0.4 s of driving on average. Swapped samples of opposite wheels, or of any
+//   two
+//     of three, fit a different motion of the robot equally well; only the reaction to currents shows the swap. Until then the current may
+//     be above its limit.
+//   - One wheel sensor with a wrong scale, sign or offset, or one that is stuck with noise: the robot turns and its wheels work against
+//   each
+//     other. Sliding wheels look the same. A slipping wheel whose own sensor lies and whose current is not sensed may exceed its limit.
+//   - Two or more speed sensors (wheels, gyro) that lie at once. If all wheel speeds show 0, the robot accelerates without control. Current
+//     limits may be exceeded.
+//   - A gyro with a wrong sign, scale or offset: the robot turns wrongly.
+//   - A battery sensor that is wrong by the same factor since the start, or sinks more slowly than 0.4 % of the full battery per second:
+//   the
+//     current may exceed its limit by that factor.
+//   - A command that is wrong but possible.
+// Faults 111, 112 and 121 are found later, or not at all, if the robot's file has no current limit of the driver.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Stage 1, second part: sensors compared with each other over tens of milliseconds. One test per step in turn, so that no step carries
+// Stage 1, second part: sensors compared with each other over tens of milliseconds. The tests take turns, so that no step carries
 // all of them.
 #include "robot_core/drive_stages.h"
 
@@ -17,6 +17,8 @@ constexpr float kSameDisagreement_share = 0.02F;  // of a sample that does not c
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // A winding is never this many times its coldest resistance: 2 is copper at 280 degC.
 constexpr float kHotResistance_ratio = 2.0F;
+// Of the explained current, besides Config's margin: settling and delay.
+constexpr float kSettling_share = 0.15F;
 // Swapped sensors: time constant of the comparison, least contradiction, and how many times the confirmation it is.
 constexpr float kSwap_s = 0.3F;
 constexpr float kLeastContradiction_share = 0.008F;
@@ -61,14 +63,29 @@ CurrentRange explained_current(const Config& config, float voltage_V, float spee
 bool current_contradicts(const Config& config, const WheelState& wheel, float sensed_A, float speed_rad_per_s) {
   const CurrentRange last = wheel.is_open != 0 ? CurrentRange{} : explained_current(config, wheel.voltage_V, speed_rad_per_s);
   const CurrentRange earlier = explained_current(config, wheel.earlier_V, speed_rad_per_s);
-  const float margin_A = config.derived.current_margin_A;
+  const float margin_A = config.derived.current_margin_A + kSettling_share * larger(absolute(last.high_A), absolute(last.low_A));
   const bool is_sample = absolute(sensed_A) <= config.derived.most_sensed_A;
   return is_sample &&
          !(sensed_A >= smaller(last.low_A, earlier.low_A) - margin_A && sensed_A <= larger(last.high_A, earlier.high_A) + margin_A);
 }
 
+/// A current sensor that reads too little would hide heat from the guard, long before it contradicts the motor's equation.
+void compare_heat(const Config& config, State& state, const Believed& believed, float sensed_A, int i, float since_s) {
+  constexpr float kHeat_s = 1.0F;
+  const WheelState& wheel = state.wheel[i];
+  ComparisonState& comparison = state.comparison;
+  const float back_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].speed_rad_per_s;
+  const float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - back_V;
+  const float share = smaller(1.0F, since_s / kHeat_s);
+  comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);
+  comparison.sensed_A2[i] += share * (sensed_A * sensed_A - comparison.sensed_A2[i]);
+  if (!(absolute(sensed_A) <= config.derived.most_sensed_A) || wheel.is_current_doubted != 0) {
+    comparison.driven_V2[i] = comparison.sensed_A2[i] = 0.0F;
+  }
+}
+
 /// Speed and current sensor of one wheel against the other wheels and the motor's equation.
-[[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, const Believed& believed, int i, float since_s) {
+[[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, Believed& believed, int i, float since_s) {
   WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
   const float sample = wheel.raw_speed_rad_per_s;
@@ -92,6 +109,8 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
     if (comparison.agreement_s[i] >= kSteadyAgain_s && (!is_same || wheel.is_open != 0)) {
       wheel.speed_fault = 0;
       comparison.disagreement_s[i] = 0.0F;
+      believed.wheel[i].is_speed_sensed = believed.wheel[i].is_speed_known = true;
+      believed.wheel[i].speed_rad_per_s = sample;
     }
   }
   wheel.has_spoken_wrongly = 0;
@@ -246,10 +265,9 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
     seal(state.comparison);
     return;
   }
-  // Even steps; wheels 0, 4, 8, 12, pairs 2, yaw rate 6.
+  // Two wheels in step 0, two and the yaw rate in step 8, all pairs in step 4.
   const std::uint32_t turn = state.steps % kStepsPerComparison;
-  const bool is_wheel = turn % 4 == 0 && turn / 4 < static_cast<std::uint32_t>(config.wheel_count);
-  if (!is_wheel && turn != 2 && turn != 6) {
+  if (turn != 0 && turn != 4 && turn != 8) {
     return;
   }
   if (state.comparison.check_sum != check_sum_of(state.comparison)) {
@@ -257,12 +275,17 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
     believed.robot_fault = believed.robot_fault == Reason::period_invalid ? believed.robot_fault : Reason::state_corrupted;
   }
   const float since_s = believed.elapsed_s * static_cast<float>(kStepsPerComparison);
-  if (is_wheel) {
-    compare_wheel(config, state, input, believed, static_cast<int>(turn / 4), since_s);
-  } else if (turn == 2) {
+  if (turn == 4) {
     compare_pairs(config, state, believed, since_s);
   } else {
-    compare_yaw_rate(config, state, believed, since_s);
+    const int first = turn == 0 ? 0 : 2;
+    for (int i = first; i < first + 2 && i < config.wheel_count; ++i) {
+      compare_wheel(config, state, input, believed, i, since_s);
+      compare_heat(config, state, believed, input.motor_current_A[i], i, since_s);
+    }
+    if (turn == 8) {
+      compare_yaw_rate(config, state, believed, since_s);
+    }
   }
   copy_faults(state);
   seal(state.comparison);

@@ -25,12 +25,12 @@ enum GuardSignal : int {
 
 inline constexpr int kMostGuardNodes = 6;
 
-/// Range in which a signal is believed, and what it may be where it is not.
+/// Range in which a signal is believed, and candidate values for when it is not.
 struct GuardBelief {
   bool is_used = false;  ///< false: no law of this motor depends on it
   float least = 0.0F;
   float most = 0.0F;
-  const float* possible = nullptr;  ///< `possible_count` values that contain the one that heats most
+  const float* possible = nullptr;  ///< `possible_count` candidates; the one that heats most is used
   int possible_count = 0;
 };
 

@@ -27,7 +27,7 @@ constexpr std::array<RobotFigureSpec, 29> kSpecs{{
      {"wheel_torque", "N m", Range::between(0.0, 20.0), "against the turning of one wheel, without the motor's own drag"},
      &Robot::wheel_friction_torque_Nm},
     {"friction",
-     {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "and what grows with the wheel's speed"},
+     {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "torque against the turning of one wheel per speed of the wheel"},
      &Robot::wheel_damping_Nm_s_per_rad},
     {"friction",
      {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},

@@ -163,9 +163,6 @@ Record check(const Case& test, int delay, int lag) {
     if (test.code == Reason::state_corrupted && other == Reason::guard_unknown) {
       continue;  // the guard begins as hot as its limit
     }
-    if (test.code == Reason::wheel_speed_stuck && other == Reason::wheel_speed_missing) {
-      continue;  // in the period in which the sensor is believed again
-    }
     ADD_FAILURE() << "also reported: " << static_cast<int>(other);
   }
   return faulty;

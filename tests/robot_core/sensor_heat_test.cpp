@@ -1,0 +1,126 @@
+// Sensors of current and air that read too little for minutes: the guard must not lose the heat.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "test_robot.h"
+
+namespace heatsoak::test_robot {
+namespace {
+
+using robot_core::Config;
+using robot_core::Input;
+using robot_core::Mode;
+using robot_core::State;
+
+constexpr double kDuration_s = 120.0;
+
+/// Torques of four wheels that cancel as forces and as a moment on the body: null space of the rows t_x, t_y, 1.
+std::array<float, 4> torques_against_each_other(const Config& config) {
+  const auto minor = [&](int left_out) {
+    std::array<std::array<double, 3>, 3> m{};
+    std::size_t at = 0;
+    for (int i = 0; i < 4; ++i) {
+      if (i != left_out) {
+        m.at(at++) = {static_cast<double>(config.wheel[i].rolling_x_share), static_cast<double>(config.wheel[i].rolling_y_share), 1.0};
+      }
+    }
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  };
+  std::array<double, 4> torque{};
+  double most = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    torque.at(static_cast<std::size_t>(i)) = (i % 2 == 0 ? 1.0 : -1.0) * minor(i);
+    most = std::max(most, std::abs(torque.at(static_cast<std::size_t>(i))));
+  }
+  std::array<float, 4> result{};
+  std::ranges::transform(torque, result.begin(), [&](double each) { return static_cast<float>(each / most); });
+  return result;
+}
+
+struct Heat {
+  double hottest_C = 0.0;
+  double limited_s = 0.0;  ///< time in which the guard limits a wheel
+};
+
+/// Wheels on rubber that hold each other back with up to 0.2 N m, for two minutes.
+Heat push(const Config& config, const std::function<void(Input&)>& spoil, double air_C = 25.0) {
+  Truth truth;
+  truth.air_C = air_C;
+  truth.grip_ratio = 2.0;
+  Plant plant(config, truth);
+  State state;
+  Random random(3);
+  EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+  const std::array<float, 4> torque = torques_against_each_other(config);
+  Heat heat;
+  for (int k = 0; k < static_cast<int>(kDuration_s / static_cast<double>(config.period_s)); ++k) {
+    Input input = plant.sense(random, 0.3F, true);
+    input.ambient_C = static_cast<float>(air_C);
+    input.command.mode = Mode::wheel_torque;
+    for (std::size_t i = 0; i < 4; ++i) {
+      input.command.wheel_torque_Nm[i] = 0.2F * torque.at(i);
+    }
+    if (k > 5000) {
+      spoil(input);
+    }
+    const robot_core::Output out = robot_core::step(config, state, input);
+    plant.move(out);
+    bool is_limited = false;
+    for (int i = 0; i < 4; ++i) {
+      heat.hottest_C = std::max(heat.hottest_C, plant.winding_C(i));
+      is_limited = is_limited || state.wheel[i].allowed_A < 4.0F;
+    }
+    heat.limited_s += is_limited ? static_cast<double>(config.period_s) : 0.0;
+  }
+  return heat;
+}
+
+// As hot as without a sensor at most, when the guard takes the current of voltage and speed.
+TEST(SensorHeat, CurrentSensorThatReadsTooLittleHidesNoHeat) {
+  for (const float driver_limit_A : {12.0F, 45.0F}) {
+    Config config = make_config(4);
+    config.current_limit_A = driver_limit_A;
+    robot_core::complete(config);
+    const std::array<float, 4> torque = torques_against_each_other(config);
+    const auto hardest = std::ranges::max_element(torque, {}, [](float each) { return std::abs(each); }) - torque.begin();
+    const Heat truthful = push(config, [](Input&) {});
+    const Heat without = push(config, [](Input& input) { std::ranges::fill(input.motor_current_A, robot_core::kNoSample); });
+    EXPECT_GT(truthful.limited_s, 5.0) << "the push is no test of the guard";
+    EXPECT_LT(without.hottest_C, kWindingLimit_C);
+    const double most_C = std::max(truthful.hottest_C, without.hottest_C) + 1.0;
+    for (const float gain : {0.0F, 0.3F, 0.5F, 0.7F, 0.9F, -1.0F}) {
+      const Heat one = push(config, [&](Input& input) { input.motor_current_A[hardest] *= gain; });
+      const Heat all = push(config, [&](Input& input) {
+        for (float& each : input.motor_current_A) {
+          each *= gain;
+        }
+      });
+      std::printf("driver limit %.0f A, gain %.1f: one %.1f C, all %.1f C; truthful %.1f C, no sensor %.1f C\n",
+                  static_cast<double>(driver_limit_A), static_cast<double>(gain), one.hottest_C, all.hottest_C, truthful.hottest_C,
+                  without.hottest_C);
+      EXPECT_LT(one.hottest_C, most_C) << gain;
+      EXPECT_LT(all.hottest_C, most_C) << gain;
+    }
+    EXPECT_LT(push(config, [&](Input& input) { input.motor_current_A[hardest] = 0.2F; }).hottest_C, most_C);
+  }
+}
+
+TEST(SensorHeat, AirSensorThatBecomesColdHidesNoHeat) {
+  const Config config = make_config(4);
+  const Heat truthful = push(
+      config, [](Input&) {}, 40.0);
+  const Heat lied = push(
+      config, [](Input& input) { input.ambient_C = 1.0F; }, 40.0);
+  std::printf("air 40 C, shown as 1 C: %.1f C, truthful %.1f C\n", lied.hottest_C, truthful.hottest_C);
+  EXPECT_LT(lied.hottest_C, truthful.hottest_C + 3.0);
+  EXPECT_LT(lied.hottest_C, kWindingLimit_C);
+}
+
+}  // namespace
+}  // namespace heatsoak::test_robot
