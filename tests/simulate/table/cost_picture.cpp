@@ -9,10 +9,10 @@ namespace heatsoak::studies {
 namespace {
 
 constexpr int kWidth_px = 1200;
-constexpr int kNames_px = 250;  ///< left column
+constexpr int kNames_px = 280;  ///< left column
 constexpr int kRow_px = 22;
 constexpr int kColumn_px = (kWidth_px - kNames_px - 20) / 4;
-constexpr int kBar_px = kColumn_px - 115;  ///< longest; beside it stands its value
+constexpr int kBar_px = kColumn_px - 110;  ///< longest; beside it stands its value
 constexpr const char* kKeeps = "#2b7bba";
 constexpr const char* kGuard = "#1b7837";
 constexpr const char* kOver = "#c8413b";
@@ -22,8 +22,8 @@ std::string text_at(double x_px, double y_px, const std::string& text, const std
 }
 
 std::string box_at(double x_px, double y_px, double width_px, double height_px, const char* color) {
-  return fmt::format("  <rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x_px, y_px, width_px, height_px,
-                     color);
+  return fmt::format("  <rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x_px, y_px, width_px,
+                     height_px, color);
 }
 
 struct Column {
@@ -66,15 +66,16 @@ std::string bar(const Column& column, const CostRow& row, const Cost& cost, doub
 
 std::string draw_costs(const std::string& title, const std::vector<std::string>& subtitle, const std::vector<std::string>& knowledge,
                        const std::vector<CostLevel>& levels) {
-  std::string body = text_at(20, 34, title, R"(font-size="20" font-weight="bold")");
+  std::string body = text_at(20, 34, title, R"(font-size="18" font-weight="bold")");
   double y_px = 34.0;
   for (const std::string& line : subtitle) {
     y_px += 20.0;
     body += text_at(20, y_px, line, R"(font-size="13" fill="#555555")");
   }
   y_px += 26.0;
-  const std::pair<const char*, const char*> kLegend[] = {
-      {kGuard, "guard, keeps the limit"}, {kKeeps, "other way, keeps the limit"}, {kOver, "winding over the limit with at least one motor"}};
+  const std::pair<const char*, const char*> kLegend[] = {{kGuard, "guard, keeps the limit"},
+                                                         {kKeeps, "other way, keeps the limit"},
+                                                         {kOver, "winding over the limit with at least one motor"}};
   double x_px = 20.0;
   for (const auto& [color, meaning] : kLegend) {
     body += box_at(x_px, y_px - 11.0, 14.0, 12.0, color) + text_at(x_px + 20.0, y_px, meaning, R"(font-size="13")");
@@ -90,8 +91,8 @@ std::string draw_costs(const std::string& title, const std::vector<std::string>&
   }
   y_px += 28.0;
   for (const CostLevel& level : levels) {
-    body += box_at(20.0, y_px, kWidth_px - 40.0, 1.0, "#bbbbbb") +
-            text_at(20, y_px + 19.0, level.name, R"(font-size="14" font-weight="bold")");
+    body +=
+        box_at(20.0, y_px, kWidth_px - 40.0, 1.0, "#bbbbbb") + text_at(20, y_px + 19.0, level.name, R"(font-size="14" font-weight="bold")");
     y_px += 26.0;
     for (const CostRow& row : level.rows) {
       body += text_at(32, y_px + kRow_px - 7.0, row.way, row.is_guard ? R"(font-size="13" font-weight="bold")" : R"(font-size="13")");

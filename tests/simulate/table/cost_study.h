@@ -45,6 +45,7 @@ struct Knowledge {
   const MotorGuard* guard = nullptr;
 };
 /// Writes rest.svg and rest.csv; returns the section of the report. `match` and `game` are of the middle level.
-std::string study_rest(const HardMatch& match, const Game& game, const Motor& motor, const std::vector<Knowledge>& known, const Report& report);
+std::string study_rest(const HardMatch& match, const Game& game, const Motor& motor, const std::vector<Knowledge>& known,
+                       const Report& report);
 
 }  // namespace heatsoak::studies
