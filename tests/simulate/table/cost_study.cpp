@@ -278,7 +278,7 @@ std::string picture(const std::vector<Level>& levels, const std::vector<Known>& 
   const Cell& bench = cells.back();
   const Cell& file = cells[cells.size() - 2];
   const std::string title =
-      fmt::format("Distance lost in the hard match: guard {} %, best other way {} % (bench data); {} % and {} % (file's estimates)",
+      fmt::format("Distance lost in the hard match: guard {} %, best other way {} % (bench data); {} % and {} % (estimates)",
                   number(cost_of(bench, Method::guard).lost_percent, 1), number(best_rival_percent(bench), 1),
                   number(cost_of(file, Method::guard).lost_percent, 1), number(best_rival_percent(file), 1));
   return draw_costs(
