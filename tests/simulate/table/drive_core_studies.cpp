@@ -1,6 +1,6 @@
 // Makes the tables and pictures of reports/drive_core anew: simulated, with real sensing; the same bytes on every run.
-//   heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard]]
-// FOLDER: reports/drive_core of the checkout unless given. Without a study's name all three run.
+//   heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]
+// FOLDER: reports/drive_core of the checkout unless given. Without a study's name all four run.
 #include "drive_core_studies.h"
 
 #include <fmt/format.h>
@@ -66,7 +66,10 @@ struct Study {
   std::string_view name;
   void (*run)(const Subject& subject, const Report& report);
 };
-constexpr Study kStudies[] = {{"low_speed", study_low_speed}, {"planners", study_planners_in_match}, {"guard", study_guard}};
+constexpr Study kStudies[] = {{"low_speed", study_low_speed},
+                             {"planners", study_planners_in_match},
+                             {"guard", study_guard},
+                             {"costs", study_costs}};
 
 int run(const std::vector<std::string>& words) {
   const Report report{words.empty() ? kSource / "reports" / "drive_core" : std::filesystem::path(words.front())};
@@ -83,7 +86,7 @@ int run(const std::vector<std::string>& words) {
     has_run = true;
   }
   if (!has_run) {
-    fmt::print(stderr, "usage: heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard]]\n");
+    fmt::print(stderr, "usage: heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]\n");
     return 2;
   }
   return 0;

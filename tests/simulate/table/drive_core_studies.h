@@ -1,4 +1,4 @@
-// Three studies of the drive core in the closed loop, and what they share: tables, spreads, the robot and its motor.
+// Four studies of the drive core in the closed loop, and what they share: tables, spreads, the robot and its motor.
 #pragma once
 
 #include <filesystem>
@@ -53,5 +53,6 @@ DriveOptions sensed_drive(const Robot& robot, std::uint64_t seed, bool has_curre
 void study_low_speed(const Subject& subject, const Report& report);
 void study_planners_in_match(const Subject& subject, const Report& report);
 void study_guard(const Subject& subject, const Report& report);
+void study_costs(const Subject& subject, const Report& report);
 
 }  // namespace heatsoak::studies

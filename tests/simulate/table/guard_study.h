@@ -24,8 +24,9 @@ struct HardMatch {
   double ambient_C = 0.0;
   std::vector<HardInput> changed;
 };
-/// Every change is listed. Those within the ranges that the files declare take the harder end.
-HardMatch make_hard_match(const Robot& robot);
+/// Every change is listed. Those within the ranges that the files declare take the harder end. `share`: of every change; 0: files as they
+/// are, 1: the hard match.
+HardMatch make_hard_match(const Robot& robot, double share = 1.0);
 
 /// The motor's file after a bench test: its values with the tolerances that such a test leaves.
 Motor bench_tested(const Motor& motor);
@@ -60,6 +61,10 @@ inline constexpr double kOffPlan_m = 0.09;  ///< radius of a robot of the league
 
 /// `motor` is the true one.
 Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, const Motor& motor, std::uint64_t seed, bool with_seconds);
+
+/// The same with a configuration of the core that is ready; `has_sensors` is Way's.
+Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::Config& core, bool has_sensors, const Motor& motor,
+                    std::uint64_t seed, bool with_seconds);
 
 /// The motors of a file, drawn within its tolerances.
 std::vector<Motor> drawn_motors(const Motor& motor, std::size_t count);

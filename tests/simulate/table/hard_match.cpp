@@ -49,10 +49,12 @@ constexpr HarderFigure kHarderFigures[] = {
 
 }  // namespace
 
-HardMatch make_hard_match(const Robot& robot) {
+HardMatch make_hard_match(const Robot& robot, double share) {
+  constexpr double kHardAmbient_C = 40.0;
   const Duty duty = read_duty(kSource / "duty_profiles" / "division_a_match.toml");
-  HardMatch match{robot, std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)->inputs(), 40.0, {}};
-  match.changed.push_back({"air at the motors", fmt::format("{:.0f} °C", duty.ambient_C.value), fmt::format("{:.0f} °C", match.ambient_C),
+  HardMatch match{robot, std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)->inputs(),
+                  std::lerp(duty.ambient_C.value, kHardAmbient_C, share), {}};
+  match.changed.push_back({"air at the motors", fmt::format("{:.0f} °C", duty.ambient_C.value), fmt::format("{:.3g} °C", match.ambient_C),
                            "harsher than the declared 20 to 32 °C of a hall: 8 K more inside of a closed robot"});
   const auto specs = match_input_specs();
   for (const HarderInput& harder : kHarder) {
@@ -62,15 +64,17 @@ HardMatch make_hard_match(const Robot& robot) {
     }
     Figure& figure = match.inputs.figures.at(static_cast<std::size_t>(spec - specs.begin()));
     const std::string unit(spec->spec.unit);
+    const double value = std::lerp(figure.value, harder.value, share);
     match.changed.push_back(
-        {harder.key, fmt::format("{:.3g} {}", figure.value, unit), fmt::format("{:.3g} {}", harder.value, unit), harder.remark});
-    figure.value = harder.value;
+        {harder.key, fmt::format("{:.3g} {}", figure.value, unit), fmt::format("{:.3g} {}", value, unit), harder.remark});
+    figure.value = value;
   }
   for (const HarderFigure& harder : kHarderFigures) {
     double& value = match.robot.*harder.value;
+    const double changed = std::lerp(value, harder.hard, share);
     match.changed.push_back({harder.name, fmt::format("{:.3g} {}", value * harder.per_unit, harder.unit),
-                             fmt::format("{:.3g} {}", harder.hard * harder.per_unit, harder.unit), harder.remark});
-    value = harder.hard;
+                             fmt::format("{:.3g} {}", changed * harder.per_unit, harder.unit), harder.remark});
+    value = changed;
   }
   return match;
 }
@@ -106,14 +110,19 @@ Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, co
   }
   const MotorGuard none;
   const GuardedCore core(known, *way.motor, way.guard != nullptr ? GuardUse::on : GuardUse::off, way.guard != nullptr ? *way.guard : none);
+  return drive_hard(match, game, core.config(), way.has_sensors, motor, seed, with_seconds);
+}
+
+Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::Config& core, bool has_sensors, const Motor& motor,
+                    std::uint64_t seed, bool with_seconds) {
   MatchRunOptions options;
   options.ambient_C = match.ambient_C;
-  options.drive = sensed_drive(match.robot, seed, way.has_sensors);
-  options.drive.sensing.has_ambient = way.has_sensors;
+  options.drive = sensed_drive(match.robot, seed, has_sensors);
+  options.drive.sensing.has_ambient = has_sensors;
   Hardship hardship;
   Second open{.allowed_A = std::numeric_limits<double>::infinity()};
   double distance_m = 0.0;
-  hardship.score = run_match(game, match.robot, motor, core.config(), options, [&](const LoopMoment& moment) {
+  hardship.score = run_match(game, match.robot, motor, core, options, [&](const LoopMoment& moment) {
                      const Pose plan = moment.plan->pose();
                      const PlantState& state = moment.robot->state();
                      const double off_m = std::hypot(plan.x_m - state.pose.x_m, plan.y_m - state.pose.y_m);

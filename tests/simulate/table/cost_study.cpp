@@ -1,0 +1,354 @@
+// What limiting costs at three levels of aggressiveness: the guard against six other ways, one of which knows the true motor.
+#include "cost_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "limiters.h"
+
+namespace heatsoak::studies {
+
+double upper_bound(std::size_t hits, std::size_t count) {
+  constexpr double kMissed = 0.05;
+  if (hits >= count) {
+    return 1.0;
+  }
+  double low = 0.0;
+  double high = 1.0;
+  constexpr int kHalvings = 50;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double share = 0.5 * (low + high);
+    // P(X ≤ hits) of the binomial distribution, term by term.
+    double term = std::pow(1.0 - share, static_cast<double>(count));
+    double sum = term;
+    for (std::size_t k = 0; k < hits; ++k) {
+      term *= static_cast<double>(count - k) / static_cast<double>(k + 1) * share / (1.0 - share);
+      sum += term;
+    }
+    (sum > kMissed ? low : high) = share;
+  }
+  return high;
+}
+
+namespace {
+
+constexpr std::size_t kMatches = 3;
+constexpr std::size_t kMotors = 9;  ///< each in one of the matches
+
+enum class Method : std::uint8_t { none, sheet_cap, hindsight_cap, stator_ramp, overload, guard_unsensed, guard, oracle };
+struct MethodSpec {
+  Method method;
+  const char* key;
+  const char* name;
+};
+constexpr std::array<MethodSpec, 8> kMethods{{{Method::none, "none", "no limit"},
+                                              {Method::sheet_cap, "cap_data_sheet", "cap, data sheet's continuous"},
+                                              {Method::hindsight_cap, "cap_hindsight", "cap found in hindsight"},
+                                              {Method::stator_ramp, "stator_ramp", "stator ramp 85 to 100 °C"},
+                                              {Method::overload, "i2t", "I²t, data sheet's peak"},
+                                              {Method::guard_unsensed, "guard_unsensed", "guard, nothing sensed"},
+                                              {Method::guard, "guard", "guard, current and air sensed"},
+                                              {Method::oracle, "oracle", "oracle (true motor)"}}};
+constexpr std::size_t place_of(Method method) { return static_cast<std::size_t>(method); }
+constexpr bool is_guard(Method method) { return method == Method::guard || method == Method::guard_unsensed; }
+
+struct Level {
+  std::string name;
+  const char* key;
+  HardMatch match;
+  std::vector<Game> games;  ///< by seed, from 1
+};
+
+struct Known {
+  std::string name;
+  const char* key;
+  Motor motor;
+  MotorGuard guard;
+  std::vector<Motor> drawn;
+  std::vector<Derating> exact;  ///< of each drawn motor
+};
+
+struct Run {
+  double peak_C = 0.0;
+  double distance_m = 0.0;
+  double off_plan_s = 0.0;
+};
+
+/// One level with one knowledge.
+struct Cell {
+  const Level* level = nullptr;
+  const Known* known = nullptr;
+  double cap_A = kAbsent;  ///< found in hindsight; absent: not needed
+  std::array<std::vector<Run>, kMethods.size()> runs;
+};
+
+std::uint64_t seed_of(std::size_t motor) { return motor % kMatches + 1; }
+
+std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::size_t i, const Robot& robot) {
+  const Derating& exact = known.exact[i];
+  const Motor& motor = known.drawn[i];
+  const double ratio = motor.nominal.terminal_resistance_ohm / known.motor.nominal.terminal_resistance_ohm;
+  switch (method) {
+    case Method::sheet_cap:
+      return Limiter::fixed_cap(exact, ratio, overload_of(known.motor.nominal).continuous_A);
+    case Method::stator_ramp:
+      return Limiter::stator_ramp(exact, ratio, 85.0, 100.0);
+    case Method::overload:
+      return Limiter::i_squared_t(exact, ratio, overload_of(known.motor.nominal));
+    case Method::oracle:
+      return Limiter::oracle(exact, ratio, braking_reserve_K(robot, motor.nominal, exact));
+    default:
+      return nullptr;
+  }
+}
+
+Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = kAbsent) {
+  Robot robot = level.match.robot;
+  if (method == Method::hindsight_cap) {
+    // By the voltage and the lowest resistance, as the firmware holds its own limit: a cold winding gets more than a warm one.
+    robot.current_limit_A = cap_A;
+  }
+  const Game& game = level.games[seed_of(i) - 1];
+  const bool has_sensors = method != Method::guard_unsensed;
+  Hardship hardship;
+  if (const std::unique_ptr<Limiter> limiter = make_limiter(method, known, i, robot)) {
+    hardship = drive_hard(level.match, game, limiter->config(robot, known.motor), has_sensors, known.drawn[i], seed_of(i), false);
+  } else {
+    const GuardedCore core(robot, known.motor, is_guard(method) ? GuardUse::on : GuardUse::off, known.guard);
+    hardship = drive_hard(level.match, game, core.config(), has_sensors, known.drawn[i], seed_of(i), false);
+  }
+  return {hardship.score.winding_peak_C, hardship.score.distance_m, hardship.off_plan_s};
+}
+
+/// Drives all motors with the largest cap, to 0.1 A, with which every one of them keeps its limit in its match: first for the motor that is
+/// hottest without limit, then for any that the cap leaves over the limit.
+void find_cap(Cell& cell) {
+  const std::vector<Run>& free = cell.runs[place_of(Method::none)];
+  std::vector<Run>& runs = cell.runs[place_of(Method::hindsight_cap)];
+  runs = free;
+  const double limit_C = cell.known->motor.nominal.winding_limit_C;
+  double high_A = 12.0;
+  for (;;) {
+    const auto hottest = static_cast<std::size_t>(std::ranges::max_element(runs, {}, &Run::peak_C) - runs.begin());
+    if (runs[hottest].peak_C <= limit_C) {
+      return;
+    }
+    double low_A = 0.5;
+    while (high_A - low_A > 0.1) {
+      const double tried_A = 0.5 * (low_A + high_A);
+      (drive(*cell.level, *cell.known, Method::hindsight_cap, hottest, tried_A).peak_C <= limit_C ? low_A : high_A) = tried_A;
+    }
+    cell.cap_A = high_A = low_A;
+    in_parallel(kMotors, 0, [&](std::size_t i) { runs[i] = drive(*cell.level, *cell.known, Method::hindsight_cap, i, cell.cap_A); });
+  }
+}
+
+void run_all(std::vector<Cell>& cells, std::initializer_list<Method> methods) {
+  struct Job {
+    Cell* cell;
+    Method method;
+    std::size_t motor;
+  };
+  std::vector<Job> jobs;
+  for (Cell& cell : cells) {
+    for (const Method method : methods) {
+      cell.runs[place_of(method)].resize(kMotors);
+      for (std::size_t i = 0; i < kMotors; ++i) {
+        jobs.push_back({&cell, method, i});
+      }
+    }
+  }
+  in_parallel(jobs.size(), 0, [&](std::size_t j) {
+    const Job& job = jobs[j];
+    job.cell->runs[place_of(job.method)][job.motor] = drive(*job.cell->level, *job.cell->known, job.method, job.motor);
+  });
+}
+
+Cost cost_of(const Cell& cell, Method method) {
+  Cost cost{.motors = kMotors};
+  double free_m = 0.0;
+  for (std::size_t i = 0; i < kMotors; ++i) {
+    const Run& free = cell.runs[place_of(Method::none)][i];
+    const Run& run = cell.runs[place_of(method)][i];
+    cost.over_limit += run.peak_C > cell.known->motor.nominal.winding_limit_C ? 1 : 0;
+    cost.hottest_C = std::max(cost.hottest_C, run.peak_C);
+    constexpr double kShare = 1.0 / kMotors;
+    cost.driven_m += kShare * run.distance_m;
+    cost.lost_m += kShare * (free.distance_m - run.distance_m);
+    cost.off_plan_s += kShare * run.off_plan_s;
+    cost.time_lost_s += kShare * (run.off_plan_s - free.off_plan_s);
+    free_m += kShare * free.distance_m;
+  }
+  cost.lost_percent = 100.0 * cost.lost_m / free_m;
+  return cost;
+}
+
+std::string name_of(const Cell& cell, const MethodSpec& spec) {
+  switch (spec.method) {
+    case Method::sheet_cap:
+      return fmt::format("{}, {:.1f} A", spec.name, overload_of(cell.known->motor.nominal).continuous_A);
+    case Method::hindsight_cap:
+      return std::isnan(cell.cap_A) ? fmt::format("{}: none needed", spec.name) : fmt::format("{}: {:.1f} A", spec.name, cell.cap_A);
+    default:
+      return spec.name;
+  }
+}
+
+/// Without "-0.0".
+std::string number(double value, int decimals) {
+  const double step = std::pow(10.0, -decimals);
+  return fmt::format("{:.{}f}", std::abs(value) < 0.5 * step ? 0.0 : value, decimals);
+}
+
+std::string cost_table(const Cell& cell) {
+  Sheet sheet{{"way", "keeps the limit", "motors over the limit", "at most, of all motors", "hottest winding / °C", "distance / m",
+               "distance not driven / m", "distance not driven / %", "off the plan / s", "time lost / s"},
+              {}};
+  for (const MethodSpec& spec : kMethods) {
+    const Cost cost = cost_of(cell, spec.method);
+    sheet.rows.push_back({name_of(cell, spec), cost.keeps_limit() ? "yes" : "**no**", fmt::format("{} of {}", cost.over_limit, cost.motors),
+                          fmt::format("{:.0f} %", 100.0 * upper_bound(cost.over_limit, cost.motors)), number(cost.hottest_C, 0),
+                          number(cost.driven_m, 0), number(cost.lost_m, 1), number(cost.lost_percent, 1), number(cost.off_plan_s, 0),
+                          number(cost.time_lost_s, 0)});
+  }
+  return sheet.markdown();
+}
+
+std::string level_table(const std::vector<Level>& levels) {
+  Sheet sheet{{"input"}, {}};
+  for (const Level& level : levels) {
+    sheet.header.push_back(level.name);
+  }
+  for (std::size_t i = 0; i < levels.front().match.changed.size(); ++i) {
+    sheet.rows.push_back({levels.front().match.changed[i].name});
+    for (const Level& level : levels) {
+      sheet.rows.back().push_back(level.match.changed[i].hard);
+    }
+  }
+  return sheet.markdown();
+}
+
+Sheet all_runs(const std::vector<Cell>& cells) {
+  Sheet sheet{{"level", "known_from", "way", "motor", "match", "winding_peak_C", "distance_m", "off_plan_s", "lost_m", "time_lost_s"}, {}};
+  for (const Cell& cell : cells) {
+    for (const MethodSpec& spec : kMethods) {
+      for (std::size_t i = 0; i < kMotors; ++i) {
+        const Run& free = cell.runs[place_of(Method::none)][i];
+        const Run& run = cell.runs[place_of(spec.method)][i];
+        sheet.rows.push_back({cell.level->key, cell.known->key, spec.key, fmt::format("{}", i + 1), fmt::format("{}", seed_of(i)),
+                              number(run.peak_C, 1), number(run.distance_m, 1), number(run.off_plan_s, 1),
+                              number(free.distance_m - run.distance_m, 1), number(run.off_plan_s - free.off_plan_s, 1)});
+      }
+    }
+  }
+  return sheet;
+}
+
+/// Least distance not driven of the other ways that no motor overheats with; the oracle is none, because nobody has it.
+double best_rival_percent(const Cell& cell) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const MethodSpec& spec : kMethods) {
+    const Cost cost = cost_of(cell, spec.method);
+    if (spec.method != Method::none && spec.method != Method::oracle && !is_guard(spec.method) && cost.keeps_limit()) {
+      least = std::min(least, cost.lost_percent);
+    }
+  }
+  return least;
+}
+
+/// `cells`: level by level, in each the knowledges.
+std::string picture(const std::vector<Level>& levels, const std::vector<Known>& known, const std::vector<Cell>& cells) {
+  std::vector<CostLevel> shown;
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    CostLevel level{levels[l].name, {}};
+    for (const MethodSpec& spec : kMethods) {
+      CostRow row{.way = spec.name, .is_guard = is_guard(spec.method), .by_knowledge = {}};
+      for (std::size_t k = 0; k < known.size(); ++k) {
+        row.by_knowledge.push_back(cost_of(cells[l * known.size() + k], spec.method));
+      }
+      level.rows.push_back(std::move(row));
+    }
+    shown.push_back(std::move(level));
+  }
+  const Cell& bench = cells.back();
+  const Cell& file = cells[cells.size() - 2];
+  const std::string title =
+      fmt::format("Distance lost in the hard match: guard {} %, best other way {} % (bench data); {} % and {} % (estimates)",
+                  number(cost_of(bench, Method::guard).lost_percent, 1), number(best_rival_percent(bench), 1),
+                  number(cost_of(file, Method::guard).lost_percent, 1), number(best_rival_percent(file), 1));
+  return draw_costs(
+      title,
+      {fmt::format("Twente v2024, ECX FLAT 32 L, division_a_match, simulated with real sensing: {} motors drawn within their "
+                   "tolerances, {} synthetic matches, each motor in one; means",
+                   kMotors, kMatches),
+       fmt::format("Against the same motor in the same match without limit. Time lost: more than {:.0f} mm off the plan, beyond "
+                   "what the unlimited robot is.",
+                   1e3 * kOffPlan_m)},
+      {"motor known from its file (estimates)", "motor known from a bench test"}, shown);
+}
+
+Known make_known(std::string name, const char* key, Motor motor, const Robot& robot) {
+  Known known{std::move(name), key, std::move(motor), {}, {}, {}};
+  known.guard = make_guard(known.motor, robot, 40.0, 0);
+  known.drawn = drawn_motors(known.motor, kMotors);
+  std::vector<std::optional<Derating>> exact(kMotors);
+  in_parallel(kMotors, 0, [&](std::size_t i) { exact[i].emplace(exact_derating(known.drawn[i], robot)); });
+  for (std::optional<Derating>& each : exact) {
+    known.exact.push_back(std::move(*each));
+  }
+  return known;
+}
+
+}  // namespace
+
+void study_costs(const Subject& subject, const Report& report) {
+  struct LevelSpec {
+    const char* name;
+    const char* key;
+    double share;
+  };
+  constexpr LevelSpec kLevels[] = {{"division_a_match as it is", "as_is", 0.0}, {"half-way", "half_way", 0.5}, {"hard match", "hard", 1.0}};
+  std::vector<Level> levels;
+  for (const LevelSpec& spec : kLevels) {
+    Level level{spec.name, spec.key, make_hard_match(subject.robot, spec.share), {}};
+    for (std::size_t seed = 1; seed <= kMatches; ++seed) {
+      level.games.push_back(play_game(level.match.inputs, level.match.robot, seed));
+    }
+    levels.push_back(std::move(level));
+  }
+  std::vector<Known> known;
+  known.push_back(make_known("motor known from its file (estimates)", "file", subject.motor, subject.robot));
+  known.push_back(make_known("motor known from a bench test", "bench_test", bench_tested(subject.motor), subject.robot));
+  std::vector<Cell> cells;
+  for (const Level& level : levels) {
+    for (const Known& each : known) {
+      cells.push_back({.level = &level, .known = &each, .runs = {}});
+    }
+  }
+  run_all(cells, {Method::none});
+  in_parallel(cells.size(), 0, [&](std::size_t i) { find_cap(cells[i]); });
+  run_all(cells, {Method::sheet_cap, Method::stator_ramp, Method::overload, Method::guard_unsensed, Method::guard, Method::oracle});
+
+  const Overload overload = overload_of(subject.motor.nominal);
+  std::string text = fmt::format(
+      "## Three levels\n\n{}\n{} matches, {} drawn motors, each motor in one match. \"At most\": exact upper bound of the share of all "
+      "motors "
+      "over the limit, 95 % confidence (Clopper and Pearson 1934).\n\n"
+      "I²t: continuous {:.2f} A, peak {:.1f} A for {:.3f} s, budget {:.0f} A²s.\n\n",
+      level_table(levels), kMatches, kMotors, overload.continuous_A, overload.peak_A, overload.peak_s, overload.budget_A2_s());
+  for (const Cell& cell : cells) {
+    text += fmt::format("## {}, {}\n\n{}\n", cell.level->name, cell.known->name, cost_table(cell));
+  }
+  text += study_rest(levels[1].match, levels[1].games.front(), subject.motor,
+                     {{"guard, bench data", &known[1].guard}, {"guard, file's estimates", &known[0].guard}}, report);
+  report.write("costs.md", text);
+  report.write("costs.csv", all_runs(cells).csv());
+  report.write("costs.svg", picture(levels, known, cells));
+}
+
+}  // namespace heatsoak::studies

@@ -1,0 +1,142 @@
+#include "limiters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/diagnostic.h"
+#include "motor/datasheet_network.h"
+
+namespace heatsoak::studies {
+namespace {
+
+/// The accumulator's node counts to this when the budget is used. Far above any stator, because the table sees the larger of both nodes; a
+/// stator counts for less than a quarter of the budget, where all current is allowed.
+constexpr float kFull = 900.0F;
+constexpr float kFallsFrom_share = 0.9F;
+constexpr float kMost = 999.0F;  ///< the core takes more than 1000 for a broken state
+
+Derating scaled(Derating exact, double ratio) {
+  for (double& current_A : exact.table.current_A) {
+    current_A *= ratio;
+  }
+  return exact;
+}
+
+}  // namespace
+
+Derating exact_derating(const Motor& motor, const Robot& robot) {
+  const DerateOptions options;
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  Observer observer(network, motor.nominal, robot, 1.0);
+  BarrierRules rules = barrier_rules(motor, robot, options);
+  const double reachable_rad_per_s = rules.most_speed_rad_per_s;
+  rules.most_speed_rad_per_s = bearable_speed_rad_per_s(observer, rules);
+  if (rules.most_speed_rad_per_s < reachable_rad_per_s) {
+    rules.no_current_speed_rad_per_s = 0.0;
+  }
+  CurrentTable table = current_table(observer, rules);
+  return {.motor_id = motor.id,
+          .robot_id = robot.id,
+          .data_quality = {},
+          .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
+          .observer = std::move(observer),
+          .rules = rules,
+          .table = std::move(table),
+          .options = options,
+          .assumed = {},
+          .effects = {},
+          .guarantee = {},
+          .uses = {},
+          .reachable_speed_rad_per_s = reachable_rad_per_s};
+}
+
+Overload overload_of(const MotorValues& motor) {
+  Overload overload;
+  overload.continuous_A = std::isnan(motor.nominal_current_A)
+                              ? motor.nominal_torque_Nm / motor.torque_constant_Nm_per_A + motor.no_load_current_A
+                              : motor.nominal_current_A;
+  overload.peak_A = motor.nominal_voltage_V / motor.terminal_resistance_ohm;
+  const double ratio = overload.peak_A / overload.continuous_A;
+  overload.peak_s = motor.thermal_time_constant_winding_s * std::log(ratio * ratio / (ratio * ratio - 1.0));
+  return overload;
+}
+
+Limiter::Limiter(const Derating& exact, double resistance_ratio)
+    : exact_(scaled(exact, resistance_ratio)), motor_(exact_), model_(motor_.model()), resistance_ratio_(resistance_ratio) {}
+
+void Limiter::set_table(std::vector<float> body, const std::vector<double>& current_A) {
+  constexpr float kAnySpeed_rad_per_s = 1e6F;
+  constexpr float kAnyWinding_C = 1000.0F;
+  speed_rad_per_s_ = {0.0F, kAnySpeed_rad_per_s};
+  winding_C_ = {0.0F, kAnyWinding_C};
+  body_ = std::move(body);
+  for (std::size_t speed = 0; speed < speed_rad_per_s_.size(); ++speed) {
+    for (const double each_A : current_A) {
+      current_A_.insert(current_A_.end(), winding_C_.size(), static_cast<float>(each_A * resistance_ratio_));
+    }
+  }
+  const auto axis = [](const std::vector<float>& points) { return robot_core::GuardAxis{points.data(), static_cast<int>(points.size())}; };
+  model_.speed_rad_per_s = axis(speed_rad_per_s_);
+  model_.stator_C = axis(body_);
+  model_.winding_C = axis(winding_C_);
+  model_.current_A = current_A_.data();
+}
+
+std::unique_ptr<Limiter> Limiter::fixed_cap(const Derating& exact, double resistance_ratio, double cap_A) {
+  std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
+  made->set_table({0.0F, 1000.0F}, {cap_A, cap_A});
+  return made;
+}
+
+std::unique_ptr<Limiter> Limiter::stator_ramp(const Derating& exact, double resistance_ratio, double full_C, double none_C) {
+  std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
+  const double most_A = exact.rules.most_current_A;
+  made->set_table({0.0F, static_cast<float>(full_C), static_cast<float>(none_C), 1000.0F}, {most_A, most_A, 0.0, 0.0});
+  return made;
+}
+
+std::unique_ptr<Limiter> Limiter::i_squared_t(const Derating& exact, double resistance_ratio, const Overload& overload) {
+  std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
+  if (made->model_.node_count != 2) {
+    throw Failure(ExitCode::bug, "the I²t limiter expects a network of winding and stator");
+  }
+  const double most_A = exact.rules.most_current_A;
+  made->set_table({0.0F, kFallsFrom_share * kFull, kFull, 1000.0F}, {most_A, most_A, overload.continuous_A, overload.continuous_A});
+  made->continuous_squared_A2_ = static_cast<float>(overload.continuous_A * overload.continuous_A);
+  made->fill_per_A2_s_ = kFull / static_cast<float>(overload.budget_A2_s());
+  made->model_.node_count = 3;
+  made->model_.rates = &Limiter::overload_rates;
+  made->model_.context = made.get();
+  return made;
+}
+
+std::unique_ptr<Limiter> Limiter::oracle(const Derating& exact, double resistance_ratio, double braking_reserve_K) {
+  std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
+  made->braking_reserve_K_ = braking_reserve_K;
+  return made;
+}
+
+robot_core::Config Limiter::config(const Robot& robot, const Motor& known) const {
+  robot_core::Config config = make_core_config(robot, known.nominal, with_tolerance({}, known));
+  config.guard = &model_;
+  config.limp_current_A = config.current_limit_A;
+  config.braking_reserve_K = static_cast<float>(braking_reserve_K_);
+  robot_core::complete(config);
+  return config;
+}
+
+/// Nodes: winding, accumulator, stator. The core itself keeps the accumulator above the coldest air, which is 0.
+void Limiter::overload_rates(const void* context, const float* signal, const float* state_C, float* rate_K_per_s) {
+  const Limiter& limiter = *static_cast<const Limiter*>(context);
+  const robot_core::GuardModel& motor = limiter.motor_.model();
+  const float motor_C[] = {state_C[0], state_C[2]};
+  float motor_K_per_s[2];
+  motor.rates(motor.context, signal, motor_C, motor_K_per_s);
+  const float current_A = signal[robot_core::guard_current_A];
+  const float filling_per_s = limiter.fill_per_A2_s_ * (current_A * current_A - limiter.continuous_squared_A2_);
+  rate_K_per_s[0] = motor_K_per_s[0];
+  rate_K_per_s[1] = std::min(filling_per_s, (kMost - state_C[1]) / motor.period_s);
+  rate_K_per_s[2] = motor_K_per_s[1];
+}
+
+}  // namespace heatsoak::studies
