@@ -28,20 +28,20 @@ Json observer_json(const Derating& derating) {
     return nullptr;
   }
   const MotorValues& motor = derating.nominal;
-  return {{"winding_K_per_s",
-           "(r*R25*(1+alpha*(T_winding-25))*(k*I)^2 - (T_winding-T_stator)/R_winding_stator)/C_winding"},
-          {"stator_K_per_s",
-           "(r*torque_constant*no_load_current*|w| + (T_winding-T_stator)/R_winding_stator - (T_stator-T_ambient)/R_stator_ambient)/C_stator"},
-          {"heat_reserve_ratio_r", derating.observer.heat_reserve_ratio()},
-          {"heating_current_ratio_k", derating.heating_current_ratio},
-          {"terminal_resistance_25C_ohm", motor.terminal_resistance_ohm},
-          {"temperature_coefficient_per_K", motor.temperature_coefficient_per_K},
-          {"torque_constant_Nm_per_A", motor.torque_constant_Nm_per_A},
-          {"no_load_current_A", motor.no_load_current_A},
-          {"thermal_resistance_winding_stator_K_per_W", motor.thermal_resistance_winding_stator_K_per_W},
-          {"thermal_resistance_stator_ambient_K_per_W", motor.thermal_resistance_stator_ambient_K_per_W},
-          {"heat_capacity_winding_J_per_K", motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W},
-          {"heat_capacity_stator_J_per_K", motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W}};
+  return {
+      {"winding_K_per_s", "(r*R25*(1+alpha*(T_winding-25))*(k*I)^2 - (T_winding-T_stator)/R_winding_stator)/C_winding"},
+      {"stator_K_per_s",
+       "(r*torque_constant*no_load_current*|w| + (T_winding-T_stator)/R_winding_stator - (T_stator-T_ambient)/R_stator_ambient)/C_stator"},
+      {"heat_reserve_ratio_r", derating.observer.heat_reserve_ratio()},
+      {"heating_current_ratio_k", derating.heating_current_ratio},
+      {"terminal_resistance_25C_ohm", motor.terminal_resistance_ohm},
+      {"temperature_coefficient_per_K", motor.temperature_coefficient_per_K},
+      {"torque_constant_Nm_per_A", motor.torque_constant_Nm_per_A},
+      {"no_load_current_A", motor.no_load_current_A},
+      {"thermal_resistance_winding_stator_K_per_W", motor.thermal_resistance_winding_stator_K_per_W},
+      {"thermal_resistance_stator_ambient_K_per_W", motor.thermal_resistance_stator_ambient_K_per_W},
+      {"heat_capacity_winding_J_per_K", motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W},
+      {"heat_capacity_stator_J_per_K", motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W}};
 }
 
 Json default_spreads(const Derating& derating) {
@@ -78,7 +78,9 @@ Json guarantee_json(const Derating& derating) {
           {"over", checked.over},
           {"over_share_ci95", {rounded(checked.over_share.low, 4), rounded(checked.over_share.high, 4)}},
           {"winding_peak_C",
-           {{"p50", rounded(checked.winding_p50_C, 2)}, {"p95", rounded(checked.winding_p95_C, 2)}, {"most", rounded(checked.winding_most_C, 2)}}}};
+           {{"p50", rounded(checked.winding_p50_C, 2)},
+            {"p95", rounded(checked.winding_p95_C, 2)},
+            {"most", rounded(checked.winding_most_C, 2)}}}};
 }
 
 }  // namespace

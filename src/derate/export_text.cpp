@@ -86,18 +86,18 @@ void require_finite(const Derating& derating) {
 
 void require_brushless(std::string_view controller, const Derating& derating) {
   if (!derating.is_brushless) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{} cannot drive {}: it is a brushed motor, expected a brushless one; use --to c_header", controller,
-                              derating.motor_id));
+    throw Failure(ExitCode::bad_input, fmt::format("{} cannot drive {}: it is a brushed motor, expected a brushless one; use --to c_header",
+                                                   controller, derating.motor_id));
   }
 }
 
 void require_three_signals(std::string_view controller, const Derating& derating) {
   for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      throw Failure(ExitCode::bad_input, fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
-                                                     "not know; use --to c_header",
-                                                     controller, own_effects_text(derating), firmware::signals()[i].name));
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
+                                "not know; use --to c_header",
+                                controller, own_effects_text(derating), firmware::signals()[i].name));
     }
   }
 }

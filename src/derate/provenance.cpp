@@ -25,8 +25,9 @@ Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOpt
   for (const auto& [key, value] : motor.assumed) {
     text += fmt::format(" --condition {}={}", key, value);
   }
-  return {.program_version = std::string(program_version),
-          .input_hash = input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + text)};
+  return {
+      .program_version = std::string(program_version),
+      .input_hash = input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + text)};
 }
 
 }  // namespace heatsoak

@@ -73,10 +73,11 @@ std::set<std::string> hidden_nodes(const Observer& observer, std::size_t states)
 void require_stator_is_enough(std::string_view controller, const Derating& derating) {
   const std::set<std::string> hidden = hidden_nodes(derating.observer, derating.rules.limits.stator_C ? 2 : 1);
   if (!hidden.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{} cannot express {} ({}): it changes a temperature with a limit, and the controller measures the stator only; "
-                              "use --to c_header",
-                              controller, fmt::join(hidden, ", "), own_effects_text(derating)));
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{} cannot express {} ({}): it changes a temperature with a limit, and the controller measures the stator only; "
+                    "use --to c_header",
+                    controller, fmt::join(hidden, ", "), own_effects_text(derating)));
   }
 }
 
@@ -157,10 +158,11 @@ CurrentRamp ramp_for(std::string_view controller, const Derating& derating, Ramp
   if (signal == RampSignal::stator) {
     require_stator_is_enough(controller, derating);
   } else if (derating.rules.limits.stator_C) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{} cannot express the stator limit of {:.0f} °C: its ramp depends on the winding's temperature only; use --to "
-                              "c_header",
-                              controller, *derating.rules.limits.stator_C));
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{} cannot express the stator limit of {:.0f} °C: its ramp depends on the winding's temperature only; use --to "
+                    "c_header",
+                    controller, *derating.rules.limits.stator_C));
   }
   const CurrentRamp ramp = fit_ramp(derating, signal, full_beyond_K);
   if (!(ramp.most_current_A > 0.0)) {

@@ -52,7 +52,8 @@ RampLoss ramp_loss(const Derating& derating, RampSignal signal, const CurrentRam
 
 /// A fitted ramp for a controller of that name. Throws Failure (bad_input), with the names of controller and effect, if the ramp cannot
 /// protect the motor: a speed at which the motor exceeds its limit without current; a node other than the stator that heats the winding,
-/// which no sensor of the controller sees; a limit of the stator, which a ramp over the winding does not see; no current in the hottest air.
+/// which no sensor of the controller sees; a limit of the stator, which a ramp over the winding does not see; no current in the hottest
+/// air.
 CurrentRamp ramp_for(std::string_view controller, const Derating& derating, RampSignal signal, double full_beyond_K = 0.0);
 
 }  // namespace heatsoak

@@ -13,7 +13,8 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType json() {
-  return {.name = {}, .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/1)", .write = write};
+  return {
+      .name = {}, .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/1)", .write = write};
 }
 
 }  // namespace heatsoak::exporters
