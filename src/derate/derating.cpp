@@ -233,7 +233,9 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
                     .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
                     .default_spreads = default_spreads(as_written),
                     .is_brushless = motor.type != "brushed",
-                    .heating_current_ratio = heating_factor(robot)};
+                    .heating_current_ratio = heating_factor(robot),
+                    .nominal = motor.nominal,
+                    .provenance = {}};
     for (const EffectInPlace& effect : search.network().effects()) {
       const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
       result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),

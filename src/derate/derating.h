@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "derate/guarantee.h"
+#include "derate/provenance.h"
 #include "motor/default_spread.h"
 
 namespace heatsoak {
@@ -49,6 +50,8 @@ struct Derating {
   std::vector<DefaultSpread> default_spreads = {};
   bool is_brushless = true;
   double heating_current_ratio = 1.0;  ///< heating_factor() of the robot: current that heats per equivalent DC current
+  MotorValues nominal = {};            ///< of the motor's file
+  Provenance provenance = {};          ///< empty until the caller sets it: derate() reads no files
 };
 
 /// The current that the motor bears for good at every speed and in every hot case, in A ≥ 0: for a wheel whose speed nobody knows.

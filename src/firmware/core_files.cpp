@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/crc.hpp>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -176,12 +175,6 @@ std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const 
 bool is_for_firmware(std::string_view path) { return path != "robot_core/block_diagram.h"; }
 
 }  // namespace
-
-std::string input_hash(std::string_view bytes) {
-  boost::crc_optimal<64, 0x42F0E1EBA9EA3693U, 0xFFFFFFFFFFFFFFFFU, 0xFFFFFFFFFFFFFFFFU, true, true> sum;
-  sum.process_bytes(bytes.data(), bytes.size());
-  return fmt::format("{:016x}", std::uint64_t{sum.checksum()});
-}
 
 double guard_period_s(double period_s) {
   constexpr double kUsual_s = 0.01;

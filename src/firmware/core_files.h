@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "derate/provenance.h"
 #include "firmware/core_config.h"
 #include "firmware/host_guard.h"
 
@@ -15,10 +16,6 @@ struct CoreFile {
   std::string path;  ///< within the folder
   std::string content;
 };
-
-/// Check sum that identifies inputs: CRC-64/XZ (ECMA-182 polynomial, reflected), 16 hexadecimal digits.
-inline constexpr std::string_view kInputHash = "CRC-64/XZ";
-std::string input_hash(std::string_view bytes);
 
 struct CoreFolder {
   std::vector<CoreFile> files;         ///< sorted by path

@@ -73,6 +73,15 @@ TEST(DerateCommand, WritesTheTableAlone) {
   EXPECT_THAT(content_of(folder.path() / "table.csv"), testing::StartsWith("speed_rad_per_s,stator_C,winding_C,allowed_current_A\n"));
 }
 
+TEST(DerateCommand, JsonFileIsTheAnswerAndNamesItsInputs) {
+  const TemporaryFolder folder;
+  const ProgramRun done = run(kDerate + Words{"--motor", kMotor, "--to", "json", "--out", "table.json", "--json", "-"}, here(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(nlohmann::json::parse(content_of(folder.path() / "table.json")), done.json());
+  EXPECT_THAT(done.json()["program"].get<std::string>(), testing::StartsWith("heatsoak "));
+  EXPECT_EQ(done.json()["input_hash"]["value"].get<std::string>().size(), 16U);
+}
+
 struct WrongLine {
   Words words;
   int exit_code;
@@ -87,6 +96,8 @@ TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
       {{"--motor", kMotor, "--out", "x.h", "--period", "1s"}, 2, "too long"},
       {{"--motor", kMotor, "--out", "x.h", "--samples", "0"}, 2, "--samples 60"},
       {{"--motor", kMotor, "--out", "x.h", "--confidence", "0.999"}, 2, "--samples 3000"},
+      {{"--motor", "maxon_dcx19s_24v", "--to", "moteus", "--out", "x.cfg"}, 2, "moteus cannot drive maxon_dcx19s_24v"},
+      {{"--motor", kMotor, "--to", "json", "--out", "missing/x.json"}, 2, "missing"},
       {{"--motor", "maxon_dcx19s_24v", "--out", "x.h", "--ambient", "110degC"}, 1, "however little current"},
       {{"--motor", kMotor, "--out", "-"}, 2, "/dev/stdout"},
       {{"--motor", kMotor, "--out", "x.h", "--coldest", "50degC"}, 2, "is not below"},

@@ -17,6 +17,7 @@
 #include "cli/silent_effects.h"
 #include "cli/verdict_words.h"
 #include "derate/committed_table.h"
+#include "derate/derating_json.h"
 #include "derate/exporter.h"
 #include "motor/datasheet_network.h"
 
@@ -111,50 +112,6 @@ std::string report(const Derating& derating) {
   return text + (asked.empty() ? "" : fmt::format("besides current, speed and air the firmware is asked for {}\n", asked));
 }
 
-Json json(const Derating& derating, const Motor& motor, const Options& options) {
-  const Guarantee& checked = derating.guarantee;
-  const CurrentTable& table = derating.table;
-  Json effects = Json::array();
-  for (const ActingEffect& effect : derating.effects) {
-    effects.push_back({{"id", effect.name}, {"type", effect.type}});
-  }
-  Json nodes = Json::array();
-  for (const std::string& name : derating.observer.state_names()) {
-    nodes.push_back(name);
-  }
-  Json current = Json::array();
-  for (const double current_A : table.current_A) {
-    current.push_back(rounded(current_A, 4));
-  }
-  return {
-      {"schema", "heatsoak.derating/1"},
-      {"motor", derating.motor_id},
-      {"robot", derating.robot_id},
-      {"data_quality", derating.data_quality},
-      {"seed", options.guard.derate.guarantee.seed},
-      {"winding_limit_C", derating.rules.limits.winding_C},
-      {"stator_limit_C", derating.rules.limits.stator_C ? Json(*derating.rules.limits.stator_C) : Json()},
-      {"hottest_ambient_C", derating.rules.hottest_ambient_C},
-      {"period_s", derating.options.period_s},
-      {"approach_s", derating.options.approach_s},
-      {"heat_reserve_ratio", rounded(derating.observer.heat_reserve_ratio(), 4)},
-      {"conditions", derating.assumed},
-      {"default_spreads", default_spreads_json({&motor, 1})},
-      {"nodes", nodes},
-      {"effects", effects},
-      {"guarantee",
-       {{"confidence", derating.options.guarantee.confidence},
-        {"samples", checked.samples},
-        {"over", checked.over},
-        {"over_share_ci95", {rounded(checked.over_share.low, 4), rounded(checked.over_share.high, 4)}},
-        {"winding_peak_C",
-         {{"p50", rounded(checked.winding_p50_C, 2)},
-          {"p95", rounded(checked.winding_p95_C, 2)},
-          {"most", rounded(checked.winding_most_C, 2)}}}}},
-      {"table",
-       {{"speed_rad_per_s", table.speed_rad_per_s}, {"stator_C", table.stator_C}, {"winding_C", table.winding_C}, {"current_A", current}}}};
-}
-
 std::string place_text(const TablePlace& place) {
   return fmt::format("  at {:.0f} rad/s, stator {:.1f} °C, winding {:.1f} °C: {:.3f} A, a fresh table {:.3f} A\n", place.speed_rad_per_s,
                      place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
@@ -212,14 +169,15 @@ ExitCode run(const Options& options, Session& session) {
   // Before the work: a file that is no table needs none.
   const std::optional<CommittedTable> committed =
       options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
-  const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
+  Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
+  derating.provenance = provenance_of(motor, *robot, options.guard.derate, "heatsoak " HEATSOAK_VERSION);
   session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
               effects_under_conditions({&motor, 1}));
   if (!options.out.empty()) {
     session.write(options.out, exporter.write(derating));
     session.say(fmt::format("\n{}: {}\n", exporter.name, options.out));
   }
-  Json answer = json(derating, motor, options);
+  Json answer = derating_json(derating);
   const ExitCode code = committed ? tell_comparison(*committed, derating, session, answer) : ExitCode::done;
   session.answer(answer);
   return code;

@@ -1,0 +1,124 @@
+#include "derate/derating_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::isfinite(value) ? Json(std::round(value * scale) / scale) : Json();
+}
+
+bool is_datasheet_alone(const Derating& derating) {
+  return derating.observer.state_count() == 2 && std::ranges::all_of(derating.effects, [](const ActingEffect& effect) {
+           return std::ranges::find(kDatasheetEffects, effect.name) != kDatasheetEffects.end();
+         });
+}
+
+/// The equations stand beside the numbers, so that a reader needs no other file.
+Json observer_json(const Derating& derating) {
+  if (!is_datasheet_alone(derating)) {
+    return nullptr;
+  }
+  const MotorValues& motor = derating.nominal;
+  return {
+      {"winding_K_per_s", "(r*R25*(1+alpha*(T_winding-25))*(k*I)^2 - (T_winding-T_stator)/R_winding_stator)/C_winding"},
+      {"stator_K_per_s",
+       "(r*torque_constant*no_load_current*|w| + (T_winding-T_stator)/R_winding_stator - (T_stator-T_ambient)/R_stator_ambient)/C_stator"},
+      {"heat_reserve_ratio_r", derating.observer.heat_reserve_ratio()},
+      {"heating_current_ratio_k", derating.heating_current_ratio},
+      {"terminal_resistance_25C_ohm", motor.terminal_resistance_ohm},
+      {"temperature_coefficient_per_K", motor.temperature_coefficient_per_K},
+      {"torque_constant_Nm_per_A", motor.torque_constant_Nm_per_A},
+      {"no_load_current_A", motor.no_load_current_A},
+      {"thermal_resistance_winding_stator_K_per_W", motor.thermal_resistance_winding_stator_K_per_W},
+      {"thermal_resistance_stator_ambient_K_per_W", motor.thermal_resistance_stator_ambient_K_per_W},
+      {"heat_capacity_winding_J_per_K", motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W},
+      {"heat_capacity_stator_J_per_K", motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W}};
+}
+
+Json default_spreads(const Derating& derating) {
+  Json rows = Json::array();
+  for (const DefaultSpread& each : derating.default_spreads) {
+    rows.push_back({{"motor", derating.motor_id},
+                    {"key", each.key},
+                    {"origin", to_string(each.origin)},
+                    {"low_ratio", rounded(each.spread.low / each.value, 4)},
+                    {"high_ratio", rounded(each.spread.high / each.value, 4)}});
+  }
+  return rows;
+}
+
+Json table_json(const CurrentTable& table) {
+  Json current = Json::array();
+  for (const double current_A : table.current_A) {
+    // Rounded down: what is read back allows no more than the table.
+    current.push_back(std::floor(current_A * 1e4) / 1e4);
+  }
+  return {{"order", {"speed_rad_per_s", "stator_C", "winding_C"}},
+          {"units", {{"speed_rad_per_s", "rad/s"}, {"stator_C", "degC"}, {"winding_C", "degC"}, {"current_A", "A"}}},
+          {"interpolation", "linear between places; below the first place as at it, above the last place 0 A"},
+          {"speed_rad_per_s", table.speed_rad_per_s},
+          {"stator_C", table.stator_C},
+          {"winding_C", table.winding_C},
+          {"current_A", current}};
+}
+
+Json guarantee_json(const Derating& derating) {
+  const Guarantee& checked = derating.guarantee;
+  return {{"confidence", derating.options.guarantee.confidence},
+          {"samples", checked.samples},
+          {"over", checked.over},
+          {"over_share_ci95", {rounded(checked.over_share.low, 4), rounded(checked.over_share.high, 4)}},
+          {"winding_peak_C",
+           {{"p50", rounded(checked.winding_p50_C, 2)},
+            {"p95", rounded(checked.winding_p95_C, 2)},
+            {"most", rounded(checked.winding_most_C, 2)}}}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json derating_json(const Derating& derating) {
+  Json effects = Json::array();
+  for (const ActingEffect& effect : derating.effects) {
+    effects.push_back({{"id", effect.name}, {"type", effect.type}});
+  }
+  Json signals = Json::array();
+  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
+      signals.push_back({{"name", firmware::signals()[i].name}, {"meaning", firmware::signals()[i].meaning}});
+    }
+  }
+  return {{"schema", "heatsoak.derating/1"},
+          {"program", derating.provenance.program_version},
+          {"input_hash", {{"name", kInputHash}, {"value", derating.provenance.input_hash}}},
+          {"motor", derating.motor_id},
+          {"robot", derating.robot_id},
+          {"data_quality", derating.data_quality},
+          {"seed", derating.options.guarantee.seed},
+          {"winding_limit_C", derating.rules.limits.winding_C},
+          {"stator_limit_C", derating.rules.limits.stator_C ? Json(*derating.rules.limits.stator_C) : Json()},
+          {"hottest_ambient_C", derating.rules.hottest_ambient_C},
+          {"period_s", derating.options.period_s},
+          {"approach_s", derating.options.approach_s},
+          {"heat_reserve_ratio", rounded(derating.observer.heat_reserve_ratio(), 4)},
+          {"current_per_iq", derating.is_brushless ? Json(std::numbers::sqrt3 * std::numbers::pi / 6.0) : Json()},
+          {"limp_current_A", rounded(limp_current_A(derating), 4)},
+          {"conditions", derating.assumed},
+          {"default_spreads", default_spreads(derating)},
+          {"nodes", std::vector<std::string>(derating.observer.state_names().begin(), derating.observer.state_names().end())},
+          {"signals", signals},
+          {"effects", effects},
+          {"observer", observer_json(derating)},
+          {"guarantee", guarantee_json(derating)},
+          {"table", table_json(derating.table)}};
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,107 @@
+#include "derate/export_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/diagnostic.h"
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+std::string in_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < ' ' || c == 0x7F; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+std::string provenance_lines(const Derating& derating, std::string_view comment) {
+  const Guarantee& checked = derating.guarantee;
+  std::string text = fmt::format(
+      "{0} {1} in {2}, written by {3}; change the motor's file, not this one.\n"
+      "{0} Inputs {4} {5}.\n"
+      "{0} Winding limit {6:.6g} degC{7}, air up to {8:.6g} degC, thermal data: {9}.\n"
+      "{0} Confidence {10:.6g}: heat counts {11:.4g} times; of {12} motors drawn from the tolerances {13} exceeded a limit.\n"
+      "{0} Computed, not measured.\n",
+      comment, in_one_line(derating.motor_id), in_one_line(derating.robot_id), in_one_line(derating.provenance.program_version), kInputHash,
+      derating.provenance.input_hash, derating.rules.limits.winding_C,
+      derating.rules.limits.stator_C ? fmt::format(", stator limit {:.6g} degC", *derating.rules.limits.stator_C) : "",
+      derating.options.hottest_ambient_C, derating.data_quality, derating.options.guarantee.confidence,
+      derating.observer.heat_reserve_ratio(), checked.samples, checked.over);
+  for (const auto& [key, value] : derating.assumed) {
+    text += fmt::format("{} Valid only where {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));
+  }
+  for (const DefaultSpread& each : derating.default_spreads) {
+    text += fmt::format("{} No tolerance in the motor's file, default by origin: {}\n", comment,
+                        in_one_line(to_string(std::span<const DefaultSpread>(&each, 1))));
+  }
+  return text;
+}
+
+std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double a_per_dc, std::string_view comment) {
+  const RampLoss loss = ramp_loss(derating, signal, ramp);
+  const bool is_stator = signal == RampSignal::stator;
+  return fmt::format(
+      "{0} Ramp over the {1}: below the table for every speed up to {2:.0f} rad/s and every {3} temperature up to the limit.\n"
+      "{0} It loses {4:.2f} A ({5:.1f} %) of {6:.2f} A on average from {7:.0f} to {8:.0f} degC, at most {9:.2f} A at {10:.0f} degC.\n"
+      "{0} Short peaks: the table allows {11:.1f} A to a motor at {12:.0f} degC, the ramp never more than {13:.2f} A.\n"
+      "{0} Not covered: a sensor that reads low, a motor that is pushed above {2:.0f} rad/s, d-axis current (field weakening).\n",
+      comment, is_stator ? "measured stator temperature" : "observer's winding temperature", derating.rules.most_speed_rad_per_s,
+      is_stator ? "winding" : "stator", a_per_dc * loss.mean_A(), loss.mean_percent(), a_per_dc * loss.bound_mean_A, loss.from_C, loss.to_C,
+      a_per_dc * loss.most_A, loss.most_at_C, a_per_dc * loss.peak_A, derating.options.hottest_ambient_C, a_per_dc * ramp.most_current_A);
+}
+
+std::string own_effects_text(const Derating& derating) {
+  std::string text;
+  for (const ActingEffect& effect : derating.effects) {
+    if (std::ranges::find(kDatasheetEffects, effect.name) == kDatasheetEffects.end()) {
+      text += fmt::format("{}{}", text.empty() ? "" : ", ",
+                          effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
+    }
+  }
+  return text.empty() ? "no own effects" : text;
+}
+
+void require_finite(const Derating& derating) {
+  const CurrentTable& table = derating.table;
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  const double numbers[] = {derating.rules.limits.winding_C,       derating.rules.limits.stator_C.value_or(0.0),
+                            derating.rules.most_current_A,         derating.rules.most_speed_rad_per_s,
+                            derating.torque_constant_Nm_per_A,     derating.observer.heat_reserve_ratio(),
+                            derating.options.hottest_ambient_C,    derating.options.coldest_ambient_C,
+                            derating.options.guarantee.confidence, derating.options.period_s};
+  if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.current_A, is_finite) ||
+      !std::ranges::all_of(table.speed_rad_per_s, is_finite) || !std::ranges::all_of(table.stator_C, is_finite) ||
+      !std::ranges::all_of(table.winding_C, is_finite)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: a value of the derating is not a number; check the motor's and the robot's file with `heatsoak lint`",
+                              derating.motor_id));
+  }
+}
+
+void require_brushless(std::string_view controller, const Derating& derating) {
+  if (!derating.is_brushless) {
+    throw Failure(ExitCode::bad_input, fmt::format("{} cannot drive {}: it is a brushed motor, expected a brushless one; use --to c_header",
+                                                   controller, derating.motor_id));
+  }
+}
+
+void require_three_signals(std::string_view controller, const Derating& derating) {
+  for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
+                                "not know; use --to c_header",
+                                controller, own_effects_text(derating), firmware::signals()[i].name));
+    }
+  }
+}
+
+double rounded_down_A(double current_A) { return std::floor(1000.0 * current_A) / 1000.0; }
+
+}  // namespace heatsoak

@@ -1,0 +1,20 @@
+#include "derate/derating_json.h"
+#include "derate/export_text.h"
+#include "derate/exporter.h"
+
+namespace heatsoak::exporters {
+namespace {
+
+std::string write(const Derating& derating) {
+  require_finite(derating);
+  return derating_json(derating).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+ExporterType json() {
+  return {
+      .name = {}, .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/1)", .write = write};
+}
+
+}  // namespace heatsoak::exporters

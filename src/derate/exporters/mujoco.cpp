@@ -1,0 +1,86 @@
+// MuJoCo defaults for a <dcmotor> actuator. Names and law: google-deepmind/mujoco at a7255075b003506ff5f34b512d88e02df12a73c6,
+// doc/XMLreference.rst (actuator-dcmotor-thermal), src/engine/engine_forward.c (mjDYN_DCMOTOR).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/diagnostic.h"
+#include "derate/export_text.h"
+#include "derate/exporter.h"
+#include "motor/datasheet_network.h"
+
+namespace heatsoak::exporters {
+namespace {
+
+/// No user's text ends the comment.
+std::string in_comment(std::string text) {
+  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--")) {
+    text.replace(at, 2, "- ");
+  }
+  return text;
+}
+
+std::string in_attribute(std::string_view id) {
+  std::string text;
+  for (const char c : id) {
+    text += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.' ? c : '_';
+  }
+  return text;
+}
+
+void require_datasheet_alone(const Derating& derating) {
+  for (const ActingEffect& effect : derating.effects) {
+    if (std::ranges::find(kDatasheetEffects, effect.name) == kDatasheetEffects.end()) {
+      throw Failure(ExitCode::bad_input, fmt::format("mujoco cannot express {} ({}): <dcmotor> has copper loss and one thermal resistance "
+                                                     "only; use --to c_header or --to json",
+                                                     effect.name, effect.type));
+    }
+  }
+}
+
+/// MuJoCo: dT/dt = (R·i² − T/R_th)/C with R growing with the temperature. Heat that counts r times is R_th·r and C/r.
+std::string write(const Derating& derating) {
+  require_finite(derating);
+  require_datasheet_alone(derating);
+  const MotorValues& motor = derating.nominal;
+  const double reserve = derating.observer.heat_reserve_ratio() * derating.heating_current_ratio * derating.heating_current_ratio;
+  const double winding_K_per_W = motor.thermal_resistance_winding_stator_K_per_W;
+  const double stator_K_per_W = motor.thermal_resistance_stator_ambient_K_per_W;
+  const double winding_J_per_K = motor.thermal_time_constant_winding_s / winding_K_per_W;
+  const double drag_W = drag_torque_Nm(motor) * derating.rules.most_speed_rad_per_s;
+  const std::string about =
+      provenance_lines(derating, "") +
+      fmt::format(
+          " Add to an actuator: dcmotor class=\"{0}\" joint=\"...\". Current is the equivalent DC current.\n"
+          " The winding's temperature rise over the air of {1:.6g} degC is an activation of the actuator. MuJoCo does not limit\n"
+          " the current by it: compare it with {2:.6g} K.\n"
+          " Loses against the network: the stator's heat capacity (the winding warms faster here, and cools faster: after a\n"
+          " pause it may be too cold by the stator's temperature rise), and no-load loss ({3:.2f} W and {4:.1f} K at {5:.0f} rad/s).\n"
+          " Exact: a held current at standstill.\n",
+          in_attribute(derating.motor_id), derating.rules.hottest_ambient_C,
+          derating.rules.limits.winding_C - derating.rules.hottest_ambient_C, drag_W,
+          derating.observer.heat_reserve_ratio() * drag_W * stator_K_per_W, derating.rules.most_speed_rad_per_s);
+  return fmt::format(
+      "<!--\n{}-->\n"
+      "<mujoco>\n"
+      "  <default>\n"
+      "    <default class=\"{}\">\n"
+      "      <dcmotor resistance=\"{:.9g}\" motorconst=\"{:.9g} 0\"\n"
+      "               thermal=\"{:.9g} {:.9g} 0 {:.9g} 25 {:.9g}\"\n"
+      "               saturation=\"0 {:.9g} 0\"/>\n"
+      "    </default>\n"
+      "  </default>\n"
+      "</mujoco>\n",
+      in_comment(about), in_attribute(derating.motor_id), motor.terminal_resistance_ohm, motor.torque_constant_Nm_per_A,
+      reserve * (winding_K_per_W + stator_K_per_W), winding_J_per_K / reserve, motor.temperature_coefficient_per_K,
+      derating.rules.hottest_ambient_C, derating.rules.most_current_A);
+}
+
+}  // namespace
+
+ExporterType mujoco() {
+  return {.name = {}, .summary = "MuJoCo defaults of a <dcmotor> with its thermal attributes, heat on the safe side", .write = write};
+}
+
+}  // namespace heatsoak::exporters

@@ -1,0 +1,157 @@
+// LispBM script for VESC controllers. Names and law: vedderb/bldc at b9d287b3b8323f4b02618b02dc55e57d54a84996, lispBM/README.md
+// (override-temp-motor, conf-set, get-current, get-rpm), motor/mc_interface.c (update_override_limits).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+
+#include "derate/export_text.h"
+#include "derate/exporter.h"
+
+namespace heatsoak::exporters {
+namespace {
+
+/// VESC gives the full current up to this far beyond the start of its ramp.
+constexpr double kFullBeyond_K = 0.1;
+
+/// A LispBM float: a number without a point would be an integer.
+std::string literal(double value) {
+  std::string text = fmt::format("{:.9g}", static_cast<float>(value));
+  const std::size_t exponent = text.find('e');
+  return text.find('.') != std::string::npos ? text : text.insert(std::min(exponent, text.size()), ".0");
+}
+
+std::string operand(const Formula& formula, int place) {
+  const Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
+  if (step.operation == Operation::constant) {
+    return literal(step.value);
+  }
+  if (step.operation != Operation::input) {
+    return fmt::format("t{}", place);
+  }
+  const auto input = static_cast<std::size_t>(step.left);
+  return input < firmware::kSignalCount ? std::string("hs-") + (input == firmware::current ? "current-A"
+                                                                : input == firmware::speed ? "speed-rad-per-s"
+                                                                                           : "ambient-C")
+                                        : fmt::format("hs-state{}-C", input - firmware::kSignalCount);
+}
+
+std::string expression(const Formula& formula, const Formula::Step& step) {
+  const std::string left = operand(formula, step.left);
+  const std::string right = step.right < 0 ? "" : operand(formula, step.right);
+  switch (step.operation) {
+    case Operation::add:
+      return fmt::format("(+ {} {})", left, right);
+    case Operation::subtract:
+      return fmt::format("(- {} {})", left, right);
+    case Operation::multiply:
+      return fmt::format("(* {} {})", left, right);
+    case Operation::divide:
+      return fmt::format("(/ {} {})", left, right);
+    case Operation::magnitude:
+      return fmt::format("(if (< {0} 0.0) (- 0.0 {0}) {0})", left);
+    case Operation::positive_part:
+      return fmt::format("(if (> {0} 0.0) {0} 0.0)", left);
+    case Operation::square_root:
+      return fmt::format("(sqrt {})", left);
+    case Operation::power:
+      return fmt::format("(pow {} {})", left, right);
+    default:
+      return fmt::format("(exp {})", left);
+  }
+}
+
+/// One Euler step over `dt` seconds. The rounding of each step is carried to the next (Kahan 1965).
+std::string step_function(const Observer& observer) {
+  const Formula& formula = observer.formula();
+  const std::vector<char> needed = formula.needed_for(observer.rate_steps());
+  std::string text = "(defun hs-step (hs-current-A hs-speed-rad-per-s hs-ambient-C dt-s) {\n";
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    const Formula::Step& step = formula.steps()[i];
+    if (needed[i] != 0 && step.operation != Operation::constant && step.operation != Operation::input) {
+      text += fmt::format("  (var t{} {})\n", i, expression(formula, step));
+    }
+  }
+  for (std::size_t node = 0; node < observer.state_count(); ++node) {
+    text += fmt::format("  (var change{0}-K (- (* dt-s {1}) hs-carry{0}-K))\n", node, operand(formula, observer.rate_steps()[node]));
+  }
+  for (std::size_t node = 0; node < observer.state_count(); ++node) {
+    text += fmt::format(
+        "  (var next{0}-C (+ hs-state{0}-C change{0}-K))\n"
+        "  (setq hs-carry{0}-K (- (- next{0}-C hs-state{0}-C) change{0}-K))\n"
+        "  (setq hs-state{0}-C next{0}-C)\n",
+        node);
+  }
+  return text + "  hs-state0-C\n})\n";
+}
+
+std::string states(const Derating& derating) {
+  std::string text;
+  for (std::size_t node = 0; node < derating.observer.state_count(); ++node) {
+    text +=
+        fmt::format("(define hs-state{0}-C hs-start-C)  ; {1}\n(define hs-carry{0}-K 0.0)\n", node, derating.observer.state_names()[node]);
+  }
+  return text;
+}
+
+std::string limits(const CurrentRamp& ramp, double a_per_dc) {
+  const double most_A = rounded_down_A(ramp.most_current_A * a_per_dc);
+  return fmt::format(
+      "(conf-set 'l-current-max {0:.3f})\n"
+      "(conf-set 'l-current-min -{0:.3f})\n"
+      "(conf-set 'l-current-max-scale 1.0)\n"
+      "(conf-set 'l-current-min-scale 1.0)\n"
+      "(conf-set 'l-temp-motor-start {1:.1f})\n"
+      "(conf-set 'l-temp-motor-end {2:.1f})\n",
+      most_A, ramp.start_C, ramp.end_C);
+}
+
+/// The observer runs in the script, the ramp in the controller: the script overrides the controller's motor temperature.
+std::string write(const Derating& derating) {
+  const CurrentRamp ramp = ramp_for("vesc", derating, RampSignal::winding, kFullBeyond_K);
+  require_three_signals("vesc", derating);
+  const double dc_per_a = derating.is_brushless ? kDcPerIq : 1.0;
+  return provenance_lines(derating, ";") + ramp_lines(derating, RampSignal::winding, ramp, 1.0 / dc_per_a, ";") +
+         fmt::format(
+             "; Currents are {}. Set the motor temperature sensor to Disabled, or the override has no effect; set the motor's poles.\n"
+             "; The motor temperature that the controller shows is the pessimistic winding temperature. The script samples the current "
+             "every\n"
+             "; {:.6g} s and takes the larger of two samples: peaks between them are not seen. If the script stops, the last temperature "
+             "stays.\n"
+             "; hs-start-C: after a long rest the temperature of the motor, else its limit: then the motor stays off until it has "
+             "cooled.\n",
+             derating.is_brushless ? "peak phase currents (i_q)" : "motor currents", derating.options.period_s) +
+         fmt::format("(define hs-start-C {})\n", literal(derating.rules.limits.winding_C)) + states(derating) +
+         limits(ramp, 1.0 / dc_per_a) + step_function(derating.observer) +
+         fmt::format(
+             "(define hs-pole-pairs (/ (conf-get 'si-motor-poles) 2.0))\n"
+             "(define hs-last-A 0.0)\n"
+             "(define hs-time (systime))\n"
+             "(defun hs-magnitude (x) (if (< x 0.0) (- 0.0 x) x))\n"
+             "(defun hs-cycle () {{\n"
+             "  (var now-A (* {} (get-current)))\n"
+             "  (var more-A (if (< (hs-magnitude now-A) (hs-magnitude hs-last-A)) hs-last-A now-A))\n"
+             "  (setq hs-last-A now-A)\n"
+             "  (var dt-s (secs-since hs-time))\n"
+             "  (setq hs-time (systime))\n"
+             "  (var speed-rad-per-s (hs-magnitude (/ (* (get-rpm) {}) hs-pole-pairs)))\n"
+             "  (override-temp-motor (hs-step more-A speed-rad-per-s {} dt-s))\n"
+             "}})\n"
+             "(loopwhile t {{\n"
+             "  (hs-cycle)\n"
+             "  (sleep {})\n"
+             "}})\n",
+             literal(dc_per_a), literal(std::numbers::pi / 30.0), literal(derating.rules.hottest_ambient_C),
+             literal(derating.options.period_s));
+}
+
+}  // namespace
+
+ExporterType vesc() {
+  return {.name = {},
+          .summary = "LispBM script for VESC: limits, and the observer's winding temperature in place of the motor's sensor",
+          .write = write};
+}
+
+}  // namespace heatsoak::exporters

@@ -1,0 +1,33 @@
+#include "derate/provenance.h"
+
+#include <fmt/format.h>
+
+#include <boost/crc.hpp>
+#include <cstdint>
+
+#include "base/files.h"
+#include "derate/derating.h"
+
+namespace heatsoak {
+
+std::string input_hash(std::string_view bytes) {
+  boost::crc_optimal<64, 0x42F0E1EBA9EA3693U, 0xFFFFFFFFFFFFFFFFU, 0xFFFFFFFFFFFFFFFFU, true, true> sum;
+  sum.process_bytes(bytes.data(), bytes.size());
+  return fmt::format("{:016x}", std::uint64_t{sum.checksum()});
+}
+
+Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options, std::string_view program_version) {
+  constexpr std::size_t kLargestFile_bytes = 16U << 20U;
+  std::string text = fmt::format(
+      "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --confidence {:.9g} --samples {} --seed {}",
+      options.period_s, options.hottest_ambient_C, options.coldest_ambient_C, options.approach_s, options.guarantee.confidence,
+      options.guarantee.samples, options.guarantee.seed);
+  for (const auto& [key, value] : motor.assumed) {
+    text += fmt::format(" --condition {}={}", key, value);
+  }
+  return {
+      .program_version = std::string(program_version),
+      .input_hash = input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + text)};
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,26 @@
+// Which program and which inputs an exported file comes from.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "motor/motor.h"
+#include "robot/robot.h"
+
+namespace heatsoak {
+
+struct DerateOptions;
+
+/// Check sum that identifies inputs: CRC-64/XZ (ECMA-182 polynomial, reflected), 16 hexadecimal digits.
+inline constexpr std::string_view kInputHash = "CRC-64/XZ";
+std::string input_hash(std::string_view bytes);
+
+struct Provenance {
+  std::string program_version;  ///< "heatsoak 0.1.0"
+  std::string input_hash;       ///< kInputHash over the texts of both files and the options
+};
+
+/// Reads the files of robot and motor again. Throws Failure (bad_input) where one cannot be read.
+Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options, std::string_view program_version);
+
+}  // namespace heatsoak

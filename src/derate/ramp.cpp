@@ -1,0 +1,177 @@
+#include "derate/ramp.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/diagnostic.h"
+#include "derate/export_text.h"
+
+namespace heatsoak {
+namespace {
+
+std::size_t count_up_to(const std::vector<double>& axis, double most) {
+  return static_cast<std::size_t>(std::ranges::upper_bound(axis, most) - axis.begin());
+}
+
+double hottest_C(const Derating& derating) { return std::floor(derating.rules.limits.winding_C); }
+
+/// Where bound and ramp have corners: between two of them the bound is a minimum of straight lines, and the ramp is a straight line.
+std::vector<double> corners_C(const Derating& derating, RampSignal signal) {
+  return signal == RampSignal::stator ? derating.table.stator_C : derating.table.winding_C;
+}
+
+struct BoundPoint {
+  double signal_C = 0.0;
+  double current_A = 0.0;
+};
+
+std::vector<BoundPoint> bound_points(const Derating& derating, RampSignal signal) {
+  std::vector<BoundPoint> points;
+  std::vector<double> places_C = corners_C(derating, signal);
+  places_C.push_back(std::floor(derating.options.hottest_ambient_C));
+  for (const double place_C : places_C) {
+    points.push_back({place_C, ramp_bound_A(derating, signal, place_C)});
+  }
+  return points;
+}
+
+/// The largest full current of a ramp from `start_C` to `end_C` that stays below the bound.
+double most_current_A(const std::vector<BoundPoint>& points, double full_until_C, double bound_there_A, double start_C, double end_C) {
+  double most_A = bound_there_A;
+  for (const BoundPoint& point : points) {
+    if (point.signal_C <= full_until_C) {
+      most_A = std::min(most_A, point.current_A);
+    } else if (point.signal_C < end_C) {
+      most_A = std::min(most_A, point.current_A * (end_C - start_C) / (end_C - point.signal_C));
+    }
+  }
+  return most_A;
+}
+
+/// Mean of a ramp over an interval that it starts within.
+double mean_A(const CurrentRamp& ramp, double from_C, double to_C) {
+  return ramp.most_current_A * (ramp.start_C - from_C + 0.5 * (ramp.end_C - ramp.start_C)) / (to_C - from_C);
+}
+
+/// Nodes other than winding and stator on which one of the states' rates depends.
+std::set<std::string> hidden_nodes(const Observer& observer, std::size_t states) {
+  const std::vector<char> needed = observer.formula().needed_for(observer.rate_steps().first(states));
+  std::set<std::string> nodes;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    const Formula::Step& step = observer.formula().steps()[i];
+    const std::size_t first_hidden = firmware::kSignalCount + static_cast<std::size_t>(states::first_own);
+    if (needed[i] != 0 && step.operation == Operation::input && static_cast<std::size_t>(step.left) >= first_hidden) {
+      nodes.insert(observer.state_names()[static_cast<std::size_t>(step.left) - firmware::kSignalCount]);
+    }
+  }
+  return nodes;
+}
+
+void require_stator_is_enough(std::string_view controller, const Derating& derating) {
+  const std::set<std::string> hidden = hidden_nodes(derating.observer, derating.rules.limits.stator_C ? 2 : 1);
+  if (!hidden.empty()) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{} cannot express {} ({}): it changes a temperature with a limit, and the controller measures the stator only; "
+                    "use --to c_header",
+                    controller, fmt::join(hidden, ", "), own_effects_text(derating)));
+  }
+}
+
+}  // namespace
+
+double CurrentRamp::current_A(double signal_C) const {
+  if (signal_C <= start_C + full_beyond_K) {
+    return most_current_A;
+  }
+  return signal_C < end_C ? most_current_A * (end_C - signal_C) / (end_C - start_C) : 0.0;
+}
+
+double ramp_bound_A(const Derating& derating, RampSignal signal, double signal_C) {
+  const CurrentTable& table = derating.table;
+  const bool is_stator = signal == RampSignal::stator;
+  const std::vector<double>& unseen_C = is_stator ? table.winding_C : table.stator_C;
+  const std::size_t speeds = count_up_to(table.speed_rad_per_s, derating.rules.most_speed_rad_per_s);
+  const std::size_t unseen = count_up_to(unseen_C, derating.rules.limits.winding_C);
+  double least_A = derating.rules.most_current_A;
+  for (std::size_t i = 0; i < speeds; ++i) {
+    for (std::size_t k = 0; k < unseen; ++k) {
+      const double stator_C = is_stator ? signal_C : unseen_C[k];
+      const double winding_C = is_stator ? unseen_C[k] : signal_C;
+      least_A = std::min(least_A, table.allowed_A(table.speed_rad_per_s[i], stator_C, winding_C));
+    }
+  }
+  return least_A;
+}
+
+CurrentRamp fit_ramp(const Derating& derating, RampSignal signal, double full_beyond_K) {
+  const std::vector<BoundPoint> points = bound_points(derating, signal);
+  const double from_C = std::floor(derating.options.hottest_ambient_C);
+  const double to_C = hottest_C(derating);
+  CurrentRamp best{.start_C = from_C, .end_C = to_C, .most_current_A = 0.0, .full_beyond_K = full_beyond_K};
+  double best_mean_A = 0.0;
+  for (double start_C = from_C; start_C < to_C; start_C += 1.0) {
+    const double bound_there_A = ramp_bound_A(derating, signal, start_C + full_beyond_K);
+    for (double end_C = start_C + 1.0; end_C <= to_C; end_C += 1.0) {
+      const CurrentRamp ramp{.start_C = start_C,
+                             .end_C = end_C,
+                             .most_current_A = most_current_A(points, start_C + full_beyond_K, bound_there_A, start_C, end_C),
+                             .full_beyond_K = full_beyond_K};
+      if (const double ramp_mean_A = mean_A(ramp, from_C, to_C); ramp_mean_A > best_mean_A) {
+        best_mean_A = ramp_mean_A;
+        best = ramp;
+      }
+    }
+  }
+  return best;
+}
+
+RampLoss ramp_loss(const Derating& derating, RampSignal signal, const CurrentRamp& ramp) {
+  RampLoss loss{.from_C = std::floor(derating.options.hottest_ambient_C), .to_C = hottest_C(derating)};
+  const int steps = std::max(1, static_cast<int>(loss.to_C - loss.from_C));
+  for (int i = 0; i < steps; ++i) {
+    const double signal_C = loss.from_C + i + 0.5;
+    const double bound_A = ramp_bound_A(derating, signal, signal_C);
+    const double ramp_A = ramp.current_A(signal_C);
+    loss.bound_mean_A += bound_A / steps;
+    loss.ramp_mean_A += ramp_A / steps;
+    if (bound_A - ramp_A > loss.most_A) {
+      loss.most_A = bound_A - ramp_A;
+      loss.most_at_C = signal_C;
+    }
+  }
+  loss.peak_A = derating.table.allowed_A(0.0, derating.options.hottest_ambient_C, derating.options.hottest_ambient_C);
+  return loss;
+}
+
+CurrentRamp ramp_for(std::string_view controller, const Derating& derating, RampSignal signal, double full_beyond_K) {
+  require_finite(derating);
+  if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{} cannot express that above {:.0f} rad/s this motor exceeds its limit without current, because its ramp "
+                              "depends on a temperature only; use --to c_header",
+                              controller, derating.rules.most_speed_rad_per_s));
+  }
+  if (signal == RampSignal::stator) {
+    require_stator_is_enough(controller, derating);
+  } else if (derating.rules.limits.stator_C) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{} cannot express the stator limit of {:.0f} °C: its ramp depends on the winding's temperature only; use --to "
+                    "c_header",
+                    controller, *derating.rules.limits.stator_C));
+  }
+  const CurrentRamp ramp = fit_ramp(derating, signal, full_beyond_K);
+  if (!(ramp.most_current_A > 0.0)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: the table leaves no current to a ramp in air of {:.0f} °C at all speeds up to {:.0f} rad/s; use a lower "
+                              "--ambient or --to c_header",
+                              controller, derating.options.hottest_ambient_C, derating.rules.most_speed_rad_per_s));
+  }
+  return ramp;
+}
+
+}  // namespace heatsoak

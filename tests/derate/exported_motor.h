@@ -1,0 +1,44 @@
+// A derating with all that exporters write, and what they make of it.
+#pragma once
+
+#include "derate/exporter.h"
+#include "guarded_motor.h"
+
+namespace heatsoak {
+
+/// The paper's motor, as `derate` makes it.
+inline const Derating& ecx_derating() {
+  static const Derating derating = [] {
+    Derating made = derate(ecx_32(), twente(), {});
+    made.provenance = provenance_of(ecx_32(), twente(), {}, "heatsoak 9.9.9");
+    return made;
+  }();
+  return derating;
+}
+
+/// Without a search: the observer of another motor with a named reserve.
+inline Derating derating_of(const Motor& motor) {
+  const GuardedMotor guarded(motor, rules_for(motor), 1.5);
+  Derating derating = ecx_derating();
+  derating.observer = guarded.observer;
+  derating.rules = guarded.rules;
+  derating.table = guarded.table;
+  derating.reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s;
+  derating.effects.clear();
+  for (const EffectInPlace& effect : guarded.network.effects()) {
+    derating.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation), ""});
+  }
+  return derating;
+}
+
+inline std::string exported(std::string_view name, const Derating& derating = ecx_derating()) {
+  for (const ExporterType& each : all_exporters()) {
+    if (each.name == name) {
+      return each.write(derating);
+    }
+  }
+  ADD_FAILURE() << "no exporter " << name;
+  return {};
+}
+
+}  // namespace heatsoak

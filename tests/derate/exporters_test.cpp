@@ -1,0 +1,370 @@
+// Every exported file, read by a parser of its format and used as its consumer does.
+#include <expat.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "base/diagnostic.h"
+#include "derate/export_text.h"
+#include "exported_motor.h"
+#include "small_lisp.h"
+#include "thermal/transient.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(std::string_view name, const Derating& derating) {
+  try {
+    static_cast<void>(exported(name, derating));
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    return failure.what();
+  }
+  return "accepted";
+}
+
+/// "name value" of every line that is no comment.
+std::map<std::string, std::string> lines_of(const std::string& text, const std::string& pattern) {
+  std::map<std::string, std::string> values;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch found;
+    line = line.substr(0, line.find('#'));
+    if (!line.empty()) {
+      EXPECT_TRUE(std::regex_match(line, found, std::regex(pattern))) << line;
+      values[found[1]] = found[2];
+    }
+  }
+  return values;
+}
+
+class EveryExporter : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryExporter, SaysWhereItComesFromAndHowSureItIs) {
+  const std::string text = exported(GetParam());
+  EXPECT_EQ(text, exported(GetParam()));
+  EXPECT_THAT(text, HasSubstr("heatsoak 9.9.9"));
+  EXPECT_THAT(text, HasSubstr(ecx_derating().provenance.input_hash));
+  EXPECT_THAT(text, HasSubstr("155"));
+  EXPECT_THAT(text, HasSubstr("0.95"));
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+}
+
+TEST_P(EveryExporter, RefusesWhatIsNoNumber) {
+  Derating broken = ecx_derating();
+  broken.table.current_A[7] = std::nan("");
+  EXPECT_THAT(refusal(GetParam(), broken), HasSubstr("is not a number"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryExporter, testing::Values("json", "moteus", "odrive", "vesc", "simplefoc", "mujoco"));
+
+TEST(Exporters, InputHashFollowsTheOptions) {
+  DerateOptions other;
+  other.hottest_ambient_C = 41.0;
+  EXPECT_NE(provenance_of(ecx_32(), twente(), other, "").input_hash, ecx_derating().provenance.input_hash);
+}
+
+TEST(JsonExporter, TableAndObserverAreThoseOfTheDerating) {
+  const nlohmann::json file = nlohmann::json::parse(exported("json"));
+  EXPECT_EQ(file["schema"], "heatsoak.derating/1");
+  const nlohmann::json& table = file["table"];
+  const CurrentTable& real = ecx_derating().table;
+  ASSERT_EQ(table["current_A"].size(), real.current_A.size());
+  for (std::size_t i = 0; i < real.current_A.size(); ++i) {
+    EXPECT_LE(table["current_A"][i].get<double>(), real.current_A[i]);
+    EXPECT_NEAR(table["current_A"][i].get<double>(), real.current_A[i], 1.01e-4);
+  }
+  const nlohmann::json& closed = file["observer"];
+  const auto value = [&](const char* key) { return closed[key].get<double>(); };
+  const double ratio = value("heat_reserve_ratio_r");
+  constexpr double kWinding_C = 110.0;
+  constexpr double kCurrent_A = 3.0;
+  constexpr double kSpeed_rad_per_s = 200.0;
+  ObserverRun<double> run(ecx_derating().observer, 1.0, kWinding_C);
+  run.step(std::array<double, firmware::kSignalCount>{kCurrent_A, kSpeed_rad_per_s, 40.0, 0.0, 40.0, 0.0, 0.0});
+  const double copper_W = value("terminal_resistance_25C_ohm") * (1.0 + value("temperature_coefficient_per_K") * (kWinding_C - 25.0)) *
+                          std::pow(value("heating_current_ratio_k") * kCurrent_A, 2.0);
+  EXPECT_NEAR(run.state_C()[0], kWinding_C + ratio * copper_W / value("heat_capacity_winding_J_per_K"), 1e-6);
+  const double drag_W = value("torque_constant_Nm_per_A") * value("no_load_current_A") * kSpeed_rad_per_s;
+  EXPECT_NEAR(run.state_C()[1],
+              kWinding_C + (ratio * drag_W - (kWinding_C - 40.0) / value("thermal_resistance_stator_ambient_K_per_W")) /
+                               value("heat_capacity_stator_J_per_K"),
+              1e-6);
+}
+
+constexpr const char* kChassis = R"([effects.chassis]
+type = "third_node"
+heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" }
+conductance = { value = "0.3 W/K", origin = "estimated", derivation = "a test" }
+leak_ratio = { value = "0.2", origin = "estimated", derivation = "a test" }
+)";
+constexpr const char* kAirflow = R"([effects.wind]
+type = "vehicle_airflow"
+conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
+exponent = { value = "0.8", origin = "estimated", derivation = "a test" }
+)";
+
+TEST(Exporters, RefuseByNameWhatTheyCannotExpress) {
+  const Derating chassis = derating_of(ecx_32_with(kChassis));
+  EXPECT_TRUE(nlohmann::json::parse(exported("json", chassis))["observer"].is_null());
+  EXPECT_THAT(refusal("mujoco", chassis), HasSubstr("mujoco cannot express chassis (third_node)"));
+  EXPECT_EQ(refusal("moteus", chassis), "accepted") << "the stator's sensor sees what the chassis does";
+  EXPECT_EQ(refusal("vesc", chassis), "accepted");
+  const Derating wind = derating_of(ecx_32_with(kAirflow));
+  for (const char* name : {"vesc", "simplefoc"}) {
+    EXPECT_THAT(refusal(name, wind), HasSubstr("wind (vehicle_airflow)")) << name;
+    EXPECT_THAT(refusal(name, wind), HasSubstr("vehicle_speed_m_per_s")) << name;
+  }
+  const Derating soaked = derating_of(ecx_32_with(std::string(kChassis) + "node = \"winding\"\n"));
+  for (const char* name : {"moteus", "odrive"}) {
+    EXPECT_THAT(refusal(name, soaked), HasSubstr("cannot express chassis")) << name;
+  }
+  Derating brushed = ecx_derating();
+  brushed.is_brushless = false;
+  for (const char* name : {"moteus", "odrive", "simplefoc"}) {
+    EXPECT_THAT(refusal(name, brushed), HasSubstr("brushed")) << name;
+  }
+}
+
+/// A controller's current in A (i_q) at a temperature of its sensor.
+using Limit = std::function<double(double)>;
+
+/// fw/bldc_servo_control.h: derate_fraction, derate_current_A, effective_max_current_A; a fault above the fault temperature.
+Limit moteus_limit() {
+  const auto values = lines_of(exported("moteus"), R"(^(servo\.[a-zA-Z_.]+) ([-0-9.]+)$)");
+  const auto value = [values](const char* key) { return std::stod(values.at(key)); };
+  EXPECT_EQ(values.at("servo.enable_motor_temperature"), "1");
+  return [=](double sensor_C) {
+    const double fault_C = value("servo.motor_fault_temperature");
+    const double margin_K = value("servo.motor_temperature_margin");
+    const double most_A = value("servo.max_current_A");
+    const double fraction = std::max((sensor_C - (fault_C - margin_K)) / margin_K, 0.0);
+    const double limit_A = std::min(most_A, std::max(0.0, fraction * (value("servo.derate_current_A") - most_A) + most_A));
+    return sensor_C > fault_C ? 0.0 : limit_A;
+  };
+}
+
+/// Firmware/MotorControl/thermistor.cpp: get_current_limit(), do_checks().
+Limit odrive_limit() {
+  std::string text = exported("odrive");
+  EXPECT_THAT(text, HasSubstr("\naxis = odrv0.axis0\n"));
+  EXPECT_THAT(text, HasSubstr("\nodrv0.save_configuration()\n"));
+  text = std::regex_replace(text, std::regex("axis = odrv0.axis0\n|odrv0.save_configuration\\(\\)\n"), "");
+  const auto values = lines_of(text, R"(^axis\.motor\.([a-z_.]+) = ([-0-9.A-Za-z]+)$)");
+  EXPECT_EQ(values.at("motor_thermistor.config.enabled"), "True");
+  const double lower_C = std::stod(values.at("motor_thermistor.config.temp_limit_lower"));
+  const double upper_C = std::stod(values.at("motor_thermistor.config.temp_limit_upper"));
+  const double most_A = std::stod(values.at("config.current_lim"));
+  return [=](double sensor_C) { return std::min(most_A, std::max(0.0, most_A * (upper_C - sensor_C) / (upper_C - lower_C))); };
+}
+
+/// All that a controller allows in spells, then nothing, and at changing speeds, in the hottest air: the hottest winding.
+double hottest_C(const Network& network, const Limit& limit, unsigned seed) {
+  Driver driver(seed);
+  std::vector<double> state_C(2, 40.0);
+  double hottest_C = 0.0;
+  constexpr double kStep_s = 0.5;
+  for (int i = 0; i < 3000; ++i) {
+    const Driver::Wish wish = driver.after(kStep_s);
+    OperatingPoint<double> at;
+    at.current_rms_A = kDcPerIq * std::abs(wish.current_share) * limit(state_C[states::stator]);
+    at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
+    at.ambient_C = 40.0;
+    TransientOptions options;
+    options.start_C = state_C;
+    const TransientResult result = run_transient(network, network.values(), std::vector<Interval>{{kStep_s, at}}, options);
+    state_C = result.end_C;
+    hottest_C = std::max(hottest_C, result.peak_C[states::winding]);
+  }
+  return hottest_C;
+}
+
+TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit) {
+  const Motor motor = ecx_32();
+  for (const Limit& limit : {moteus_limit(), odrive_limit()}) {
+    double sum_A = 0.0;
+    for (double sensor_C = 20.0; sensor_C < 170.0; sensor_C += 0.5) {
+      EXPECT_LE(kDcPerIq * limit(sensor_C), ramp_bound_A(ecx_derating(), RampSignal::stator, sensor_C) + 1e-9) << sensor_C;
+      sum_A += limit(sensor_C);
+    }
+    EXPECT_GT(sum_A, 0.0);
+    const Network nominal = datasheet_network(motor, nominal_sample(motor));
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      EXPECT_LT(hottest_C(nominal, limit, seed), 155.0);
+    }
+    const Motor spread = with_default_spreads(motor);
+    int over = 0;
+    for (unsigned i = 0; i < 40; ++i) {
+      Random random(99, i);
+      over += hottest_C(datasheet_network(spread, draw_sample(spread, random)), limit, i) > 155.0 ? 1 : 0;
+    }
+    // Five in a hundred of 40 are two; seven or more come by chance once in 200 times.
+    EXPECT_LE(over, 6);
+  }
+}
+
+/// motor/mc_interface.c, update_override_limits(): a filter of 0.01 at 1 kHz, full current up to 0.1 K above the start.
+TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
+  SmallLisp script;
+  float override_C = NAN;
+  double current_A = 0.0;
+  double speed_rad_per_s = 0.0;
+  constexpr float kPolePairs = 7.0F;
+  script.settings["'si-motor-poles"] = 2.0F * kPolePairs;
+  script.extensions = {{"systime", [](const auto&) { return 0.0F; }},
+                       {"secs-since", [](const auto&) { return 0.01F; }},
+                       {"sleep", [](const auto&) { return 0.0F; }},
+                       {"get-current", [&](const auto&) { return static_cast<float>(current_A); }},
+                       {"get-rpm", [&](const auto&) { return static_cast<float>(speed_rad_per_s * 30.0 / std::numbers::pi) * kPolePairs; }},
+                       {"override-temp-motor", [&](const auto& with) { return override_C = with.at(0); }}};
+  script.load(exported("vesc"));
+  const double most_A = script.settings.at("'l-current-max");
+  const double start_C = script.settings.at("'l-temp-motor-start");
+  const double end_C = script.settings.at("'l-temp-motor-end");
+  EXPECT_EQ(script.settings.at("'l-current-min"), -most_A);
+  for (const char* state : {"hs-state0-C", "hs-state1-C"}) {
+    EXPECT_EQ(script.value(state), 155.0F) << "never started: as hot as its limit";
+    script.set(state, 40.0F);
+  }
+  ObserverRun<float> observer(ecx_derating().observer, 0.01F, 40.0F);
+  double filtered_C = 40.0;
+  double hottest = 0.0;
+  float last_A = 0.0F;
+  Driver driver(5);
+  for (int i = 0; i < 60'000; ++i) {
+    const Driver::Wish wish = driver.after(0.01);
+    for (int tick = 0; tick < 10 && i > 0; ++tick) {
+      filtered_C += 0.01 * (override_C - filtered_C);
+    }
+    const double ramp_A = filtered_C < start_C + 0.1 ? most_A
+                          : filtered_C > end_C - 0.1 ? 0.0
+                                                     : most_A * (end_C - filtered_C) / (end_C - start_C);
+    current_A = wish.current_share * ramp_A;
+    speed_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
+    script.cycle();
+    const auto now_A = static_cast<float>(kDcPerIq) * static_cast<float>(current_A);
+    const float more_A = std::abs(now_A) < std::abs(last_A) ? last_A : now_A;
+    last_A = now_A;
+    observer.step(std::array<float, firmware::kSignalCount>{more_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+    ASSERT_NEAR(override_C, observer.state_C()[0], 0.01) << i;
+    hottest = std::max(hottest, static_cast<double>(override_C));
+  }
+  EXPECT_GT(hottest, 120.0);
+  EXPECT_LE(hottest, 155.05);
+}
+
+/// A SimpleFOC of which only what the snippet uses is there.
+constexpr const char* kSimpleFoc = R"(#pragma once
+#include <math.h>
+struct CurrentSense {};
+enum class TorqueControlType { voltage, foc_current };
+struct DQCurrent_s { float d, q; };
+struct FOCMotor {
+  CurrentSense *current_sense = nullptr;
+  TorqueControlType torque_controller = TorqueControlType::foc_current;
+  DQCurrent_s current{0.0f, 0.0f};
+  float shaft_velocity = 0.0f, current_limit = 0.0f;
+  bool is_enabled = true;
+  void disable() { is_enabled = false; }
+  void updateCurrentLimit(float limit) { current_limit = limit; }
+};
+)";
+constexpr const char* kSketch = R"(#include "limit.h"
+#include <stdio.h>
+#include <string.h>
+int main() {
+  FOCMotor motor;
+  CurrentSense sense;
+  maxon_ecx_flat_32l_48v_state guard;
+  memset(&guard, 0, sizeof guard);
+  maxon_ecx_flat_32l_48v_start(&guard, 40.0f);
+  maxon_ecx_flat_32l_48v_limit(motor, guard, 40.0f);
+  printf("%d %.9g\n", (int)motor.is_enabled, motor.current_limit);
+  motor.is_enabled = true;
+  motor.current_sense = &sense;
+  for (int i = 0; i < 60000; ++i) {
+    motor.shaft_velocity = -100.0f;
+    motor.current.q = -motor.current_limit;
+    const maxon_ecx_flat_32l_48v_output out = maxon_ecx_flat_32l_48v_limit(motor, guard, 40.0f);
+    if (out.guarded_winding_C > 155.1f) return 1;
+  }
+  printf("%d %.9g\n", (int)motor.is_enabled, motor.current_limit);
+}
+)";
+
+TEST(SimpleFocExporter, CompilesBesideTheHeaderAndLimitsTheMotor) {
+  if (std::system("c++ --version > /dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "no compiler here";
+  }
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_simplefoc_{}", getpid());
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "SimpleFOC.h") << kSimpleFoc;
+  std::ofstream(folder / "limit.h") << exported("simplefoc");
+  std::ofstream(folder / "maxon_ecx_flat_32l_48v_guard.h") << exported("c_header");
+  std::ofstream(folder / "sketch.cpp") << kSketch;
+  const std::string command =
+      fmt::format("cd {} && c++ -std=c++11 -Wall -Wextra -Werror -O1 -I. sketch.cpp -o sketch && ./sketch > out.txt", folder.string());
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  std::ifstream out(folder / "out.txt");
+  int is_enabled = -1;
+  double limit_A = NAN;
+  out >> is_enabled >> limit_A;
+  EXPECT_EQ(is_enabled, 0) << "without a current sense";
+  EXPECT_EQ(limit_A, 0.0);
+  out >> is_enabled >> limit_A;
+  EXPECT_EQ(is_enabled, 1);
+  // Ten minutes of all that is allowed, near what is allowed for good.
+  EXPECT_NEAR(limit_A, 2.22 / kDcPerIq, 0.1);
+  std::filesystem::remove_all(folder);
+}
+
+/// Attributes of an element.
+std::map<std::string, std::string> attributes_of(const std::string& xml, const std::string& element) {
+  struct Search {
+    std::string element;
+    std::map<std::string, std::string> found;
+  } search{element, {}};
+  const XML_Parser parser = XML_ParserCreate(nullptr);
+  XML_SetUserData(parser, &search);
+  XML_SetStartElementHandler(parser, [](void* user, const XML_Char* name, const XML_Char** attributes) {
+    auto& looking = *static_cast<Search*>(user);
+    for (int i = 0; looking.element == name && attributes[i] != nullptr; i += 2) {
+      looking.found[attributes[i]] = attributes[i + 1];
+    }
+  });
+  EXPECT_EQ(XML_Parse(parser, xml.data(), static_cast<int>(xml.size()), 1), XML_STATUS_OK) << XML_ErrorString(XML_GetErrorCode(parser));
+  XML_ParserFree(parser);
+  return search.found;
+}
+
+/// src/engine/engine_forward.c: dT/dt = (R·i² − T/R_th)/C over the ambient temperature; doc/XMLreference.rst: order of the attributes.
+TEST(MujocoExporter, HeldCurrentAtStandstillReachesTheObserversTemperature) {
+  const auto motor = attributes_of(exported("mujoco"), "dcmotor");
+  double resistance_K_per_W = 0.0, capacity_J_per_K = 0.0, constant_s = -1.0, coefficient_per_K = 0.0, reference_C = 0.0, ambient_C = 0.0;
+  std::istringstream(motor.at("thermal")) >> resistance_K_per_W >> capacity_J_per_K >> constant_s >> coefficient_per_K >> reference_C >>
+      ambient_C;
+  EXPECT_EQ(constant_s, 0.0);
+  EXPECT_EQ(ambient_C, 40.0);
+  EXPECT_NEAR(std::stod(motor.at("motorconst")), ecx_derating().torque_constant_Nm_per_A, 1e-9);
+  constexpr double kHeld_A = 2.0;
+  double rise_K = 0.0;
+  ObserverRun<double> observer(ecx_derating().observer, 0.01, 40.0);
+  for (int i = 0; i < 200'000; ++i) {
+    const double hot_ohm = std::stod(motor.at("resistance")) * (1.0 + coefficient_per_K * (rise_K + ambient_C - reference_C));
+    rise_K += 0.01 * (hot_ohm * kHeld_A * kHeld_A - rise_K / resistance_K_per_W) / capacity_J_per_K;
+    observer.step(std::array<double, firmware::kSignalCount>{kHeld_A, 0.0, 40.0, 0.0, 40.0, 0.0, 0.0});
+    ASSERT_GE(rise_K + 40.0, observer.state_C()[0] - 1e-6) << "while it warms up it is never colder";
+  }
+  EXPECT_NEAR(rise_K + 40.0, observer.state_C()[0], 0.05);
+}
+
+}  // namespace
+}  // namespace heatsoak
