@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/files.h"
+#include "base/version.h"
 #include "derate/derating.h"
 
 namespace heatsoak {
@@ -16,7 +17,7 @@ std::string input_hash(std::string_view bytes) {
   return fmt::format("{:016x}", std::uint64_t{sum.checksum()});
 }
 
-Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options, std::string_view program_version) {
+Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options) {
   constexpr std::size_t kLargestFile_bytes = 16U << 20U;
   std::string text = fmt::format(
       "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --confidence {:.9g} --samples {} --seed {}",
@@ -26,7 +27,7 @@ Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOpt
     text += fmt::format(" --condition {}={}", key, value);
   }
   return {
-      .program_version = std::string(program_version),
+      .program_version = fmt::format("heatsoak {}", program_version()),
       .input_hash = input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + text)};
 }
 

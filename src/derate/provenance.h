@@ -21,6 +21,6 @@ struct Provenance {
 };
 
 /// Reads the files of robot and motor again. Throws Failure (bad_input) where one cannot be read.
-Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options, std::string_view program_version);
+Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options);
 
 }  // namespace heatsoak

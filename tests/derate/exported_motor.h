@@ -10,7 +10,7 @@ namespace heatsoak {
 inline const Derating& ecx_derating() {
   static const Derating derating = [] {
     Derating made = derate(ecx_32(), twente(), {});
-    made.provenance = provenance_of(ecx_32(), twente(), {}, "heatsoak 9.9.9");
+    made.provenance = provenance_of(ecx_32(), twente(), {});
     return made;
   }();
   return derating;

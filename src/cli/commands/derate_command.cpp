@@ -170,7 +170,7 @@ ExitCode run(const Options& options, Session& session) {
   const std::optional<CommittedTable> committed =
       options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
   Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
-  derating.provenance = provenance_of(motor, *robot, options.guard.derate, "heatsoak " HEATSOAK_VERSION);
+  derating.provenance = provenance_of(motor, *robot, options.guard.derate);
   session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
               effects_under_conditions({&motor, 1}));
   if (!options.out.empty()) {
