@@ -99,7 +99,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
 /// Copies the faults of wheel speeds and yaw rate to where a flipped bit in the rest of State does not reach them.
 void note_faults(State& state);
 
-/// What outlasts a flipped bit in State: faults that are known, so that no sensor is believed again by accident.
+/// Known sensor faults and the battery's voltage. They survive a flipped bit in the rest of State, so that no sensor is believed again.
 struct KnownFaults {
   ComparisonState comparison;
   float battery_source_V;

@@ -53,7 +53,7 @@ void limit_demand(const Config& config, const WheelState& state, const Believed&
   return demand.reason == Reason::none ? own : demand.reason;
 }
 
-/// What the guard leaves to one wheel. In shadow mode it is counted instead; true if it would have limited.
+/// Limits one wheel to the allowed current. Shadow mode only counts the excess; true if it would have limited.
 bool apply_guard(const Config& config, State& state, float allowed_A, float elapsed_s, WheelDemand& demand) {
   if (allowed_A >= demand.most_A) {
     return false;
@@ -113,7 +113,7 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
   return absolute(voltage_V - implied_V) < band_V || move_into_window(demand, implied_V, band_V, most_V, voltage_V, reason);
 }
 
-/// Of a wheel whose speed nobody knows: into a standing motor no more than the limp current, or what the guard leaves of it.
+/// Voltage of a wheel of unknown speed: at most the limp current, or the guard's limit if that is smaller, into a standing motor.
 [[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Believed& believed, const WheelDemand& demand, int i,
                                                float most_V, float& voltage_V) {
   const float limp_V = smaller(config.lowest_resistance_ohm * demand.most_A, most_V);

@@ -17,7 +17,7 @@ constexpr float kSameDisagreement_share = 0.02F;  // of a sample that does not c
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // A winding is never this many times its coldest resistance: 2 is copper at 280 degC.
 constexpr float kHotResistance_ratio = 2.0F;
-// Of the explained current, besides Config's margin: settling and delay.
+// Settling and delay, as a share of the explained current, in addition to Config's margin.
 constexpr float kSettling_share = 0.15F;
 // Swapped sensors: time constant of the comparison, least contradiction, and how many times the confirmation it is.
 constexpr float kSwap_s = 0.3F;

@@ -83,8 +83,8 @@ struct GuardRow {
 struct GuardOutput {
   float allowed_A;          ///< magnitude, until the next call
   float allowed_braking_A;  ///< magnitude where the current brakes; at least allowed_A
-  float winding_C;          ///< of the observer, which counts heat more than once: hotter than the nominal motor
-  float hottest_body_C;     ///< of the nodes other than the winding
+  float winding_C;          ///< of the observer: above the nominal motor's by the safety factor on heat
+  float hottest_body_C;     ///< highest of the nodes other than the winding
   bool is_unknown_input;    ///< a signal was not believed and its hottest case was taken
   bool was_started;         ///< false: the state was none, and the guard began as hot as its limit
 };

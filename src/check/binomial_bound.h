@@ -1,4 +1,4 @@
-// How large a probability may be that was seen in a few draws.
+// Upper confidence bound of a probability that was estimated from a few draws.
 #pragma once
 
 #include <optional>

@@ -228,7 +228,7 @@ class CheckReader {
       }
     }
     if (check_.limits.empty()) {
-      return;  // what they would have used is not known
+      return;  // their settings are unknown
     }
     for (std::size_t i = 0; i < all_settings().size(); ++i) {
       const std::string_view key = all_settings()[i].key;

@@ -22,9 +22,9 @@ namespace heatsoak {
 struct Limit {
   const ThresholdType* type = nullptr;
   double value = 0.0;  ///< in the type's unit
-  std::string unit;    ///< as the file writes it
-  std::string text;    ///< of the file: "at most 150 degC"
-  Location at;         ///< of that text
+  std::string unit;    ///< as written in the file
+  std::string text;    ///< limit as written in the file: "at most 150 degC"
+  Location at;         ///< place of that text
 };
 
 struct Check {
@@ -42,7 +42,7 @@ struct Check {
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> logs;
   std::filesystem::path mapping;
-  double air_C = std::numeric_limits<double>::quiet_NaN();  ///< where a log has none; NaN: not stated
+  double air_C = std::numeric_limits<double>::quiet_NaN();  ///< air temperature for logs without one; NaN: not stated
   DerateOptions derate;
   std::vector<Limit> limits;
 };

@@ -31,7 +31,8 @@ void require_sound(const CommittedTable& committed, int line) {
   const Location at{committed.file.string(), line, 1};
   for (const auto& [name, axis] :
        {std::pair("speed", &table.speed_rad_per_s), {"stator", &table.stator_C}, {"winding", &table.winding_C}}) {
-    if (axis->size() < 2 || std::ranges::adjacent_find(*axis, std::greater_equal<>()) != axis->end()) {
+    const bool is_finite = std::ranges::all_of(*axis, [](double each) { return std::isfinite(each); });
+    if (axis->size() < 2 || !is_finite || std::ranges::adjacent_find(*axis, std::greater_equal<>()) != axis->end()) {
       throw bad_input(at, name, "the axis of the table does not ascend; expected a file that `heatsoak derate` wrote");
     }
   }
@@ -42,6 +43,11 @@ void require_sound(const CommittedTable& committed, int line) {
 
 /// The four arrays of the table; of the names that end alike, those that belong together.
 void read_header(const std::string& text, CommittedTable& committed) {
+  // A spliced line may hide code in a comment; `heatsoak derate` writes none.
+  if (const std::size_t splice = std::min(text.find('\\'), text.find("?\?/")); splice != std::string::npos) {
+    throw bad_input({committed.file.string(), line_at(text, splice), 1}, "",
+                    "a backslash or the trigraph for it; expected a header that `heatsoak derate` wrote, which has none");
+  }
   const std::vector<HeaderArray> arrays = header_arrays(text);
   const auto find = [&](const std::string& name) { return std::ranges::find(arrays, name, &HeaderArray::name); };
   constexpr std::string_view kCurrent = "_current_A";

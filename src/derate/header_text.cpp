@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 namespace heatsoak {
 namespace {
@@ -22,10 +23,14 @@ bool is_of_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 
 /// "1.5f", "0x48u", "2.5e-3f": a number in C, without its suffix.
 bool is_number(std::string_view text) { return std::isdigit(static_cast<unsigned char>(text.front())) != 0; }
 
+/// Of a whole decimal literal with or without "f"; NaN for anything else, so that "12.4f * 8" is not taken for 12.4.
 double number(std::string_view text) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  double value = kNone;
+  const char* const end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, value);
+  const bool is_whole = parsed == end || (parsed + 1 == end && *parsed == 'f');
+  return error == std::errc() && is_whole ? value : kNone;
 }
 
 /// The end of a token that begins at `i`. The sign of an exponent belongs to its number.
@@ -116,7 +121,8 @@ std::vector<HeaderArray> header_arrays(std::string_view text) {
     for (std::size_t i = open + 1; i < close;) {
       const std::size_t end = std::min(text.find(',', i), close);
       std::string_view cell = text.substr(i, end - i);
-      cell.remove_prefix(std::min(cell.find_first_not_of(" \t\r\n("), cell.size()));
+      cell.remove_prefix(std::min(cell.find_first_not_of(" \t\r\n"), cell.size()));
+      cell.remove_suffix(cell.size() - std::min(cell.find_last_not_of(" \t\r\n") + 1, cell.size()));
       if (!cell.empty()) {
         array.values.push_back(number(cell));
       }

@@ -149,6 +149,34 @@ TEST_F(Tampered, ObserverIsFoundAtItsLineWhereverCommentsSayOtherThings) {
 
 TEST_F(Tampered, VersionOfTheWriterIsRead) { EXPECT_EQ(read("/* heatsoak 9.8.7 */\n" + exported(*fresh_, "c_header")).version, "9.8.7"); }
 
+// What a compiler reads as more than the number at its beginning is no table entry.
+TEST_F(Tampered, EntriesAreWholeNumbers) {
+  const std::string text = exported(*fresh_, "c_header");
+  const std::size_t array = text.find('{', text.find("_current_A["));
+  const std::size_t end = text.find(',', array);
+  const std::size_t begin = text.find_first_of("0123456789", array);
+  for (const char* const entry : {"9.0f * 8.0f", "0x1p9f", "0x63", "1.0f + 98.0f", "9.0f /* x */ * 9", "1.0e", "1.0foo", ""}) {
+    const std::string tampered = text.substr(0, begin) + entry + text.substr(end);
+    EXPECT_THAT(message_of(tampered), testing::HasSubstr("error")) << entry;
+  }
+}
+
+TEST_F(Tampered, HiddenLineIsRefused) {
+  const std::string text = exported(*fresh_, "c_header");
+  const std::size_t place = text.find("\n", text.find("_advance("));
+  for (const char* const hidden : {"  // checked \\\n", "  // checked ?\?/\n"}) {
+    EXPECT_THAT(message_of(text.substr(0, place + 1) + hidden + text.substr(place + 1)), testing::HasSubstr("backslash")) << hidden;
+  }
+}
+
+TEST_F(Tampered, HexadecimalConstantIsCompared) {
+  std::string text = exported(*fresh_, "c_header");
+  const std::size_t at = text.find("_STARTED 0x");
+  ASSERT_NE(at, std::string::npos);
+  text[at + 11] = text[at + 11] == '1' ? '2' : '1';
+  EXPECT_GT(compare(read(text), *fresh_).differing_line, 0);
+}
+
 TEST_F(Tampered, WhatIsNoTableIsRefused) {
   const std::string csv = exported(*fresh_, "csv");
   const std::string header = exported(*fresh_, "c_header");

@@ -90,7 +90,8 @@ std::string report(const Derating& derating) {
   }
   text += own.empty() ? "" : fmt::format("effects of the file that act: {}\n", own);
   text += fmt::format(
-      "heat counts {:.2f} times: of {} motors drawn from the declared tolerances {} passed a limit in one of the {} hardest uses ({:.1f} "
+      "safety factor on heat {:.2f}: of {} motors drawn from the declared tolerances {} exceeded a limit in one of the {} hardest uses "
+      "({:.1f} "
       "%; "
       "other draws: {:.1f} to {:.1f} %)\ntheir windings reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the "
       "hottest)\n\n",

@@ -85,21 +85,21 @@ std::string head_comment(const Derating& derating, const std::string& prefix) {
       "{}{} *\n"
       " * Winding at most {:.0f} degC{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
       " * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding never passes its limit. "
-      "Heat\n"
-      " * counts {:.3g} times, so that motors worse than their nominal figures are covered: of {} drawn from the declared tolerances {} "
-      "passed a\n"
+      "The\n"
+      " * safety factor on heat is {:.3g}, for a confidence of {:.3g}: of {} motors drawn from the declared tolerances {} exceeded a\n"
       " * limit in one of the {} hardest uses ({:.1f} %, with other draws {:.1f} to {:.1f} %), the hottest winding reached {:.0f} degC.\n"
-      " * Computed, not measured; a sensor that shows what could be and is not is not covered.\n"
+      " * Computed, not measured; plausible but wrong sensor readings are not covered.\n"
       "{}"
       " *\n"
-      " * What it reckons with:\n",
+      " * Laws of the model:\n",
       in_comment(derating.motor_id), in_comment(derating.robot_id), program_version(),
       derating.provenance.input_hash.empty() ? "" : fmt::format(" * Inputs {} {}.\n", kInputHash, derating.provenance.input_hash),
       default_spreads_text(derating), derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(),
-      checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / std::max(1, checked.samples),
-      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_most_C, assumptions(derating));
+      derating.options.guarantee.confidence, checked.samples, checked.over, derating.uses.size(),
+      100.0 * checked.over / std::max(1, checked.samples), 100.0 * checked.over_share.low, 100.0 * checked.over_share.high,
+      checked.winding_most_C, assumptions(derating));
   for (const ActingEffect& effect : derating.effects) {
     text += fmt::format(" *   {}{}: {}{}\n", in_comment(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
                         in_comment(effect.equation),
