@@ -43,7 +43,7 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
   return text;
 }
 
-std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double a_per_dc, std::string_view comment) {
+std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio, std::string_view comment) {
   const RampLoss loss = ramp_loss(derating, signal, ramp);
   const bool is_stator = signal == RampSignal::stator;
   return fmt::format(
@@ -52,8 +52,8 @@ std::string ramp_lines(const Derating& derating, RampSignal signal, const Curren
       "{0} Short peaks: the table allows {11:.1f} A to a motor at {12:.0f} degC, the ramp never more than {13:.2f} A.\n"
       "{0} Not covered: a sensor that reads low, a motor that is pushed above {2:.0f} rad/s, d-axis current (field weakening).\n",
       comment, is_stator ? "measured stator temperature" : "observer's winding temperature", derating.rules.most_speed_rad_per_s,
-      is_stator ? "winding" : "stator", a_per_dc * loss.mean_A(), loss.mean_percent(), a_per_dc * loss.bound_mean_A, loss.from_C, loss.to_C,
-      a_per_dc * loss.most_A, loss.most_at_C, a_per_dc * loss.peak_A, derating.options.hottest_ambient_C, a_per_dc * ramp.most_current_A);
+      is_stator ? "winding" : "stator", phase_per_dc_ratio * loss.mean_A(), loss.mean_percent(), phase_per_dc_ratio * loss.bound_mean_A, loss.from_C, loss.to_C,
+      phase_per_dc_ratio * loss.most_A, loss.most_at_C, phase_per_dc_ratio * loss.peak_A, derating.options.hottest_ambient_C, phase_per_dc_ratio * ramp.most_current_A);
 }
 
 std::string own_effects_text(const Derating& derating) {

@@ -11,14 +11,14 @@ namespace heatsoak {
 
 /// Equivalent DC current per ampere of i_q (amplitude-invariant). For a sinusoidal back-EMF of amplitude E·ω per phase the torque constant
 /// is 3·√3/π·E per DC ampere of block commutation and 3/2·E per ampere of i_q.
-inline constexpr double kDcPerIq = std::numbers::sqrt3 * std::numbers::pi / 6.0;
+inline constexpr double kDcPerIq_ratio = std::numbers::sqrt3 * std::numbers::pi / 6.0;
 
 /// Program, inputs, limit, confidence, conditions and assumed spreads as lines that begin with `comment`. No text of a user ends a line.
 std::string provenance_lines(const Derating& derating, std::string_view comment);
 
-/// What the ramp gives away and where it is valid, as lines that begin with `comment`. `a_per_dc`: the controller's current per equivalent
+/// What the ramp gives away and where it is valid, as lines that begin with `comment`. `phase_per_dc_ratio`: the controller's current per equivalent
 /// DC current.
-std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double a_per_dc, std::string_view comment);
+std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio, std::string_view comment);
 
 /// Effects that are not of the data sheet, "chassis (third_node)"; "no own effects" without any.
 std::string own_effects_text(const Derating& derating);

@@ -177,7 +177,7 @@ double hottest_C(const Network& network, const Limit& limit, unsigned seed) {
   for (int i = 0; i < 3000; ++i) {
     const Driver::Wish wish = driver.after(kStep_s);
     OperatingPoint<double> at;
-    at.current_rms_A = kDcPerIq * std::abs(wish.current_share) * limit(state_C[states::stator]);
+    at.current_rms_A = kDcPerIq_ratio * std::abs(wish.current_share) * limit(state_C[states::stator]);
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
     at.ambient_C = 40.0;
     TransientOptions options;
@@ -194,7 +194,7 @@ TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit)
   for (const Limit& limit : {moteus_limit(), odrive_limit()}) {
     double sum_A = 0.0;
     for (double sensor_C = 20.0; sensor_C < 170.0; sensor_C += 0.5) {
-      EXPECT_LE(kDcPerIq * limit(sensor_C), ramp_bound_A(ecx_derating(), RampSignal::stator, sensor_C) + 1e-9) << sensor_C;
+      EXPECT_LE(kDcPerIq_ratio * limit(sensor_C), ramp_bound_A(ecx_derating(), RampSignal::stator, sensor_C) + 1e-9) << sensor_C;
       sum_A += limit(sensor_C);
     }
     EXPECT_GT(sum_A, 0.0);
@@ -252,7 +252,7 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
     current_A = wish.current_share * ramp_A;
     speed_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
     script.cycle();
-    const auto now_A = static_cast<float>(kDcPerIq) * static_cast<float>(current_A);
+    const auto now_A = static_cast<float>(kDcPerIq_ratio) * static_cast<float>(current_A);
     const float more_A = std::abs(now_A) < std::abs(last_A) ? last_A : now_A;
     last_A = now_A;
     observer.step(std::array<float, firmware::kSignalCount>{more_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
@@ -324,7 +324,7 @@ TEST(SimpleFocExporter, CompilesBesideTheHeaderAndLimitsTheMotor) {
   out >> is_enabled >> limit_A;
   EXPECT_EQ(is_enabled, 1);
   // Ten minutes of all that is allowed, near what is allowed for good.
-  EXPECT_NEAR(limit_A, 2.22 / kDcPerIq, 0.1);
+  EXPECT_NEAR(limit_A, 2.22 / kDcPerIq_ratio, 0.1);
   std::filesystem::remove_all(folder);
 }
 

@@ -15,7 +15,7 @@ namespace {
 std::string write(const Derating& derating) {
   require_brushless("moteus", derating);
   const CurrentRamp ramp = ramp_for("moteus", derating, RampSignal::stator);
-  return provenance_lines(derating, "#") + ramp_lines(derating, RampSignal::stator, ramp, 1.0 / kDcPerIq, "#") +
+  return provenance_lines(derating, "#") + ramp_lines(derating, RampSignal::stator, ramp, 1.0 / kDcPerIq_ratio, "#") +
          fmt::format(
              "# Currents are peak phase currents (i_q). Needs a thermistor at the stator on the TEMP pads: set "
              "servo.motor_thermistor_ohm.\n"
@@ -27,7 +27,7 @@ std::string write(const Derating& derating) {
              "servo.motor_temperature_margin {:.0f}\n"
              "servo.motor_fault_temperature {:.0f}\n"
              "servo.fw.enable 0\n",
-             rounded_down_A(ramp.most_current_A / kDcPerIq), ramp.end_C - ramp.start_C, ramp.end_C);
+             rounded_down_A(ramp.most_current_A / kDcPerIq_ratio), ramp.end_C - ramp.start_C, ramp.end_C);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 std::string write(const Derating& derating) {
   require_brushless("odrive", derating);
   const CurrentRamp ramp = ramp_for("odrive", derating, RampSignal::stator);
-  return provenance_lines(derating, "#") + ramp_lines(derating, RampSignal::stator, ramp, 1.0 / kDcPerIq, "#") +
+  return provenance_lines(derating, "#") + ramp_lines(derating, RampSignal::stator, ramp, 1.0 / kDcPerIq_ratio, "#") +
          fmt::format(
              "# Currents are peak phase currents (i_q). Needs a thermistor at the stator: set its gpio_pin and\n"
              "# set_motor_thermistor_coeffs(axis, Rload, R_25, Beta, Tmin, Tmax) first. For odrivetool, firmware 0.5; not for 0.6.\n"
@@ -23,7 +23,7 @@ std::string write(const Derating& derating) {
              "axis.motor.motor_thermistor.config.temp_limit_upper = {:.0f}\n"
              "axis.motor.motor_thermistor.config.enabled = True\n"
              "odrv0.save_configuration()\n",
-             rounded_down_A(ramp.most_current_A / kDcPerIq), ramp.start_C, ramp.end_C);
+             rounded_down_A(ramp.most_current_A / kDcPerIq_ratio), ramp.start_C, ramp.end_C);
 }
 
 }  // namespace

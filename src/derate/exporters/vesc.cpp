@@ -95,8 +95,8 @@ std::string states(const Derating& derating) {
   return text;
 }
 
-std::string limits(const CurrentRamp& ramp, double a_per_dc) {
-  const double most_A = rounded_down_A(ramp.most_current_A * a_per_dc);
+std::string limits(const CurrentRamp& ramp, double phase_per_dc_ratio) {
+  const double most_A = rounded_down_A(ramp.most_current_A * phase_per_dc_ratio);
   return fmt::format(
       "(conf-set 'l-current-max {0:.3f})\n"
       "(conf-set 'l-current-min -{0:.3f})\n"
@@ -111,8 +111,8 @@ std::string limits(const CurrentRamp& ramp, double a_per_dc) {
 std::string write(const Derating& derating) {
   const CurrentRamp ramp = ramp_for("vesc", derating, RampSignal::winding, kFullBeyond_K);
   require_three_signals("vesc", derating);
-  const double dc_per_a = derating.is_brushless ? kDcPerIq : 1.0;
-  return provenance_lines(derating, ";") + ramp_lines(derating, RampSignal::winding, ramp, 1.0 / dc_per_a, ";") +
+  const double dc_per_phase_ratio = derating.is_brushless ? kDcPerIq_ratio : 1.0;
+  return provenance_lines(derating, ";") + ramp_lines(derating, RampSignal::winding, ramp, 1.0 / dc_per_phase_ratio, ";") +
          fmt::format(
              "; Currents are {}. Set the motor temperature sensor to Disabled, or the override has no effect; set the motor's poles.\n"
              "; The motor temperature that the controller shows is the pessimistic winding temperature. The script samples the current "
@@ -123,7 +123,7 @@ std::string write(const Derating& derating) {
              "cooled.\n",
              derating.is_brushless ? "peak phase currents (i_q)" : "motor currents", derating.options.period_s) +
          fmt::format("(define hs-start-C {})\n", literal(derating.rules.limits.winding_C)) + states(derating) +
-         limits(ramp, 1.0 / dc_per_a) + step_function(derating.observer) +
+         limits(ramp, 1.0 / dc_per_phase_ratio) + step_function(derating.observer) +
          fmt::format(
              "(define hs-pole-pairs (/ (conf-get 'si-motor-poles) 2.0))\n"
              "(define hs-last-A 0.0)\n"
@@ -142,7 +142,7 @@ std::string write(const Derating& derating) {
              "  (hs-cycle)\n"
              "  (sleep {})\n"
              "}})\n",
-             literal(dc_per_a), literal(std::numbers::pi / 30.0), literal(derating.rules.hottest_ambient_C),
+             literal(dc_per_phase_ratio), literal(std::numbers::pi / 30.0), literal(derating.rules.hottest_ambient_C),
              literal(derating.options.period_s));
 }
 
