@@ -3,12 +3,12 @@
  * Inputs CRC-64/XZ 9c2956df506568ab.
  *
  * Winding at most 155 degC, air from 0 to 40 degC; thermal data: estimated.
- * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding never passes its limit. Heat
- * counts 2.12 times, so that motors worse than their nominal figures are covered: of 60 drawn from the declared tolerances 1 passed a
+ * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding never passes its limit. The
+ * safety factor on heat is 2.12, for a confidence of 0.95: of 60 motors drawn from the declared tolerances 1 exceeded a
  * limit in one of the 11 hardest uses (1.7 %, with other draws 0.3 to 8.9 %), the hottest winding reached 179 degC.
- * Computed, not measured; a sensor that shows what could be and is not is not covered.
+ * Computed, not measured; plausible but wrong sensor readings are not covered.
  *
- * What it reckons with:
+ * Laws of the model:
  *   copper_loss: P_winding = I² · R25 · (1 + α · (T_winding − 25 °C))
  *   no_load_loss: P_stator = M_drag · |ω|
  *   winding_stator (conduction): P_hot→cold = (T_hot − T_cold) / R_th
