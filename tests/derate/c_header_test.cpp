@@ -406,7 +406,7 @@ TEST(CHeaderText, ConvertsNoCurrentOfABrushedMotor) {
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {
   EXPECT_THAT(header_text(), HasSubstr("a * / robot"));
-  EXPECT_THAT(header_text(), HasSubstr("of 400 drawn from the declared tolerances 10 passed"));
+  EXPECT_THAT(header_text(), HasSubstr("of 400 motors drawn from the declared tolerances 10 exceeded"));
 }
 
 }  // namespace
