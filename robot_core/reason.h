@@ -50,13 +50,15 @@
 //     be above its limit.
 //   - One wheel sensor with a wrong scale, sign or offset, or one that is stuck with noise: the robot turns and its wheels work against
 //   each
-//     other. Sliding wheels look the same. A slipping wheel whose own sensor lies and whose current is not sensed may exceed its limit.
+//     other. Sliding wheels look the same. The robot may seem to brake, and then driving may use the reserve kept for braking. A slipping
+//     wheel whose own sensor lies and whose current is not sensed may exceed its limit.
 //   - Two or more speed sensors (wheels, gyro) that lie at once. If all wheel speeds show 0, the robot accelerates without control. Current
 //     limits may be exceeded.
 //   - A gyro with a wrong sign, scale or offset: the robot turns wrongly.
 //   - A battery sensor that is wrong by the same factor since the start, or sinks more slowly than 0.4 % of the full battery per second:
 //   the
 //     current may exceed its limit by that factor.
+//   - Combinations of three faults. On three wheels some of them exceed the current limit for a few periods.
 //   - A command that is wrong but possible.
 // Faults 111, 112 and 121 are found later, or not at all, if the robot's file has no current limit of the driver.
 #pragma once

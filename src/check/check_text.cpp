@@ -93,14 +93,14 @@ std::string things_of(const Check& check) {
   return text;
 }
 
-/// What could not be evaluated says only why.
+/// Gives only the reason if the threshold could not be evaluated.
 std::string explanation(const Outcome& outcome) {
   return !outcome.is_evaluated                               ? outcome.reason
          : outcome.passed || outcome.measured.detail.empty() ? outcome.measured.detail
                                                              : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
 }
 
-/// What XML does not allow at all is left out; what is no UTF-8 becomes a question mark.
+/// Escapes text for XML. Drops characters that XML does not allow; replaces invalid UTF-8 by a question mark.
 std::string escaped_xml(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -188,7 +188,7 @@ std::string test_case(const Outcome& each) {
                             escaped_xml(each.limit.at.file), each.limit.at.line, escaped_xml(facts));
 }
 
-/// Of text in a cell.
+/// Escapes text for a cell of a Markdown table.
 std::string in_markdown(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -197,7 +197,7 @@ std::string in_markdown(std::string_view text) {
   return result;
 }
 
-/// As GitHub reads the data of a command, and the properties in front of it.
+/// Escapes the data and the properties of a GitHub workflow command.
 std::string escaped_command(std::string_view text, bool is_property) {
   std::string result;
   for (const char c : text) {

@@ -1,4 +1,4 @@
-// What thresholds are compared with, computed once and kept for the next threshold that needs the same.
+// Results that thresholds are compared with. Each is computed once and kept for the next threshold that needs it.
 #pragma once
 
 #include <filesystem>

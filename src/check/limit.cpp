@@ -20,7 +20,7 @@ std::string expected(const ThresholdType& type) {
   return fmt::format("expected {} and a value, such as \"{}\"", to_string(type.direction), type.example);
 }
 
-/// Where the unit begins behind the number.
+/// Offset at which the unit begins, after the number.
 std::string unit_behind(std::string_view quantity) {
   const std::size_t end = quantity.find_first_not_of("+-0123456789.eE \t");
   // The "e" of a unit such as "eV" is none of a number's; units of this program do not begin with one.

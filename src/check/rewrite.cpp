@@ -10,7 +10,7 @@
 namespace heatsoak {
 namespace {
 
-/// Where a place in characters lies in bytes; npos where the text has no such place.
+/// Byte offset of a place given in characters; npos if the text has no such place.
 std::size_t byte_at(std::string_view content, const Location& at) {
   std::size_t i = 0;
   for (int line = 1; line < at.line; ++line) {

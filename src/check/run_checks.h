@@ -18,7 +18,7 @@ struct Outcome {
   bool is_evaluated = false;
   bool passed = false;
 
-  /// How far the value is on the safe side of the limit, in the type's unit; negative where it exceeds it, NaN without value.
+  /// Distance from the value to the limit in the type's unit: positive on the safe side, NaN without a value.
   [[nodiscard]] double margin_value() const;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <span>
 
@@ -19,6 +20,14 @@ std::string in_one_line(std::string text) {
 }
 
 }  // namespace
+
+std::string identifier(std::string_view id) {
+  std::string name;
+  for (const char c : id) {
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  }
+  return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "motor_" + name : name;
+}
 
 std::string provenance_lines(const Derating& derating, std::string_view comment) {
   const Guarantee& checked = derating.guarantee;
@@ -43,7 +52,8 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
   return text;
 }
 
-std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio, std::string_view comment) {
+std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio,
+                       std::string_view comment) {
   const RampLoss loss = ramp_loss(derating, signal, ramp);
   const bool is_stator = signal == RampSignal::stator;
   return fmt::format(
@@ -52,8 +62,9 @@ std::string ramp_lines(const Derating& derating, RampSignal signal, const Curren
       "{0} Short peaks: the table allows {11:.1f} A to a motor at {12:.0f} degC, the ramp never more than {13:.2f} A.\n"
       "{0} Not covered: a sensor that reads low, a motor that is pushed above {2:.0f} rad/s, d-axis current (field weakening).\n",
       comment, is_stator ? "measured stator temperature" : "observer's winding temperature", derating.rules.most_speed_rad_per_s,
-      is_stator ? "winding" : "stator", phase_per_dc_ratio * loss.mean_A(), loss.mean_percent(), phase_per_dc_ratio * loss.bound_mean_A, loss.from_C, loss.to_C,
-      phase_per_dc_ratio * loss.most_A, loss.most_at_C, phase_per_dc_ratio * loss.peak_A, derating.options.hottest_ambient_C, phase_per_dc_ratio * ramp.most_current_A);
+      is_stator ? "winding" : "stator", phase_per_dc_ratio * loss.mean_A(), loss.mean_percent(), phase_per_dc_ratio * loss.bound_mean_A,
+      loss.from_C, loss.to_C, phase_per_dc_ratio * loss.most_A, loss.most_at_C, phase_per_dc_ratio * loss.peak_A,
+      derating.options.hottest_ambient_C, phase_per_dc_ratio * ramp.most_current_A);
 }
 
 std::string own_effects_text(const Derating& derating) {

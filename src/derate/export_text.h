@@ -16,9 +16,13 @@ inline constexpr double kDcPerIq_ratio = std::numbers::sqrt3 * std::numbers::pi 
 /// Program, inputs, limit, confidence, conditions and assumed spreads as lines that begin with `comment`. No text of a user ends a line.
 std::string provenance_lines(const Derating& derating, std::string_view comment);
 
-/// What the ramp gives away and where it is valid, as lines that begin with `comment`. `phase_per_dc_ratio`: the controller's current per equivalent
-/// DC current.
-std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio, std::string_view comment);
+/// Prefix of the names in generated code: the id with every other character than letters and digits replaced by "_".
+std::string identifier(std::string_view id);
+
+/// What the ramp gives away and where it is valid, as lines that begin with `comment`. `phase_per_dc_ratio`: the controller's current per
+/// equivalent DC current.
+std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio,
+                       std::string_view comment);
 
 /// Effects that are not of the data sheet, "chassis (third_node)"; "no own effects" without any.
 std::string own_effects_text(const Derating& derating);

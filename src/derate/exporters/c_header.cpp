@@ -12,19 +12,12 @@
 
 #include "base/version.h"
 #include "derate/belief.h"
+#include "derate/export_text.h"
 #include "derate/exporter.h"
 #include "derate/rate_lines.h"
 
 namespace heatsoak::exporters {
 namespace {
-
-std::string identifier(std::string_view id) {
-  std::string name;
-  for (const char c : id) {
-    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  }
-  return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "motor_" + name : name;
-}
 
 std::string in_capitals(std::string name) {
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });

@@ -80,7 +80,9 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType mujoco() {
-  return {.name = {}, .summary = "MuJoCo defaults of a <dcmotor> with its thermal attributes; copper loss only, see its first lines", .write = write};
+  return {.name = {},
+          .summary = "MuJoCo defaults of a <dcmotor> with its thermal attributes; copper loss only, see its first lines",
+          .write = write};
 }
 
 }  // namespace heatsoak::exporters

@@ -2,22 +2,11 @@
 // src/common/base_classes/FOCMotor.h (current, shaft_velocity, torque_controller), FOCMotor.cpp (updateCurrentLimit).
 #include <fmt/format.h>
 
-#include <cctype>
-
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
 namespace heatsoak::exporters {
 namespace {
-
-/// The prefix of the C header's names.
-std::string identifier(std::string_view id) {
-  std::string name;
-  for (const char c : id) {
-    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  }
-  return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "motor_" + name : name;
-}
 
 std::string write(const Derating& derating) {
   require_finite(derating);
