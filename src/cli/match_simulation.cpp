@@ -8,7 +8,7 @@
 
 #include "cli/default_spreads.h"
 #include "cli/silent_effects.h"
-#include "cli/verdict_words.h"
+#include "present/verdict_words.h"
 #include "report/chart.h"
 #include "simulate/match_trace.h"
 #include "simulate/reason_name.h"

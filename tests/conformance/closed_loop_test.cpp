@@ -37,7 +37,7 @@ TEST(EvaluateClosedLoop, ranks_by_games_and_does_not_depend_on_threads) {
   const ProgramRun one = run(words + Words{"--threads", "1"});
   ASSERT_EQ(one.exit_code, 0) << one.err;
   EXPECT_EQ(one.out, run(words + Words{"--threads", "2"}).out);
-  EXPECT_THAT(one.err, HasSubstr("closed loop: 2 games driven by the drive core, seeds 1 to 2"));
+  EXPECT_THAT(one.err, HasSubstr("Closed loop: 2 games driven by the drive core, seeds 1 to 2"));
   const json motors = one.json().at("motors");
   ASSERT_EQ(motors.size(), 2U);
   double margin_before_K = 1e9;

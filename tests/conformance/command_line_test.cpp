@@ -47,7 +47,7 @@ std::vector<std::string> verbs() {
   for (std::string line; std::getline(help, line);) {
     if (line == "Subcommands:") {
       listed = true;
-    } else if (listed && line.starts_with("  ")) {
+    } else if (listed && line.starts_with("  ") && !line.starts_with("   ")) {
       result.push_back(line.substr(2, line.find(' ', 2) - 2));
     } else if (listed && line.empty()) {
       break;

@@ -15,11 +15,11 @@
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
-#include "cli/verdict_words.h"
 #include "derate/committed_table.h"
 #include "derate/derating_json.h"
 #include "derate/exporter.h"
 #include "motor/datasheet_network.h"
+#include "present/verdict_words.h"
 
 namespace heatsoak::commands {
 namespace {

@@ -18,13 +18,14 @@
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
-#include "cli/verdict_words.h"
 #include "duty/duty.h"
 #include "duty/match/match_duty.h"
 #include "motor/conditions.h"
 #include "motor/motor.h"
+#include "present/evaluation.h"
 #include "report/chart.h"
 #include "robot/robot.h"
+#include "select/decision.h"
 #include "select/evaluate.h"
 
 namespace heatsoak::commands {
@@ -32,6 +33,8 @@ namespace {
 
 /// From the verdict that is named on, exit 1: those behind it are worse. In the order of Verdict, without pass.
 const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
+
+constexpr int kFirstSamples = 500;
 
 struct Options {
   std::string robot;
@@ -41,6 +44,7 @@ struct Options {
   std::string plot;
   std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
+  std::optional<int> samples;  ///< nothing: kFirstSamples, and more until the verdicts are decided
   bool is_closed_loop = false;
   int games = 3;
   std::string guard = "shadow";
@@ -93,89 +97,6 @@ std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
   return motors;
 }
 
-std::string peak_text(const Spread95& peak) {
-  return std::isfinite(peak.p05) ? fmt::format("{:4.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
-                                 : fmt::format("{:4.0f}", peak.nominal);
-}
-
-std::string row(std::size_t rank, const MotorEvaluation& each) {
-  const std::string probability =
-      std::isfinite(each.probability_over_limit) ? fmt::format("{:.0f} %", 100.0 * each.probability_over_limit) : "–";
-  return fmt::format("{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:6.0f} {:>5}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank,
-                     each.motor_id, to_string(each.verdict),
-                     each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor), peak_text(each.winding_peak_C),
-                     each.winding_limit_C, each.stator_peak_C.nominal,
-                     each.stator_limit_C ? fmt::format("{:.0f}", *each.stator_limit_C) : "–", probability,
-                     each.time_to_limit_s ? duration_text(*each.time_to_limit_s) : "–", nearest_margin_K(each),
-                     each.margin_A && each.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *each.margin_A) : "–",
-                     each.current_rms_A, each.data_quality);
-}
-
-/// How far the number of samples alone can be trusted.
-std::string sampling_error(const std::vector<MotorEvaluation>& results) {
-  double probability_ratio = 0.0;
-  double p95_K = 0.0;
-  for (const MotorEvaluation& each : results) {
-    probability_ratio = std::max(probability_ratio, 0.5 * (each.probability_interval->high - each.probability_interval->low));
-    p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
-  }
-  return fmt::format(
-      "other samples would give P over within ±{:.0f} points and the upper end of the peak {} (95 %)\n",
-      std::ceil(100.0 * probability_ratio),
-      std::isfinite(p95_K) ? fmt::format("within ±{:.0f} K at most", std::ceil(p95_K)) : "anywhere above: take more samples");
-}
-
-std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& robot, const EvaluateOptions& options) {
-  std::string text = options.samples > 0 && options.draws.empty() && !results.empty() ? sampling_error(results) : "";
-  bool estimated = false;
-  for (const MotorEvaluation& each : results) {
-    estimated = estimated || each.data_quality == "estimated";
-    text += why_infeasible(each, robot);
-    if (each.verdict != Verdict::infeasible && each.short_probability > kMarginalProbability) {
-      text += fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})\n", each.motor_id,
-                          100.0 * each.short_probability, to_string(each.short_limit));
-    }
-    if (!options.draws.empty() && each.verdict != Verdict::infeasible) {
-      const Interval95& p95_C = *each.winding_p95_interval_C;
-      text += fmt::format("{}: other draws of the duty would give P over {:.0f} to {:.0f} % and a 95th percentile of {:.0f} {} (95 %)\n",
-                          each.motor_id, 100.0 * each.probability_interval->low, 100.0 * each.probability_interval->high, p95_C.low,
-                          std::isfinite(p95_C.high) ? fmt::format("to {:.0f} °C", p95_C.high) : "°C or more: take more samples");
-    }
-    if (each.destroyed) {
-      text += fmt::format("{}: thermal runaway, the calculation ended at 1000 °C\n", each.motor_id);
-    }
-  }
-  if (estimated) {
-    text +=
-        "data \"estimated\": thermal figures that nobody publishes are estimates from similar motors; the verdict rests on them\n"
-        "(`heatsoak describe MOTOR` shows how each was found). Calibrate on a bench before you rely on it.\n";
-  }
-  return text;
-}
-
-std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, double duration_s,
-                   const Options& options) {
-  std::string text =
-      fmt::format("{} on {}: {}, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duration_text(duration_s), duty.ambient_C.value,
-                  options.evaluate.samples > 0 ? fmt::format("{} sample{} of all declared tolerances, seed {}", options.evaluate.samples,
-                                                             options.evaluate.samples == 1 ? "" : "s", options.evaluate.seed)
-                                               : "nominal figures only",
-                  duty.origin);
-  if (!options.evaluate.draws.empty()) {
-    text += fmt::format(
-        "spread of the duty is included: {} draw{} of its inputs and of the robot's figures, shared by the samples; P over and verdict are "
-        "of all of them\nthe first peak, reached, K left, A left and A rms are of one game, that of the seed\n",
-        options.evaluate.draws.size(), options.evaluate.draws.size() == 1 ? "" : "s");
-  }
-  text +=
-      fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict",
-                  "limited by", "winding peak °C", "limit", "stator", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    text += row(i + 1, results[i]);
-  }
-  return text + "\n" + remarks(results, robot, options.evaluate);
-}
-
 nlohmann::ordered_json json(const Spread95& peak) {
   return {
       {"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
@@ -192,6 +113,8 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"winding_limit_C", rounded(each.winding_limit_C, 2)},
           {"winding_peak_C", json(each.winding_peak_C)},
           {"stator_peak_C", json(each.stator_peak_C)},
+          {"samples", each.samples},
+          {"samples_needed", optional(each.samples_needed, 0)},
           {"probability_over_limit", rounded(each.probability_over_limit, 4)},
           {"probability_ci95", interval(each.probability_interval, 4)},
           {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
@@ -232,12 +155,14 @@ ExitCode run(Options& options, Session& session) {
   if (!options.is_closed_loop && options.guard != Options{}.guard) {
     throw Failure(ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
-  options.evaluate.with_curves = !options.plot.empty();
+  options.evaluate.with_curves = true;
+  options.evaluate.with_bands = !options.plot.empty();
+  options.evaluate.samples = options.samples.value_or(kFirstSamples);
+  const int most = options.samples.value_or(most_samples(duty));
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
-  const std::vector<WheelDemand> draws = draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples),
-                                                      options.evaluate.threads, progress_bar(fmt::format("playing draws of {}", duty.id)));
-  options.evaluate.draws = draws;
-  std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
+  std::vector<WheelDemand> draws;
+  std::vector<MotorEvaluation> results = evaluate_until_decided(robot, duty, wheels, motors, options.evaluate, most, draws,
+                                                                [](const char* what) { return progress_bar(what); });
   std::vector<ClosedLoopRank> ranks;
   if (options.is_closed_loop) {
     const GameDriveOptions drive{
@@ -245,15 +170,16 @@ ExitCode run(Options& options, Session& session) {
         false,         options.evaluate.threads};
     ranks = rank_closed_loop(drive_games(robot, match->inputs(), motors, drive, progress_bar("driving games")), results);
   }
+  present::Document document =
+      present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.samples, options.evaluate.seed, draws.size()});
+  present::add_lines(document.notes, silent_effects(motors), present::Severity::note);
+  present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
+  if (options.is_closed_loop) {
+    add_closed_loop(document, ranks, options.games, options.evaluate.seed);
+  }
+  session.show(document);
   if (!options.plot.empty()) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
-  }
-  session.say(report(results, robot, duty, wheels.front().duration_s(), options) + slip_text(wheels.front()) + silent_effects(motors) +
-              default_spreads_text(motors));
-  if (options.is_closed_loop) {
-    session.say(closed_loop_text(ranks, options.games, options.evaluate.seed));
-  }
-  if (!options.plot.empty()) {
     session.say(fmt::format("picture: {}\n", options.plot));
   }
   nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"},     {"robot", robot.id},
@@ -295,9 +221,11 @@ Command evaluate_command() {
                        "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
             ->type_name("FILE.toml");
         add_conditions(app, options->conditions);
-        app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
+        app.add_option(
+               "--samples", options->samples,
+               "draws of every declared tolerance and range; 0: nominal only; without it 500, and more until the verdicts are decided")
             ->check(whole_number(1'000'000))
-            ->capture_default_str();
+            ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,
                      "on a match: the drive core drives games with each motor, with slip, battery sag and real sensing; ranks by them, and "
                      "exit 1 follows them");
@@ -320,6 +248,7 @@ Command evaluate_command() {
             ->capture_default_str();
         add_picture(app, options->plot, "picture of stator and winding temperature over time");
         session.add_data_option(app);
+        session.add_text_options(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
       }};

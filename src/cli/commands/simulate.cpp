@@ -16,8 +16,8 @@
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
-#include "cli/verdict_words.h"
 #include "motor/conditions.h"
+#include "present/verdict_words.h"
 #include "report/chart.h"
 #include "select/trace.h"
 

@@ -1,4 +1,4 @@
-#include "cli/verdict_words.h"
+#include "present/verdict_words.h"
 
 #include <fmt/format.h>
 
