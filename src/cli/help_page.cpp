@@ -37,10 +37,11 @@ HelpOption option_of(const CLI::Option& option) {
   if (result.takes_value) {
     result.value = option.get_type_name();
     result.choices = choices_of(result.value);
-    // "M:M" is what CLI11 makes of a name and a check.
-    result.value = result.value.substr(0, result.choices.empty() ? std::string::npos : result.value.find(":{"));
+    // CLI11 writes a check behind the name of the type: "G:{off,shadow}", "INT:INT in [1 - 1000]".
+    result.value = result.value.substr(0, result.value.find(':'));
     result.value += option.get_default_str().empty() ? "" : "=" + option.get_default_str();
-    result.value += option.get_expected_max() == CLI::detail::expected_max_vector_size ? " ..." : "";
+    const bool is_list = option.get_expected_max() == CLI::detail::expected_max_vector_size;
+    result.value += is_list && !result.value.ends_with("...") ? " ..." : "";
   }
   result.meaning = option.get_description();
   result.is_required = option.get_required();

@@ -336,7 +336,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
     session.write(wanted.out, std::move(all.front().csv));
   }
   if (!wanted.plot.empty()) {
-    session.write(wanted.plot, draw_svg(picture(wanted, all)));
+    session.write(wanted.plot, draw_picture(picture(wanted, all), wanted.plot));
   }
   const DriveScore& first = all.front().run.score;
   session.say(

@@ -81,19 +81,26 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
   return result;
 }
 
+std::string title_of(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
+  const auto good = std::ranges::count(results, Verdict::pass, &MotorEvaluation::verdict);
+  const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, to_string(results.front().verdict))
+                                                  : fmt::format("{} of {} motors pass", good, results.size());
+  return fmt::format("{}, {} on {}", verdict, robot.name, duty.id);
+}
+
 }  // namespace
 
 Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
   const std::vector<const MotorEvaluation*> shown = chosen(results, robot);
   const bool sampled = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
   const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
-  return {.title = fmt::format("{} on {}", robot.name, duty.id),
+  return {.title = title_of(results, robot, duty),
           .subtitle = fmt::format(
               "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
               duty.summary, sampled ? "; lines: nominal, areas: 5\u00a0% to 95\u00a0% of samples at each moment" : "; nominal figures",
               estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
-          .panels = {panel(shown, false), panel(shown, true)}};
+          .panels = {panel(shown, true), panel(shown, false)}};
 }
 
 }  // namespace heatsoak

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "motor/lint.h"
+#include "motor/read_motor.h"
 
 namespace heatsoak {
 namespace {
@@ -147,12 +148,16 @@ std::string to_string(std::span<const DefaultSpread> spreads) {
 
 void require_sound(const Motor& motor) {
   Diagnostics diagnostics;
-  for (const LintFinding& each : lint(motor)) {
-    if (each.level == LintFinding::Level::error && each.check != "spreads") {
-      diagnostics.add(each.at, each.check, each.message);
-    }
-  }
+  add_lint_errors(motor, false, diagnostics);
   diagnostics.throw_if_any();
+}
+
+Motor read_sound_motor(const std::filesystem::path& path) {
+  Diagnostics diagnostics;
+  Motor motor = read_motor(path, diagnostics);
+  add_lint_errors(motor, false, diagnostics);
+  diagnostics.throw_if_any();
+  return motor;
 }
 
 }  // namespace heatsoak

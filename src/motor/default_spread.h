@@ -43,4 +43,7 @@ std::string to_string(std::span<const DefaultSpread> spreads);
 /// because a default takes its place; a spread of zero is one. Every verb that gives a verdict or firmware asks this first.
 void require_sound(const Motor& motor);
 
+/// Reads the file and asks the same of it. Throws Failure (bad_input) with every problem of both kinds.
+Motor read_sound_motor(const std::filesystem::path& path);
+
 }  // namespace heatsoak

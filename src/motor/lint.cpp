@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
@@ -24,6 +25,11 @@ LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_l
     return figure != motor.figures.end() && figure->second.origin == Origin::estimated;
   });
   return rests_on_estimate ? LintFinding::Level::warning : LintFinding::Level::error;
+}
+
+bool is_complete(const MotorValues& values) {
+  return std::ranges::all_of(motor_figure_specs(),
+                             [&](const MotorFigureSpec& each) { return each.need == Need::optional || std::isfinite(values.*each.value); });
 }
 
 double resistance_ohm(const MotorValues& values, double temperature_C) {
@@ -106,6 +112,19 @@ std::vector<LintFinding> lint(const Motor& motor) {
     }
   }
   return list;
+}
+
+void add_lint_errors(const Motor& motor, bool spreads, Diagnostics& diagnostics) {
+  Motor checked = motor;
+  if (!diagnostics.empty()) {
+    checked.effects.clear();
+    checked.sensors.clear();
+  }
+  for (const LintFinding& each : lint(checked)) {
+    if (each.level == LintFinding::Level::error && (spreads || each.check != "spreads")) {
+      diagnostics.add(each.at, each.check, each.message);
+    }
+  }
 }
 
 }  // namespace heatsoak

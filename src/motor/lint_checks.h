@@ -47,6 +47,8 @@ struct Bounds {
 
 /// A contradiction is an error, but only a warning where one of the figures is somebody's estimate.
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys);
+/// Whether every value is there that a network needs: a file that was read in part may lack some.
+bool is_complete(const MotorValues& values);
 /// Of the copper at `temperature_C`.
 double resistance_ohm(const MotorValues& values, double temperature_C);
 

@@ -9,6 +9,7 @@
 
 #include "input/document.h"
 #include "motor/motor_effects.h"
+#include "motor/read_motor.h"
 #include "thermal/copper.h"
 
 namespace heatsoak {
@@ -239,8 +240,14 @@ std::span<const MotorFigureSpec> motor_figure_specs() { return kSpecs; }
 bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
 
 Motor read_motor(const std::filesystem::path& path) {
-  const Value root = read_toml(path);
   Diagnostics diagnostics;
+  Motor motor = read_motor(path, diagnostics);
+  diagnostics.throw_if_any();
+  return motor;
+}
+
+Motor read_motor(const std::filesystem::path& path, Diagnostics& diagnostics) {
+  const Value root = read_toml(path);
   Reader top(root, "", diagnostics);
   Motor motor;
   motor.id = path.stem().string();
@@ -274,7 +281,6 @@ Motor read_motor(const std::filesystem::path& path) {
   }
   top.finish();
   check_sources(motor, diagnostics);
-  diagnostics.throw_if_any();
   return motor;
 }
 

@@ -164,11 +164,11 @@ std::string undecided_note(const MotorEvaluation& motor, bool is_drawn) {
   const std::string_view unit = is_drawn ? "games" : "samples";
   return fmt::format(
       "{} is undecided after {:.0f} {}: the share of samples that {} may lie on either side of a threshold. {}{:.0f} more {} needed "
-      "(--samples {:.0f}); until then count it as {}.",
+      "(--samples {}); until then count it as {}.",
       motor.motor_id, games(motor.samples), unit,
       is_short ? "miss the demand" : fmt::format("exceed a limit ({} %)", percent_range(*motor.probability_interval)),
-      *motor.samples_needed >= kMostNeeded ? "More than " : "", games(*motor.samples_needed - motor.samples), unit,
-      std::ceil(*motor.samples_needed), to_string(motor.verdict));
+      *motor.samples_needed >= kMostNeeded ? "More than " : "", games(*motor.samples_needed - motor.samples), unit, *motor.samples_needed,
+      to_string(motor.verdict));
 }
 
 void add_notes(Document& document, const MotorEvaluation& motor, const EvaluationContext& context) {
@@ -199,6 +199,37 @@ std::vector<std::string> paragraphs(const EvaluationContext& context) {
 }
 
 }  // namespace
+
+void add_changes(Document& document, std::span<const ChangeEffect> effects, const std::string& motor_id) {
+  constexpr std::size_t kMost = 3;
+  Table table{.title = fmt::format("Changes of the robot that cool {} most", motor_id),
+              .columns = {{"change", "", 0, Alignment::left}, {"from", "", 0}, {"to", "", 0}, {"saves", "K", 0}, {"±", "K", 1}},
+              .rows = {}};
+  const auto shown = [](double value, std::string_view unit) {
+    return unit.empty() ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
+  };
+  for (const ChangeEffect& each : effects) {
+    const double error_K = std::isfinite(each.standard_error_K) ? each.standard_error_K : 0.0;
+    // A change that its own scatter could make is none.
+    if (table.rows.size() < kMost && each.is_deliverable && each.saved_K > std::max(0.5, 2.0 * error_K)) {
+      table.rows.push_back({{std::string(name_of(each.quantity))},
+                            {shown(each.before, unit_of(each.quantity))},
+                            {shown(each.before * each.factor, unit_of(each.quantity))},
+                            {fmt::format("{:.0f}", each.saved_K)},
+                            {std::isfinite(each.standard_error_K) ? fmt::format("{:.0f}", std::ceil(2.0 * each.standard_error_K)) : "–"}});
+    }
+  }
+  if (table.rows.empty()) {
+    document.add_note(Severity::note,
+                      "No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game.");
+    return;
+  }
+  document.tables.push_back(std::move(table));
+  document.add_note(
+      Severity::background,
+      fmt::format("Changes: mean of {} games with nominal values, each driven with and without the change; ± is two standard errors.",
+                  kChangeGames));
+}
 
 Tone tone_of(Verdict verdict) { return verdict == Verdict::pass ? Tone::good : verdict == Verdict::marginal ? Tone::doubtful : Tone::bad; }
 

@@ -8,6 +8,7 @@
 #include "duty/duty.h"
 #include "present/document.h"
 #include "robot/robot.h"
+#include "select/changes.h"
 #include "select/evaluate.h"
 
 namespace heatsoak::present {
@@ -24,6 +25,9 @@ struct EvaluationContext {
 
 /// `results` are sorted as by evaluate() and have their nominal curves.
 Document evaluation_document(std::span<const MotorEvaluation> results, const EvaluationContext& context);
+
+/// Adds a table of the changes that lower the winding of `motor_id` most, three at most.
+void add_changes(Document& document, std::span<const ChangeEffect> effects, const std::string& motor_id);
 
 /// The winding over time as eight block characters, from the ambient temperature at the lowest to the winding's limit at the highest;
 /// each shows the highest temperature of an eighth of the time. Empty without curves.

@@ -10,7 +10,7 @@ namespace heatsoak {
 namespace {
 
 /// More samples for one threshold: the interval has to shrink until its end on the threshold's side lies at the threshold.
-std::optional<double> needed_for(double threshold_ratio, double probability_ratio, const Interval95& interval, int samples) {
+std::optional<int> needed_for(double threshold_ratio, double probability_ratio, const Interval95& interval, int samples) {
   if (interval.low > threshold_ratio || interval.high <= threshold_ratio) {
     return std::nullopt;
   }
@@ -18,19 +18,19 @@ std::optional<double> needed_for(double threshold_ratio, double probability_rati
   const double distance = std::abs(threshold_ratio - probability_ratio);
   const double growth = reach / std::max(distance, 1e-9);
   // An interval that just touches the threshold still needs something more.
-  return std::clamp(samples * growth * growth, 1.05 * samples, kMostNeeded);
+  return static_cast<int>(std::ceil(std::clamp(samples * growth * growth, 1.05 * samples, double{kMostNeeded})));
 }
 
 }  // namespace
 
-std::optional<double> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
+std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
   const bool is_nominally_bad = motor.verdict == Verdict::fail || motor.verdict == Verdict::infeasible;
   if (motor.samples == 0 || (!is_drawn && is_nominally_bad)) {
     return std::nullopt;
   }
-  std::optional<double> most;
-  const auto take = [&most](const std::optional<double>& needed) {
-    if (needed && *needed > most.value_or(0.0)) {
+  std::optional<int> most;
+  const auto take = [&most](const std::optional<int>& needed) {
+    if (needed && *needed > most.value_or(0)) {
       most = needed;
     }
   };
@@ -71,7 +71,7 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
   std::vector<MotorEvaluation> results = run(motors);
   while (options.samples < most) {
     std::vector<Motor> open;
-    double needed = 0.0;
+    int needed = 0;
     for (const MotorEvaluation& each : results) {
       if (each.samples_needed) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &Motor::id));
@@ -81,7 +81,7 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
     if (open.empty()) {
       break;
     }
-    options.samples = std::min(most, std::max(2 * options.samples, static_cast<int>(std::min<double>(needed, most))));
+    options.samples = std::min(most, std::max(2 * options.samples, needed));
     for (MotorEvaluation& longer : run(open)) {
       *std::ranges::find(results, longer.motor_id, &MotorEvaluation::motor_id) = std::move(longer);
     }

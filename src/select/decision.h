@@ -13,8 +13,8 @@ namespace heatsoak {
 /// if the probability stayed as it is: the width of an interval falls with the root of the number of samples. At most `kMostNeeded`.
 /// Nothing where the verdict is decided: the interval covers no threshold, or nominal values alone decide. `is_drawn`: the duty has draws
 /// of its own, so that kMajority is a threshold too.
-inline constexpr double kMostNeeded = 1e6;
-std::optional<double> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn);
+inline constexpr int kMostNeeded = 1'000'000;
+std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn);
 
 /// The most samples that evaluate_until_decided() takes for a motor: some seconds of work without draws, a minute or two with them.
 int most_samples(const Duty& duty);

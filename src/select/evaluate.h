@@ -74,7 +74,7 @@ struct MotorEvaluation {
   Spread95 stator_peak_C;
   int samples = 0;  ///< that this answer rests on
   /// Samples that would decide the verdict, as samples_needed() in select/decision.h; nothing where it is decided.
-  std::optional<double> samples_needed;
+  std::optional<int> samples_needed;
   double probability_over_limit = 0.0;  ///< of any temperature limit; NaN without samples
   /// Of the 95th percentile and of the probability: what other samples would give or, where a duty is drawn, other draws. Nothing
   /// without samples.

@@ -172,7 +172,7 @@ TEST_F(CheckFiles, GuardMadeForHotAirEngages) {
 }
 
 TEST_F(CheckFiles, LintFindsWhatAFileOfAnyKindHolds) {
-  const std::string data = (kSource / "tests/data").string();
+  const std::string data = (kSource / "tests/data/lint_motors").string();
   const std::vector<Outcome> found =
       outcomes("[[check]]\nname = \"x\"\nfiles = [\"" + data + "/lint_df45l_wiki.toml\", \"" +
                (kSource / "robot_core/robots/tigers_v2020.toml").string() + "\", \"" +

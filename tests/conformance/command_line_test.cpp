@@ -219,7 +219,7 @@ TEST(Lint, motors_that_reports_begin_with_are_sound) {
 }
 
 TEST(Lint, fails_for_errors_and_for_warnings) {
-  const fs::path data = kSource / "tests" / "data";
+  const fs::path data = kSource / "tests/data/lint_motors";
   const ProgramRun wrong = run({"lint", (data / "lint_df45l_wiki.toml").string()});
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_THAT(wrong.out, HasSubstr(": error: density: 320 g"));

@@ -153,6 +153,18 @@ TEST(Files, AreShortEnoughToRead) {
   }
 }
 
+TEST(Files, OfMotorsHaveNoLongLines) {
+  constexpr std::size_t kLongestLine = 160;
+  for (const SourceFile& file : files_in("motor_db")) {
+    int line = 1;
+    for (std::size_t begin = 0; file.path.ends_with(".toml") && begin < file.text.size(); ++line) {
+      const std::size_t end = std::min(file.text.find('\n', begin), file.text.size());
+      EXPECT_LE(end - begin, kLongestLine) << file.path << ":" << line << ": break the longest text as \"\"\"\\";
+      begin = end + 1;
+    }
+  }
+}
+
 /// Put together here, so that this file does not contain what it looks for.
 const std::regex kLeftover(
     "\\b(TO"

@@ -128,7 +128,7 @@ TEST(DefaultSpread, MissingOnesAreNoReasonToRefuse) {
 }
 
 TEST(DefaultSpread, ContradictionsAreRefusedWithTheirPlace) {
-  const std::string message = message_of_refusal(read_motor(kSource / "tests/data/lint_df45l_phase_resistance.toml"));
+  const std::string message = message_of_refusal(read_motor(kSource / "tests/data/lint_motors/lint_df45l_phase_resistance.toml"));
   EXPECT_THAT(message, AllOf(HasSubstr("lint_df45l_phase_resistance.toml:"), HasSubstr(": error: nominal_speed: "), HasSubstr("expected")));
 }
 

@@ -44,6 +44,7 @@ struct Options {
   std::string plot;
   std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
+  bool suggests = false;
   std::optional<int> samples;  ///< nothing: kFirstSamples, and more until the verdicts are decided
   bool is_closed_loop = false;
   int games = 3;
@@ -114,7 +115,7 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"winding_peak_C", json(each.winding_peak_C)},
           {"stator_peak_C", json(each.stator_peak_C)},
           {"samples", each.samples},
-          {"samples_needed", optional(each.samples_needed, 0)},
+          {"samples_needed", each.samples_needed ? nlohmann::ordered_json(*each.samples_needed) : nlohmann::ordered_json()},
           {"probability_over_limit", rounded(each.probability_over_limit, 4)},
           {"probability_ci95", interval(each.probability_interval, 4)},
           {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
@@ -174,12 +175,21 @@ ExitCode run(Options& options, Session& session) {
       present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.samples, options.evaluate.seed, draws.size()});
   present::add_lines(document.notes, silent_effects(motors), present::Severity::note);
   present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
+  std::vector<ChangeEffect> changes;
+  if (options.suggests) {
+    // The motor that the robot is built with where it is among them, else the best one.
+    const auto own = std::ranges::find(results, robot.drive_motor, &MotorEvaluation::motor_id);
+    const std::string id = own == results.end() ? results.front().motor_id : own->motor_id;
+    changes = effects_of_changes(robot, duty, *std::ranges::find(motors, id, &Motor::id), options.evaluate.seed, options.evaluate.threads,
+                                 progress_bar("trying changes"));
+    present::add_changes(document, changes, id);
+  }
   if (options.is_closed_loop) {
     add_closed_loop(document, ranks, options.games, options.evaluate.seed);
   }
   session.show(document);
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
+    session.write(options.plot, draw_picture(verdict_chart(results, robot, duty), options.plot));
     session.say(fmt::format("picture: {}\n", options.plot));
   }
   nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"},     {"robot", robot.id},
@@ -187,6 +197,18 @@ ExitCode run(Options& options, Session& session) {
                                 {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
                                 {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
   answer["default_spreads"] = default_spreads_json(motors);
+  if (options.suggests) {
+    answer["changes"] = nlohmann::ordered_json::array();
+    for (const ChangeEffect& each : changes) {
+      answer["changes"].push_back({{"quantity", name_of(each.quantity)},
+                                   {"unit", unit_of(each.quantity)},
+                                   {"from", rounded(each.before, 6)},
+                                   {"to", rounded(each.before * each.factor, 6)},
+                                   {"saved_K", rounded(each.saved_K, 2)},
+                                   {"standard_error_K", rounded(each.standard_error_K, 2)},
+                                   {"deliverable", each.is_deliverable}});
+    }
+  }
   const Verdict least_bad = static_cast<Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
@@ -210,8 +232,8 @@ Command evaluate_command() {
       .name = {},
       .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
       .example =
-          "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors "
-          "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
+          "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors "
+          "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v --samples 80 --plot verdict.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
@@ -238,6 +260,8 @@ Command evaluate_command() {
         app.add_option("--games", options->games, "of --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
             ->capture_default_str();
+        app.add_flag("--suggest", options->suggests,
+                     "lists the changes of the robot that cool its motor most: acceleration, jerk, speed, mass, wheels, gear");
         app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: marginal, fail, infeasible")
             ->check(CLI::IsMember(kFailOn))
             ->type_name("VERDICT")

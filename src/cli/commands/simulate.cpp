@@ -85,7 +85,7 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
     session.write(options.out, to_csv(trace));
   }
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
+    session.write(options.plot, draw_picture(verdict_chart(results, robot, duty), options.plot));
   }
   session.say(
       fmt::format("{} on {}, {} ({}, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms "

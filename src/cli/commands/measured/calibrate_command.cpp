@@ -164,7 +164,7 @@ ExitCode run(const Options& options, Session& session) {
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_svg(calibration_chart(motor, result)));
+    session.write(options.plot, draw_picture(calibration_chart(motor, result), options.plot));
   }
   session.say(text_of(motor, result));
   session.say(fmt::format("written: {}\n", options.out));
