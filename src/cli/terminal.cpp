@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <string_view>
 
 namespace heatsoak {
@@ -68,22 +69,51 @@ std::size_t terminal_width(int descriptor) {
 
 bool takes_colors(int descriptor) { return isatty(descriptor) == 1 && environment("NO_COLOR").empty() && environment("TERM") != "dumb"; }
 
+namespace {
+
+/// A line on stderr that is written over and gone at the end, also where the work ends early.
+class Bar {
+ public:
+  explicit Bar(std::string what) : what_(std::move(what)) {}
+  Bar(const Bar&) = delete;
+  Bar& operator=(const Bar&) = delete;
+  ~Bar() { clear(); }
+
+  void show(std::size_t done, std::size_t total) {
+    constexpr std::chrono::milliseconds kBetween(200);
+    remaining_.start(done);
+    if (done == total) {
+      clear();
+    } else if (const Clock::time_point now = Clock::now(); now - shown_ > kBetween) {
+      shown_ = now;
+      is_visible_ = true;
+      fmt::print(stderr, "\r\x1b[K{}: {:.0f} %{}", what_, 100.0 * static_cast<double>(done) / static_cast<double>(total),
+                 remaining_.text(done, total));
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void clear() {
+    if (is_visible_) {
+      // A full stderr is borne: what is computed matters more.
+      static_cast<void>(std::fputs("\r\x1b[K", stderr));
+      is_visible_ = false;
+    }
+  }
+  std::string what_;
+  Remaining remaining_;
+  Clock::time_point shown_ = Clock::now();
+  bool is_visible_ = false;
+};
+
+}  // namespace
+
 Progress progress_bar(std::string what) {
   if (isatty(STDERR_FILENO) == 0) {
     return {};
   }
-  using Clock = std::chrono::steady_clock;
-  return [what = std::move(what), remaining = Remaining(), shown = Clock::now()](std::size_t done, std::size_t total) mutable {
-    remaining.start(done);
-    const Clock::time_point now = Clock::now();
-    if (done == total) {
-      fmt::print(stderr, "\r\x1b[K");
-    } else if (now - shown > std::chrono::milliseconds(200)) {
-      shown = now;
-      fmt::print(stderr, "\r\x1b[K{}: {:.0f} %{}", what, 100.0 * static_cast<double>(done) / static_cast<double>(total),
-                 remaining.text(done, total));
-    }
-  };
+  return [bar = std::make_shared<Bar>(std::move(what))](std::size_t done, std::size_t total) { bar->show(done, total); };
 }
 
 }  // namespace heatsoak

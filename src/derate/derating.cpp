@@ -171,7 +171,8 @@ class Search {
   bool is_enough(double reserve) {
     const std::optional<Attempt> tried = attempt(reserve);
     if (progress_) {
-      progress_(std::min(++rounds_, kRounds), kRounds + 2);
+      ++rounds_;
+      progress_(rounds_, std::max(rounds_ + 1, kUsualRounds));
     }
     if (!tried) {
       throw too_hot();
@@ -179,7 +180,8 @@ class Search {
     return keeps(checked(*tried, 0));
   }
 
-  static constexpr std::size_t kRounds = 10;
+  /// What motors of the database take, the fresh draw included.
+  static constexpr std::size_t kUsualRounds = 10;
 
   const Motor& motor_;
   const Robot& robot_;
