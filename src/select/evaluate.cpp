@@ -389,11 +389,13 @@ void conclude(Work& work, const EvaluateOptions& options) {
   if (!options.draws.empty()) {
     const DrawIntervals intervals = draw_intervals(work.winding_peak_C, work.over_limit, {options.draws.size(), kLanes, options.seed});
     result.winding_p95_interval_C = intervals.p95;
+    result.stator_p95_interval_C = draw_intervals(work.stator_peak_C, work.over_limit, {options.draws.size(), kLanes, options.seed}).p95;
     result.probability_interval = intervals.probability;
     decide_by_majority(result);
   } else if (options.samples > 0) {
     const DrawIntervals intervals = sample_intervals(work.winding_peak_C, work.over_limit);
     result.winding_p95_interval_C = intervals.p95;
+    result.stator_p95_interval_C = sample_intervals(work.stator_peak_C, work.over_limit).p95;
     result.probability_interval = intervals.probability;
   }
   // As many games as were drawn cannot rule more out than the interval says.
