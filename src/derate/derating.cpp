@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
 
+#include "base/binomial_bound.h"
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 #include "robot/motor_drive.h"
@@ -17,7 +19,7 @@ namespace {
 
 constexpr double kLargestReserve = 16.0;
 constexpr double kReserveTolerance = 0.01;
-/// Streams of chance of the search and of each check, apart from each other.
+/// Streams of chance of the search and of the check, apart from each other.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
 /// Of a full battery; a robot that gives none has its nominal voltage always.
@@ -27,13 +29,29 @@ double full_V(const Robot& robot) {
 
 }  // namespace
 
+namespace {
+
+/// A limit that the file gives as a range is kept at its lower end: which of them holds is not known.
+double lowest_limit_C(const Motor& motor, std::string_view key, double nominal_C) {
+  const auto figure = motor.figures.find(key);
+  return figure != motor.figures.end() && figure->second.spread ? std::min(nominal_C, figure->second.spread->low) : nominal_C;
+}
+
+}  // namespace
+
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options) {
   const MotorValues& values = motor.nominal;
   const double loop_ohm = values.terminal_resistance_ohm + robot.series_resistance_ohm();
   BarrierRules rules;
-  rules.limits.winding_C = values.winding_limit_C;
+  rules.limits.winding_C = lowest_limit_C(motor, "winding_limit", values.winding_limit_C);
   if (!std::isnan(values.stator_limit_C)) {
-    rules.limits.stator_C = values.stator_limit_C;
+    rules.limits.stator_C = lowest_limit_C(motor, "stator_limit", values.stator_limit_C);
+  }
+  if (!(rules.limits.winding_C > options.hottest_ambient_C)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: the winding limit of {:.1f} °C is not above the hottest air of {:.1f} °C, expected room for heat; check "
+                              "winding_limit, or state cooler air with --ambient",
+                              motor.id, rules.limits.winding_C, options.hottest_ambient_C));
   }
   rules.approach_s = options.approach_s;
   // The stator must not come near its limit faster than a winding without current can let go of it.
@@ -73,12 +91,11 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   }
 }
 
-/// Without a single one over the limit, this many are needed to rule out more of them with 95 % (Hanley and Lippman-Hand 1983).
 void require_samples(const GuaranteeOptions& options) {
-  const auto least = static_cast<int>(std::ceil(3.0 / (1.0 - options.confidence) * (1.0 - 1e-9)));
-  if (options.samples < least) {
-    throw Failure(ExitCode::bad_input, fmt::format("{} samples cannot show a confidence of {:.4g}: expected --samples {} or more",
-                                                   options.samples, options.confidence, least));
+  if (const long least = least_samples(options); options.samples < least) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{} samples cannot show a confidence of {:.4g} with {:.0f} % certainty: expected --samples {} or more",
+                              options.samples, options.confidence, 100.0 * kCertainty, least));
   }
 }
 
@@ -135,7 +152,7 @@ class Search {
     return check(motor_, reachable_.limits, attempt.uses, options_.guarantee, first_stream);
   }
 
-  [[nodiscard]] bool keeps(const Guarantee& found) const { return found.over <= (1.0 - options_.guarantee.confidence) * found.samples; }
+  [[nodiscard]] bool keeps(const Guarantee& found) const { return found.keep_share_low >= options_.guarantee.confidence; }
 
   /// The smallest reserve with which enough of the search's motors keep their limits.
   double reserve() {
@@ -192,6 +209,8 @@ class Search {
 
 }  // namespace
 
+long least_samples(const GuaranteeOptions& options) { return fewest_draws(1.0 - options.confidence, kCertainty); }
+
 double limp_current_A(const Derating& derating) {
   double least_A = std::numeric_limits<double>::infinity();
   for (const UsePlayed& each : derating.uses) {
@@ -207,14 +226,16 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
   const Motor motor = with_default_spreads(as_written);
   Search search(motor, robot, options, progress);
   double reserve = search.reserve();
-  constexpr double kRaise = 1.005;
-  constexpr int kMostRaises = 20;
+  constexpr double kRaise = 1.01;
+  constexpr int kMostRaises = 40;
+  // All raises see the same fresh motors. A motor that keeps its limits keeps them with a larger reserve, so the first reserve that holds
+  // is an order statistic of the motors' own ones, and its certainty is that of a single check (Wilks 1941).
   for (int number = 1; number <= kMostRaises; ++number, reserve *= kRaise) {
     std::optional<Attempt> tried = search.attempt(reserve);
     if (!tried) {
       throw search.too_hot();
     }
-    const Guarantee guarantee = search.checked(*tried, static_cast<std::uint64_t>(number) * kStreamsApart);
+    const Guarantee guarantee = search.checked(*tried, kStreamsApart);
     if (!search.keeps(guarantee)) {
       continue;
     }

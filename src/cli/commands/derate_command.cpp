@@ -18,6 +18,7 @@
 #include "cli/verdict_words.h"
 #include "derate/committed_table.h"
 #include "derate/derating_json.h"
+#include "derate/export_text.h"
 #include "derate/exporter.h"
 #include "motor/datasheet_network.h"
 
@@ -90,14 +91,10 @@ std::string report(const Derating& derating) {
   }
   text += own.empty() ? "" : fmt::format("effects of the file that act: {}\n", own);
   text += fmt::format(
-      "safety factor on heat {:.2f}: of {} motors drawn from the declared tolerances {} exceeded a limit in one of the {} hardest uses "
-      "({:.1f} "
-      "%; "
-      "other draws: {:.1f} to {:.1f} %)\ntheir windings reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the "
-      "hottest)\n\n",
-      derating.observer.heat_reserve_ratio(), checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / checked.samples,
-      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_p50_C, checked.winding_p95_C,
-      checked.winding_most_C);
+      "safety factor on heat {:.2f}. {} ({} draws are the fewest for it)\n"
+      "the windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the hottest)\n\n",
+      derating.observer.heat_reserve_ratio(), confidence_text(derating), least_samples(derating.options.guarantee), checked.samples,
+      checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C);
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
     text += fmt::format(
