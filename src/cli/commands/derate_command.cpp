@@ -33,6 +33,7 @@ struct Options {
   std::string to = "c_header";
   std::string out;
   std::string committed;  ///< table of --check
+  std::string compiler;   ///< of a form with a binary; empty: sources only
 };
 
 const ExporterType& exporter_named(const std::string& name) {
@@ -160,6 +161,11 @@ ExitCode run(const Options& options, Session& session) {
   if (options.out == "-") {
     throw Failure(ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
   }
+  if (!options.compiler.empty() && exporter.write_compiled == nullptr) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("--compiler: {} has no binary; expected --to fmi2_motor, fmi2_guard, fmi3_motor or fmi3_guard", exporter.name));
+  }
   check_derate_options(options.guard.derate);
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
@@ -172,7 +178,7 @@ ExitCode run(const Options& options, Session& session) {
   session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
               effects_under_conditions({&motor, 1}));
   if (!options.out.empty()) {
-    session.write(options.out, exporter.write(derating));
+    session.write(options.out, options.compiler.empty() ? exporter.write(derating) : exporter.write_compiled(derating, options.compiler));
     session.say(fmt::format("\n{}: {}\n", exporter.name, options.out));
   }
   Json answer = derating_json(derating);
@@ -194,6 +200,9 @@ Command derate_command() {
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--to", options->to, "form (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
         app.add_option("--out", options->out, "file to write")->type_name("FILE");
+        app.add_option("--compiler", options->compiler,
+                       "C compiler, such as cc: adds a binary for this machine to an FMU, which else has its sources only")
+            ->type_name("CC");
         app.add_option(
                "--check", options->committed,
                "a C header or CSV table that was written earlier, with the same options: exit 1 where it allows more than a fresh one")
