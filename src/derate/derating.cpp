@@ -152,27 +152,35 @@ class Search {
     return check(motor_, reachable_.limits, attempt.uses, options_.guarantee, first_stream);
   }
 
-  [[nodiscard]] bool keeps(const Guarantee& found) const { return found.keep_share_low >= options_.guarantee.confidence; }
-
-  /// The smallest reserve with which enough of the search's motors keep their limits.
+  /// The smallest reserve with which the share of the search's motors that keep their limits is the confidence.
   double reserve() {
-    if (is_enough(1.0)) {
-      return 1.0;
-    }
-    double low = 1.0;
-    double high = 1.5;
-    while (!is_enough(high)) {
-      low = high;
-      high *= 1.5;
-      if (high > kLargestReserve) {
-        throw too_hot();
+    constexpr double kGrowth = 1.5;
+    return smallest(1.0, kGrowth, [this](double tried) {
+      const Guarantee found = checked(attempt_or_throw(tried), 0);
+      return found.over <= (1.0 - options_.guarantee.confidence) * found.samples;
+    });
+  }
+
+  struct Promise {
+    Attempt attempt;
+    Guarantee guarantee;
+  };
+  /// The smallest reserve from there on whose lower bound on fresh motors is the confidence. All tries see the same motors. A motor that
+  /// keeps its limits keeps them with a larger reserve, so the result is an order statistic of the motors' own reserves, and its certainty
+  /// is that of a single check (Wilks 1941).
+  Promise promise(double from) {
+    constexpr double kGrowth = 1.05;
+    std::optional<Promise> made;
+    smallest(from, kGrowth, [&](double tried) {
+      Attempt with = attempt_or_throw(tried);
+      const Guarantee found = checked(with, kStreamsApart);
+      const bool holds = found.keep_share_low >= options_.guarantee.confidence;
+      if (holds) {
+        made.emplace(Promise{std::move(with), found});
       }
-    }
-    while (high > low * (1.0 + kReserveTolerance)) {
-      const double middle = 0.5 * (low + high);
-      (is_enough(middle) ? high : low) = middle;
-    }
-    return high;
+      return holds;
+    });
+    return std::move(*made);
   }
 
   [[nodiscard]] Failure too_hot() const {
@@ -185,18 +193,40 @@ class Search {
 
  private:
   /// A reserve with which the motor passes its limits by itself is none.
-  bool is_enough(double reserve) {
-    const std::optional<Attempt> tried = attempt(reserve);
+  Attempt attempt_or_throw(double reserve) {
+    std::optional<Attempt> tried = attempt(reserve);
     if (progress_) {
       progress_(std::min(++rounds_, kRounds), kRounds + 2);
     }
     if (!tried) {
       throw too_hot();
     }
-    return keeps(checked(*tried, 0));
+    return std::move(*tried);
   }
 
-  static constexpr std::size_t kRounds = 10;
+  /// To kReserveTolerance; the last reserve that was found to be enough is the result.
+  template <class IsEnough>
+  [[nodiscard]] double smallest(double from, double growth, const IsEnough& is_enough) const {
+    if (is_enough(from)) {
+      return from;
+    }
+    double low = from;
+    double high = from * growth;
+    while (!is_enough(high)) {
+      low = high;
+      high *= growth;
+      if (high > kLargestReserve) {
+        throw too_hot();
+      }
+    }
+    while (high > low * (1.0 + kReserveTolerance)) {
+      const double middle = 0.5 * (low + high);
+      (is_enough(middle) ? high : low) = middle;
+    }
+    return high;
+  }
+
+  static constexpr std::size_t kRounds = 12;
 
   const Motor& motor_;
   const Robot& robot_;
@@ -225,48 +255,31 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
   require_samples(options.guarantee);
   const Motor motor = with_default_spreads(as_written);
   Search search(motor, robot, options, progress);
-  double reserve = search.reserve();
-  constexpr double kRaise = 1.01;
-  constexpr int kMostRaises = 40;
-  // All raises see the same fresh motors. A motor that keeps its limits keeps them with a larger reserve, so the first reserve that holds
-  // is an order statistic of the motors' own ones, and its certainty is that of a single check (Wilks 1941).
-  for (int number = 1; number <= kMostRaises; ++number, reserve *= kRaise) {
-    std::optional<Attempt> tried = search.attempt(reserve);
-    if (!tried) {
-      throw search.too_hot();
-    }
-    const Guarantee guarantee = search.checked(*tried, kStreamsApart);
-    if (!search.keeps(guarantee)) {
-      continue;
-    }
-    Derating result{.motor_id = motor.id,
-                    .robot_id = robot.id,
-                    .data_quality = std::string(data_quality(motor)),
-                    .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
-                    .observer = std::move(tried->observer),
-                    .rules = tried->rules,
-                    .table = std::move(tried->table),
-                    .options = options,
-                    .assumed = motor.assumed,
-                    .effects = {},
-                    .guarantee = guarantee,
-                    .uses = std::move(tried->uses),
-                    .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
-                    .default_spreads = default_spreads(as_written),
-                    .is_brushless = motor.type != "brushed",
-                    .heating_current_ratio = heating_factor(robot),
-                    .nominal = motor.nominal,
-                    .provenance = {}};
-    for (const EffectInPlace& effect : search.network().effects()) {
-      const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
-      result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
-                                own == motor.effects.end() ? std::string() : own->column});
-    }
-    return result;
+  Search::Promise promise = search.promise(search.reserve());
+  Derating result{.motor_id = motor.id,
+                  .robot_id = robot.id,
+                  .data_quality = std::string(data_quality(motor)),
+                  .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
+                  .observer = std::move(promise.attempt.observer),
+                  .rules = promise.attempt.rules,
+                  .table = std::move(promise.attempt.table),
+                  .options = options,
+                  .assumed = motor.assumed,
+                  .effects = {},
+                  .guarantee = promise.guarantee,
+                  .uses = std::move(promise.attempt.uses),
+                  .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
+                  .default_spreads = default_spreads(as_written),
+                  .is_brushless = motor.type != "brushed",
+                  .heating_current_ratio = heating_factor(robot),
+                  .nominal = motor.nominal,
+                  .provenance = {}};
+  for (const EffectInPlace& effect : search.network().effects()) {
+    const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
+    result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
+                              own == motor.effects.end() ? std::string() : own->column});
   }
-  throw Failure(ExitCode::numerics_failed, fmt::format("{}: no reserve of heat up to {:.2f} held on motors that its search had not seen; "
-                                                       "take more --samples",
-                                                       motor.id, reserve));
+  return result;
 }
 
 }  // namespace heatsoak
