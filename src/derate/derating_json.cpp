@@ -74,7 +74,10 @@ Json table_json(const CurrentTable& table) {
 Json guarantee_json(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return {{"confidence", derating.options.guarantee.confidence},
+          {"certainty", kCertainty},
+          {"keep_share_lower_bound", std::floor(1e4 * checked.keep_share_low) / 1e4},
           {"samples", checked.samples},
+          {"least_samples", least_samples(derating.options.guarantee)},
           {"over", checked.over},
           {"over_share_ci95", {rounded(checked.over_share.low, 4), rounded(checked.over_share.high, 4)}},
           {"winding_peak_C",

@@ -83,6 +83,7 @@ constexpr std::array kChecks = {
     NamedCheck{"estimates", lint_checks::estimates, false},
     NamedCheck{"spreads", lint_checks::spreads, false},
     NamedCheck{"exact_values", lint_checks::exact_values, false},
+    NamedCheck{"narrow_values", lint_checks::narrow_values, false},
     NamedCheck{"heat_counted_twice", lint_checks::heat_counted_twice, false},
 };
 

@@ -388,17 +388,18 @@ void conclude(Work& work, const EvaluateOptions& options) {
   }
   Interval95 short_interval;
   if (options.samples > 0) {
-    const auto intervals_of = [&](std::span<const char> flags) {
-      return options.draws.empty() ? sample_intervals(work.winding_peak_C, flags)
-                                   : draw_intervals(work.winding_peak_C, flags, {options.draws.size(), kLanes, options.seed});
+    const auto intervals_of = [&](std::span<const double> peak_C, std::span<const char> flags) {
+      return options.draws.empty() ? sample_intervals(peak_C, flags)
+                                   : draw_intervals(peak_C, flags, {options.draws.size(), kLanes, options.seed});
     };
-    const DrawIntervals intervals = intervals_of(work.over_limit);
+    const DrawIntervals intervals = intervals_of(work.winding_peak_C, work.over_limit);
     result.winding_p95_interval_C = intervals.p95;
+    result.stator_p95_interval_C = intervals_of(work.stator_peak_C, work.over_limit).p95;
     result.probability_interval = intervals.probability;
     std::vector<char> is_short;
     std::ranges::transform(work.short_of_demand, std::back_inserter(is_short),
                            [](DriveLimit limit) { return limit == DriveLimit::none ? char{0} : char{1}; });
-    short_interval = intervals_of(is_short).probability;
+    short_interval = intervals_of(work.winding_peak_C, is_short).probability;
   }
   if (!options.draws.empty()) {
     decide_by_majority(result);

@@ -79,6 +79,7 @@ struct MotorEvaluation {
   /// Of the 95th percentile and of the probability: what other samples would give or, where a duty is drawn, other draws. Nothing
   /// without samples.
   std::optional<Interval95> winding_p95_interval_C;
+  std::optional<Interval95> stator_p95_interval_C;
   std::optional<Interval95> probability_interval;
   std::optional<double> time_to_limit_s;  ///< nominal, first of the limits
   double current_rms_A = 0.0;             ///< heating current over the whole duty

@@ -17,6 +17,7 @@
 #include "cli/silent_effects.h"
 #include "derate/committed_table.h"
 #include "derate/derating_json.h"
+#include "derate/export_text.h"
 #include "derate/exporter.h"
 #include "motor/datasheet_network.h"
 #include "present/verdict_words.h"
@@ -32,6 +33,7 @@ struct Options {
   std::string to = "c_header";
   std::string out;
   std::string committed;  ///< table of --check
+  std::string compiler;   ///< of a form with a binary; empty: sources only
 };
 
 const ExporterType& exporter_named(const std::string& name) {
@@ -90,14 +92,10 @@ std::string report(const Derating& derating) {
   }
   text += own.empty() ? "" : fmt::format("effects of the file that act: {}\n", own);
   text += fmt::format(
-      "safety factor on heat {:.2f}: of {} motors drawn from the declared tolerances {} exceeded a limit in one of the {} hardest uses "
-      "({:.1f} "
-      "%; "
-      "other draws: {:.1f} to {:.1f} %)\ntheir windings reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the "
-      "hottest)\n\n",
-      derating.observer.heat_reserve_ratio(), checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / checked.samples,
-      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_p50_C, checked.winding_p95_C,
-      checked.winding_most_C);
+      "safety factor on heat {:.2f}. {} ({} draws are the fewest for it)\n"
+      "the windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the hottest)\n\n",
+      derating.observer.heat_reserve_ratio(), confidence_text(derating), least_samples(derating.options.guarantee), checked.samples,
+      checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C);
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
     text += fmt::format(
@@ -163,6 +161,11 @@ ExitCode run(const Options& options, Session& session) {
   if (options.out == "-") {
     throw Failure(ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
   }
+  if (!options.compiler.empty() && exporter.write_compiled == nullptr) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("--compiler: {} has no binary; expected --to fmi2_motor, fmi2_guard, fmi3_motor or fmi3_guard", exporter.name));
+  }
   check_derate_options(options.guard.derate);
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
@@ -175,7 +178,7 @@ ExitCode run(const Options& options, Session& session) {
   session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
               effects_under_conditions({&motor, 1}));
   if (!options.out.empty()) {
-    session.write(options.out, exporter.write(derating));
+    session.write(options.out, options.compiler.empty() ? exporter.write(derating) : exporter.write_compiled(derating, options.compiler));
     session.say(fmt::format("\n{}: {}\n", exporter.name, options.out));
   }
   Json answer = derating_json(derating);
@@ -197,6 +200,9 @@ Command derate_command() {
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--to", options->to, "form (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
         app.add_option("--out", options->out, "file to write")->type_name("FILE");
+        app.add_option("--compiler", options->compiler,
+                       "C compiler, such as cc: adds a binary for this machine to an FMU, which else has its sources only")
+            ->type_name("CC");
         app.add_option(
                "--check", options->committed,
                "a C header or CSV table that was written earlier, with the same options: exit 1 where it allows more than a fresh one")

@@ -2,6 +2,7 @@
 
 #include <iterator>
 
+#include "derate/export_text.h"
 #include "derate/exporter.h"
 
 namespace heatsoak::exporters {
@@ -9,7 +10,8 @@ namespace {
 
 std::string write(const Derating& derating) {
   const CurrentTable& table = derating.table;
-  std::string text = "speed_rad_per_s,stator_C,winding_C,allowed_current_A\n";
+  require_finite(derating);
+  std::string text = provenance_lines(derating, "#") + "speed_rad_per_s,stator_C,winding_C,allowed_current_A\n";
   for (std::size_t i = 0; i < table.speed_rad_per_s.size(); ++i) {
     for (std::size_t j = 0; j < table.stator_C.size(); ++j) {
       for (std::size_t k = 0; k < table.winding_C.size(); ++k) {
@@ -23,6 +25,10 @@ std::string write(const Derating& derating) {
 
 }  // namespace
 
-ExporterType csv() { return {.name = {}, .summary = "the table alone, one place a row, for pictures and other tools", .write = write}; }
+ExporterType csv() {
+  return {.name = {},
+          .summary = "the table, one place a row, for pictures and other tools; its origin in lines that begin with #",
+          .write = write};
+}
 
 }  // namespace heatsoak::exporters

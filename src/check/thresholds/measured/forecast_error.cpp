@@ -63,7 +63,7 @@ Measured measure(const Check& check, Computations& /*computations*/) {
 ThresholdType forecast_error() {
   return {.name = {},
           .unit = "K",
-          .range = Range::non_negative(),
+          .range = Range::between(0.0, 1e3),
           .meaning =
               "how far the motor's model is off committed logs (root mean square, the worst of the measured temperatures): it runs "
               "freely over each run with the log's currents, speeds and air from the start that its first samples decide",

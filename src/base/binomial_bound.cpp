@@ -1,4 +1,4 @@
-#include "check/binomial_bound.h"
+#include "base/binomial_bound.h"
 
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
@@ -34,6 +34,11 @@ std::optional<long> draws_needed(double over_share, double limit_share, double c
     (suffices(middle) ? high : low) = middle;
   }
   return high;
+}
+
+long fewest_draws(double limit_share, double confidence) {
+  constexpr double kRounding = 1e-9;
+  return static_cast<long>(std::ceil(std::log(1.0 - confidence) / std::log1p(-limit_share) * (1.0 - kRounding)));
 }
 
 }  // namespace heatsoak

@@ -13,4 +13,7 @@ double upper_bound_share(double over_count, double draws_count, double confidenc
 /// suffices because the share itself is at the limit or above it.
 std::optional<long> draws_needed(double over_share, double limit_share, double confidence);
 
+/// The fewest draws that show `limit_share` where none is over: the smallest n with (1 − limit_share)ⁿ ≤ 1 − confidence.
+long fewest_draws(double limit_share, double confidence);
+
 }  // namespace heatsoak
