@@ -73,7 +73,7 @@ MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
 
 }  // namespace
 
-Eigen::VectorXd decided_start_C(const Network& network, RunStart start, const MeasuredRun& run, const RunFrom& along) {
+DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
   // No model follows the first seconds better than this, and a node that is not sensed must not pay for it.
   constexpr double kLeastNoise_K = 0.3;
   const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
@@ -87,7 +87,12 @@ Eigen::VectorXd decided_start_C(const Network& network, RunStart start, const Me
       right += path.by_start.row(row).transpose() * path.residual_K[row] / (noise_K * noise_K);
     }
   }
-  return start.state_C + normal.ldlt().solve(right);
+  const Eigen::MatrixXd covariance_K2 = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  return {start.state_C + covariance_K2 * right, covariance_K2};
+}
+
+Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
+  return decided_start(network, start, run, along).state_C;
 }
 
 Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {

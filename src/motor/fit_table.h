@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,6 +12,14 @@
 #include "input/reader.h"
 
 namespace heatsoak {
+
+/// How far forecasts of other runs may be off beside what the uncertainty of the parameters explains.
+struct ForecastBand {
+  std::array<double, 2> unknown_heat_share{};  ///< rms of slow unknown heat at winding and stator, per rms heat of the run
+  double time_scale_s = 0.0;                   ///< over which that heat forgets
+  double heat_factor_sd = 0.0;                 ///< of the logarithm of a factor on all heat of a run
+  double width_ratio = 1.0;                    ///< the band as computed is widened by this
+};
 
 /// The [fit] table of a motor file that a calibration wrote.
 struct MotorFit {
@@ -23,6 +33,7 @@ struct MotorFit {
   /// Above 0: whole runs decided the figures, and the model that runs free follows them to this (rms); what follows the load at once
   /// asks for other figures, as in a motor of more parts than the model.
   double free_run_error_K = 0.0;
+  std::optional<ForecastBand> band = {};  ///< of left-out runs, where a calibration has found it
 };
 
 /// Reads the table; `figures` are the keys that the file has. Problems go to the reader's diagnostics.
