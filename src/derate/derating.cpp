@@ -10,6 +10,7 @@
 
 #include "base/binomial_bound.h"
 #include "base/diagnostic.h"
+#include "derate/sensed/sensor_plan.h"
 #include "motor/datasheet_network.h"
 #include "robot/motor_drive.h"
 #include "thermal/ensemble.h"
@@ -281,6 +282,9 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
     const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
     result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
                               own == motor.effects.end() ? std::string() : own->column});
+  }
+  if (options.sensor) {
+    result.sensor = plan_sensor(as_written, robot, result, *options.sensor, progress);
   }
   return result;
 }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "derate/guarantee.h"
 #include "derate/provenance.h"
+#include "derate/sensed/sensor.h"
 #include "motor/default_spread.h"
 
 namespace heatsoak {
@@ -17,6 +19,7 @@ struct DerateOptions {
   double period_s = 0.01;          ///< between two calls of the firmware
   double approach_s = 0.5;         ///< over which the winding may come near its limit: shorter lets peaks through for longer
   GuaranteeOptions guarantee;
+  std::optional<SensorOptions> sensor = {};
 };
 
 /// What follows from motor, robot and options alone: before any reserve. A limit that the motor's file gives as a range counts at its lower
@@ -50,9 +53,10 @@ struct Derating {
   /// Values of the motor's file without a tolerance, with what the drawn motors have in its place.
   std::vector<DefaultSpread> default_spreads = {};
   bool is_brushless = true;
-  double heating_current_ratio = 1.0;  ///< heating_factor() of the robot: current that heats per equivalent DC current
-  MotorValues nominal = {};            ///< of the motor's file
-  Provenance provenance = {};          ///< empty until the caller sets it: derate() reads no files
+  double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: current that heats per equivalent DC current
+  MotorValues nominal = {};               ///< of the motor's file
+  std::optional<SensorPlan> sensor = {};  ///< where one is declared
+  Provenance provenance = {};             ///< empty until the caller sets it: derate() reads no files
 };
 
 /// The current that the motor bears for good at every speed and in every hot case, in A ≥ 0: for a wheel whose speed nobody knows.

@@ -14,31 +14,9 @@
 namespace heatsoak {
 namespace {
 
-/// What the network sees as one interval, with its rms current: as long as the current changes by little, and no longer than a second.
-struct Stretch {
-  double duration_s = 0.0;
-  double current2_A2_s = 0.0;
-  double first_A = 0.0;
-  double speed_rad_per_s = 0.0;
-
-  [[nodiscard]] bool is_over(double current_A, double at_rad_per_s) const {
-    constexpr double kLongest_s = 1.0;
-    constexpr double kLittle = 0.02;
-    return duration_s > 0.0 &&
-           (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A || at_rad_per_s != speed_rad_per_s);
-  }
-  void take(double current_A, double at_rad_per_s, double period_s) {
-    speed_rad_per_s = at_rad_per_s;
-    first_A = duration_s > 0.0 ? first_A : current_A;
-    duration_s += period_s;
-    current2_A2_s += current_A * current_A * period_s;
-  }
-};
 constexpr double kSettled = 4.0;  ///< slowest time constants
 constexpr double kShortest_s = 900.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
-
-double duration_s(const MotorValues& motor) { return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s); }
 
 struct SamplePeak {
   double winding_C = 0.0;
@@ -86,6 +64,32 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
 
 }  // namespace
 
+void PlayedIntervals::take(double time_s, double current_A, double speed_rad_per_s, double period_s) {
+  constexpr double kLongest_s = 1.0;
+  constexpr double kLittle = 0.02;
+  if (duration_s_ > 0.0 &&
+      (duration_s_ >= kLongest_s || std::abs(current_A - first_A_) > kLittle * first_A_ || speed_rad_per_s != speed_rad_per_s_)) {
+    end(time_s);
+  }
+  speed_rad_per_s_ = speed_rad_per_s;
+  first_A_ = duration_s_ > 0.0 ? first_A_ : current_A;
+  duration_s_ += period_s;
+  current2_A2_s_ += current_A * current_A * period_s;
+}
+
+void PlayedIntervals::end(double time_s) {
+  const double current_rms_A = std::sqrt(current2_A2_s_ / duration_s_);
+  const Signals signals = played_.use.hot_case.signals(rules_, current_rms_A, speed_rad_per_s_);
+  played_.intervals.push_back({duration_s_, operating_point<double>(motor_.nominal, robot_, signals)});
+  played_.time_s.push_back(time_s);
+  played_.current_A.push_back(current_rms_A);
+  duration_s_ = current2_A2_s_ = 0.0;
+}
+
+double use_duration_s(const MotorValues& motor) {
+  return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s);
+}
+
 std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules) {
   static constexpr std::array<Use, 11> kPlain{{{0.0},
                                                {0.3},
@@ -126,26 +130,15 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
   UsePlayed result;
   result.use = use;
   ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));
-  const auto periods = static_cast<std::int64_t>(duration_s(motor.nominal) / period_s);
-  Stretch stretch;
-  const auto end_stretch = [&](double time_s) {
-    const double current_rms_A = std::sqrt(stretch.current2_A2_s / stretch.duration_s);
-    const Signals signals = use.hot_case.signals(rules, current_rms_A, stretch.speed_rad_per_s);
-    result.intervals.push_back({stretch.duration_s, operating_point<double>(motor.nominal, robot, signals)});
-    result.time_s.push_back(time_s);
-    result.current_A.push_back(current_rms_A);
-    stretch = {};
-  };
+  const auto periods = static_cast<std::int64_t>(use_duration_s(motor.nominal) / period_s);
+  PlayedIntervals intervals(result, motor, robot, rules);
   for (std::int64_t i = 0; i < periods; ++i) {
     const double time_s = static_cast<double>(i) * period_s;
     const bool is_on = use.on_s <= 0.0 || std::fmod(time_s, use.on_s + use.off_s) < use.on_s;
     const double speed_rad_per_s = (is_on ? use.speed_share : use.off_speed_share) * rules.most_speed_rad_per_s;
     const float allowed_A =
         is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]) : 0.0F;
-    if (stretch.is_over(allowed_A, speed_rad_per_s)) {
-      end_stretch(time_s);
-    }
-    stretch.take(allowed_A, speed_rad_per_s, period_s);
+    intervals.take(time_s, allowed_A, speed_rad_per_s, period_s);
     std::array<float, firmware::kSignalCount> told{};
     std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), told.begin(),
                            [](double value) { return static_cast<float>(value); });
@@ -153,7 +146,7 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
     result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
     result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[states::stator]);
   }
-  end_stretch(static_cast<double>(periods) * period_s);
+  intervals.end(static_cast<double>(periods) * period_s);
   return result;
 }
 

@@ -36,6 +36,32 @@ struct UsePlayed {
   double stator_peak_C = 0.0;
 };
 
+/// Joins the periods of a use to intervals with their rms current: as long as the current changes by little, and no longer than a second.
+class PlayedIntervals {
+ public:
+  /// `played` holds the use and gets the intervals; all must outlive this.
+  PlayedIntervals(UsePlayed& played, const Motor& motor, const Robot& robot, const BarrierRules& rules)
+      : played_(played), motor_(motor), robot_(robot), rules_(rules) {}
+
+  /// A period that begins at `time_s`.
+  void take(double time_s, double current_A, double speed_rad_per_s, double period_s);
+  /// Ends the last interval.
+  void end(double time_s);
+
+ private:
+  UsePlayed& played_;
+  const Motor& motor_;
+  const Robot& robot_;
+  const BarrierRules& rules_;
+  double duration_s_ = 0.0;
+  double current2_A2_s_ = 0.0;
+  double first_A_ = 0.0;
+  double speed_rad_per_s_ = 0.0;
+};
+
+/// Four of the slowest time constants of the nominal motor, 900 s at least and 4 h at most.
+double use_duration_s(const MotorValues& motor);
+
 /// From a motor as warm as the air until the slowest body has settled, with the arithmetic of the firmware.
 UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
                const Use& use, double period_s);

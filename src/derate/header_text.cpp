@@ -46,10 +46,11 @@ std::size_t end_of_token(std::string_view text, std::size_t i) {
   return end;
 }
 
-/// "#define …VERSION …": the program's own, which an upgrade changes.
+/// "#define …VERSION …" is the program's own, which an upgrade changes; a signature changes with the last digit of the safety factor.
 bool is_version_line(std::string_view line) {
   line = line.substr(0, line.find('\n'));
-  return line.starts_with("#define") && line.find("VERSION") != std::string_view::npos;
+  return line.starts_with("#define") &&
+         (line.find("VERSION") != std::string_view::npos || line.find("_SIGNATURE ") != std::string_view::npos);
 }
 
 /// Comments, tables and the program's version are left out: they do not run, or are compared by what they allow.

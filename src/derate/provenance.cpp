@@ -23,6 +23,12 @@ Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOpt
       "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --confidence {:.9g} --samples {} --seed {}",
       options.period_s, options.hottest_ambient_C, options.coldest_ambient_C, options.approach_s, options.guarantee.confidence,
       options.guarantee.samples, options.guarantee.seed);
+  if (options.sensor) {
+    const SensorOptions& sensor = *options.sensor;
+    text +=
+        fmt::format(" --{} {} {:.9g}K {:.9g}s {:.9g}V {:.9g}A", sensor.kind == SensorKind::thermistor ? "thermistor" : "winding-resistance",
+                    sensor.node, sensor.accuracy_K, sensor.lag_s, sensor.voltage_error_V, sensor.current_error_A);
+  }
   for (const auto& [key, value] : motor.assumed) {
     text += fmt::format(" --condition {}={}", key, value);
   }

@@ -14,6 +14,7 @@
 #include "cli/guard_options.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "cli/sensor_options.h"
 #include "cli/silent_effects.h"
 #include "derate/committed_table.h"
 #include "derate/derating_json.h"
@@ -34,6 +35,7 @@ struct Options {
   std::string out;
   std::string committed;  ///< table of --check
   std::string compiler;   ///< of a form with a binary; empty: sources only
+  SensorFlags sensor;
 };
 
 const ExporterType& exporter_named(const std::string& name) {
@@ -155,6 +157,12 @@ ExitCode tell_comparison(const CommittedTable& committed, const Derating& derati
 
 ExitCode run(const Options& options, Session& session) {
   const ExporterType& exporter = exporter_named(options.to);
+  DerateOptions derate_options = options.guard.derate;
+  derate_options.sensor = sensor_options(options.sensor);
+  if (derate_options.sensor && exporter.name != "c_header" && exporter.name != "json") {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--to {} has no place for a sensor: expected --to c_header or json, or no sensor", exporter.name));
+  }
   if (options.out.empty() && options.committed.empty()) {
     throw Failure(ExitCode::bad_input, "expected --out FILE to write, or --check FILE to compare with");
   }
@@ -173,9 +181,9 @@ ExitCode run(const Options& options, Session& session) {
   // Before the work: a file that is no table needs none.
   const std::optional<CommittedTable> committed =
       options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
-  Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
-  derating.provenance = provenance_of(motor, *robot, options.guard.derate);
-  session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
+  Derating derating = derate(motor, *robot, derate_options, progress_bar("looking for the reserve"));
+  derating.provenance = provenance_of(motor, *robot, derate_options);
+  session.say(report(derating) + sensor_text(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
               effects_under_conditions({&motor, 1}));
   if (!options.out.empty()) {
     session.write(options.out, options.compiler.empty() ? exporter.write(derating) : exporter.write_compiled(derating, options.compiler));
@@ -210,6 +218,7 @@ Command derate_command() {
         add_quantity(app, "--period", options->guard.derate.period_s,
                      {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
         add_derate_options(app, options->guard.derate);
+        add_sensor_options(app, options->sensor);
         session.add_data_option(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };

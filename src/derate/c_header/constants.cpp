@@ -1,0 +1,24 @@
+#include <fmt/format.h>
+
+#include "derate/c_header/c_text.h"
+#include "derate/c_header/parts.h"
+
+namespace heatsoak::c_header {
+
+std::string constants(const Source& source) {
+  const Derating& derating = source.derating;
+  const auto define = [&](std::string_view name, double value) {
+    return fmt::format("#define {}_{} {}\n", source.capital, name, literal(value));
+  };
+  return define("PERIOD_S", derating.options.period_s) + define("WINDING_LIMIT_C", derating.rules.limits.winding_C) +
+         define("HOTTEST_AMBIENT_C", derating.rules.hottest_ambient_C) + define("COLDEST_AMBIENT_C", derating.options.coldest_ambient_C) +
+         define("MOST_CURRENT_A", derating.rules.most_current_A) + define("MOST_SPEED_RAD_PER_S", derating.rules.most_speed_rad_per_s) +
+         define("NO_CURRENT_SPEED_RAD_PER_S", derating.table.speed_rad_per_s.back()) +
+         define("REACHABLE_SPEED_RAD_PER_S", derating.reachable_speed_rad_per_s) +
+         define("TORQUE_CONSTANT_NM_PER_A", derating.torque_constant_Nm_per_A) +
+         "/* What the motor bears for good at every speed and in every hot case, for a wheel whose speed nobody knows: the least of the "
+         "currents\n   that the table still gives, held at full allowance until everything has warmed up; 0 where none was played. */\n" +
+         define("LIMP_CURRENT_A", limp_current_A(derating)) + fmt::format("#define {}_STARTED 0x48454154u\n\n", source.capital);
+}
+
+}  // namespace heatsoak::c_header

@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "derate/belief.h"
+#include "derate/c_header/c_text.h"
+#include "derate/c_header/parts.h"
+
+namespace heatsoak::c_header {
+namespace {
+
+constexpr std::string_view kStart = R"(/* Not for what is no number, and not for what no motor has. */
+static inline int @_is_between(float low, float x, float high) { return x >= low && x <= high; }
+static inline int @_is_temperature(float x) { return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, 1000.0f); }
+
+/* body_C: temperature of the whole motor after a rest; what cannot be one counts as the limit. */
+static inline void @_start(@_state *state, float body_C) {
+  int node;
+  const float start_C = @_is_temperature(body_C) ? body_C : @CAP@_WINDING_LIMIT_C;
+  for (node = 0; node < @NODES@; ++node) {
+    state->state_C[node] = state->nominal_C[node] = start_C;
+    state->carry_K[node] = state->nominal_carry_K[node] = 0.0f;
+  }
+  state->started = @CAP@_STARTED;
+}
+
+)";
+
+constexpr std::string_view kSweep =
+    R"(/* Every node warms as fast as with the hottest of the possible values; the input takes the one that heats the winding most. */
+static inline void @_sweep(const @_input *in, float *input, const float *possible, int count, const float *state_C, float *most_K_per_s) {
+  float rate_K_per_s[@NODES@], hottest = possible[0], hottest_K_per_s = -1e30f;
+  int i, node;
+  for (i = 0; i < count; ++i) {
+    *input = possible[i];
+    @_rates(in, state_C, rate_K_per_s);
+    for (node = 0; node < @NODES@; ++node) {
+      most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
+    }
+    if (rate_K_per_s[0] > hottest_K_per_s) {
+      hottest_K_per_s = rate_K_per_s[0];
+      hottest = possible[i];
+    }
+  }
+  *input = hottest;
+}
+
+)";
+
+constexpr std::string_view kStep = R"(/* One period of heating; the rounding of each step is carried to the next (Kahan 1965). */
+static inline void @_advance(float *state_C, float *carry_K, const float *rate_K_per_s) {
+  int node;
+  for (node = 0; node < @NODES@; ++node) {
+    const float change_K = @CAP@_PERIOD_S * rate_K_per_s[node] - carry_K[node];
+    const float next_C = state_C[node] + change_K;
+    carry_K[node] = (next_C - state_C[node]) - change_K;
+    state_C[node] = next_C > @CAP@_COLDEST_AMBIENT_C ? next_C : @CAP@_COLDEST_AMBIENT_C;
+  }
+}
+
+static inline @_output @_step(@_state *state, const @_input *measured) {
+  @_output out;
+  @_input in = *measured;
+  float rate_K_per_s[@NODES@], nominal_K_per_s[@NODES@], hottest_body_C, speed_rad_per_s;
+  int node, @PASS@is_started = state->started == @CAP@_STARTED;
+  unsigned unknown = 0u;
+  for (node = 0; node < @NODES@; ++node) {
+    is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_between(-1.0f, state->carry_K[node], 1.0f) &&
+                 @_is_temperature(state->nominal_C[node]) && @_is_between(-1.0f, state->nominal_carry_K[node], 1.0f);
+  }
+  if (!is_started) {
+    @_start(state, @CAP@_WINDING_LIMIT_C);
+  }
+@UNKNOWN@  @_rates(&in, state->state_C, rate_K_per_s);
+@SWEEPS@  @_nominal_rates(&in, state->nominal_C, nominal_K_per_s);
+  @_advance(state->state_C, state->carry_K, rate_K_per_s);
+  @_advance(state->nominal_C, state->nominal_carry_K, nominal_K_per_s);
+  hottest_body_C = state->state_C[1];
+@BODIES@  speed_rad_per_s = in.speed_rad_per_s < 0.0f ? -in.speed_rad_per_s : in.speed_rad_per_s;
+  out.guarded_winding_C = state->state_C[0];
+  out.nominal_winding_C = state->nominal_C[0];
+  out.allowed_current_A = unknown & @SPEED_BIT@u ? 0.0f : @_allowed_A(speed_rad_per_s, hottest_body_C, out.guarded_winding_C);
+  out.reason = !is_started                                       ? @_not_started
+               : unknown                                         ? @_input_unknown
+               : out.allowed_current_A >= @CAP@_MOST_CURRENT_A ? @_full
+               : out.allowed_current_A > 0.0f                    ? @_derated
+                                                                 : @_no_current;
+  return out;
+}
+)";
+
+constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node) {
+    hottest_body_C = state->state_C[node] > hottest_body_C ? state->state_C[node] : hottest_body_C;
+  }
+)";
+
+/// A signal that may be one value only has it already: there is nothing to compare.
+std::vector<firmware::Signal> swept_signals(const Source& source) {
+  std::vector<firmware::Signal> swept = source.signals;
+  std::erase_if(swept, [&](firmware::Signal signal) { return belief(source.derating, signal).values.size() < 2; });
+  return swept;
+}
+
+unsigned bit(firmware::Signal signal) { return 1U << static_cast<unsigned>(signal); }
+
+/// First every signal that is not believed gets some value, because a rate of what is not a number is none.
+std::string beliefs(const Source& source) {
+  std::string text;
+  for (const firmware::Signal signal : source.signals) {
+    const Belief believed = belief(source.derating, signal);
+    const bool moves = signal == firmware::neighbour;
+    const std::string least = moves ? fmt::format("in.ambient_C - {}", literal(kNeighbourBelowAir_K)) : literal(believed.low);
+    text += fmt::format("  if (!{0}_is_between({1}, in.{2}, {3})) {{\n    in.{2} = {4};\n    unknown |= {5}u;\n  }}\n", source.prefix,
+                        least, name_of(signal), literal(believed.high), literal(believed.values.front()), bit(signal));
+  }
+  return text;
+}
+
+/// Two passes where there are several: a signal's hottest value may depend on another's.
+std::string sweeps(const Source& source, const std::vector<firmware::Signal>& swept) {
+  const std::string indent = swept.size() > 1 ? "    " : "  ";
+  std::string text = swept.size() > 1 ? "  for (pass = 0; pass < 2; ++pass) {\n" : "";
+  for (const firmware::Signal signal : swept) {
+    text += fmt::format(
+        "{4}if (unknown & {0}u) {{\n{4}  {1}_sweep(&in, &in.{2}, {1}_possible_{2}, {3}, state->state_C, rate_K_per_s);\n{4}}}\n",
+        bit(signal), source.prefix, name_of(signal), belief(source.derating, signal).values.size(), indent);
+  }
+  return text + (swept.size() > 1 ? "  }\n" : "");
+}
+
+}  // namespace
+
+std::string candidates(const Source& source) {
+  std::string text;
+  for (const firmware::Signal signal : swept_signals(source)) {
+    const std::vector<float> values = belief(source.derating, signal).values;
+    text += array(fmt::format("{}_possible_{}", source.prefix, name_of(signal)), {values.begin(), values.end()});
+  }
+  return text.empty() ? text : "/* what an input may be of which nothing is known */\n" + text + "\n";
+}
+
+std::string step_functions(const Source& source) {
+  const std::vector<firmware::Signal> swept = swept_signals(source);
+  const std::size_t nodes = source.derating.observer.state_count();
+  const Words words{{"@UNKNOWN@", beliefs(source)},
+                    {"@SWEEPS@", sweeps(source, swept)},
+                    {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
+                    {"@PASS@", swept.size() > 1 ? "pass, " : ""},
+                    {"@SPEED_BIT@", std::to_string(bit(firmware::speed))},
+                    {"@CAP@", source.capital},
+                    {"@NODES@", std::to_string(nodes)},
+                    {"@", source.prefix}};
+  return replaced(kStart, words) + (swept.empty() ? "" : replaced(kSweep, words)) + replaced(kStep, words);
+}
+
+}  // namespace heatsoak::c_header

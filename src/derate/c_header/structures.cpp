@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include "derate/c_header/c_text.h"
+#include "derate/c_header/parts.h"
+
+namespace heatsoak::c_header {
+
+std::string_view name_of(firmware::Signal signal) { return firmware::signals()[static_cast<std::size_t>(signal)].name; }
+
+std::vector<firmware::Signal> used_signals(const Observer& observer) {
+  std::vector<firmware::Signal> used;
+  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
+    if (observer.uses(static_cast<firmware::Signal>(i))) {
+      used.push_back(static_cast<firmware::Signal>(i));
+    }
+  }
+  return used;
+}
+
+std::string structures(const Source& source) {
+  const Observer& observer = source.derating.observer;
+  std::string text = "typedef struct {\n";
+  for (const firmware::Signal signal : source.signals) {
+    text += fmt::format("  float {}; /* {} */\n", name_of(signal), firmware::signals()[static_cast<std::size_t>(signal)].meaning);
+  }
+  text +=
+      fmt::format("}} {}_input;\n\ntypedef struct {{\n  uint32_t started;\n  float state_C[{}]; /*", source.prefix, observer.state_count());
+  for (const std::string& name : observer.state_names()) {
+    text += fmt::format(" {}", in_comment(name));
+  }
+  text += fmt::format(
+      ": counts heat {2:.3g} times */\n  float carry_K[{1}];\n  float nominal_C[{1}]; /* the same of a motor of nominal values */\n"
+      "  float nominal_carry_K[{1}];\n}} {0}_state;\n\n"
+      "typedef enum {{\n"
+      "  {0}_full,          /* all that the driver can give */\n"
+      "  {0}_derated,       /* less, for the winding or the stator is hot */\n"
+      "  {0}_no_current,    /* at its limit, or faster than the table goes */\n"
+      "  {0}_input_unknown, /* an input was no number, or none that can be: its hottest case was taken */\n"
+      "  {0}_not_started    /* the state was no state: taken for as hot as its limit */\n"
+      "}} {0}_reason;\n\n"
+      "typedef struct {{\n"
+      "  float allowed_current_A; /* A, equivalent DC current, magnitude, until the next step */\n"
+      "  float guarded_winding_C; /* degC, pessimistic: heat counts {2:.3g} times, as the hottest of the drawn motors need it; decides "
+      "what is allowed */\n"
+      "  float nominal_winding_C; /* degC, of a motor of nominal values, heat counts once; to show and log, decides nothing. An unknown "
+      "input\n                              is as hot as it may be here too */\n"
+      "  {0}_reason reason;\n}} {0}_output;\n\n",
+      source.prefix, observer.state_count(), observer.heat_reserve_ratio());
+  return text;
+}
+
+}  // namespace heatsoak::c_header
