@@ -24,6 +24,7 @@
 #include "motor/motor.h"
 #include "present/evaluation.h"
 #include "report/chart.h"
+#include "robot/assumed_friction.h"
 #include "robot/robot.h"
 #include "select/decision.h"
 #include "select/evaluate.h"
@@ -142,12 +143,12 @@ ExitCode run(Options& options, Session& session) {
   const std::optional<Duty> duty_read = named.duty(options.duty);
   const std::vector<Motor> motors = read_motors(options, named);
   named.throw_if_any();
-  const Robot& robot = *robot_read;
   const Duty& duty = *duty_read;
   if (motors.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", named.folders().motors.string()));
   }
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
+  const Robot robot = match ? with_assumed_friction(*robot_read) : *robot_read;
   if (options.is_closed_loop && !match) {
     throw Failure(ExitCode::bad_input, fmt::format("--closed-loop drives matches; {} is {}. Expected a duty of the shape match, or no "
                                                    "--closed-loop",
@@ -184,6 +185,7 @@ ExitCode run(Options& options, Session& session) {
                                  progress_bar("trying changes"));
     present::add_changes(document, changes, id);
   }
+  present::add_lines(document.notes, assumed_friction_text(robot), present::Severity::warning);
   if (options.is_closed_loop) {
     add_closed_loop(document, ranks, options.games, options.evaluate.seed);
   }
@@ -209,6 +211,7 @@ ExitCode run(Options& options, Session& session) {
                                    {"deliverable", each.is_deliverable}});
     }
   }
+  answer["is_friction_assumed"] = robot.is_friction_assumed;
   const Verdict least_bad = static_cast<Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
