@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/binomial_bound.h"
+#include "derate/held_current.h"
 #include "motor/datasheet_network.h"
 #include "robot/motor_drive.h"
 #include "select/spread.h"
@@ -14,52 +15,35 @@
 namespace heatsoak {
 namespace {
 
-/// What the network sees as one interval, with its rms current: as long as the current changes by little, and no longer than a second.
-struct Stretch {
-  double duration_s = 0.0;
-  double current2_A2_s = 0.0;
-  double first_A = 0.0;
-  double speed_rad_per_s = 0.0;
-
-  [[nodiscard]] bool is_over(double current_A, double at_rad_per_s) const {
-    constexpr double kLongest_s = 1.0;
-    constexpr double kLittle = 0.02;
-    return duration_s > 0.0 &&
-           (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A || at_rad_per_s != speed_rad_per_s);
-  }
-  void take(double current_A, double at_rad_per_s, double period_s) {
-    speed_rad_per_s = at_rad_per_s;
-    first_A = duration_s > 0.0 ? first_A : current_A;
-    duration_s += period_s;
-    current2_A2_s += current_A * current_A * period_s;
-  }
-};
 constexpr double kSettled = 4.0;  ///< slowest time constants
 constexpr double kShortest_s = 900.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
 
 double duration_s(const MotorValues& motor) { return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s); }
 
-struct SamplePeak {
-  double winding_C = 0.0;
-  bool is_over = false;
-};
-
-/// Eight drawn motors through every use.
-std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses,
-                                     std::uint64_t seed, std::uint64_t first_stream) {
+/// Drawn from the motor's tolerances, each from a stream of chance of its own.
+std::vector<Network> drawn_motors(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
   std::vector<Network> networks;
-  std::vector<Lanes> parameters;
   for (int lane = 0; lane < kLanes; ++lane) {
     Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
     networks.push_back(datasheet_network(motor, draw_sample(motor, random)));
-    const std::vector<double> values = networks.back().values();
+  }
+  return networks;
+}
+
+}  // namespace
+
+std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses) {
+  std::vector<Lanes> parameters;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::vector<double> values = motors[static_cast<std::size_t>(lane)].values();
     parameters.resize(values.size());
     for (std::size_t p = 0; p < values.size(); ++p) {
       parameters[p][lane] = values[p];
     }
   }
-  std::array<SamplePeak, kLanes> result;
+  const Network& network = motors.front();
+  std::array<MotorPeak, kLanes> result;
   for (const UsePlayed& each : uses) {
     const auto to_lanes = [](const OperatingPoint<double>& at) {
       OperatingPoint<Lanes> lanes;
@@ -67,14 +51,14 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
       return lanes;
     };
     const double ambient_C = each.intervals.front().at.ambient_C;
-    const std::vector<Lanes> start_C(static_cast<std::size_t>(networks.front().state_count()), Lanes::Constant(ambient_C));
-    EnsembleRun run(networks.front(), parameters, start_C);
-    const double step_s = longest_step_s(networks.front(), parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
+    const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(each.start_C.value_or(ambient_C)));
+    EnsembleRun run(network, parameters, start_C);
+    const double step_s = longest_step_s(network, parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
     for (const Interval& interval : each.intervals) {
       run.over(interval.duration_s, to_lanes(interval.at), step_s);
     }
     for (int lane = 0; lane < kLanes; ++lane) {
-      SamplePeak& peak = result[static_cast<std::size_t>(lane)];
+      MotorPeak& peak = result[static_cast<std::size_t>(lane)];
       const double winding_C = run.peak_C()[states::winding][lane];
       peak.winding_C = std::max(peak.winding_C, winding_C);
       peak.is_over =
@@ -83,8 +67,6 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
   }
   return result;
 }
-
-}  // namespace
 
 std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules) {
   static constexpr std::array<Use, 11> kPlain{{{0.0},
@@ -127,9 +109,9 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
   result.use = use;
   ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));
   const auto periods = static_cast<std::int64_t>(duration_s(motor.nominal) / period_s);
-  Stretch stretch;
+  HeldCurrent stretch;
   const auto end_stretch = [&](double time_s) {
-    const double current_rms_A = std::sqrt(stretch.current2_A2_s / stretch.duration_s);
+    const double current_rms_A = stretch.rms_A();
     const Signals signals = use.hot_case.signals(rules, current_rms_A, stretch.speed_rad_per_s);
     result.intervals.push_back({stretch.duration_s, operating_point<double>(motor.nominal, robot, signals)});
     result.time_s.push_back(time_s);
@@ -160,15 +142,15 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
 Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
                 std::uint64_t first_stream, const Progress& progress) {
   const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
-  std::vector<SamplePeak> all(blocks * kLanes);
+  std::vector<MotorPeak> all(blocks * kLanes);
   in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
-    const auto found = peaks(motor, limits, uses, options.seed, first_stream + block * kLanes);
+    const auto found = peaks(drawn_motors(motor, options.seed, first_stream + block * kLanes), limits, uses);
     std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
   });
   all.resize(static_cast<std::size_t>(options.samples));
   std::vector<double> winding_C;
   std::vector<char> is_over;
-  for (const SamplePeak& each : all) {
+  for (const MotorPeak& each : all) {
     winding_C.push_back(each.winding_C);
     is_over.push_back(each.is_over ? 1 : 0);
   }

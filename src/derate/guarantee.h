@@ -1,7 +1,9 @@
 // How far the table can be trusted: motors drawn from every declared tolerance, driven with all the current that it allows.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,11 +36,20 @@ struct UsePlayed {
   std::vector<double> current_A;    ///< allowed and flowing, rms of the interval
   double winding_peak_C = 0.0;      ///< of the observer
   double stator_peak_C = 0.0;
+  std::optional<double> start_C = {};  ///< of every node of the motor; the air of the first interval unless given
 };
 
 /// From a motor as warm as the air until the slowest body has settled, with the arithmetic of the firmware.
 UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
                const Use& use, double period_s);
+
+/// The hottest moments of one motor.
+struct MotorPeak {
+  double winding_C = 0.0;
+  bool is_over = false;  ///< winding or stator
+};
+/// Each of kLanes motors, networks of one form, through every use.
+std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses);
 
 /// Of the promise: how sure the bounds of shares are.
 inline constexpr double kCertainty = 0.95;
