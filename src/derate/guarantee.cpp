@@ -157,7 +157,7 @@ Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<c
   Guarantee result{.samples = options.samples,
                    .over = static_cast<int>(std::ranges::count(is_over, char{1})),
                    .over_share = sample_intervals(winding_C, is_over).probability};
-  result.keep_share_low = 1.0 - upper_bound_share(result.over, result.samples, kCertainty);
+  result.least_kept_share = 1.0 - upper_bound_share(result.over, result.samples, kCertainty_share);
   std::ranges::sort(winding_C);
   result.winding_p50_C = quantile(winding_C, 0.5);
   result.winding_p95_C = quantile(winding_C, 0.95);

@@ -52,10 +52,10 @@ struct MotorPeak {
 std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses);
 
 /// Of the promise: how sure the bounds of shares are.
-inline constexpr double kCertainty = 0.95;
+inline constexpr double kCertainty_share = 0.95;
 
 struct GuaranteeOptions {
-  double confidence = 0.95;  ///< least share of motors that keep every limit in every use, shown with kCertainty
+  double confidence = 0.95;  ///< least share of motors that keep every limit in every use, shown with kCertainty_share
   int samples = 400;         ///< fresh ones that it is checked on; as many others find the reserve
   std::uint64_t seed = 1;
   int threads = 0;
@@ -66,8 +66,8 @@ struct Guarantee {
   int samples = 0;
   int over = 0;  ///< pass a limit in one of the uses
   Interval95 over_share;
-  /// Lower bound of the share of motors that keep every limit, one-sided with kCertainty, exact (Clopper and Pearson 1934).
-  double keep_share_low = 0.0;
+  /// Lower bound of the share of motors that keep every limit, one-sided with kCertainty_share, exact (Clopper and Pearson 1934).
+  double least_kept_share = 0.0;
   double winding_p50_C = 0.0;  ///< of the hottest moment of the hottest use
   double winding_p95_C = 0.0;
   double winding_most_C = 0.0;

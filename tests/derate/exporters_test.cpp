@@ -73,19 +73,19 @@ INSTANTIATE_TEST_SUITE_P(All, EveryExporter,
 
 TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   const Guarantee& checked = ecx_derating().guarantee;
-  EXPECT_GE(checked.keep_share_low, 0.95);
+  EXPECT_GE(checked.least_kept_share, 0.95);
   // By definition: were the share lower, so few over the limit would have a chance of less than 5 %.
-  const double p = 1.0 - checked.keep_share_low;
+  const double p = 1.0 - checked.least_kept_share;
   double chance = 0.0;
   for (int k = 0; k <= checked.over; ++k) {
     chance += std::exp(std::lgamma(checked.samples + 1.0) - std::lgamma(k + 1.0) - std::lgamma(checked.samples - k + 1.0) +
                        k * std::log(p) + (checked.samples - k) * std::log1p(-p));
   }
-  EXPECT_NEAR(chance, 1.0 - kCertainty, 1e-6);
+  EXPECT_NEAR(chance, 1.0 - kCertainty_share, 1e-6);
   const nlohmann::json guarantee = nlohmann::json::parse(exported("json"))["guarantee"];
-  EXPECT_EQ(guarantee["certainty"], kCertainty);
+  EXPECT_EQ(guarantee["certainty"], kCertainty_share);
   EXPECT_EQ(guarantee["least_samples"], 59);
-  EXPECT_NEAR(guarantee["keep_share_lower_bound"].get<double>(), checked.keep_share_low, 1e-4);
+  EXPECT_NEAR(guarantee["least_kept_shareer_bound"].get<double>(), checked.least_kept_share, 1e-4);
   EXPECT_THAT(exported("csv"), HasSubstr("# Safety factor on heat"));
 }
 

@@ -225,7 +225,7 @@ Retest retest(const Subject& subject, const Adversary& adversary, int motors) {
 std::string share_text(std::uint64_t over, std::uint64_t of) {
   const auto count = static_cast<double>(over);
   const auto all = static_cast<double>(of);
-  return fmt::format("{:.3g} % (at most {:.3g} %)", 100.0 * count / all, 100.0 * upper_bound_share(count, all, kCertainty));
+  return fmt::format("{:.3g} % (at most {:.3g} %)", 100.0 * count / all, 100.0 * upper_bound_share(count, all, kCertainty_share));
 }
 
 std::string table_text(const std::vector<Tally>& tallies) {
