@@ -96,7 +96,7 @@ void require_samples(const GuaranteeOptions& options) {
   if (const long least = least_samples(options); options.samples < least) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("{} samples cannot show a confidence of {:.4g} with {:.0f} % certainty: expected --samples {} or more",
-                              options.samples, options.confidence, 100.0 * kCertainty, least));
+                              options.samples, options.confidence, 100.0 * kCertainty_share, least));
   }
 }
 
@@ -175,7 +175,7 @@ class Search {
     smallest(from, kGrowth, [&](double tried) {
       Attempt with = attempt_or_throw(tried);
       const Guarantee found = checked(with, kStreamsApart);
-      const bool holds = found.keep_share_low >= options_.guarantee.confidence;
+      const bool holds = found.least_kept_share >= options_.guarantee.confidence;
       if (holds) {
         made.emplace(Promise{std::move(with), found});
       }
@@ -243,7 +243,7 @@ class Search {
 
 }  // namespace
 
-long least_samples(const GuaranteeOptions& options) { return fewest_draws(1.0 - options.confidence, kCertainty); }
+long least_samples(const GuaranteeOptions& options) { return fewest_draws(1.0 - options.confidence, kCertainty_share); }
 
 double limp_current_A(const Derating& derating) {
   double least_A = std::numeric_limits<double>::infinity();

@@ -72,7 +72,7 @@ long least_samples(const GuaranteeOptions& options);
 
 /// Values without a spread get a default one first (with_default_spreads()). Finds the smallest reserve of heat with which the share of
 /// drawn motors that keep every limit in every use is the confidence, and raises it until on motors that the search has not seen the lower
-/// bound of that share (kCertainty) is the confidence too. Throws Failure: bad_input
+/// bound of that share (kCertainty_share) is the confidence too. Throws Failure: bad_input
 /// where the period is too long for the motor or the samples are too few for the confidence, limit_exceeded where no reserve helps, because
 /// the motor passes a limit without current.
 Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress = {});

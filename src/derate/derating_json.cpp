@@ -95,8 +95,8 @@ Json table_json(const CurrentTable& table) {
 Json guarantee_json(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return {{"confidence", derating.options.guarantee.confidence},
-          {"certainty", kCertainty},
-          {"keep_share_lower_bound", std::floor(1e4 * checked.keep_share_low) / 1e4},
+          {"certainty", kCertainty_share},
+          {"least_kept_shareer_bound", std::floor(1e4 * checked.least_kept_share) / 1e4},
           {"samples", checked.samples},
           {"least_samples", least_samples(derating.options.guarantee)},
           {"over", checked.over},

@@ -35,8 +35,8 @@ std::string confidence_text(const Derating& derating) {
       "Confidence {:.6g}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep every limit in the {} "
       "hardest "
       "uses; {} of {} fresh draws exceeded one.",
-      derating.options.guarantee.confidence, 100.0 * kCertainty, std::floor(1000.0 * checked.keep_share_low) / 10.0, derating.uses.size(),
-      checked.over, checked.samples);
+      derating.options.guarantee.confidence, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
+      derating.uses.size(), checked.over, checked.samples);
 }
 
 std::string provenance_lines(const Derating& derating, std::string_view comment) {

@@ -18,26 +18,29 @@ constexpr double kSettled = 4.0;  ///< slowest time constants
 constexpr double kShortest_s = 900.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
 
-struct SamplePeak {
-  double winding_C = 0.0;
-  bool is_over = false;
-};
-
-/// Eight drawn motors through every use.
-std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses,
-                                     std::uint64_t seed, std::uint64_t first_stream) {
+/// Drawn from the motor's tolerances, each from a stream of chance of its own.
+std::vector<Network> drawn_motors(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
   std::vector<Network> networks;
-  std::vector<Lanes> parameters;
   for (int lane = 0; lane < kLanes; ++lane) {
     Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
     networks.push_back(datasheet_network(motor, draw_sample(motor, random)));
-    const std::vector<double> values = networks.back().values();
+  }
+  return networks;
+}
+
+}  // namespace
+
+std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses) {
+  std::vector<Lanes> parameters;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::vector<double> values = motors[static_cast<std::size_t>(lane)].values();
     parameters.resize(values.size());
     for (std::size_t p = 0; p < values.size(); ++p) {
       parameters[p][lane] = values[p];
     }
   }
-  std::array<SamplePeak, kLanes> result;
+  const Network& network = motors.front();
+  std::array<MotorPeak, kLanes> result;
   for (const UsePlayed& each : uses) {
     const auto to_lanes = [](const OperatingPoint<double>& at) {
       OperatingPoint<Lanes> lanes;
@@ -45,14 +48,14 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
       return lanes;
     };
     const double ambient_C = each.intervals.front().at.ambient_C;
-    const std::vector<Lanes> start_C(static_cast<std::size_t>(networks.front().state_count()), Lanes::Constant(ambient_C));
-    EnsembleRun run(networks.front(), parameters, start_C);
-    const double step_s = longest_step_s(networks.front(), parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
+    const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(each.start_C.value_or(ambient_C)));
+    EnsembleRun run(network, parameters, start_C);
+    const double step_s = longest_step_s(network, parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
     for (const Interval& interval : each.intervals) {
       run.over(interval.duration_s, to_lanes(interval.at), step_s);
     }
     for (int lane = 0; lane < kLanes; ++lane) {
-      SamplePeak& peak = result[static_cast<std::size_t>(lane)];
+      MotorPeak& peak = result[static_cast<std::size_t>(lane)];
       const double winding_C = run.peak_C()[states::winding][lane];
       peak.winding_C = std::max(peak.winding_C, winding_C);
       peak.is_over =
@@ -62,28 +65,20 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
   return result;
 }
 
-}  // namespace
-
 void PlayedIntervals::take(double time_s, double current_A, double speed_rad_per_s, double period_s) {
-  constexpr double kLongest_s = 1.0;
-  constexpr double kLittle = 0.02;
-  if (duration_s_ > 0.0 &&
-      (duration_s_ >= kLongest_s || std::abs(current_A - first_A_) > kLittle * first_A_ || speed_rad_per_s != speed_rad_per_s_)) {
+  if (held_.is_over(current_A, speed_rad_per_s)) {
     end(time_s);
   }
-  speed_rad_per_s_ = speed_rad_per_s;
-  first_A_ = duration_s_ > 0.0 ? first_A_ : current_A;
-  duration_s_ += period_s;
-  current2_A2_s_ += current_A * current_A * period_s;
+  held_.take(current_A, speed_rad_per_s, period_s);
 }
 
 void PlayedIntervals::end(double time_s) {
-  const double current_rms_A = std::sqrt(current2_A2_s_ / duration_s_);
-  const Signals signals = played_.use.hot_case.signals(rules_, current_rms_A, speed_rad_per_s_);
-  played_.intervals.push_back({duration_s_, operating_point<double>(motor_.nominal, robot_, signals)});
+  const double current_rms_A = held_.rms_A();
+  const Signals signals = played_.use.hot_case.signals(rules_, current_rms_A, held_.speed_rad_per_s);
+  played_.intervals.push_back({held_.duration_s, operating_point<double>(motor_.nominal, robot_, signals)});
   played_.time_s.push_back(time_s);
   played_.current_A.push_back(current_rms_A);
-  duration_s_ = current2_A2_s_ = 0.0;
+  held_ = {};
 }
 
 double use_duration_s(const MotorValues& motor) {
@@ -153,22 +148,22 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
 Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
                 std::uint64_t first_stream, const Progress& progress) {
   const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
-  std::vector<SamplePeak> all(blocks * kLanes);
+  std::vector<MotorPeak> all(blocks * kLanes);
   in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
-    const auto found = peaks(motor, limits, uses, options.seed, first_stream + block * kLanes);
+    const auto found = peaks(drawn_motors(motor, options.seed, first_stream + block * kLanes), limits, uses);
     std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
   });
   all.resize(static_cast<std::size_t>(options.samples));
   std::vector<double> winding_C;
   std::vector<char> is_over;
-  for (const SamplePeak& each : all) {
+  for (const MotorPeak& each : all) {
     winding_C.push_back(each.winding_C);
     is_over.push_back(each.is_over ? 1 : 0);
   }
   Guarantee result{.samples = options.samples,
                    .over = static_cast<int>(std::ranges::count(is_over, char{1})),
                    .over_share = sample_intervals(winding_C, is_over).probability};
-  result.keep_share_low = 1.0 - upper_bound_share(result.over, result.samples, kCertainty);
+  result.least_kept_share = 1.0 - upper_bound_share(result.over, result.samples, kCertainty_share);
   std::ranges::sort(winding_C);
   result.winding_p50_C = quantile(winding_C, 0.5);
   result.winding_p95_C = quantile(winding_C, 0.95);

@@ -106,7 +106,7 @@ std::string attributes(const FmuVariable& variable, std::size_t reference) {
 
 std::string start_and_unit(const FmuVariable& variable) {
   return (variable.unit.empty() ? "" : fmt::format(" unit=\"{}\"", variable.unit)) +
-         (has_start(variable) ? fmt::format(" start=\"{}\"", number(variable.start)) : "");
+         (has_start(variable) ? fmt::format(" start=\"{}\"", number(variable.value)) : "");
 }
 
 std::string default_experiment(const FmuModel& model) {

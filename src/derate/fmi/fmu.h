@@ -20,7 +20,7 @@ struct FmuVariable {
   std::string_view unit;  ///< one of fmu_units(); empty for none
   FmuCausality causality = FmuCausality::input;
   FmuType type = FmuType::real;
-  double start = 0.0;  ///< not of outputs
+  double value = 0.0;  ///< at the start; not of outputs
   std::string description;
   bool is_sampled = false;  ///< of an output: changes at calls of the firmware only
 };

@@ -62,7 +62,7 @@ std::vector<FmuFile> fmu_tables(const FmuModel& model, std::string_view more) {
   for (const FmuVariable& each : model.variables) {
     header += fmt::format("  at_{},\n", each.name);
     table += fmt::format("    {{{}, {}, {}}}, /* {} */\n", kKinds.at(static_cast<std::size_t>(each.causality)),
-                         kTypes.at(static_cast<std::size_t>(each.type)), fmu_number(each.start), each.name);
+                         kTypes.at(static_cast<std::size_t>(each.type)), fmu_number(each.value), each.name);
   }
   header += fmt::format("  MODEL_VARIABLES\n}};\n\n{}\n#endif\n", more);
   return {{"model_data.h", header}, {"model_data.c", table + "};\n"}};

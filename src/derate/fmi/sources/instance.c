@@ -10,7 +10,7 @@ void instance_reset(instance_state *state) {
   memset(state, 0, sizeof *state);
   strcpy(state->token, MODEL_TOKEN);
   for (i = 0; i < MODEL_VARIABLES; ++i) {
-    state->model.value[i] = model_variables[i].start;
+    state->model.value[i] = model_variables[i].value;
   }
 }
 

@@ -11,7 +11,7 @@ typedef enum { type_real, type_boolean, type_enumeration } model_type;
 typedef struct {
   model_kind kind;
   model_type type;
-  double start;
+  double value; /* at the start */
 } model_variable;
 
 typedef struct {

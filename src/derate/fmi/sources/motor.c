@@ -58,8 +58,9 @@ static double attempt(const double *value, double step_s, const double *from_C, 
     const double error_K =
         step_s * (-5.0 / 72.0 * first_rate[node] + middle_rate[node] / 12.0 + late_rate[node] / 9.0 - last_rate[node] / 8.0);
     const double ratio = fabs(error_K) / TOLERANCE_K;
-    /* what is no number is an error too */
-    error_ratio = ratio <= error_ratio ? error_ratio : ratio;
+    if (!(ratio <= error_ratio)) {
+      error_ratio = isfinite(ratio) ? ratio : HUGE_VAL;
+    }
   }
   return error_ratio;
 }
@@ -76,7 +77,7 @@ const char *model_step(model_state *state, double until_s) {
     const double tried_s = step_s < left_s ? step_s : left_s;
     const double error_ratio = attempt(state->value, tried_s, now_C, rate, next_C, next_rate);
     const double factor = error_ratio > 0.0 ? 0.9 / cbrt(error_ratio) : 5.0;
-    if (steps > MOST_STEPS || !(tried_s > 1e-12 * duration_s)) {
+    if (steps > MOST_STEPS || !(step_s > 1e-12 * duration_s)) {
       return "the temperatures change too fast to be followed: is an input in another unit?";
     }
     if (error_ratio <= 1.0) {
