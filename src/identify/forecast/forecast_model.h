@@ -49,11 +49,10 @@ class ForecastModel {
   [[nodiscard]] DecidedStart decided_start(const MeasuredRun& run, const Eigen::VectorXd& theta) const;
 
  private:
-  /// A parameter that follows another one: `1 / value` or `1 − value`.
+  /// A share that is what another one leaves of 1.
   struct Tie {
     int place = 0;
     int of = 0;
-    bool is_inverse = true;
   };
   /// A parameter that is 0 in runs without the condition.
   struct Conditional {

@@ -1,5 +1,6 @@
 #include "identify/forecast/pieces.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,7 +41,7 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun
   PredictedPiece out{piece.run, {}, {}, {}};
   ForecastFit fit;
   fit.theta = theta;
-  fit.covariance = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+  fit.covariance = model.prior().precision.ldlt().solve(Eigen::MatrixXd::Identity(theta.size(), theta.size()));
   const bool is_block = !piece.seen.empty();
   if (rules != nullptr && is_block) {
     fit = fit_forecast(model, runs, std::vector<RowMask>{piece.seen}, theta, *rules);
