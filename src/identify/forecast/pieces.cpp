@@ -50,6 +50,9 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(piece.run));
     fit = fit_forecast(model, others, {}, theta, *rules);
   }
+  if (!std::isfinite(fit.cost_nats)) {
+    throw Failure(ExitCode::numerics_failed, "the model cannot be run along the other pieces");
+  }
   const Eigen::VectorXd start_C =
       is_block && !fit.starts.empty() ? fit.starts.front().state_C : model.decided_start(run, fit.theta).state_C;
   out.path = model.along(run, fit.theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
