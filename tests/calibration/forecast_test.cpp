@@ -101,7 +101,7 @@ TEST(Forecast, KeepsANetworkThatIsRight) {
     for (const PredictedSignal& each : predicted.signals) {
       // 0.06 W of unknown heat at each node over 180 s move it by some tenths of a kelvin.
       EXPECT_LT(each.rmse_K, 0.6) << each.signal;
-      EXPECT_GT(each.coverage_90, 0.6) << each.signal;
+      EXPECT_GT(each.coverage_share, 0.6) << each.signal;
     }
   }
 }

@@ -21,7 +21,7 @@ std::string prediction_text(const Motor& motor, const Prediction& prediction) {
   for (const PredictedRun& run : prediction.runs) {
     for (const PredictedSignal& each : run.signals) {
       text += fmt::format("  {:24} {:10} {:>8.2f} K {:>10.2f} K {:>16.0f} % {:>9}\n", run.name, what_of(each), each.rmse_K, each.max_abs_K,
-                          100.0 * each.coverage_90, each.samples);
+                          100.0 * each.coverage_share, each.samples);
     }
   }
   for (const std::string& note : prediction.notes) {
@@ -37,7 +37,7 @@ nlohmann::ordered_json runs_json(const std::vector<PredictedRun>& runs) {
     nlohmann::ordered_json coverage = nlohmann::ordered_json::object();
     for (const PredictedSignal& each : run.signals) {
       error[each.signal] = {{"rmse_K", rounded(each.rmse_K, 4)}, {"max_abs_K", rounded(each.max_abs_K, 4)}, {"samples", each.samples}};
-      coverage[each.signal] = rounded(each.coverage_90, 4);
+      coverage[each.signal] = rounded(each.coverage_share, 4);
     }
     all.push_back({{"name", run.name}, {"error", error}, {"coverage_90", coverage}});
   }
@@ -60,7 +60,7 @@ Chart prediction_chart(const Motor& motor, const Prediction& prediction) {
     for (const PredictedSignal& each : run.signals) {
       ChartPanel panel;
       panel.title = fmt::format("{}, {}: {} K rms, {:.0f} % within the band", run.name, what_of(each), significant(each.rmse_K, 2),
-                                100.0 * each.coverage_90);
+                                100.0 * each.coverage_share);
       panel.y_label = what_of(each) + " temperature / °C";
       panel.bands = {{.name = "90 % band", .x = time_min, .low = each.low_C, .high = each.high_C, .color_index = 1}};
       panel.curves = {{.name = "measured", .x = time_min, .y = each.measured_C, .color_index = 0},

@@ -103,7 +103,7 @@ class Search {
         count += 1.0;
       }
     }
-    return score_.nats > least_nats / count + kLeastGain_nats;
+    return score_.score_nats > least_nats / count + kLeastGain_nats;
   }
 
   /// Accepts the extension under which the left-out pieces are predicted best, if it is worth its parameters.
@@ -117,8 +117,8 @@ class Search {
       each.fit = fit_forecast(*each.model, runs_, {}, each.fit.theta, rules());
       const ForecastRules rules = of_piece();
       PieceScore score = score_pieces(*each.model, runs_, pieces_, each.fit.theta, &rules);
-      const double gain_nats = score_.nats - score.nats - kLeastGain_nats * each.extension->free_count;
-      const double best_nats = best ? score_.nats - best_score->nats - kLeastGain_nats * best->extension->free_count : 0.0;
+      const double gain_nats = score_.score_nats - score.score_nats - kLeastGain_nats * each.extension->free_count;
+      const double best_nats = best ? score_.score_nats - best_score->score_nats - kLeastGain_nats * best->extension->free_count : 0.0;
       if (gain_nats > best_nats) {
         best = &each;
         best_score = std::move(score);
@@ -127,7 +127,7 @@ class Search {
     if (!best) {
       return false;
     }
-    out_.accepted.push_back({best->extension->name, score_.nats - best_score->nats});
+    out_.accepted.push_back({best->extension->name, score_.score_nats - best_score->score_nats});
     out_.setup = std::move(best->setup);
     out_.fit = std::move(best->fit);
     model_ = std::move(best->model);
@@ -166,7 +166,7 @@ class Search {
     add_rival(ForecastSource::file, of_file);
     // A fit knows more than the file: that stays only where it is plainly better.
     const auto handicapped = [](const RivalScore& rival) {
-      return rival.nats + (rival.source == ForecastSource::file ? kLeastGain_nats : 0.0);
+      return rival.score_nats + (rival.source == ForecastSource::file ? kLeastGain_nats : 0.0);
     };
     out_.source = std::ranges::min_element(out_.rivals, {}, handicapped)->source;
     if (out_.source == ForecastSource::tempered) {
@@ -185,7 +185,7 @@ class Search {
   }
 
   void add_rival(ForecastSource source, const PieceScore& score) {
-    RivalScore rival{source, score.nats, {}};
+    RivalScore rival{source, score.score_nats, {}};
     std::map<std::string, std::pair<double, double>> sums;
     for (const PredictedPiece& piece : score.pieces) {
       const MeasuredRun& run = runs_[piece.run];

@@ -98,7 +98,7 @@ class Listing {
       add(effect("contact_law", "contact_law", {"winding", "stator"},
                  {free_figure(kVaries_share * conductance_W_per_K, kShape_sd), ratio(by_mean), ratio(by_difference)}));
       if (all_.size() > before) {
-        all_.back().start_factors = {{"winding_stator.thermal_resistance", 1.0 / (1.0 - kVaries_share)}};
+        all_.back().start_ratio = {{"winding_stator.thermal_resistance", 1.0 / (1.0 - kVaries_share)}};
       }
     }
   }
@@ -216,7 +216,7 @@ Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& t
     for (Eigen::Index j = 0; j < old.free_count(); ++j) {
       out[i] = now.name(i) == old.name(j) ? theta[j] : out[i];
     }
-    for (const auto& [name, factor] : added.start_factors) {
+    for (const auto& [name, factor] : added.start_ratio) {
       out[i] += now.name(i) == name ? std::log(factor) : 0.0;
     }
   }

@@ -30,7 +30,7 @@ struct Extension {
   std::vector<FreeFault> faults;
   int free_count = 0;
   /// By which the fitted values of parameters are multiplied so that the whole begins where it was.
-  std::vector<std::pair<std::string, double>> start_factors;
+  std::vector<std::pair<std::string, double>> start_ratio;
 };
 
 /// The extensions that runs with these signals can tell, sized by the fitted values `theta` of the setup's model.

@@ -115,7 +115,7 @@ PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun>
       if (failure.code() != ExitCode::numerics_failed) {
         throw;
       }
-      score.nats = std::numeric_limits<double>::infinity();
+      score.score_nats = std::numeric_limits<double>::infinity();
       return score;
     }
     const LinearisedRun& path = score.pieces.back().path;
@@ -127,11 +127,11 @@ PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun>
         rows += std::isnan(path.residual_K[row]) ? 0.0 : 1.0;
       }
       const double noise_K = runs[piece.run].sensors[static_cast<std::size_t>(sensor)].noise_K;
-      score.nats += rows > 0.0 ? 0.5 * std::log(squares_K2 / rows + noise_K * noise_K) : 0.0;
+      score.score_nats += rows > 0.0 ? 0.5 * std::log(squares_K2 / rows + noise_K * noise_K) : 0.0;
       count += rows > 0.0 ? 1.0 : 0.0;
     }
   }
-  score.nats /= std::max(1.0, count);
+  score.score_nats /= std::max(1.0, count);
   return score;
 }
 

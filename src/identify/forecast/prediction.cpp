@@ -38,7 +38,7 @@ PredictedSignal signal_of(const MeasuredRun& run, const LinearisedRun& path, con
   }
   if (out.samples > 0) {
     out.rmse_K = std::sqrt(squares_K2 / static_cast<double>(out.samples));
-    out.coverage_90 = within / static_cast<double>(out.samples);
+    out.coverage_share = within / static_cast<double>(out.samples);
   }
   return out;
 }

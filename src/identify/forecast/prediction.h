@@ -19,8 +19,8 @@ struct PredictedSignal {
   std::vector<double> low_C, high_C;  ///< 90 % of the measured samples are expected between them
   double rmse_K = 0.0;
   double max_abs_K = 0.0;
-  double coverage_90 = 0.0;  ///< share of the samples within the band
-  std::size_t samples = 0;   ///< that were measured
+  double coverage_share = 0.0;  ///< share of the samples within the band
+  std::size_t samples = 0;      ///< that were measured
 };
 
 struct PredictedRun {
