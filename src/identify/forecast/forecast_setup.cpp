@@ -13,7 +13,8 @@ namespace heatsoak {
 namespace {
 
 /// Standard deviations of logarithms that are known before any run.
-constexpr double kContact_sd = 0.5;
+/// 0.5 of the whole conductance, of which half varies.
+constexpr double kContact_sd = 1.0;
 constexpr double kShape_sd = 0.7;
 constexpr double kLoose_sd = 1.0;
 /// Of the share of the remaining loss in the winding and of the factor on it.

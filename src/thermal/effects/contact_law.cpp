@@ -35,8 +35,8 @@ EffectType contact_law() {
           "IEEE Trans. Energy Convers. 20 (2005): gaps between parts decide and change with temperature",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at a mean of 60 °C and a difference of 30 K"},
-                     {"mean_ratio", "", Range::between(0.1, 10.0), "of the conductance, per 100 K more of the mean temperature"},
-                     {"difference_ratio", "", Range::between(0.1, 10.0), "of the conductance, per 100 K more of the difference"}},
+                     {"mean_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the mean temperature"},
+                     {"difference_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the difference"}},
       .typical = "half of the conductance between winding and stator, with ratios of 0.3 to 3",
       .look_alike =
           "contact_temperature_dependence, a contact that comes in one step; a winding of several bodies. An effect for forecasts: it "
