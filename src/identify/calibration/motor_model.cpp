@@ -307,11 +307,14 @@ MeasuredRunOptions how_to_read(const Motor& motor) {
 }
 
 HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque) {
-  if (all_have(recordings, Signal::current, torque)) {
+  if (all_have(recordings, Signal::current)) {
     return HeatInput::current;
   }
   if (all_have(recordings, Signal::input_power)) {
     return HeatInput::input_power;
+  }
+  if (all_have(recordings, Signal::current, torque)) {
+    return HeatInput::current;
   }
   std::vector<Diagnostic> lacking;
   for (const Recording& each : recordings) {

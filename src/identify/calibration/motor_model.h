@@ -57,8 +57,8 @@ MeasuredRunOptions how_to_read(const Motor& motor);
 /// What is said of the file's faults of sensors, in sentences: they are taken as stated.
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);
 
-/// What all of the recordings can drive: the copper loss where each has a current (or a torque that `torque` turns into one), else the
-/// input power. Throws Failure (bad_input) where they have neither.
+/// What all of the recordings can drive: the copper loss where each has a current, else the input power, else the copper loss of the
+/// current that `torque` makes of their torque. Throws Failure (bad_input) where they have none of these.
 HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque = {});
 
 /// Whether the file takes its losses from a measured power balance: it has a remaining_loss.
