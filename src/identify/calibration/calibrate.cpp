@@ -106,7 +106,8 @@ class Calibrating {
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
-    if (is_rejected_by_whole_runs(*all_.forecast, all_.runs, all_.fit.theta, options_.fit.threads)) {
+    // Without unknown heat the innovations fit is asked for as a comparison.
+    if (options_.fit.with_flux && is_rejected_by_whole_runs(*all_.forecast, all_.runs, all_.fit.theta, options_.fit.threads)) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
