@@ -104,30 +104,6 @@ Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> para
   return along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run).shown_C;
 }
 
-std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {
-  std::vector<SignalError> errors;
-  for (const MeasuredRun& run : runs) {
-    const Eigen::MatrixXd off_K = run.measured_C - open_loop_C(network, parameters, run);
-    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
-      auto found = std::ranges::find(errors, run.sensors[sensor].signal, &SignalError::signal);
-      if (found == errors.end()) {
-        found = errors.insert(errors.end(), {run.sensors[sensor].signal});
-      }
-      for (const double each_K : off_K.col(static_cast<Eigen::Index>(sensor))) {
-        if (!std::isnan(each_K)) {
-          found->rmse_K += each_K * each_K;
-          found->max_abs_K = std::max(found->max_abs_K, std::abs(each_K));
-          ++found->samples;
-        }
-      }
-    }
-  }
-  for (SignalError& each : errors) {
-    each.rmse_K = each.samples > 0 ? std::sqrt(each.rmse_K / static_cast<double>(each.samples)) : 0.0;
-  }
-  return errors;
-}
-
 double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal) {
   double sum_C = 0.0;
   double squares_C2 = 0.0;

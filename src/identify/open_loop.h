@@ -44,9 +44,6 @@ struct SignalError {
   Eigen::Index samples = 0;
 };
 
-/// Errors of the free-running model over all runs, by signal.
-std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs);
-
 /// Of all that a sensor showed; how far a model that says nothing is off.
 double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal);
 

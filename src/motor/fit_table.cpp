@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/normal.hpp>
+#include <cmath>
 #include <sstream>
 
 #include "base/quantity.h"
@@ -139,6 +140,12 @@ std::string to_toml(const MotorFit& fit) {
   text += fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
   text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", significant(fit.free_run_error_K, 2)) : "";
   return text + (fit.band ? band_text(*fit.band) : "");
+}
+
+double drawn_heat_factor(const ForecastBand& band, double uniform) {
+  static const boost::math::normal kNormal;
+  const double sd = band.width_ratio * std::hypot(band.heat_factor_sd, band.unknown_heat_share[0]);
+  return std::exp(sd * boost::math::quantile(kNormal, uniform));
 }
 
 void correlate(const MotorFit& fit, std::span<double> uniforms) {

@@ -40,6 +40,10 @@ struct MotorFit {
 MotorFit read_fit(Reader& table, std::span<const std::string> figures);
 std::string to_toml(const MotorFit& fit);
 
+/// Factor on all heat of a run at `uniform` in (0, 1): the heat factor of the band, and the unknown heat at the winding as if it stayed the
+/// same throughout, which is the worst that slow heat can do.
+double drawn_heat_factor(const ForecastBand& band, double uniform);
+
 /// Independent numbers in (0, 1), one per figure of the fit, become dependent ones with the fit's correlation (Gaussian copula).
 void correlate(const MotorFit& fit, std::span<double> uniforms);
 

@@ -307,11 +307,14 @@ MeasuredRunOptions how_to_read(const Motor& motor) {
 }
 
 HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque) {
-  if (all_have(recordings, Signal::current, torque)) {
+  if (all_have(recordings, Signal::current)) {
     return HeatInput::current;
   }
   if (all_have(recordings, Signal::input_power)) {
     return HeatInput::input_power;
+  }
+  if (all_have(recordings, Signal::current, torque)) {
+    return HeatInput::current;
   }
   std::vector<Diagnostic> lacking;
   for (const Recording& each : recordings) {
@@ -326,13 +329,18 @@ HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorqu
   throw Failure(ExitCode::bad_input, "the logs do not tell how much heat goes in", std::move(lacking));
 }
 
-HeatInput best_heat_input(std::span<const Recording> recordings, const ShaftTorque& torque) {
-  for (const Signal signal : {Signal::current, Signal::input_power, Signal::shaft_power, Signal::speed}) {
-    if (!all_have(recordings, signal)) {
-      return heat_input_for(recordings, torque);
-    }
+bool has_remaining_loss(const Motor& motor) {
+  return std::ranges::any_of(motor.effects, [](const MotorEffect& each) { return each.type->name == std::string_view("remaining_loss"); });
+}
+
+HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss) {
+  const bool has_no_losses = motor.effects.empty() && !motor.fit;
+  const bool is_balanced = std::ranges::all_of(std::array{Signal::current, Signal::input_power, Signal::shaft_power, Signal::speed},
+                                               [&](Signal signal) { return all_have(recordings, signal); });
+  if (is_balanced && (has_remaining_loss(motor) || (may_add_remaining_loss && has_no_losses))) {
+    return HeatInput::power_balance;
   }
-  return HeatInput::power_balance;
+  return heat_input_for(recordings, how_to_read(motor).torque);
 }
 
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings) {

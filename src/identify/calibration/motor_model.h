@@ -57,12 +57,16 @@ MeasuredRunOptions how_to_read(const Motor& motor);
 /// What is said of the file's faults of sensors, in sentences: they are taken as stated.
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);
 
-/// What all of the recordings can drive: the copper loss where each has a current (or a torque that `torque` turns into one), else the
-/// input power. Throws Failure (bad_input) where they have neither.
+/// What all of the recordings can drive: the copper loss where each has a current, else the input power, else the copper loss of the
+/// current that `torque` makes of their torque. Throws Failure (bad_input) where they have none of these.
 HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque = {});
 
-/// As heat_input_for(), but the power balance where all recordings have current, input power, torque and speed.
-HeatInput best_heat_input(std::span<const Recording> recordings, const ShaftTorque& torque = {});
+/// Whether the file takes its losses from a measured power balance: it has a remaining_loss.
+bool has_remaining_loss(const Motor& motor);
+
+/// As heat_input_for(), but the power balance where all recordings have current, input power, torque and speed, and the motor either has
+/// a remaining_loss or, where `may_add_remaining_loss`, no effects and no fit that stand for its losses already.
+HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss);
 
 /// `with_speed`: all logs have a speed, so that the no-load loss can be told.
 MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);

@@ -192,6 +192,9 @@ ForecastBand fit_band(const ForecastModel& model, std::span<const MeasuredRun> r
         sizes.push_back(std::abs(piece.path.residual_K[row]) / sd_K[row]);
       }
     }
+    if (sizes.empty()) {
+      continue;
+    }
     const auto at_90 = sizes.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sizes.size()));
     std::nth_element(sizes.begin(), at_90, sizes.end());
     ratio += *at_90 / kBand_sd / static_cast<double>(pieces.size());

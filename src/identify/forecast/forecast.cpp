@@ -39,13 +39,18 @@ class Search {
 
   Forecast run(std::span<const Eigen::VectorXd> hints) {
     out_.fit = best_of_starts(hints);
+    if (!std::isfinite(out_.fit.cost_nats)) {
+      out_.source = ForecastSource::file;
+      out_.band = usual_band(runs_.front().time_s.back() - runs_.front().time_s.front());
+      return std::move(out_);
+    }
     base_.emplace(*model_);
     pieces_ = pieces_of(*model_, out_.fit, runs_);
     out_.pieces = pieces_.size();
+    const ForecastRules rules = of_piece();
+    score_ = score_pieces(*model_, runs_, pieces_, out_.fit.theta, &rules);
     if (pieces_.size() >= kLeastPieces) {
-      const ForecastRules rules = of_piece();
-      score_ = score_pieces(*model_, runs_, pieces_, out_.fit.theta, &rules);
-      for (int round = 0; round < kMostExtensions && extend(); ++round) {
+      for (int round = 0; round < kMostExtensions && could_gain() && extend(); ++round) {
       }
       choose();
     }
@@ -88,6 +93,19 @@ class Search {
     return fit.cost_nats + 0.5 * squares_K2 * scale;
   }
 
+  /// No network is scored better than one whose error is the sensors' noise.
+  [[nodiscard]] bool could_gain() const {
+    double least_nats = 0.0;
+    double count = 0.0;
+    for (const Piece& piece : pieces_) {
+      for (const Sensor& sensor : runs_[piece.run].sensors) {
+        least_nats += 0.5 * std::log(2.0 * sensor.noise_K * sensor.noise_K);
+        count += 1.0;
+      }
+    }
+    return score_.score_nats > least_nats / count + kLeastGain_nats;
+  }
+
   /// Accepts the extension under which the left-out pieces are predicted best, if it is worth its parameters.
   bool extend() {
     const std::vector<Extension> all = extensions_for(out_.setup, *model_, out_.fit.theta, runs_);
@@ -99,8 +117,8 @@ class Search {
       each.fit = fit_forecast(*each.model, runs_, {}, each.fit.theta, rules());
       const ForecastRules rules = of_piece();
       PieceScore score = score_pieces(*each.model, runs_, pieces_, each.fit.theta, &rules);
-      const double gain_nats = score_.nats - score.nats - kLeastGain_nats * each.extension->free_count;
-      const double best_nats = best ? score_.nats - best_score->nats - kLeastGain_nats * best->extension->free_count : 0.0;
+      const double gain_nats = score_.score_nats - score.score_nats - kLeastGain_nats * each.extension->free_count;
+      const double best_nats = best ? score_.score_nats - best_score->score_nats - kLeastGain_nats * best->extension->free_count : 0.0;
       if (gain_nats > best_nats) {
         best = &each;
         best_score = std::move(score);
@@ -109,7 +127,7 @@ class Search {
     if (!best) {
       return false;
     }
-    out_.accepted.push_back({best->extension->name, score_.nats - best_score->nats});
+    out_.accepted.push_back({best->extension->name, score_.score_nats - best_score->score_nats});
     out_.setup = std::move(best->setup);
     out_.fit = std::move(best->fit);
     model_ = std::move(best->model);
@@ -127,7 +145,7 @@ class Search {
       each.extension = &all[i];
       each.setup = with_extension(out_.setup, all[i]);
       each.model.emplace(each.setup.model());
-      each.fit = fit_forecast(*each.model, runs_, {}, carried_over(*model_, out_.fit.theta, *each.model), rules);
+      each.fit = fit_forecast(*each.model, runs_, {}, carried_over(*model_, out_.fit.theta, *each.model, all[i]), rules);
       each.gain_nats = out_.fit.cost_nats - each.fit.cost_nats - 0.5 * all[i].free_count;
     });
     std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::gain_nats);
@@ -140,13 +158,17 @@ class Search {
         .is_tempered = false, .has_heat_factors = false, .rounds = 2, .steps = 2 * kPieceSteps, .threads = threads_};
     const ForecastFit plain = fit_forecast(*base_, runs_, {}, base_->start(), ordinary);
     const ForecastFit near = fit_forecast(*base_, runs_, {}, carried_over(*model_, out_.fit.theta, *base_), ordinary);
-    const ForecastFit& best_plain = near.cost_nats < plain.cost_nats ? near : plain;
+    const ForecastFit& best_plain = near.error_K < plain.error_K ? near : plain;
     const PieceScore of_plain = score_pieces(*base_, runs_, pieces_, best_plain.theta, &ordinary);
     const PieceScore of_file = score_pieces(*base_, runs_, pieces_, base_->start(), nullptr);
     add_rival(ForecastSource::tempered, score_);
     add_rival(ForecastSource::ordinary, of_plain);
     add_rival(ForecastSource::file, of_file);
-    out_.source = std::ranges::min_element(out_.rivals, {}, &RivalScore::nats)->source;
+    // A fit knows more than the file: that stays only where it is plainly better.
+    const auto handicapped = [](const RivalScore& rival) {
+      return rival.score_nats + (rival.source == ForecastSource::file ? kLeastGain_nats : 0.0);
+    };
+    out_.source = std::ranges::min_element(out_.rivals, {}, handicapped)->source;
     if (out_.source == ForecastSource::tempered) {
       return;
     }
@@ -163,7 +185,7 @@ class Search {
   }
 
   void add_rival(ForecastSource source, const PieceScore& score) {
-    RivalScore rival{source, score.nats, {}};
+    RivalScore rival{source, score.score_nats, {}};
     std::map<std::string, std::pair<double, double>> sums;
     for (const PredictedPiece& piece : score.pieces) {
       const MeasuredRun& run = runs_[piece.run];
@@ -181,7 +203,7 @@ class Search {
     out_.rivals.push_back(std::move(rival));
   }
 
-  /// Without left-out pieces the runs themselves are all that there is, and count as one.
+  /// Without left-out pieces the runs themselves are all that there is: they count as one, and do not narrow the band.
   void set_band() {
     if (score_.pieces.empty()) {
       PredictedPiece own;
@@ -195,6 +217,7 @@ class Search {
       }
     }
     out_.band = fit_band(*model_, runs_, score_.pieces, std::max<std::size_t>(1, pieces_.size()));
+    out_.band.width_ratio = pieces_.empty() ? std::max(1.0, out_.band.width_ratio) : out_.band.width_ratio;
   }
 
   std::span<const MeasuredRun> runs_;

@@ -20,7 +20,7 @@ struct AcceptedExtension {
 /// What the left-out pieces say of a rival.
 struct RivalScore {
   ForecastSource source = ForecastSource::file;
-  double nats = 0.0;                                   ///< the smaller the better
+  double score_nats = 0.0;                             ///< the smaller the better
   std::vector<std::pair<std::string, double>> rmse_K;  ///< per signal, mean square over the pieces
 };
 

@@ -46,7 +46,7 @@ class Fitting {
     for (int round = 0; round < rules_.rounds && assemble(); ++round) {
       set_starts();
       assemble();
-      set_error();
+      set_error(rules_.is_tempered);
       descend(rules_.steps);
     }
     return result();
@@ -133,7 +133,7 @@ class Fitting {
     return true;
   }
 
-  void set_error() {
+  void set_error(bool is_tempered) {
     if (rules_.held_error_K > 0.0) {
       out_.error_K = rules_.held_error_K;
       out_.weight = rules_.held_weight;
@@ -158,7 +158,7 @@ class Fitting {
       }
     }
     out_.error_K = std::sqrt(std::max(squares_K2, noise_K2) / std::max(1.0, count));
-    out_.weight = rules_.is_tempered && count > 0.0 ? std::min(1.0, independent / count) : 1.0;
+    out_.weight = is_tempered && count > 0.0 ? std::min(1.0, independent / count) : 1.0;
   }
 
   [[nodiscard]] double scale_per_K2() const { return out_.weight / (out_.error_K * out_.error_K); }
@@ -278,7 +278,7 @@ class Fitting {
       out_.cost_nats = kInfinity;
       return out_;
     }
-    set_error();
+    set_error(true);
     out_.cost_nats = cost();
     const Eigen::Index shared = model_.count();
     out_.covariance = equations().normal.ldlt().solve(Eigen::MatrixXd::Identity(equations().normal.rows(), shared)).topRows(shared);

@@ -27,8 +27,9 @@ struct ForecastRules {
 
 struct ForecastFit {
   Eigen::VectorXd theta;
-  Eigen::VectorXd heat_log;                 ///< per run
-  std::vector<RunStart> starts;             ///< per run
+  Eigen::VectorXd heat_log;      ///< per run
+  std::vector<RunStart> starts;  ///< per run
+  // Of any fit, tempered or not, the following are those of the tempered cost there.
   Eigen::MatrixXd covariance;               ///< of θ: inverse curvature of the cost, heat factors and starts included
   double error_K = 0.0;                     ///< rms of the rows that count, at least the sensors' noise
   double weight = 1.0;                      ///< independent samples per sample

@@ -47,15 +47,11 @@ ForecastModel::ForecastModel(MotorModel model, const Motor& motor, std::vector<F
 }
 
 void ForecastModel::find_ties() {
-  const EffectInPlace* const across = effect_named(network(), "winding_stator");
   const EffectInPlace* const implicit = effect_named(network(), kImplicitPowerLoss);
   for (const EffectInPlace& effect : network().effects()) {
-    if (effect.type->name == std::string_view("contact_law") && effect.node_index == across->node_index) {
-      ties_.push_back({effect.parameter_index.front(), across->parameter_index.front(), true});
-    }
     // One other effect at most takes a share of the input power; of more, the shares stay as the file has them.
     if (implicit && &effect != implicit && effect.type == implicit->type) {
-      ties_.push_back({implicit->parameter_index.front(), effect.parameter_index.front(), false});
+      ties_.push_back({implicit->parameter_index.front(), effect.parameter_index.front()});
     }
   }
 }
@@ -97,14 +93,14 @@ Eigen::VectorXd ForecastModel::within_bounds(Eigen::VectorXd theta) const {
   return theta;
 }
 
-std::vector<double> ForecastModel::values_in(const MeasuredRun& run, const Eigen::VectorXd& theta, double heat_log) const {
+std::vector<double> ForecastModel::values_in(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio) const {
   std::vector<double> values = motor_.model.values_at(theta.head(motor_.model.free_count()));
   const auto at = [&](int place) -> double& { return values[static_cast<std::size_t>(place)]; };
   for (const Tie& tie : ties_) {
-    at(tie.place) = tie.is_inverse ? 1.0 / at(tie.of) : 1.0 - at(tie.of);
+    at(tie.place) = 1.0 - at(tie.of);
   }
   for (const int place : heat_places_) {
-    at(place) *= std::exp(heat_log);
+    at(place) *= std::exp(log_heat_ratio);
   }
   for (const Conditional& each : conditional_) {
     at(each.place) = run.has(each.condition) ? at(each.place) : 0.0;
@@ -112,29 +108,27 @@ std::vector<double> ForecastModel::values_in(const MeasuredRun& run, const Eigen
   return values;
 }
 
-LinearisedRun ForecastModel::along(const MeasuredRun& run, const Eigen::VectorXd& theta, double heat_log,
+LinearisedRun ForecastModel::along(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio,
                                    std::span<const double> start_C) const {
   const Model& model = motor_.model;
   const Eigen::Index inner = model.free_count();
-  const std::vector<double> values = values_in(run, theta, heat_log);
+  const std::vector<double> values = values_in(run, theta, log_heat_ratio);
   LinearisedRun out = linearise(network(), values, wanted_, model.flux_nodes, start_C, run);
   const Columns by_value = std::move(out.by_parameter);
   out.by_parameter.setZero(by_value.rows(), count() + 1);
   out.by_parameter.leftCols(inner) = by_theta(model, theta.head(inner), by_value.leftCols(inner));
   const auto position = [&](int place) { return std::ranges::find(wanted_.begin(), wanted_.begin() + inner, place) - wanted_.begin(); };
-  // e^heat_log multiplies the shares too, and the derivative by what they follow.
+  // e^log_heat_ratio multiplies these columns below.
   for (std::size_t i = 0; i < ties_.size(); ++i) {
     if (const Eigen::Index of = position(ties_[i].of); of < inner) {
-      const double value = model.value_of(of, theta[of]);
-      const double slope = ties_[i].is_inverse ? -1.0 / (value * value) : -std::exp(heat_log);
-      out.by_parameter.col(of) += slope * model.slope_of(of, theta[of]) * by_value.col(inner + static_cast<Eigen::Index>(i));
+      out.by_parameter.col(of) -= model.slope_of(of, theta[of]) * by_value.col(inner + static_cast<Eigen::Index>(i));
     }
   }
   const Eigen::Index first_heat = inner + static_cast<Eigen::Index>(ties_.size());
   for (std::size_t i = 0; i < heat_places_.size(); ++i) {
     const Eigen::Index column = first_heat + static_cast<Eigen::Index>(i);
     if (const Eigen::Index own = position(heat_places_[i]); own < inner) {
-      out.by_parameter.col(own) *= std::exp(heat_log);
+      out.by_parameter.col(own) *= std::exp(log_heat_ratio);
     }
     out.by_parameter.col(count()) += values[static_cast<std::size_t>(heat_places_[i])] * by_value.col(column);
   }

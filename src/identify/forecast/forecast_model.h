@@ -39,21 +39,20 @@ class ForecastModel {
   [[nodiscard]] Eigen::VectorXd start() const;
   /// Within the bounds of all parameters.
   [[nodiscard]] Eigen::VectorXd within_bounds(Eigen::VectorXd theta) const;
-  /// The network's parameters; all heat that the model makes of the inputs is multiplied by e^heat_log.
-  [[nodiscard]] std::vector<double> values_in(const MeasuredRun& run, const Eigen::VectorXd& theta, double heat_log) const;
-  /// The run from start temperatures of all state nodes. Columns by_parameter: θ, then heat_log. Throws Failure (numerics_failed)
+  /// The network's parameters; all heat that the model makes of the inputs is multiplied by e^log_heat_ratio.
+  [[nodiscard]] std::vector<double> values_in(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio) const;
+  /// The run from start temperatures of all state nodes. Columns by_parameter: θ, then log_heat_ratio. Throws Failure (numerics_failed)
   /// where the temperatures run away.
-  [[nodiscard]] LinearisedRun along(const MeasuredRun& run, const Eigen::VectorXd& theta, double heat_log,
+  [[nodiscard]] LinearisedRun along(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio,
                                     std::span<const double> start_C) const;
   /// Start temperatures that the beginning of the run decides (open_loop.h).
   [[nodiscard]] DecidedStart decided_start(const MeasuredRun& run, const Eigen::VectorXd& theta) const;
 
  private:
-  /// A parameter that follows another one: `1 / value` or `1 − value`.
+  /// A share that is what another one leaves of 1.
   struct Tie {
     int place = 0;
     int of = 0;
-    bool is_inverse = true;
   };
   /// A parameter that is 0 in runs without the condition.
   struct Conditional {

@@ -13,7 +13,8 @@ namespace heatsoak {
 namespace {
 
 /// Standard deviations of logarithms that are known before any run.
-constexpr double kContact_sd = 0.5;
+/// 0.5 of the whole conductance, of which half varies.
+constexpr double kContact_sd = 1.0;
 constexpr double kShape_sd = 0.7;
 constexpr double kLoose_sd = 1.0;
 /// Of the share of the remaining loss in the winding and of the factor on it.
@@ -82,16 +83,24 @@ class Listing {
     const auto free =
         static_cast<int>(std::ranges::count_if(effect.parameters, [](const Figure& each) { return each.spread.has_value(); }));
     const std::string name = effect.name == "contact_law"
-                                 ? fmt::format("contact_law_of_{}{}{}", effect.parameters[1].spread ? "mean" : "", free == 2 ? "_and_" : "",
+                                 ? fmt::format("contact_law_of_{}{}{}", effect.parameters[1].spread ? "mean" : "",
+                                               effect.parameters[1].spread && effect.parameters[2].spread ? "_and_" : "",
                                                effect.parameters[2].spread ? "difference" : "")
                                  : effect.name;
-    all_.push_back({name, {std::move(effect)}, {}, free});
+    all_.push_back({name, {std::move(effect)}, {}, free, {}});
   }
 
+  /// Half of the conductance becomes one that varies.
   void contact(double conductance_W_per_K) {
+    constexpr double kVaries_share = 0.5;
     for (const auto& [by_mean, by_difference] : {std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {
       const auto ratio = [](bool is_free) { return is_free ? free_figure(1.0, kContact_sd) : held(1.0); };
-      add(effect("contact_law", "contact_law", {"winding", "stator"}, {held(conductance_W_per_K), ratio(by_mean), ratio(by_difference)}));
+      const std::size_t before = all_.size();
+      add(effect("contact_law", "contact_law", {"winding", "stator"},
+                 {free_figure(kVaries_share * conductance_W_per_K, kShape_sd), ratio(by_mean), ratio(by_difference)}));
+      if (all_.size() > before) {
+        all_.back().start_ratio = {{"winding_stator.thermal_resistance", 1.0 / (1.0 - kVaries_share)}};
+      }
     }
   }
 
@@ -103,7 +112,7 @@ class Listing {
     const bool is_shown = std::ranges::any_of(
         runs_, [&](const MeasuredRun& run) { return std::ranges::find(run.sensors, type->signal, &Sensor::signal) != run.sensors.end(); });
     if (!is_stated && is_shown) {
-      all_.push_back({std::string(name), {}, {{type, kUsual_s, kLoose_sd}}, 1});
+      all_.push_back({std::string(name), {}, {{type, kUsual_s, kLoose_sd}}, 1, {}});
     }
   }
 
@@ -180,11 +189,9 @@ ForecastModel ForecastSetup::model() const {
 }
 
 ForecastSetup forecast_setup(const Motor& motor, std::span<const Recording> recordings) {
-  ForecastSetup setup{.motor = motor, .heat = best_heat_input(recordings, how_to_read(motor).torque)};
+  ForecastSetup setup{.motor = motor, .heat = heat_input_of(motor, recordings, true)};
   setup.has_speed = all_have(recordings, Signal::speed);
-  const bool has_remainder =
-      std::ranges::any_of(motor.effects, [](const MotorEffect& each) { return each.type->name == std::string_view("remaining_loss"); });
-  if (setup.heat == HeatInput::power_balance && !has_remainder) {
+  if (setup.heat == HeatInput::power_balance && !has_remaining_loss(motor)) {
     setup.motor.effects.push_back(effect("remaining_loss", "remaining_loss", {"winding", "stator"},
                                          {free_figure(1.0, kRemainder_sd), free_figure(0.5, kWindingShare_sd)}));
   }
@@ -202,13 +209,16 @@ ForecastSetup with_extension(ForecastSetup setup, const Extension& extension) {
   return setup;
 }
 
-Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& theta, const ForecastModel& to) {
+Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& theta, const ForecastModel& to, const Extension& added) {
   Eigen::VectorXd out = to.start();
   const Model& old = from.motor().model;
   const Model& now = to.motor().model;
   for (Eigen::Index i = 0; i < now.free_count(); ++i) {
     for (Eigen::Index j = 0; j < old.free_count(); ++j) {
       out[i] = now.name(i) == old.name(j) ? theta[j] : out[i];
+    }
+    for (const auto& [name, factor] : added.start_ratio) {
+      out[i] += now.name(i) == name ? std::log(factor) : 0.0;
     }
   }
   for (std::size_t i = 0; i < to.faults().size(); ++i) {

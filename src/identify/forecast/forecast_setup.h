@@ -29,6 +29,8 @@ struct Extension {
   std::vector<MotorEffect> effects;
   std::vector<FreeFault> faults;
   int free_count = 0;
+  /// By which the fitted values of parameters are multiplied so that the whole begins where it was.
+  std::vector<std::pair<std::string, double>> start_ratio;
 };
 
 /// The extensions that runs with these signals can tell, sized by the fitted values `theta` of the setup's model.
@@ -36,8 +38,8 @@ std::vector<Extension> extensions_for(const ForecastSetup& setup, const Forecast
                                       std::span<const MeasuredRun> runs);
 ForecastSetup with_extension(ForecastSetup setup, const Extension& extension);
 
-/// θ of one model in the coordinates of another: by name, and the start of the other where it has more.
-Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& theta, const ForecastModel& to);
+/// θ of one model in the coordinates of another: by name, and the start of the other where it has more, which `added` brought.
+Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& theta, const ForecastModel& to, const Extension& added = {});
 
 /// Root mean square over the run of the heat that the network makes or leads to the surroundings, whichever is more, in W.
 double rms_heat_W(const Network& network, std::span<const double> values, const MeasuredRun& run, const Eigen::MatrixXd& state_C);

@@ -1,5 +1,6 @@
 #include "identify/forecast/pieces.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,7 +41,7 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun
   PredictedPiece out{piece.run, {}, {}, {}};
   ForecastFit fit;
   fit.theta = theta;
-  fit.covariance = Eigen::MatrixXd::Zero(theta.size(), theta.size());
+  fit.covariance = model.prior().precision.ldlt().solve(Eigen::MatrixXd::Identity(theta.size(), theta.size()));
   const bool is_block = !piece.seen.empty();
   if (rules != nullptr && is_block) {
     fit = fit_forecast(model, runs, std::vector<RowMask>{piece.seen}, theta, *rules);
@@ -48,6 +49,9 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun
     std::vector<MeasuredRun> others(runs.begin(), runs.end());
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(piece.run));
     fit = fit_forecast(model, others, {}, theta, *rules);
+  }
+  if (!std::isfinite(fit.cost_nats)) {
+    throw Failure(ExitCode::numerics_failed, "the model cannot be run along the other pieces");
   }
   const Eigen::VectorXd start_C =
       is_block && !fit.starts.empty() ? fit.starts.front().state_C : model.decided_start(run, fit.theta).state_C;
@@ -111,7 +115,7 @@ PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun>
       if (failure.code() != ExitCode::numerics_failed) {
         throw;
       }
-      score.nats = std::numeric_limits<double>::infinity();
+      score.score_nats = std::numeric_limits<double>::infinity();
       return score;
     }
     const LinearisedRun& path = score.pieces.back().path;
@@ -123,11 +127,11 @@ PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun>
         rows += std::isnan(path.residual_K[row]) ? 0.0 : 1.0;
       }
       const double noise_K = runs[piece.run].sensors[static_cast<std::size_t>(sensor)].noise_K;
-      score.nats += rows > 0.0 ? 0.5 * std::log(squares_K2 / rows + noise_K * noise_K) : 0.0;
+      score.score_nats += rows > 0.0 ? 0.5 * std::log(squares_K2 / rows + noise_K * noise_K) : 0.0;
       count += rows > 0.0 ? 1.0 : 0.0;
     }
   }
-  score.nats /= std::max(1.0, count);
+  score.score_nats /= std::max(1.0, count);
   return score;
 }
 

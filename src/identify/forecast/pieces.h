@@ -29,7 +29,7 @@ struct PredictedPiece {
 };
 
 struct PieceScore {
-  double nats = 0.0;  ///< mean over pieces and sensors of ½·ln(mean square error + noise²)
+  double score_nats = 0.0;  ///< mean over pieces and sensors of ½·ln(mean square error + noise²)
   std::vector<PredictedPiece> pieces;
 };
 

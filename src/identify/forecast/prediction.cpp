@@ -9,6 +9,7 @@
 #include "base/quantity.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/log_columns.h"
+#include "identify/turning_rows.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
@@ -37,7 +38,7 @@ PredictedSignal signal_of(const MeasuredRun& run, const LinearisedRun& path, con
   }
   if (out.samples > 0) {
     out.rmse_K = std::sqrt(squares_K2 / static_cast<double>(out.samples));
-    out.coverage_90 = within / static_cast<double>(out.samples);
+    out.coverage_share = within / static_cast<double>(out.samples);
   }
   return out;
 }
@@ -56,10 +57,13 @@ double longest_s(std::span<const MeasuredRun> runs) {
 }
 
 /// Of the recording alone.
-void predict_one(const Motor& motor, const Recording& recording, double ambient_C, Prediction& all) {
+void predict_one(const Motor& motor, const Recording& recording, const PredictionOptions& options, Prediction& all) {
   const std::span<const Recording> own(&recording, 1);
   ForecastSetup setup = forecast_setup(motor, own);
-  const std::vector<MeasuredRun> runs = forecast_runs(setup, own, ambient_C, all.notes);
+  std::vector<MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, all.notes);
+  if (options.turns_within_rows) {
+    std::ranges::transform(runs, runs.begin(), turning_within_rows);
+  }
   const double most_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
   if (most_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
     setup.opens_loss_at_speed = true;
@@ -112,13 +116,13 @@ std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<con
   return all;
 }
 
-Prediction predict(const Motor& motor, std::span<const Recording> recordings, double ambient_C) {
+Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options) {
   Prediction all;
   if (std::string lacking = column_lacking(how_to_read(motor).column, recordings); !lacking.empty()) {
     all.notes.push_back(std::move(lacking));
   }
   for (const Recording& recording : recordings) {
-    predict_one(motor, recording, ambient_C, all);
+    predict_one(motor, recording, options, all);
   }
   if (!motor.fit || !motor.fit->band) {
     all.notes.push_back(fmt::format(

@@ -19,8 +19,8 @@ struct PredictedSignal {
   std::vector<double> low_C, high_C;  ///< 90 % of the measured samples are expected between them
   double rmse_K = 0.0;
   double max_abs_K = 0.0;
-  double coverage_90 = 0.0;  ///< share of the samples within the band
-  std::size_t samples = 0;   ///< that were measured
+  double coverage_share = 0.0;  ///< share of the samples within the band
+  std::size_t samples = 0;      ///< that were measured
 };
 
 struct PredictedRun {
@@ -43,9 +43,14 @@ PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, c
 std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, double ambient_C,
                                        std::vector<std::string>& notes);
 
+struct PredictionOptions {
+  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
+  bool turns_within_rows = false;                       ///< a speed that changes its sign from row to row went straight in between
+};
+
 /// Each recording by itself, under whatever heat input it has: the power balance, a current, a torque, or input power. Of a motor without
-/// a fit the parameters are as uncertain as its data sheet. `ambient_C`: where a log has none. Throws Failure (bad_input) where a log has
+/// a fit the parameters are as uncertain as its data sheet. Throws Failure (bad_input) where a log has
 /// no heat input or no temperature, numerics_failed where the temperatures run away.
-Prediction predict(const Motor& motor, std::span<const Recording> recordings, double ambient_C);
+Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options);
 
 }  // namespace heatsoak
