@@ -99,14 +99,16 @@ std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
     return fmt::format("is undecided: it exceeds a limit with a probability of {} %", percent_range(*motor.probability_interval));
   }
   const bool is_stator = motor.limiting_factor == LimitingFactor::stator_temperature;
-  const std::string reaches = fmt::format("the {} reaches {:.0f} °C, its limit is {:.0f} °C", is_stator ? "stator" : "winding",
+  const std::string when = motor.verdict == Verdict::fail && motor.time_to_limit_s
+                               ? fmt::format(", exceeded after {}", duration_text(*motor.time_to_limit_s))
+                               : "";
+  const std::string reaches = fmt::format("the {} reaches {:.0f} °C (limit {:.0f} °C{})", is_stator ? "stator" : "winding",
                                           is_stator ? motor.stator_peak_C.nominal : motor.winding_peak_C.nominal,
-                                          is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C);
+                                          is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C, when);
   const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * motor.probability_over_limit);
   switch (motor.verdict) {
     case Verdict::fail:
-      return "fails: " +
-             (is_drawn ? over : reaches + (motor.time_to_limit_s ? ", exceeded after " + duration_text(*motor.time_to_limit_s) : ""));
+      return "fails: " + (is_drawn ? over : reaches);
     case Verdict::marginal:
       return fmt::format("is marginal: {}",
                          motor.short_probability > std::max(motor.probability_over_limit, kMarginalProbability)
