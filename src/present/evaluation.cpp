@@ -283,6 +283,12 @@ Document evaluation_document(std::span<const MotorEvaluation> results, const Eva
                       "(`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
   add_lines(document.notes, slip_text(context.demand), Severity::note);
+  if (context.duty.shape_data->depends_on_robot()) {
+    document.add_note(
+        Severity::background,
+        "`heatsoak simulate` gives other temperatures: it adds slip, noisy sensors and the sag of the battery, while here the plan "
+        "is followed exactly at the nominal voltage. --closed-loop ranks motors with all that.");
+  }
   document.add_note(Severity::background, fmt::format("Load: {}.", context.duty.origin));
   if (context.draws > 0) {
     document.add_note(Severity::background, "The nominal peak, margin, reached, A rms and more A are of one game, that of the seed.");
