@@ -203,14 +203,14 @@ std::string to_string(std::span<const DefaultSpread> spreads) {
 
 void require_sound(const Motor& motor) {
   Diagnostics diagnostics;
-  add_lint_errors(motor, false, diagnostics);
+  add_lint_errors(motor, diagnostics);
   diagnostics.throw_if_any();
 }
 
 Motor read_sound_motor(const std::filesystem::path& path) {
   Diagnostics diagnostics;
   Motor motor = read_motor(path, diagnostics);
-  add_lint_errors(motor, false, diagnostics);
+  add_lint_errors(motor, diagnostics);
   diagnostics.throw_if_any();
   return motor;
 }

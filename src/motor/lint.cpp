@@ -115,14 +115,14 @@ std::vector<LintFinding> lint(const Motor& motor) {
   return list;
 }
 
-void add_lint_errors(const Motor& motor, bool spreads, Diagnostics& diagnostics) {
+void add_lint_errors(const Motor& motor, Diagnostics& diagnostics) {
   Motor checked = motor;
   if (!diagnostics.empty()) {
     checked.effects.clear();
     checked.sensors.clear();
   }
   for (const LintFinding& each : lint(checked)) {
-    if (each.level == LintFinding::Level::error && (spreads || each.check != "spreads")) {
+    if (each.level == LintFinding::Level::error && each.check != "spreads") {
       diagnostics.add(each.at, each.check, each.message);
     }
   }

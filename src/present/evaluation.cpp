@@ -99,14 +99,16 @@ std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
     return fmt::format("is undecided: it exceeds a limit with a probability of {} %", percent_range(*motor.probability_interval));
   }
   const bool is_stator = motor.limiting_factor == LimitingFactor::stator_temperature;
-  const std::string reaches = fmt::format("the {} reaches {:.0f} °C, its limit is {:.0f} °C", is_stator ? "stator" : "winding",
+  const std::string when = motor.verdict == Verdict::fail && motor.time_to_limit_s
+                               ? fmt::format(", exceeded after {}", duration_text(*motor.time_to_limit_s))
+                               : "";
+  const std::string reaches = fmt::format("the {} reaches {:.0f} °C (limit {:.0f} °C{})", is_stator ? "stator" : "winding",
                                           is_stator ? motor.stator_peak_C.nominal : motor.winding_peak_C.nominal,
-                                          is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C);
+                                          is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C, when);
   const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * motor.probability_over_limit);
   switch (motor.verdict) {
     case Verdict::fail:
-      return "fails: " +
-             (is_drawn ? over : reaches + (motor.time_to_limit_s ? ", exceeded after " + duration_text(*motor.time_to_limit_s) : ""));
+      return "fails: " + (is_drawn ? over : reaches);
     case Verdict::marginal:
       return fmt::format("is marginal: {}",
                          motor.short_probability > std::max(motor.probability_over_limit, kMarginalProbability)
@@ -281,6 +283,12 @@ Document evaluation_document(std::span<const MotorEvaluation> results, const Eva
                       "(`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
   add_lines(document.notes, slip_text(context.demand), Severity::note);
+  if (context.duty.shape_data->depends_on_robot()) {
+    document.add_note(
+        Severity::background,
+        "`heatsoak simulate` gives other temperatures: it adds slip, noisy sensors and the sag of the battery, while here the plan "
+        "is followed exactly at the nominal voltage. --closed-loop ranks motors with all that.");
+  }
   document.add_note(Severity::background, fmt::format("Load: {}.", context.duty.origin));
   if (context.draws > 0) {
     document.add_note(Severity::background, "The nominal peak, margin, reached, A rms and more A are of one game, that of the seed.");

@@ -34,7 +34,7 @@ std::vector<LintFinding> look_into(const std::filesystem::path& file, const Data
   if (problems.empty()) {
     return lint(motor);
   }
-  add_lint_errors(motor, true, problems);
+  add_lint_errors(motor, problems);
   problems.throw_if_any();
   return {};
 }
