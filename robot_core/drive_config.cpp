@@ -31,9 +31,9 @@ bool all(const float (&values)[count]) {
   const float periods = guard.period_s / period_s;
   const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, 1e6F) + 0.5F));
   return guard.node_count >= 2 && guard.node_count <= kMostGuardNodes && is_positive(guard.period_s) && whole >= 1.0F &&
-         absolute(periods - whole) < 1e-3F * whole && guard.rates != nullptr && guard.current_A != nullptr &&
-         guard.speed_rad_per_s.count >= 2 && guard.stator_C.count >= 2 && guard.winding_C.count >= 2 && is_finite(guard.winding_limit_C) &&
-         is_finite(guard.coldest_ambient_C) && guard.hottest_ambient_C < guard.winding_limit_C;
+         absolute(periods - whole) < 1e-3F * whole && guard.rates != nullptr && guard.table.square_A2 != nullptr &&
+         guard.table.speed_rad_per_s.count >= 1 && guard.table.stator_C.count >= 1 && guard.table.winding_C.count >= 2 &&
+         is_finite(guard.winding_limit_C) && is_finite(guard.coldest_ambient_C) && guard.hottest_ambient_C < guard.winding_limit_C;
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   if (!guard.was_started) {
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
   } else if (wheel.guard_fault == static_cast<std::uint8_t>(Reason::guard_unknown) &&
-             guard.allowed_A >= smaller(config.current_limit_A, kKnown_share * model.current_A[0])) {
+             guard.allowed_A >= smaller(config.current_limit_A, kKnown_share * model.cold_current_A)) {
     wheel.guard_fault = 0;
   }
 }

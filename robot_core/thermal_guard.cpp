@@ -19,25 +19,6 @@ std::uint64_t check_sum_of(const GuardState& state) {
   return kStarted + sum_of_words<1, sizeof(GuardState) / sizeof(std::uint64_t)>(&state);
 }
 
-/// Segment of an axis and the place in it.
-struct Place {
-  int below = 0;
-  float share = 0.0F;
-};
-
-bool find(const GuardAxis& axis, float x, Place& place) {
-  if (!(x <= axis.points[axis.count - 1])) {
-    return false;
-  }
-  int above = 1;
-  while (above + 1 < axis.count && x > axis.points[above]) {
-    ++above;
-  }
-  const float low = axis.points[above - 1];
-  place = {above - 1, x > low ? (x - low) / (axis.points[above] - low) : 0.0F};
-  return true;
-}
-
 /// Replaces what is not believed by some possible value; a bit per signal that was replaced.
 unsigned replace_unbelieved(const GuardModel& model, float* signal) {
   unsigned unknown = 0;
@@ -107,60 +88,32 @@ bool is_started(const GuardModel& model, const GuardState& state) {
   return started;
 }
 
-GuardRow find_row(const GuardModel& model, float speed_rad_per_s, float stator_C) {
-  Place speed;
-  Place stator;
-  if (!find(model.speed_rad_per_s, speed_rad_per_s, speed) || !find(model.stator_C, stator_C, stator)) {
-    return {};
-  }
-  const int row = model.winding_C.count;
-  return {model.current_A + (speed.below * model.stator_C.count + stator.below) * row, speed.share, stator.share};
-}
-
-float allowed_current_A(const GuardModel& model, const GuardRow& row, float winding_C) {
-  Place winding;
-  if (row.corner == nullptr || !find(model.winding_C, winding_C, winding)) {
-    return 0.0F;
-  }
-  const int next_stator = model.winding_C.count;
-  const int next_speed = model.stator_C.count * next_stator;
-  const float* corner = row.corner + winding.below;
-  const auto along_winding = [&](int offset) { return corner[offset] + winding.share * (corner[offset + 1] - corner[offset]); };
-  const auto along_stator = [&](int offset) {
-    const float low = along_winding(offset);
-    return low + row.stator_share * (along_winding(offset + next_stator) - low);
-  };
-  const float low = along_stator(0);
-  return low + row.speed_share * (along_stator(next_speed) - low);
-}
-
-float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
-  return allowed_current_A(model, find_row(model, speed_rad_per_s, stator_C), winding_C);
-}
-
 namespace {
 
-/// Temperature at which the table allows no more than `current_A`: between the axis points the table falls in a straight line.
-float limiting_temperature_C(const GuardModel& model, const GuardRow& row, float current_A) {
-  const GuardAxis& axis = model.winding_C;
+/// Temperature at which the table allows no more than `current_A`: the squares fall in a straight line between the axis points.
+float limiting_temperature_C(const heatsoak_current_table& table, const heatsoak_row& row, float current_A) {
+  const heatsoak_axis& axis = table.winding_C;
+  const float square_A2 = current_A * larger(current_A, table.straight_below_A);
+  heatsoak_row as_hot = row;
+  as_hot.hotter_K = 0.0F;
   int low = 0;
   int high = axis.count - 1;
   while (high - low > 1) {
     const int middle = (low + high) / 2;
-    if (allowed_current_A(model, row, axis.points[middle]) >= current_A) {
+    if (heatsoak_allowed_A2(&table, &as_hot, axis.points[middle]) >= square_A2) {
       low = middle;
     } else {
       high = middle;
     }
   }
-  const float at_low_A = allowed_current_A(model, row, axis.points[low]);
-  const float at_high_A = allowed_current_A(model, row, axis.points[high]);
-  const float share = at_low_A > at_high_A ? clamped((at_low_A - current_A) / (at_low_A - at_high_A), 0.0F, 1.0F) : 0.0F;
-  return axis.points[low] + share * (axis.points[high] - axis.points[low]);
+  const float at_low_A2 = heatsoak_allowed_A2(&table, &as_hot, axis.points[low]);
+  const float at_high_A2 = heatsoak_allowed_A2(&table, &as_hot, axis.points[high]);
+  const float share = at_low_A2 > at_high_A2 ? clamped((at_low_A2 - square_A2) / (at_low_A2 - at_high_A2), 0.0F, 1.0F) : 0.0F;
+  return axis.points[low] + share * (axis.points[high] - axis.points[low]) - row.hotter_K;
 }
 
 /// If the load goes on: straight extrapolation of the smoothed heating, an estimate that is early while the winding approaches balance.
-float find_time_to_limit_s(const GuardModel& model, const GuardState& state, const GuardRow& row, const GuardOutput& out,
+float find_time_to_limit_s(const GuardModel& model, const GuardState& state, const heatsoak_row& row, const GuardOutput& out,
                            float braking_reserve_K) {
   const float load_A = square_root(state.load_squared_A2);
   if (load_A > out.allowed_A) {
@@ -170,11 +123,16 @@ float find_time_to_limit_s(const GuardModel& model, const GuardState& state, con
   if (!(state.heating_K_per_s > kLeastHeating_K_per_s)) {
     return kLongTime_s;
   }
-  const float limiting_C = limiting_temperature_C(model, row, load_A) - braking_reserve_K;
+  const float limiting_C = limiting_temperature_C(model.table, row, load_A) - braking_reserve_K;
   return clamped((limiting_C - out.winding_C) / state.heating_K_per_s, 0.0F, kLongTime_s);
 }
 
 }  // namespace
+
+float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
+  const heatsoak_row row = heatsoak_find_row(&model.table, speed_rad_per_s, stator_C);
+  return heatsoak_allowed_A(&model.table, &row, winding_C);
+}
 
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
   GuardOutput out;
@@ -211,9 +169,9 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   state.speed_rad_per_s = believed[guard_speed_rad_per_s];
   ++state.steps;
   if ((unknown & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
-    const GuardRow row = find_row(model, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
-    out.allowed_braking_A = allowed_current_A(model, row, out.winding_C);
-    out.allowed_A = smaller(out.allowed_braking_A, allowed_current_A(model, row, out.winding_C + braking_reserve_K));
+    const heatsoak_row row = heatsoak_find_row(&model.table, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
+    out.allowed_braking_A = heatsoak_allowed_A(&model.table, &row, out.winding_C);
+    out.allowed_A = smaller(out.allowed_braking_A, heatsoak_allowed_A(&model.table, &row, out.winding_C + braking_reserve_K));
     if (state.steps % kStepsPerEstimate == 0) {
       state.time_to_limit_s = find_time_to_limit_s(model, state, row, out, braking_reserve_K);
     }

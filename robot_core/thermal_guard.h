@@ -7,6 +7,7 @@
 
 #include <cstdint>
 
+#include "robot_core/current_table.h"
 #include "robot_core/math.h"
 
 namespace robot_core {
@@ -34,12 +35,6 @@ struct GuardBelief {
   int possible_count = 0;
 };
 
-/// Ascending axis points of a table.
-struct GuardAxis {
-  const float* points = nullptr;
-  int count = 0;
-};
-
 /// One motor's guard as data. Generated on the target; on the host it points into the result of `derate`.
 struct GuardModel {
   int node_count = 0;  ///< winding first, then stator
@@ -47,11 +42,9 @@ struct GuardModel {
   float winding_limit_C = 0.0F;
   float coldest_ambient_C = 0.0F;
   float hottest_ambient_C = 0.0F;
-  float most_current_A = 0.0F;  ///< the table's largest current
-  GuardAxis speed_rad_per_s;
-  GuardAxis stator_C;
-  GuardAxis winding_C;
-  const float* current_A = nullptr;  ///< [speed][stator][winding]
+  float most_current_A = 0.0F;  ///< that the driver can let through
+  float cold_current_A = 0.0F;  ///< allowed to a cold motor that stands
+  heatsoak_current_table table{};
   GuardBelief belief[kGuardSignals];
   /// dT/dt of every node in K/s. `context` is handed through.
   void (*rates)(const void* context, const float* signal, const float* state_C, float* rate_K_per_s) = nullptr;
@@ -71,13 +64,6 @@ struct alignas(8) GuardState {
 };
 
 inline constexpr float kLongTime_s = 3600.0F;
-
-/// Where a speed and a body temperature lie in the table: found once, used for several winding temperatures. No corner: outside.
-struct GuardRow {
-  const float* corner = nullptr;  ///< of the row's cell at the first winding temperature; none outside of the table
-  float speed_share = 0.0F;
-  float stator_share = 0.0F;
-};
 
 /// Written by step_guard(), all of it.
 struct GuardOutput {
@@ -102,12 +88,7 @@ void seal(GuardState& state);
 /// `braking_reserve_K` is kept free below the limit for braking: driving current is read from the table at a winding that much hotter.
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K);
 
-/// No corner where an argument is not a number or above its axis; below the axis its first point counts.
-GuardRow find_row(const GuardModel& model, float speed_rad_per_s, float stator_C);
-/// Allowed current in a row; 0 outside of the table.
-float allowed_current_A(const GuardModel& model, const GuardRow& row, float winding_C);
-
-/// The table. 0 where an argument is not a number or above its axis; below the axis its first point counts.
+/// The table at one place. 0 where an argument is not a number, above the speeds or above the temperatures.
 float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C);
 
 }  // namespace robot_core

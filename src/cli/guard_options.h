@@ -19,7 +19,7 @@ struct GuardOptions {
 
 /// --motor, --model, --condition.
 void add_motor_options(CLI::App& app, GuardOptions& options);
-/// --ambient, --coldest, --approach, --confidence, --samples, --seed, --threads.
+/// --ambient, --coldest, --approach, --confidence, --error, --size, --samples, --seed, --threads.
 void add_derate_options(CLI::App& app, DerateOptions& options);
 
 /// The model takes the motor's place; where both are named it must be a model of that motor. Throws Failure (bad_input), also with what

@@ -15,7 +15,7 @@ Bounds bounds(const Derating& derating, firmware::Signal signal) {
   const auto most_current_A = static_cast<float>(derating.rules.most_current_A);
   const auto reachable_rad_per_s = static_cast<float>(derating.reachable_speed_rad_per_s);
   // The table's last speed too: up to there the allowed current falls without a jump.
-  const float fastest_rad_per_s = std::max(1.25F * reachable_rad_per_s, static_cast<float>(derating.table.speed_rad_per_s.back()));
+  const float fastest_rad_per_s = std::max(1.25F * reachable_rad_per_s, static_cast<float>(derating.table.no_current_speed_rad_per_s));
   switch (signal) {
     case firmware::current:
       return {-10.0F * most_current_A, 10.0F * most_current_A};

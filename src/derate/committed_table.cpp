@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -25,20 +28,48 @@ int line_at(std::string_view text, std::size_t place) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
 }
 
-/// Throws where the table is none: an axis that does not ascend, a current below 0 or that is no number.
-void require_sound(const CommittedTable& committed, int line) {
-  const CurrentTable& table = committed.table;
-  const Location at{committed.file.string(), line, 1};
-  for (const auto& [name, axis] :
-       {std::pair("speed", &table.speed_rad_per_s), {"stator", &table.stator_C}, {"winding", &table.winding_C}}) {
-    const bool is_finite = std::ranges::all_of(*axis, [](double each) { return std::isfinite(each); });
-    if (axis->size() < 2 || !is_finite || std::ranges::adjacent_find(*axis, std::greater_equal<>()) != axis->end()) {
-      throw bad_input(at, name, "the axis of the table does not ascend; expected a file that `heatsoak derate` wrote");
+void require_ascending(const CommittedTable& committed, int line, std::string_view name, const std::vector<double>& axis,
+                       std::size_t least_count) {
+  const bool is_finite = std::ranges::all_of(axis, [](double each) { return std::isfinite(each); });
+  if (axis.size() < least_count || !is_finite || std::ranges::adjacent_find(axis, std::greater_equal<>()) != axis.end()) {
+    throw bad_input({committed.file.string(), line, 1}, std::string(name),
+                    "the axis of the table does not ascend; expected a file that `heatsoak derate` wrote");
+  }
+}
+
+Failure no_current(const CommittedTable& committed, int line) {
+  return bad_input({committed.file.string(), line, 1}, "current", "the table holds a current that is none; expected numbers");
+}
+
+/// Throws where the table is none: an axis that does not ascend, a value that is not a number or cannot be.
+void require_sound(const CommittedTable& committed, const CurrentTable& table, int line) {
+  require_ascending(committed, line, "speed", table.speed_rad_per_s, 1);
+  require_ascending(committed, line, "stator", table.stator_C, 1);
+  require_ascending(committed, line, "winding", table.winding_C, 2);
+  if (!std::ranges::all_of(table.square_A2, [](double each_A2) { return std::isfinite(each_A2); })) {
+    throw no_current(committed, line);
+  }
+  if (!(table.most_current_A > 0.0) || !(table.straight_below_A > 0.0) || !(table.winding_per_stator_K >= 0.0) ||
+      !(table.no_current_speed_rad_per_s > table.most_speed_rad_per_s)) {
+    throw bad_input(
+        {committed.file.string(), line, 1}, "",
+        "MOST_CURRENT_A, STRAIGHT_BELOW_A, WINDING_PER_STATOR_K, MOST_SPEED_RAD_PER_S or NO_CURRENT_SPEED_RAD_PER_S is missing or "
+        "cannot be; expected a header that `heatsoak derate` wrote");
+  }
+}
+
+/// Of "#define …_NAME 1.5f"; not a number where there is none or several differ.
+double constant(const std::string& text, std::string_view name) {
+  const std::regex define(fmt::format("#define [A-Z0-9_]*_{} ([0-9.eE+-]+)f\n", name));
+  double found = std::numeric_limits<double>::quiet_NaN();
+  for (std::sregex_iterator each(text.begin(), text.end(), define); each != std::sregex_iterator(); ++each) {
+    const double value = std::strtod((*each)[1].str().c_str(), nullptr);
+    if (!std::isnan(found) && found != value) {
+      return std::numeric_limits<double>::quiet_NaN();
     }
+    found = value;
   }
-  if (std::ranges::any_of(table.current_A, [](double each_A) { return !(each_A >= 0.0) || !std::isfinite(each_A); })) {
-    throw bad_input(at, "current", "the table holds a current that is none; expected numbers of 0 A or more");
-  }
+  return found;
 }
 
 /// The four arrays of the table; of the names that end alike, those that belong together.
@@ -50,12 +81,12 @@ void read_header(const std::string& text, CommittedTable& committed) {
   }
   const std::vector<HeaderArray> arrays = header_arrays(text);
   const auto find = [&](const std::string& name) { return std::ranges::find(arrays, name, &HeaderArray::name); };
-  constexpr std::string_view kCurrent = "_current_A";
+  constexpr std::string_view kSquare = "_square_A2";
   for (const HeaderArray& currents : arrays) {
-    if (!currents.name.ends_with(kCurrent)) {
+    if (!currents.name.ends_with(kSquare)) {
       continue;
     }
-    const std::string prefix = currents.name.substr(0, currents.name.size() - kCurrent.size());
+    const std::string prefix = currents.name.substr(0, currents.name.size() - kSquare.size());
     const auto speeds = find(prefix + "_speed_rad_per_s");
     const auto stators = find(prefix + "_stator_C");
     const auto windings = find(prefix + "_winding_C");
@@ -68,46 +99,60 @@ void read_header(const std::string& text, CommittedTable& committed) {
                       fmt::format("holds {} currents; expected {} × {} × {} of them, as many as its axes have places",
                                   currents.values.size(), speeds->values.size(), stators->values.size(), windings->values.size()));
     }
-    committed.table = {speeds->values, stators->values, windings->values, currents.values};
+    committed.table = {.speed_rad_per_s = speeds->values,
+                       .stator_C = stators->values,
+                       .winding_C = windings->values,
+                       .square_A2 = currents.values,
+                       .most_current_A = constant(text, "MOST_CURRENT_A"),
+                       .straight_below_A = constant(text, "STRAIGHT_BELOW_A"),
+                       .most_speed_rad_per_s = constant(text, "MOST_SPEED_RAD_PER_S"),
+                       .no_current_speed_rad_per_s = constant(text, "NO_CURRENT_SPEED_RAD_PER_S"),
+                       .winding_per_stator_K = constant(text, "WINDING_PER_STATOR_K")};
     committed.code = text;
-    require_sound(committed, line);
+    require_sound(committed, *committed.table, line);
     return;
   }
   throw bad_input({committed.file.string()}, "",
                   "holds no derating table; expected a C header or a CSV table that `heatsoak derate` wrote");
 }
 
+/// The values of a column, each once, ascending.
+std::vector<double> axis_of(const std::vector<CommittedRow>& rows, double CommittedRow::*column) {
+  std::vector<double> axis;
+  std::ranges::transform(rows, std::back_inserter(axis), [column](const CommittedRow& row) { return row.*column; });
+  std::ranges::sort(axis);
+  axis.erase(std::unique(axis.begin(), axis.end()), axis.end());
+  return axis;
+}
+
 void read_csv_table(CommittedTable& committed) {
   const std::array<std::string, 4> columns{"speed_rad_per_s", "stator_C", "winding_C", "allowed_current_A"};
-  std::vector<std::array<double, 4>> rows;
+  std::vector<CommittedRow>& rows = committed.rows;
   std::vector<int> lines;
   read_csv(committed.file, columns, {}, [&](const CsvRow& row) {
     rows.push_back({row.values[0], row.values[1], row.values[2], row.values[3]});
     lines.push_back(row.line);
   });
-  CurrentTable& table = committed.table;
-  const std::array axes{&table.speed_rad_per_s, &table.stator_C, &table.winding_C};
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    std::ranges::transform(rows, std::back_inserter(*axes[axis]), [axis](const auto& row) { return row.at(axis); });
-    std::ranges::sort(*axes[axis]);
-    axes[axis]->erase(std::unique(axes[axis]->begin(), axes[axis]->end()), axes[axis]->end());
-  }
+  const std::vector<double> speeds = axis_of(rows, &CommittedRow::speed_rad_per_s);
+  const std::vector<double> stators = axis_of(rows, &CommittedRow::stator_C);
+  const std::vector<double> windings = axis_of(rows, &CommittedRow::winding_C);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::size_t windings = table.winding_C.size();
-    const std::size_t stators = table.stator_C.size();
-    const bool is_of_grid = i < table.speed_rad_per_s.size() * stators * windings &&
-                            rows[i][0] == table.speed_rad_per_s[i / windings / stators] &&
-                            rows[i][1] == table.stator_C[i / windings % stators] && rows[i][2] == table.winding_C[i % windings];
+    const CommittedRow& row = rows[i];
+    const bool is_of_grid = i < speeds.size() * stators.size() * windings.size() &&
+                            row.speed_rad_per_s == speeds[i / windings.size() / stators.size()] &&
+                            row.stator_C == stators[i / windings.size() % stators.size()] && row.winding_C == windings[i % windings.size()];
     if (!is_of_grid) {
       throw bad_input({committed.file.string(), lines[i], 1}, "",
                       "the rows are no full grid of speed, stator and winding in this order; expected a file that `heatsoak derate` wrote");
     }
-    table.current_A.push_back(rows[i][3]);
+    if (!(row.current_A >= 0.0) || !std::isfinite(row.current_A)) {
+      throw no_current(committed, lines[i]);
+    }
   }
-  if (rows.size() != table.speed_rad_per_s.size() * table.stator_C.size() * table.winding_C.size()) {
+  if (rows.size() != speeds.size() * stators.size() * windings.size()) {
     throw bad_input({committed.file.string(), lines.back(), 1}, "", "rows of the grid are missing at the end of the table");
   }
-  require_sound(committed, 1);
+  require_ascending(committed, 1, "winding", windings, 2);
 }
 
 /// Points that a file rounds are taken for those of the fresh axis: of an axis that ends there, one more digit would be no current.
@@ -132,26 +177,57 @@ std::vector<double> joined(std::vector<double> one, const std::vector<double>& o
   return one;
 }
 
-void compare_tables(CurrentTable committed, const CurrentTable& fresh, TableComparison& found) {
+/// Takes the place in where it is further apart than what was found, and further than rounding.
+void take_in(TableComparison& found, const TablePlace& place, double tolerance_A) {
+  TablePlace& worst = place.committed_A > place.fresh_A ? found.excess : found.lost;
+  if (place.difference_A > std::max(tolerance_A, worst.difference_A)) {
+    worst = place;
+  }
+}
+
+void compare_tables(CurrentTable committed, const CurrentTable& fresh, double tolerance_A, TableComparison& found) {
   committed.speed_rad_per_s = snapped(std::move(committed.speed_rad_per_s), fresh.speed_rad_per_s);
   committed.stator_C = snapped(std::move(committed.stator_C), fresh.stator_C);
   committed.winding_C = snapped(std::move(committed.winding_C), fresh.winding_C);
-  constexpr double kRounding_share = 5e-4;
-  const double most_A = std::max(*std::ranges::max_element(committed.current_A), *std::ranges::max_element(fresh.current_A));
-  const double tolerance_A = kRounding_share * most_A;
-  for (const double speed_rad_per_s : joined(committed.speed_rad_per_s, fresh.speed_rad_per_s)) {
-    for (const double stator_C : joined(committed.stator_C, fresh.stator_C)) {
+  std::vector<double> speeds_rad_per_s = committed.speed_rad_per_s;
+  for (const CurrentTable& each : {committed, fresh}) {
+    speeds_rad_per_s.insert(speeds_rad_per_s.end(), {each.most_speed_rad_per_s, each.no_current_speed_rad_per_s});
+  }
+  std::ranges::sort(speeds_rad_per_s);
+  // Beyond the stator's axis it counts as a hotter winding.
+  constexpr double kHotter_K = 3.0;
+  std::vector<double> stators_C = joined(committed.stator_C, fresh.stator_C);
+  stators_C.push_back(stators_C.back() + kHotter_K);
+  for (const double speed_rad_per_s : joined(speeds_rad_per_s, fresh.speed_rad_per_s)) {
+    for (const double stator_C : stators_C) {
       for (const double winding_C : joined(committed.winding_C, fresh.winding_C)) {
         const double committed_A = committed.allowed_A(speed_rad_per_s, stator_C, winding_C);
         const double fresh_A = fresh.allowed_A(speed_rad_per_s, stator_C, winding_C);
-        const double difference_A = std::abs(committed_A - fresh_A);
-        TablePlace& place = committed_A > fresh_A ? found.excess : found.lost;
-        if (difference_A > std::max(tolerance_A, place.difference_A)) {
-          place = {difference_A, committed_A, fresh_A, speed_rad_per_s, stator_C, winding_C};
-        }
+        take_in(found, {std::abs(committed_A - fresh_A), committed_A, fresh_A, speed_rad_per_s, stator_C, winding_C}, tolerance_A);
       }
     }
   }
+}
+
+void compare_rows(const std::vector<CommittedRow>& rows, const CurrentTable& fresh, double tolerance_A, TableComparison& found) {
+  for (const CommittedRow& row : rows) {
+    const double fresh_A = fresh.allowed_A(row.speed_rad_per_s, row.stator_C, row.winding_C);
+    take_in(found, {std::abs(row.current_A - fresh_A), row.current_A, fresh_A, row.speed_rad_per_s, row.stator_C, row.winding_C},
+            tolerance_A);
+  }
+}
+
+/// What rounding of the file may change.
+double tolerance_A(const CommittedTable& committed, const CurrentTable& fresh) {
+  constexpr double kRounding_share = 5e-4;
+  double most_A = fresh.current_of_A(*std::ranges::max_element(fresh.square_A2));
+  if (committed.table) {
+    most_A = std::max(most_A, committed.table->current_of_A(*std::ranges::max_element(committed.table->square_A2)));
+  }
+  for (const CommittedRow& row : committed.rows) {
+    most_A = std::max(most_A, row.current_A);
+  }
+  return kRounding_share * most_A;
 }
 
 std::string fresh_header(const Derating& fresh) {
@@ -162,7 +238,7 @@ std::string fresh_header(const Derating& fresh) {
 }  // namespace
 
 CommittedTable read_committed_table(const std::filesystem::path& file) {
-  CommittedTable committed{file, {}, {}, {}};
+  CommittedTable committed{.file = file, .table = {}, .rows = {}, .version = {}, .code = {}};
   const std::string text = read_file(file, kLargestTable_bytes);
   static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
   std::smatch version;
@@ -180,7 +256,11 @@ CommittedTable read_committed_table(const std::filesystem::path& file) {
 
 TableComparison compare(const CommittedTable& committed, const Derating& fresh) {
   TableComparison found;
-  compare_tables(committed.table, fresh.table, found);
+  const double rounding_A = tolerance_A(committed, fresh.table);
+  if (committed.table) {
+    compare_tables(*committed.table, fresh.table, rounding_A, found);
+  }
+  compare_rows(committed.rows, fresh.table, rounding_A, found);
   if (!committed.code.empty()) {
     const HeaderDifference difference = first_difference(committed.code, fresh_header(fresh));
     found.differing_line = difference.line;

@@ -2,21 +2,33 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "derate/derating.h"
 
 namespace heatsoak {
 
+/// What a CSV table says of one place.
+struct CommittedRow {
+  double speed_rad_per_s = 0.0;
+  double stator_C = 0.0;
+  double winding_C = 0.0;
+  double current_A = 0.0;
+};
+
+/// Either a table or rows.
 struct CommittedTable {
   std::filesystem::path file;
-  CurrentTable table;
-  std::string version;  ///< of the program that wrote the file, "0.1.0"; empty where the file has none
-  std::string code;     ///< of a C header all of its text, else empty
+  std::optional<CurrentTable> table;  ///< of a C header
+  std::vector<CommittedRow> rows;     ///< of a CSV table, the full grid of its places
+  std::string version;                ///< of the program that wrote the file, "0.1.0"; empty where the file has none
+  std::string code;                   ///< of a C header all of its text, else empty
 };
 
 /// Reads a C header or a CSV table of `derate`, whichever the content is. Throws Failure (bad_input): unreadable, neither of the two, an
-/// axis that does not ascend, a current below 0, an incomplete grid, with the line where there is one.
+/// axis that does not ascend, a value that cannot be, an incomplete grid, with the line where there is one.
 CommittedTable read_committed_table(const std::filesystem::path& file);
 
 /// Where two tables are furthest apart.
@@ -39,9 +51,9 @@ struct TableComparison {
   std::string differing_fresh_text;  ///< of the fresh header
 };
 
-/// Over all speeds and temperatures: both are straight between the points of both axes, so the largest differences lie on the grid of all
-/// points, and just behind the end of a table, where it allows nothing. Differences below 0.05 % of the largest current are rounding of the
-/// file and count as none; so are numbers of the header's other lines that agree to 1 in 10⁴.
+/// A C header over all speeds and temperatures: the squares of both tables are straight between the points of both axes, so the largest
+/// differences are looked for on the grid of all points, and just behind the ends. A CSV table in its rows. Differences below 0.05 % of the
+/// largest current are rounding of the file and count as none; so are numbers of the header's other lines that agree to 1 in 10⁴.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 
 }  // namespace heatsoak

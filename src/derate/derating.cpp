@@ -118,7 +118,7 @@ class Search {
     if (rules.most_speed_rad_per_s < kLeastShare * reachable_.most_speed_rad_per_s) {
       return std::nullopt;
     }
-    CurrentTable table = current_table(observer, rules);
+    CurrentTable table = current_table(observer, rules, options_.table);
     const std::vector<Use> patterns = hardest_uses(observer, rules);
     std::vector<UsePlayed> uses(patterns.size());
     in_parallel(uses.size(), options_.guarantee.threads,

@@ -18,6 +18,7 @@ struct DerateOptions {
   double coldest_ambient_C = 0.0;  ///< a sensor that shows less is taken for broken
   double period_s = 0.01;          ///< between two calls of the firmware
   double approach_s = 0.5;         ///< over which the winding may come near its limit: shorter lets peaks through for longer
+  TableGoal table;
   GuaranteeOptions guarantee;
   std::optional<SensorOptions> sensor = {};
 };

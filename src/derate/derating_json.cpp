@@ -57,18 +57,39 @@ Json default_spreads(const Derating& derating) {
 }
 
 Json table_json(const CurrentTable& table) {
+  // Rounded down: what is read back allows no more than the table.
+  const auto rounded_down = [](double value) { return std::floor(value * 1e4) / 1e4; };
   Json current = Json::array();
-  for (const double current_A : table.current_A) {
-    // Rounded down: what is read back allows no more than the table.
-    current.push_back(std::floor(current_A * 1e4) / 1e4);
+  Json square = Json::array();
+  for (const double square_A2 : table.square_A2) {
+    current.push_back(rounded_down(table.current_of_A(square_A2)));
+    square.push_back(rounded_down(square_A2));
   }
+  const TableBound& bound = table.bound;
   return {{"order", {"speed_rad_per_s", "stator_C", "winding_C"}},
-          {"units", {{"speed_rad_per_s", "rad/s"}, {"stator_C", "degC"}, {"winding_C", "degC"}, {"current_A", "A"}}},
-          {"interpolation", "linear between places; below the first place as at it, above the last place 0 A"},
+          {"units",
+           {{"speed_rad_per_s", "rad/s"}, {"stator_C", "degC"}, {"winding_C", "degC"}, {"current_A", "A"}, {"current_squared_A2", "A^2"}}},
+          {"interpolation",
+           "current_squared_A2 is linear between places (an axis with one place does not matter) and held below the first; the current is "
+           "its root, or current_squared_A2/straight_below_A where that is below straight_below_A, at most most_current_A. A stator above "
+           "its last place adds winding_per_stator_K times the excess to the winding; above the winding's last place 0 A. From "
+           "most_speed_rad_per_s the current falls in a straight line to 0 A at no_current_speed_rad_per_s. current_A, linear between "
+           "places, lies below that."},
+          {"most_current_A", rounded_down(table.most_current_A)},
+          {"straight_below_A", table.straight_below_A},
+          {"most_speed_rad_per_s", table.most_speed_rad_per_s},
+          {"no_current_speed_rad_per_s", table.no_current_speed_rad_per_s},
+          {"winding_per_stator_K", table.winding_per_stator_K},
+          {"bound",
+           {{"shortfall_ratio", bound.shortfall_ratio},
+            {"winding_slope_A_per_K", rounded(bound.winding_slope_A_per_K, 3)},
+            {"stator_slope_A_per_K", rounded(bound.stator_slope_A_per_K, 3)},
+            {"speed_slope_A_s_per_rad", rounded(bound.speed_slope_A_s_per_rad, 4)}}},
           {"speed_rad_per_s", table.speed_rad_per_s},
           {"stator_C", table.stator_C},
           {"winding_C", table.winding_C},
-          {"current_A", current}};
+          {"current_A", current},
+          {"current_squared_A2", square}};
 }
 
 Json guarantee_json(const Derating& derating) {
@@ -100,7 +121,7 @@ Json sensor_json(const Derating& derating) {
       {"accuracy_K", plan.options.accuracy_K},
       {"lag_s", plan.options.lag_s},
       {"heat_reserve_ratio", rounded(plan.observer.heat_reserve_ratio(), 4)},
-      {"current_ratio", rounded(plan.current_ratio, 4)},
+      {"winding_speed_ratio", rounded(plan.winding_speed_ratio, 4)},
       {"samples", plan.samples},
       {"over", plan.over},
       {"winding_peak_C", {{"p95", rounded(plan.winding_p95_C, 2)}, {"most", rounded(plan.winding_most_C, 2)}}},

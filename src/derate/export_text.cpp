@@ -86,7 +86,7 @@ void require_finite(const Derating& derating) {
                             derating.torque_constant_Nm_per_A,     derating.observer.heat_reserve_ratio(),
                             derating.options.hottest_ambient_C,    derating.options.coldest_ambient_C,
                             derating.options.guarantee.confidence, derating.options.period_s};
-  if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.current_A, is_finite) ||
+  if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.square_A2, is_finite) ||
       !std::ranges::all_of(table.speed_rad_per_s, is_finite) || !std::ranges::all_of(table.stator_C, is_finite) ||
       !std::ranges::all_of(table.winding_C, is_finite)) {
     throw Failure(ExitCode::bad_input,

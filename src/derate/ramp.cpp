@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/diagnostic.h"
@@ -12,15 +13,24 @@
 namespace heatsoak {
 namespace {
 
-std::size_t count_up_to(const std::vector<double>& axis, double most) {
-  return static_cast<std::size_t>(std::ranges::upper_bound(axis, most) - axis.begin());
+/// The places of an axis that are not above `most`, and `most` itself.
+std::vector<double> places_up_to(std::vector<double> axis, double most) {
+  std::erase_if(axis, [&](double place) { return place >= most; });
+  axis.push_back(most);
+  return axis;
 }
 
 double hottest_C(const Derating& derating) { return std::floor(derating.rules.limits.winding_C); }
 
-/// Where bound and ramp have corners: between two of them the bound is a minimum of straight lines, and the ramp is a straight line.
+/// Where bound and ramp have corners: between two of them the bound is a minimum of concave curves, for the table's squares are straight,
+/// and the ramp is a straight line. Above the stator's axis the bound is 0.
 std::vector<double> corners_C(const Derating& derating, RampSignal signal) {
-  return signal == RampSignal::stator ? derating.table.stator_C : derating.table.winding_C;
+  if (signal == RampSignal::winding) {
+    return derating.table.winding_C;
+  }
+  std::vector<double> corners = derating.table.stator_C;
+  corners.push_back(std::nextafter(corners.back(), std::numeric_limits<double>::infinity()));
+  return corners;
 }
 
 struct BoundPoint {
@@ -93,15 +103,14 @@ double CurrentRamp::current_A(double signal_C) const {
 double ramp_bound_A(const Derating& derating, RampSignal signal, double signal_C) {
   const CurrentTable& table = derating.table;
   const bool is_stator = signal == RampSignal::stator;
-  const std::vector<double>& unseen_C = is_stator ? table.winding_C : table.stator_C;
-  const std::size_t speeds = count_up_to(table.speed_rad_per_s, derating.rules.most_speed_rad_per_s);
-  const std::size_t unseen = count_up_to(unseen_C, derating.rules.limits.winding_C);
+  if (is_stator && signal_C > table.stator_C.back()) {
+    return 0.0;
+  }
+  const std::vector<double> unseen_C = places_up_to(is_stator ? table.winding_C : table.stator_C, derating.rules.limits.winding_C);
   double least_A = derating.rules.most_current_A;
-  for (std::size_t i = 0; i < speeds; ++i) {
-    for (std::size_t k = 0; k < unseen; ++k) {
-      const double stator_C = is_stator ? signal_C : unseen_C[k];
-      const double winding_C = is_stator ? unseen_C[k] : signal_C;
-      least_A = std::min(least_A, table.allowed_A(table.speed_rad_per_s[i], stator_C, winding_C));
+  for (const double speed_rad_per_s : places_up_to(table.speed_rad_per_s, derating.rules.most_speed_rad_per_s)) {
+    for (const double each_C : unseen_C) {
+      least_A = std::min(least_A, table.allowed_A(speed_rad_per_s, is_stator ? signal_C : each_C, is_stator ? each_C : signal_C));
     }
   }
   return least_A;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "base/diagnostic.h"
 
@@ -22,7 +23,7 @@ std::vector<float> single(const std::vector<double>& values) {
   return rounded;
 }
 
-robot_core::GuardAxis axis(const std::vector<float>& points) { return {points.data(), static_cast<int>(points.size())}; }
+heatsoak_axis axis(const std::vector<float>& points) { return {points.data(), static_cast<std::int32_t>(points.size())}; }
 
 }  // namespace
 
@@ -35,7 +36,7 @@ HostGuard::HostGuard(const Derating& derating)
     : speed_rad_per_s_(single(derating.table.speed_rad_per_s)),
       stator_C_(single(derating.table.stator_C)),
       winding_C_(single(derating.table.winding_C)),
-      current_A_(single(derating.table.current_A)),
+      square_A2_(single(derating.table.square_A2)),
       law_(derating.observer) {
   if (derating.observer.state_count() > robot_core::kMostGuardNodes) {
     throw Failure(
@@ -49,6 +50,13 @@ HostGuard::HostGuard(const Derating& derating)
   model_.coldest_ambient_C = static_cast<float>(derating.options.coldest_ambient_C);
   model_.hottest_ambient_C = static_cast<float>(derating.rules.hottest_ambient_C);
   model_.most_current_A = static_cast<float>(derating.rules.most_current_A);
+  const CurrentTable& table = derating.table;
+  model_.cold_current_A = table.allowed_A(0.0F, static_cast<float>(table.stator_C.front()), static_cast<float>(table.winding_C.front()));
+  model_.table.most_current_A = static_cast<float>(table.most_current_A);
+  model_.table.straight_below_A = static_cast<float>(table.straight_below_A);
+  model_.table.most_speed_rad_per_s = static_cast<float>(table.most_speed_rad_per_s);
+  model_.table.no_current_speed_rad_per_s = static_cast<float>(table.no_current_speed_rad_per_s);
+  model_.table.winding_per_stator_K = static_cast<float>(table.winding_per_stator_K);
   for (std::size_t i = 0; i < beliefs_.size(); ++i) {
     beliefs_[i] = belief(derating, static_cast<firmware::Signal>(i));
   }
@@ -61,7 +69,7 @@ HostGuard::HostGuard(const HostGuard& other)
       speed_rad_per_s_(other.speed_rad_per_s_),
       stator_C_(other.stator_C_),
       winding_C_(other.winding_C_),
-      current_A_(other.current_A_),
+      square_A2_(other.square_A2_),
       beliefs_(other.beliefs_),
       law_(other.law_) {
   point_to_own();
@@ -73,7 +81,7 @@ HostGuard& HostGuard::operator=(const HostGuard& other) {
     speed_rad_per_s_ = other.speed_rad_per_s_;
     stator_C_ = other.stator_C_;
     winding_C_ = other.winding_C_;
-    current_A_ = other.current_A_;
+    square_A2_ = other.square_A2_;
     beliefs_ = other.beliefs_;
     law_ = other.law_;
     point_to_own();
@@ -82,10 +90,10 @@ HostGuard& HostGuard::operator=(const HostGuard& other) {
 }
 
 void HostGuard::point_to_own() {
-  model_.speed_rad_per_s = axis(speed_rad_per_s_);
-  model_.stator_C = axis(stator_C_);
-  model_.winding_C = axis(winding_C_);
-  model_.current_A = current_A_.data();
+  model_.table.speed_rad_per_s = axis(speed_rad_per_s_);
+  model_.table.stator_C = axis(stator_C_);
+  model_.table.winding_C = axis(winding_C_);
+  model_.table.square_A2 = square_A2_.data();
   for (std::size_t i = 0; i < beliefs_.size(); ++i) {
     const Belief& from = beliefs_[i];
     model_.belief[i] = {from.is_used, from.low, from.high, from.values.data(), static_cast<int>(from.values.size())};

@@ -36,7 +36,7 @@ class HostGuard {
   std::vector<float> speed_rad_per_s_;
   std::vector<float> stator_C_;
   std::vector<float> winding_C_;
-  std::vector<float> current_A_;
+  std::vector<float> square_A2_;
   std::array<Belief, firmware::kSignalCount> beliefs_;
   mutable Law law_;
 };

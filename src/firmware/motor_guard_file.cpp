@@ -31,18 +31,32 @@ std::string array(std::string_view name, const float* values, int count) {
 }
 
 std::string arrays(const robot_core::GuardModel& guard) {
-  const int currents = guard.speed_rad_per_s.count * guard.stator_C.count * guard.winding_C.count;
-  std::string text = array("kSpeed_rad_per_s", guard.speed_rad_per_s.points, guard.speed_rad_per_s.count) +
-                     array("kStator_C", guard.stator_C.points, guard.stator_C.count) +
-                     array("kWinding_C", guard.winding_C.points, guard.winding_C.count) +
-                     "// Allowed current by speed, then stator, then winding.\n" + array("kCurrent_A", guard.current_A, currents) +
-                     "\n// What a signal may be of which nothing is known.\n";
+  const heatsoak_current_table& table = guard.table;
+  const int squares = table.speed_rad_per_s.count * table.stator_C.count * table.winding_C.count;
+  std::string text = array("kSpeed_rad_per_s", table.speed_rad_per_s.points, table.speed_rad_per_s.count) +
+                     array("kStator_C", table.stator_C.points, table.stator_C.count) +
+                     array("kWinding_C", table.winding_C.points, table.winding_C.count) +
+                     "// Square of the allowed current in A^2 by speed, then stator, then winding.\n" +
+                     array("kSquare_A2", table.square_A2, squares) + "\n// What a signal may be of which nothing is known.\n";
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     if (const robot_core::GuardBelief& belief = guard.belief[i]; belief.is_used) {
       text += array(fmt::format("kPossible_{}", name_of(static_cast<firmware::Signal>(i))), belief.possible, belief.possible_count);
     }
   }
   return text + "\n";
+}
+
+std::string table(const robot_core::GuardModel& guard) {
+  const heatsoak_current_table& table = guard.table;
+  return fmt::format(
+      "    .cold_current_A = {},\n    .table = {{.speed_rad_per_s = {{kSpeed_rad_per_s, {}}},\n"
+      "              .stator_C = {{kStator_C, {}}},\n              .winding_C = {{kWinding_C, {}}},\n"
+      "              .square_A2 = kSquare_A2,\n              .most_current_A = {},\n              .straight_below_A = {},\n"
+      "              .most_speed_rad_per_s = {},\n              .no_current_speed_rad_per_s = {},\n"
+      "              .winding_per_stator_K = {}}},\n",
+      float_literal(guard.cold_current_A), table.speed_rad_per_s.count, table.stator_C.count, table.winding_C.count,
+      float_literal(table.most_current_A), float_literal(table.straight_below_A), float_literal(table.most_speed_rad_per_s),
+      float_literal(table.no_current_speed_rad_per_s), float_literal(table.winding_per_stator_K));
 }
 
 std::string beliefs(const robot_core::GuardModel& guard) {
@@ -124,12 +138,10 @@ std::string motor_guard_source(const CoreSource& source) {
          fmt::format(
              "}}\n\n}}  // namespace\n\nextern constexpr robot_core::GuardModel kMotorGuard{{\n"
              "    .node_count = {},\n    .period_s = {},\n    .winding_limit_C = {},\n    .coldest_ambient_C = {},\n"
-             "    .hottest_ambient_C = {},\n    .most_current_A = {},\n    .speed_rad_per_s = {{kSpeed_rad_per_s, {}}},\n"
-             "    .stator_C = {{kStator_C, {}}},\n    .winding_C = {{kWinding_C, {}}},\n    .current_A = kCurrent_A,\n"
+             "    .hottest_ambient_C = {},\n    .most_current_A = {},\n{}"
              "    .belief =\n        {{\n{}        }},\n    .rates = &rates,\n}};\n",
              guard.node_count, float_literal(guard.period_s), float_literal(guard.winding_limit_C), float_literal(guard.coldest_ambient_C),
-             float_literal(guard.hottest_ambient_C), float_literal(guard.most_current_A), guard.speed_rad_per_s.count, guard.stator_C.count,
-             guard.winding_C.count, beliefs(guard));
+             float_literal(guard.hottest_ambient_C), float_literal(guard.most_current_A), table(guard), beliefs(guard));
 }
 
 }  // namespace heatsoak

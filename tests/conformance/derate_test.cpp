@@ -21,13 +21,7 @@ RunOptions here(const TemporaryFolder& folder) {
   return options;
 }
 
-double lasting_A(const nlohmann::json& answer) {
-  // At half the table's speeds, a hot stator and the winding at its limit.
-  const nlohmann::json& table = answer["table"];
-  const std::size_t stators = table["stator_C"].size();
-  const std::size_t windings = table["winding_C"].size();
-  return table["current_A"][(3 * stators + 3) * windings + windings - 2].get<double>();
-}
+double lasting_A(const nlohmann::json& answer) { return answer["limp_current_A"].get<double>(); }
 
 TEST(DerateCommand, TellsWhatItGuarantees) {
   const TemporaryFolder folder;

@@ -88,17 +88,21 @@ TEST_P(Committed, OfAMoreCarefulReserveGivesCurrentAway) {
 // The axes of the two have no point in common but the first: the difference is found between them, too.
 TEST_P(Committed, IsComparedBetweenThePointsOfOtherAxes) {
   Derating other = *fresh_;
-  for (double& speed_rad_per_s : other.table.speed_rad_per_s) {
-    speed_rad_per_s *= 1.1;
-  }
+  other.table.most_speed_rad_per_s *= 1.1;
+  other.table.no_current_speed_rad_per_s *= 1.1;
   const TableComparison found = compare(read(exported(other, GetParam())), *fresh_);
+  EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.most_speed_rad_per_s);
+  if (std::string_view(GetParam()) == "csv") {
+    EXPECT_GT(found.excess.difference_A, 0.5);  // it says something of its own rows only
+    return;
+  }
   // Beyond its last speed the fresh table allows nothing.
-  EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.speed_rad_per_s.back());
+  EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.no_current_speed_rad_per_s);
   EXPECT_EQ(found.excess.fresh_A, 0.0);
   EXPECT_GT(found.excess.committed_A, 1.0);
   double most_A = 0.0;
   constexpr int kSteps = 40;
-  const double speed_end = other.table.speed_rad_per_s.back();
+  const double speed_end = other.table.no_current_speed_rad_per_s;
   for (int i = 0; i <= kSteps; ++i) {
     for (int k = 0; k <= kSteps; ++k) {
       const double speed = speed_end * i / kSteps;
@@ -118,16 +122,16 @@ using Tampered = Committed;
 TEST_F(Tampered, OneCurrentIsFoundAtItsPlace) {
   std::string header = exported(*fresh_, "c_header");
   const std::vector<HeaderArray> arrays = header_arrays(header);
-  const auto currents = std::ranges::find_if(arrays, [](const HeaderArray& each) { return each.name.ends_with("32l_48v_current_A"); });
+  const auto currents = std::ranges::find_if(arrays, [](const HeaderArray& each) { return each.name.ends_with("32l_48v_square_A2"); });
   ASSERT_NE(currents, arrays.end());
   std::size_t comma = header.find('{', currents->begin);
-  constexpr int kNumber = 100;
+  constexpr int kNumber = 3;
   for (int i = 0; i < kNumber; ++i) {
     comma = header.find(',', comma + 1);
   }
-  header.replace(comma, header.find(',', comma + 1) - comma, ", 55.5f");
+  header.replace(comma, header.find(',', comma + 1) - comma, ", 5555.0f");
   const TableComparison found = compare(read(header), *fresh_);
-  EXPECT_NEAR(found.excess.committed_A, 55.5, 1e-6);
+  EXPECT_NEAR(found.excess.committed_A, fresh_->table.most_current_A, 1e-4);
   const CurrentTable& table = fresh_->table;
   EXPECT_EQ(found.excess.winding_C, table.winding_C[kNumber % table.winding_C.size()]);
   EXPECT_EQ(found.excess.stator_C, table.stator_C[kNumber / table.winding_C.size() % table.stator_C.size()]);
@@ -152,7 +156,7 @@ TEST_F(Tampered, VersionOfTheWriterIsRead) { EXPECT_EQ(read("/* heatsoak 9.8.7 *
 // What a compiler reads as more than the number at its beginning is no table entry.
 TEST_F(Tampered, EntriesAreWholeNumbers) {
   const std::string text = exported(*fresh_, "c_header");
-  const std::size_t array = text.find('{', text.find("_current_A["));
+  const std::size_t array = text.find('{', text.find("_square_A2["));
   const std::size_t end = text.find(',', array);
   const std::size_t begin = text.find_first_of("0123456789", array);
   for (const char* const entry : {"9.0f * 8.0f", "0x1p9f", "0x63", "1.0f + 98.0f", "9.0f /* x */ * 9", "1.0e", "1.0foo", ""}) {
@@ -188,7 +192,7 @@ TEST_F(Tampered, WhatIsNoTableIsRefused) {
   EXPECT_THAT(message_of("static const float x[2] = {1.0f, 2.0f};\n"), HasSubstr("holds no derating table"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1")),
               HasSubstr("as many as its axes"));
-  EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_current_A\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1nan,")),
+  EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_square_A2\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1nan,")),
               HasSubstr("a current that is none"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$01999.0f,")),
               HasSubstr("does not ascend"));

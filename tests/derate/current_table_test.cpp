@@ -116,9 +116,10 @@ TEST(CurrentTable, GivesNothingWhereItKnowsNothing) {
   const GuardedMotor guarded(motor, rules_for(motor), 1.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_GT(guarded.table.allowed_A(0.0, 40.0, 40.0), 10.0);
-  EXPECT_EQ(guarded.table.allowed_A(1.001 * guarded.table.speed_rad_per_s.back(), 40.0, 40.0), 0.0);
-  EXPECT_EQ(guarded.table.allowed_A(0.0, 155.1, 40.0), 0.0);
-  EXPECT_EQ(guarded.table.allowed_A(0.0, 40.0, 156.0), 0.0);
+  EXPECT_EQ(guarded.table.allowed_A(1.001 * guarded.table.no_current_speed_rad_per_s, 40.0, 40.0), 0.0);
+  EXPECT_EQ(guarded.table.allowed_A(0.0, 40.0, 158.1), 0.0);
+  EXPECT_EQ(guarded.table.allowed_A(0.0, 155.1, 155.1), 0.0);
+  EXPECT_EQ(guarded.table.allowed_A(0.0, 280.0, 40.0), 0.0);
   for (const auto& [speed, body, coil] : {std::array{nan, 40.0, 40.0}, std::array{0.0, nan, 40.0}, std::array{0.0, 40.0, nan}}) {
     EXPECT_EQ(guarded.table.allowed_A(speed, body, coil), 0.0);
   }

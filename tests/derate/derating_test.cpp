@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/diagnostic.h"
+#include "derate/barrier.h"
 #include "derate/exporter.h"
 #include "guarded_motor.h"
 #include "thermal/transient.h"
@@ -108,7 +109,8 @@ loss = { value = "8 W", origin = "estimated", derivation = "a test" }
 exponent = { value = "2", origin = "estimated", derivation = "a test" }
 )");
   const GuardedMotor with_loss(lossy, rules_for(lossy), 1.0);
-  EXPECT_NEAR(with_loss.table.allowed_A(0.0, 120.0, 153.0), bare.table.allowed_A(0.0, 120.0, 153.0), 1e-3);
+  EXPECT_NEAR(barrier_current_A(with_loss.observer, with_loss.rules, 0.0, 120.0, 153.0),
+              barrier_current_A(bare.observer, bare.rules, 0.0, 120.0, 153.0), 1e-3);
   const auto lasting_A = [](const GuardedMotor& guarded) {
     ObserverRun<float> run(guarded.observer, 0.01F, 40.0F);
     float allowed_A = 0.0F;
@@ -137,7 +139,8 @@ exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
   // Air that nobody can promise cools nothing in the table.
   const GuardedMotor with_wind(blown, rules_for(blown), 1.0);
   const GuardedMotor without(plain, rules_for(plain), 1.0);
-  EXPECT_NEAR(with_wind.table.allowed_A(100.0, 100.0, 150.0), without.table.allowed_A(100.0, 100.0, 150.0), 1e-3);
+  EXPECT_NEAR(barrier_current_A(with_wind.observer, with_wind.rules, 100.0, 100.0, 150.0),
+              barrier_current_A(without.observer, without.rules, 100.0, 100.0, 150.0), 1e-3);
 }
 
 // What only braking, only a hot neighbour or only an aged contact shows is among the uses.

@@ -62,7 +62,7 @@ TEST_P(EveryExporter, SaysWhereItComesFromAndHowSureItIs) {
 
 TEST_P(EveryExporter, RefusesWhatIsNoNumber) {
   Derating broken = ecx_derating();
-  broken.table.current_A[7] = std::nan("");
+  broken.table.square_A2[7] = std::nan("");
   EXPECT_THAT(refusal(GetParam(), broken), HasSubstr("is not a number"));
 }
 
@@ -79,10 +79,13 @@ TEST(JsonExporter, TableAndObserverAreThoseOfTheDerating) {
   EXPECT_EQ(file["schema"], "heatsoak.derating/1");
   const nlohmann::json& table = file["table"];
   const CurrentTable& real = ecx_derating().table;
-  ASSERT_EQ(table["current_A"].size(), real.current_A.size());
-  for (std::size_t i = 0; i < real.current_A.size(); ++i) {
-    EXPECT_LE(table["current_A"][i].get<double>(), real.current_A[i]);
-    EXPECT_NEAR(table["current_A"][i].get<double>(), real.current_A[i], 1.01e-4);
+  ASSERT_EQ(table["current_squared_A2"].size(), real.square_A2.size());
+  ASSERT_EQ(table["current_A"].size(), real.square_A2.size());
+  for (std::size_t i = 0; i < real.square_A2.size(); ++i) {
+    EXPECT_LE(table["current_squared_A2"][i].get<double>(), real.square_A2[i]);
+    EXPECT_NEAR(table["current_squared_A2"][i].get<double>(), real.square_A2[i], 1.01e-4);
+    EXPECT_LE(table["current_A"][i].get<double>(), real.current_of_A(real.square_A2[i]));
+    EXPECT_NEAR(table["current_A"][i].get<double>(), real.current_of_A(real.square_A2[i]), 1.01e-4);
   }
   const nlohmann::json& closed = file["observer"];
   const auto value = [&](const char* key) { return closed[key].get<double>(); };

@@ -43,7 +43,7 @@ TEST(FastMotor, IsInTheTableOnAFullBatteryAndWhenPushed) {
       EXPECT_GE(fast.rules.most_speed_rad_per_s, 1.0999 * driven_rad_per_s) << robot << ", " << id;
       EXPECT_GT(fast.table.allowed_A(driven_rad_per_s, 60.0, 60.0), 0.5 * fast.table.allowed_A(0.0, 60.0, 60.0)) << robot << ", " << id;
       // Whatever the command's limit: the drive core believes speeds up to that.
-      EXPECT_GE(fast.table.speed_rad_per_s.back(), 1.0999 * fast.robot.battery_full_V / fast.motor.nominal.torque_constant_Nm_per_A);
+      EXPECT_GE(fast.table.no_current_speed_rad_per_s, 1.0999 * fast.robot.battery_full_V / fast.motor.nominal.torque_constant_Nm_per_A);
     }
   }
 }
@@ -52,7 +52,7 @@ TEST(FastMotor, HasACurrentThatFallsToNoneWithoutAJump) {
   for (const char* const robot : {"roboteam_twente_v2024", "tigers_v2020"}) {
     const FastMotor fast(ecx_32(), shipped_robot(robot));
     const double most_rad_per_s = fast.rules.most_speed_rad_per_s;
-    const double last_rad_per_s = fast.table.speed_rad_per_s.back();
+    const double last_rad_per_s = fast.table.no_current_speed_rad_per_s;
     for (const double winding_C : {40.0, 100.0, 150.0}) {
       const double at_most_A = fast.table.allowed_A(most_rad_per_s, 60.0, winding_C);
       ASSERT_GT(at_most_A, 0.0);
@@ -81,7 +81,7 @@ share = { value = "0.2", origin = "estimated", derivation = "a test" }
   std::mt19937_64 engine(3);
   std::uniform_real_distribution<double> uniform;
   for (int i = 0; i < 1000; ++i) {
-    const double speed_rad_per_s = std::lerp(fast.rules.most_speed_rad_per_s, fast.table.speed_rad_per_s.back(), uniform(engine));
+    const double speed_rad_per_s = std::lerp(fast.rules.most_speed_rad_per_s, fast.table.no_current_speed_rad_per_s, uniform(engine));
     const double stator_C = 40.0 + 110.0 * uniform(engine);
     const double winding_C = 40.0 + 114.0 * uniform(engine);
     EXPECT_LE(fast.table.allowed_A(speed_rad_per_s, stator_C, winding_C),
@@ -100,7 +100,7 @@ TEST(FastMotor, KeepsItsLimitInTheNetworkWhereverItIsPushed) {
   std::vector<Interval> intervals;
   float most_C = 0.0F;
   for (int piece = 0; piece < 900; ++piece) {
-    const auto speed_rad_per_s = static_cast<float>(std::lerp(0.7, 1.0, uniform(engine)) * table.speed_rad_per_s.back());
+    const auto speed_rad_per_s = static_cast<float>(std::lerp(0.7, 1.0, uniform(engine)) * table.no_current_speed_rad_per_s);
     double squares_A2 = 0.0;
     constexpr int kPeriods = 200;
     for (int i = 0; i < kPeriods; ++i) {

@@ -307,7 +307,7 @@ TEST(HostGuard, CopyStandsOnItsOwn) {
   std::vector<Record> records;
   const std::vector<Row> expected = by_host(*original, Play(derating), 500, records);
   EXPECT_NE(copy.model().context, original->model().context);
-  EXPECT_NE(copy.model().current_A, original->model().current_A);
+  EXPECT_NE(copy.model().table.square_A2, original->model().table.square_A2);
   EXPECT_NE(assigned.model().belief[0].possible, original->model().belief[0].possible);
   original.reset();
   for (const HostGuard* const each : {&copy, static_cast<const HostGuard*>(&assigned)}) {

@@ -55,19 +55,20 @@ struct GuardData {
   std::array<float, kSpeeds> speed_rad_per_s{0.0F, 300.0F, 600.0F, 900.0F};
   std::array<float, kStators> stator_C{25.0F, 50.0F, 75.0F, 100.0F, 115.0F, 130.0F, 145.0F, 155.0F};
   std::array<float, kWindings> winding_C{25.0F, 50.0F, 75.0F, 100.0F, 115.0F, 130.0F, 140.0F, 147.0F, 151.0F, 153.0F, 155.0F, 156.0F};
-  std::array<float, kSpeeds * kStators * kWindings> current_A{};
+  std::array<float, kSpeeds * kStators * kWindings> square_A2{};
   std::array<float, 2> possible_current_A{static_cast<float>(-kMostCurrent_A), static_cast<float>(kMostCurrent_A)};
   std::array<float, 2> possible_speed_rad_per_s{0.0F, 900.0F};
   std::array<float, 1> possible_ambient_C{static_cast<float>(kHottestAir_C)};
   GuardModel model;
 
   GuardData() {
-    float* at = current_A.data();
+    float* at = square_A2.data();
     for (const float speed : speed_rad_per_s) {
       for (const float stator : stator_C) {
         for (const float winding : winding_C) {
-          *at++ =
+          const auto allowed_A =
               static_cast<float>(formula_current_A(static_cast<double>(speed), static_cast<double>(stator), static_cast<double>(winding)));
+          *at++ = allowed_A * allowed_A;
         }
       }
     }
@@ -76,10 +77,16 @@ struct GuardData {
     model.coldest_ambient_C = static_cast<float>(kColdest_C);
     model.hottest_ambient_C = static_cast<float>(kHottestAir_C);
     model.most_current_A = static_cast<float>(kMostCurrent_A);
-    model.speed_rad_per_s = {speed_rad_per_s.data(), kSpeeds};
-    model.stator_C = {stator_C.data(), kStators};
-    model.winding_C = {winding_C.data(), kWindings};
-    model.current_A = current_A.data();
+    model.cold_current_A = static_cast<float>(formula_current_A(0.0, 25.0, 25.0));
+    model.table = {.speed_rad_per_s = {speed_rad_per_s.data(), kSpeeds},
+                   .stator_C = {stator_C.data(), kStators},
+                   .winding_C = {winding_C.data(), kWindings},
+                   .square_A2 = square_A2.data(),
+                   .most_current_A = static_cast<float>(kMostCurrent_A),
+                   .straight_below_A = 0.1F,
+                   .most_speed_rad_per_s = 900.0F,
+                   .no_current_speed_rad_per_s = 901.0F,
+                   .winding_per_stator_K = 1.0F};
     model.belief[robot_core::guard_current_A] = {true, -30.0F, 30.0F, possible_current_A.data(), 2};
     model.belief[robot_core::guard_speed_rad_per_s] = {true, -900.0F, 900.0F, possible_speed_rad_per_s.data(), 2};
     model.belief[robot_core::guard_ambient_C] = {true, static_cast<float>(kColdest_C), static_cast<float>(kHottestAir_C),

@@ -16,7 +16,7 @@ Measured measure(const Check& check, Computations& computations) {
   for (const CoreFile& file : folder.files) {
     size_byte += static_cast<double>(file.content.size());
   }
-  return {size_byte, 0.0, fmt::format("{} files, guard table of {} currents", folder.files.size(), derating.table.current_A.size())};
+  return {size_byte, 0.0, fmt::format("{} files, guard table of {} bytes", folder.files.size(), derating.table.size_bytes())};
 }
 
 }  // namespace

@@ -104,8 +104,14 @@ std::string report(const Derating& derating) {
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
     text += fmt::format(
         "beyond {:.0f} of {:.0f} rad/s the motor may pass a limit without any current: what is allowed falls to 0 A at {:.0f} rad/s\n",
-        derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.speed_rad_per_s.back());
+        derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.no_current_speed_rad_per_s);
   }
+  const TableBound& bound = derating.table.bound;
+  text += fmt::format(
+      "table: {} bytes, never above the exact answer of the network and at most {:.1f} % below it from {:.2g} A up; it changes by at most "
+      "{:.2g} A per K of the winding, {:.2g} A per K of the stator and {:.2g} A per rad/s\n",
+      derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, derating.table.straight_below_A, bound.winding_slope_A_per_K,
+      bound.stator_slope_A_per_K, bound.speed_slope_A_s_per_rad);
   std::string asked;
   for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<firmware::Signal>(i))) {

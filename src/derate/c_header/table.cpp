@@ -6,35 +6,23 @@
 namespace heatsoak::c_header {
 namespace {
 
-constexpr std::string_view kAllowed = R"(static inline int @_find(const float *axis, int count, float x, int *below, float *share) {
-  int above = 1;
-  if (!(x <= axis[count - 1])) {
-    return 0;
-  }
-  while (above + 1 < count && x > axis[above]) {
-    ++above;
-  }
-  *below = above - 1;
-  *share = x > axis[above - 1] ? (x - axis[above - 1]) / (axis[above] - axis[above - 1]) : 0.0f;
-  return 1;
-}
+constexpr std::string_view kTable = R"(static const heatsoak_current_table @_table = {
+    {@_speed_rad_per_s, @SPEEDS@},
+    {@_stator_C, @STATORS@},
+    {@_winding_C, @WINDINGS@},
+    @_square_A2,
+    @CAP@_MOST_CURRENT_A,
+    @CAP@_STRAIGHT_BELOW_A,
+    @CAP@_MOST_SPEED_RAD_PER_S,
+    @CAP@_NO_CURRENT_SPEED_RAD_PER_S,
+    @CAP@_WINDING_PER_STATOR_K};
 
+)";
+
+constexpr std::string_view kAllowed = R"(/* magnitude of the speed; stator_C: the hottest part but the winding */
 static inline float @_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) {
-  int i, j, k, a, b;
-  float at_speed, at_stator, at_winding, along[2], across[2];
-  if (!@_find(@_speed_rad_per_s, @SPEEDS@, speed_rad_per_s, &i, &at_speed) ||
-      !@_find(@_stator_C, @STATORS@, stator_C, &j, &at_stator) ||
-      !@_find(@_winding_C, @WINDINGS@, winding_C, &k, &at_winding)) {
-    return 0.0f;
-  }
-  for (a = 0; a < 2; ++a) {
-    for (b = 0; b < 2; ++b) {
-      const float *const line = @_current_A + ((i + a) * @STATORS@ + j + b) * @WINDINGS@ + k;
-      along[b] = line[0] + at_winding * (line[1] - line[0]);
-    }
-    across[a] = along[0] + at_stator * (along[1] - along[0]);
-  }
-  return across[0] + at_speed * (across[1] - across[0]);
+  const heatsoak_row row = heatsoak_find_row(&@_table, speed_rad_per_s, stator_C);
+  return heatsoak_allowed_A(&@_table, &row, winding_C);
 }
 
 )";
@@ -43,17 +31,27 @@ static inline float @_allowed_A(float speed_rad_per_s, float stator_C, float win
 
 std::string tables(const Source& source) {
   const CurrentTable& table = source.derating.table;
-  return array(source.prefix + "_speed_rad_per_s", table.speed_rad_per_s) + array(source.prefix + "_stator_C", table.stator_C) +
-         array(source.prefix + "_winding_C", table.winding_C) + "/* in A: by speed, then stator, then winding */\n" +
-         array(source.prefix + "_current_A", table.current_A) + "\n";
+  const TableBound& bound = table.bound;
+  const std::string at_one_place = " An axis with one place does not matter.";
+  return fmt::format(
+             "/* Squares of the allowed current. The table is never above the exact answer of the network, and at most {:.1f} % below it "
+             "from\n"
+             "   {:.3g} A up, on points that are not its own. The allowed current changes by at most {:.3g} A per K of the winding, {:.3g} "
+             "A per K\n"
+             "   of the stator and {:.3g} A per rad/s.{} */\n",
+             100.0 * bound.shortfall_ratio, table.straight_below_A, bound.winding_slope_A_per_K, bound.stator_slope_A_per_K,
+             bound.speed_slope_A_s_per_rad,
+             table.speed_rad_per_s.size() == 1 || table.stator_C.size() == 1 ? at_one_place : std::string()) +
+         array(source.prefix + "_speed_rad_per_s", table.speed_rad_per_s) + array(source.prefix + "_stator_C", table.stator_C) +
+         array(source.prefix + "_winding_C", table.winding_C) + "/* in A^2: by speed, then stator, then winding */\n" +
+         array(source.prefix + "_square_A2", table.square_A2) +
+         replaced(kTable, {{"@SPEEDS@", std::to_string(table.speed_rad_per_s.size())},
+                           {"@STATORS@", std::to_string(table.stator_C.size())},
+                           {"@WINDINGS@", std::to_string(table.winding_C.size())},
+                           {"@CAP@", source.capital},
+                           {"@", source.prefix}});
 }
 
-std::string allowed_function(const Source& source) {
-  const CurrentTable& table = source.derating.table;
-  return replaced(kAllowed, {{"@SPEEDS@", std::to_string(table.speed_rad_per_s.size())},
-                             {"@STATORS@", std::to_string(table.stator_C.size())},
-                             {"@WINDINGS@", std::to_string(table.winding_C.size())},
-                             {"@", source.prefix}});
-}
+std::string allowed_function(const Source& source) { return replaced(kAllowed, {{"@", source.prefix}}); }
 
 }  // namespace heatsoak::c_header

@@ -1,7 +1,9 @@
-#include <embedded/thermal_math_text.h>
+#include <embedded/shared_c_text.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/crc.hpp>
+#include <span>
 #include <string>
 
 #include "derate/c_header/c_text.h"
@@ -21,6 +23,11 @@ unsigned signature_of(const Derating& derating) {
   return sum.checksum();
 }
 
+std::string shared_text(std::string_view file) {
+  const std::span<const embedded::Text> all = embedded::shared_c_text();
+  return std::string(std::ranges::find_if(all, [file](const embedded::Text& each) { return each.path.ends_with(file); })->text);
+}
+
 std::string write(const Derating& derating) {
   const std::string prefix = identifier(derating.motor_id);
   const c_header::Source source{derating, prefix, c_header::in_capitals(prefix), c_header::used_signals(derating.observer)};
@@ -33,9 +40,9 @@ std::string write(const Derating& derating) {
          "#include <stdint.h>\n#include <string.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"without -ffast-math: it takes away what tells a number from none, and the rounding that is "
          "carried\"\n#endif\n\n" +
-         (rates.calls_thermal_math ? std::string(embedded::thermal_math_text().front().text) + "\n" : "") + c_header::constants(source) +
-         c_header::foc_conversion(source) + c_header::structures(source) + c_header::tables(source) + rates.text +
-         c_header::candidates(source) + c_header::allowed_function(source) + c_header::step_functions(source) +
+         (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +
+         c_header::constants(source) + c_header::foc_conversion(source) + c_header::structures(source) + c_header::tables(source) +
+         rates.text + c_header::candidates(source) + c_header::allowed_function(source) + c_header::step_functions(source) +
          c_header::memory_functions(source, signature) + sensor.text + "#endif\n";
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "derate/exporter.h"
@@ -7,14 +8,31 @@
 namespace heatsoak::exporters {
 namespace {
 
+/// The places of an axis with more between them, so that straight lines between the rows follow the table.
+std::vector<double> sampled(const std::vector<double>& axis, int parts) {
+  std::vector<double> points{axis.front()};
+  for (std::size_t i = 1; i < axis.size(); ++i) {
+    const std::vector<double> between = evenly(axis[i - 1], axis[i], parts + 1);
+    points.insert(points.end(), between.begin() + 1, between.end());
+  }
+  return points;
+}
+
 std::string write(const Derating& derating) {
+  constexpr int kParts = 4;
   const CurrentTable& table = derating.table;
+  std::vector<double> speeds = sampled(table.speed_rad_per_s, 1);
+  for (const double last_rad_per_s : {table.most_speed_rad_per_s, table.no_current_speed_rad_per_s}) {
+    if (last_rad_per_s > speeds.back()) {
+      speeds.push_back(last_rad_per_s);
+    }
+  }
   std::string text = "speed_rad_per_s,stator_C,winding_C,allowed_current_A\n";
-  for (std::size_t i = 0; i < table.speed_rad_per_s.size(); ++i) {
-    for (std::size_t j = 0; j < table.stator_C.size(); ++j) {
-      for (std::size_t k = 0; k < table.winding_C.size(); ++k) {
-        fmt::format_to(std::back_inserter(text), "{:.6g},{:.6g},{:.6g},{:.5g}\n", table.speed_rad_per_s[i], table.stator_C[j],
-                       table.winding_C[k], table.current_A[table.place(i, j, k)]);
+  for (const double speed_rad_per_s : speeds) {
+    for (const double stator_C : sampled(table.stator_C, kParts)) {
+      for (const double winding_C : sampled(table.winding_C, kParts)) {
+        fmt::format_to(std::back_inserter(text), "{:.6g},{:.6g},{:.6g},{:.5g}\n", speed_rad_per_s, stator_C, winding_C,
+                       table.allowed_A(speed_rad_per_s, stator_C, winding_C));
       }
     }
   }
@@ -23,6 +41,8 @@ std::string write(const Derating& derating) {
 
 }  // namespace
 
-ExporterType csv() { return {.name = {}, .summary = "the table alone, one place a row, for pictures and other tools", .write = write}; }
+ExporterType csv() {
+  return {.name = {}, .summary = "the allowed current alone, one place a row, for pictures and other tools", .write = write};
+}
 
 }  // namespace heatsoak::exporters

@@ -20,31 +20,11 @@ constexpr double kStepsPerApproach = 10.0;
 constexpr std::uint64_t kSearchStream = std::uint64_t{1} << 40U;
 constexpr std::uint64_t kCheckStream = std::uint64_t{1} << 41U;
 
-/// The largest ratio to the table's currents, at least 1, at which the barrier of the sensed observer holds at every place of the table and
-/// between. The table falls with the root of the safety factor where copper loss alone heats the winding.
-double current_ratio(const Observer& sensed, const Derating& model_only) {
-  const CurrentTable& table = model_only.table;
-  double ratio = std::sqrt(model_only.observer.heat_reserve_ratio() / sensed.heat_reserve_ratio());
-  const auto middles = [](const std::vector<double>& axis) {
-    std::vector<double> places = axis;
-    for (std::size_t i = 1; i < axis.size(); ++i) {
-      places.push_back(0.5 * (axis[i - 1] + axis[i]));
-    }
-    return places;
-  };
-  for (const double speed_rad_per_s : middles(table.speed_rad_per_s)) {
-    for (const double stator_C : middles(table.stator_C)) {
-      for (const double winding_C : middles(table.winding_C)) {
-        const double listed_A = table.allowed_A(speed_rad_per_s, stator_C, winding_C);
-        const bool is_fading = winding_C > model_only.rules.limits.winding_C || speed_rad_per_s > model_only.rules.most_speed_rad_per_s;
-        if (listed_A > 0.0 && !is_fading &&
-            ratio * listed_A > barrier_current_A(sensed, model_only.rules, speed_rad_per_s, stator_C, winding_C)) {
-          ratio = std::min(ratio, barrier_current_A(sensed, model_only.rules, speed_rad_per_s, stator_C, winding_C) / listed_A);
-        }
-      }
-    }
-  }
-  return std::max(1.0, ratio);
+/// The nominal motor with a winding that stores less heat.
+Network faster_network(const Motor& motor, double winding_speed_ratio) {
+  MotorSample sample = nominal_sample(motor);
+  sample.values.thermal_time_constant_winding_s /= winding_speed_ratio;
+  return datasheet_network(motor, sample);
 }
 
 ReadingCheck first_check(const Derating& model_only, const SensorOptions& options) {
@@ -65,7 +45,6 @@ class PlanSearch {
         model_only_(model_only),
         options_(options),
         progress_(progress),
-        network_(datasheet_network(motor, nominal_sample(motor))),
         uses_(hardest_uses(model_only.observer, model_only.rules)) {
     const SensorGain gain = sensor_gain(motor, robot, model_only.rules, options, model_only.options.period_s, limp_current_A(model_only),
                                         model_only.options.guarantee.samples, model_only.options.guarantee.seed);
@@ -74,15 +53,19 @@ class PlanSearch {
   }
 
   [[nodiscard]] SensorPlan plan_with(double reserve) const {
+    const double winding_speed_ratio = std::max(1.0, model_only_.observer.heat_reserve_ratio() / reserve);
+    Observer observer(faster_network(motor_, winding_speed_ratio), motor_.nominal, robot_, reserve);
+    CurrentTable table = current_table(observer, model_only_.rules, model_only_.options.table);
     SensorPlan plan{.options = options_,
-                    .observer = Observer(network_, motor_.nominal, robot_, reserve),
+                    .observer = std::move(observer),
+                    .winding_speed_ratio = winding_speed_ratio,
+                    .table = std::move(table),
                     .gain = gain_,
                     .lag_gain = lag_gain_,
                     .check = first_check(model_only_, options_)};
     if (options_.kind == SensorKind::winding_resistance) {
       plan.resistance = resistance_reading(motor_, options_, model_only_.options.period_s);
     }
-    plan.current_ratio = current_ratio(plan.observer, model_only_);
     return plan;
   }
 
@@ -133,7 +116,6 @@ class PlanSearch {
   const Derating& model_only_;
   const SensorOptions& options_;
   const Progress& progress_;
-  Network network_;
   std::vector<Use> uses_;
   std::vector<double> gain_;
   double lag_gain_ = 0.0;

@@ -16,9 +16,10 @@ constexpr float kFallsFrom_share = 0.9F;
 constexpr float kMost = 999.0F;  ///< the core takes more than 1000 for a broken state
 
 Derating scaled(Derating exact, double ratio) {
-  for (double& current_A : exact.table.current_A) {
-    current_A *= ratio;
-  }
+  CurrentTable& table = exact.table;
+  std::ranges::transform(table.square_A2, table.square_A2.begin(), [ratio](double square_A2) { return ratio * ratio * square_A2; });
+  table.straight_below_A *= ratio;
+  table.most_current_A *= ratio;
   return exact;
 }
 
@@ -34,7 +35,8 @@ Derating exact_derating(const Motor& motor, const Robot& robot) {
   if (rules.most_speed_rad_per_s < reachable_rad_per_s) {
     rules.no_current_speed_rad_per_s = 0.0;
   }
-  CurrentTable table = current_table(observer, rules);
+  // What an oracle knows is exact.
+  CurrentTable table = current_table(observer, rules, {.shortfall_ratio = 0.003, .most_bytes = 1U << 16U});
   return {.motor_id = motor.id,
           .robot_id = robot.id,
           .data_quality = {},
@@ -64,22 +66,31 @@ Overload overload_of(const MotorValues& motor) {
 Limiter::Limiter(const Derating& exact, double resistance_ratio)
     : exact_(scaled(exact, resistance_ratio)), motor_(exact_), model_(motor_.model()), resistance_ratio_(resistance_ratio) {}
 
-void Limiter::set_table(std::vector<float> body, const std::vector<double>& current_A) {
-  constexpr float kAnySpeed_rad_per_s = 1e6F;
+void Limiter::set_table(const std::vector<float>& body, const std::vector<double>& current_A) {
   constexpr float kAnyWinding_C = 1000.0F;
-  speed_rad_per_s_ = {0.0F, kAnySpeed_rad_per_s};
+  constexpr float kAnySpeed_rad_per_s = 1e6F;
+  constexpr int kParts = 32;  // the table's squares are straight between the places, these limiters' currents are
+  speed_rad_per_s_ = {0.0F};
   winding_C_ = {0.0F, kAnyWinding_C};
-  body_ = std::move(body);
-  for (std::size_t speed = 0; speed < speed_rad_per_s_.size(); ++speed) {
-    for (const double each_A : current_A) {
-      current_A_.insert(current_A_.end(), winding_C_.size(), static_cast<float>(each_A * resistance_ratio_));
+  for (std::size_t i = 0; i + 1 < body.size(); ++i) {
+    for (int part = i == 0 ? 0 : 1; part <= kParts; ++part) {
+      const float share = static_cast<float>(part) / kParts;
+      body_.push_back(std::lerp(body[i], body[i + 1], share));
+      const auto each_A = static_cast<float>(resistance_ratio_ * std::lerp(current_A[i], current_A[i + 1], static_cast<double>(share)));
+      square_A2_.insert(square_A2_.end(), winding_C_.size(), each_A * each_A);
     }
   }
-  const auto axis = [](const std::vector<float>& points) { return robot_core::GuardAxis{points.data(), static_cast<int>(points.size())}; };
-  model_.speed_rad_per_s = axis(speed_rad_per_s_);
-  model_.stator_C = axis(body_);
-  model_.winding_C = axis(winding_C_);
-  model_.current_A = current_A_.data();
+  const auto axis = [](const std::vector<float>& points) { return heatsoak_axis{points.data(), static_cast<std::int32_t>(points.size())}; };
+  heatsoak_current_table& table = model_.table;
+  table.speed_rad_per_s = axis(speed_rad_per_s_);
+  table.stator_C = axis(body_);
+  table.winding_C = axis(winding_C_);
+  table.square_A2 = square_A2_.data();
+  table.straight_below_A = 1e-3F;
+  table.most_current_A = static_cast<float>(resistance_ratio_ * *std::ranges::max_element(current_A));
+  table.most_speed_rad_per_s = kAnySpeed_rad_per_s;
+  table.no_current_speed_rad_per_s = 2.0F * kAnySpeed_rad_per_s;
+  model_.cold_current_A = static_cast<float>(resistance_ratio_ * current_A.front());
 }
 
 std::unique_ptr<Limiter> Limiter::fixed_cap(const Derating& exact, double resistance_ratio, double cap_A) {

@@ -47,7 +47,7 @@ class Limiter {
  private:
   Limiter(const Derating& exact, double resistance_ratio);
   /// The table depends on the second node alone.
-  void set_table(std::vector<float> body, const std::vector<double>& current_A);
+  void set_table(const std::vector<float>& body, const std::vector<double>& current_A);
   static void overload_rates(const void* context, const float* signal, const float* state_C, float* rate_K_per_s);
 
   Derating exact_;
@@ -58,7 +58,7 @@ class Limiter {
   std::vector<float> speed_rad_per_s_;
   std::vector<float> body_;
   std::vector<float> winding_C_;
-  std::vector<float> current_A_;
+  std::vector<float> square_A2_;
   float continuous_squared_A2_ = 0.0F;
   float fill_per_A2_s_ = 0.0F;
 };

@@ -5,9 +5,8 @@ namespace {
 
 using robot_core::Config;
 
-constexpr int kSpeeds = 7;
-constexpr int kStators = 8;
-constexpr int kWindings = 10;
+constexpr int kStators = 2;
+constexpr int kWindings = 8;
 constexpr int kCandidates = 33;
 constexpr float kMostCurrent_A = 23.1481476F;
 constexpr float kMostSpeed_rad_per_s = 419.207306F;
@@ -26,31 +25,15 @@ constexpr Numbers<kCandidates> spread(float most) {
   return numbers;
 }
 
-constexpr float kSpeed_rad_per_s[kSpeeds] = {0.0F, 69.8678894F, 139.735779F, 209.603653F, 279.471558F, 349.339417F, kMostSpeed_rad_per_s};
-constexpr float kStator_C[kStators] = {40.0F, 56.4285698F, 72.8571396F, 89.2857132F, 105.714287F, 122.14286F, 138.571426F, 155.0F};
-constexpr float kWinding_C[kWindings] = {40.0F, 91.0F, 123.0F, 139.0F, 147.0F, 151.0F, 153.0F, 154.0F, 155.0F, 156.0F};
-
 // By `heatsoak derate`; of this motor it does not depend on the speed.
-constexpr float kAtEverySpeed_A[kStators * kWindings] = {
-    17.3877773F, 12.09727F,   8.44920063F, 6.22634506F, 4.84678459F, 4.01161289F, 3.52868319F, 3.26271391F, 2.97458076F, 0.0F,
-    17.3359432F, 12.0344868F, 8.36716747F, 6.11949825F, 4.7117691F,  3.8491354F,  3.34377623F, 3.06235409F, 2.75391102F, 0.0F,
-    17.2840214F, 11.9713497F, 8.28442669F, 6.01079702F, 4.57269144F, 3.67950487F, 3.14809656F, 2.84786558F, 2.51399136F, 0.0F,
-    17.2318344F, 11.9079475F, 8.20080376F, 5.90015316F, 4.42937565F, 3.50166249F, 2.93934774F, 2.61598158F, 2.24855208F, 0.0F,
-    17.1795597F, 11.8441048F, 8.11638641F, 5.78730154F, 4.28120279F, 3.31419468F, 2.71461606F, 2.36131525F, 1.94726157F, 0.0F,
-    17.1271076F, 11.7799969F, 8.03099728F, 5.67224264F, 4.12764359F, 3.11560082F, 2.46957493F, 2.07574272F, 1.58998692F, 0.0F,
-    17.0744781F, 11.7155352F, 7.94472504F, 5.55479956F, 3.96825647F, 2.90340829F, 2.1973362F,  1.74398768F, 1.12427604F, 0.0F,
-    17.0216732F, 11.6507206F, 7.85756969F, 5.43479538F, 3.80215812F, 2.67443824F, 1.88615584F, 1.33196509F, 0.0F,        0.0F,
+constexpr float kSpeed_rad_per_s[] = {0.0F};
+constexpr float kStator_C[kStators] = {40.0F, 155.0F};
+constexpr float kWinding_C[kWindings] = {40.0F, 74.5F, 97.5F, 123.5F, 140.5F, 149.5F, 155.0F, 158.0F};
+constexpr float kSquare_A2[kStators * kWindings] = {
+    299.01F, 187.74F, 128.79F, 69.194F, 35.735F, 18.763F, 8.8409F,     -0.00014951F,
+    286.41F, 176.56F, 118.39F, 59.561F, 26.542F, 9.7872F, -0.0073453F, -5.2682F,
 };
 
-constexpr Numbers<kSpeeds * kStators * kWindings> whole_table() {
-  Numbers<kSpeeds * kStators * kWindings> table{};
-  for (int i = 0; i < kSpeeds * kStators * kWindings; ++i) {
-    table.values[i] = kAtEverySpeed_A[i % (kStators * kWindings)];
-  }
-  return table;
-}
-
-constexpr Numbers<kSpeeds* kStators* kWindings> kTable_A = whole_table();
 constexpr Numbers<kCandidates> kPossibleCurrent_A = spread(kMostCurrent_A);
 constexpr Numbers<kCandidates> kPossibleSpeed_rad_per_s = spread(kMostSpeed_rad_per_s);
 constexpr float kPossibleAmbient_C[] = {40.0F};
@@ -73,10 +56,16 @@ constexpr robot_core::GuardModel make_guard() {
   guard.winding_limit_C = 155.0F;
   guard.hottest_ambient_C = 40.0F;
   guard.most_current_A = kMostCurrent_A;
-  guard.speed_rad_per_s = {kSpeed_rad_per_s, kSpeeds};
-  guard.stator_C = {kStator_C, kStators};
-  guard.winding_C = {kWinding_C, kWindings};
-  guard.current_A = kTable_A.values;
+  guard.cold_current_A = 17.2919F;
+  guard.table = {.speed_rad_per_s = {kSpeed_rad_per_s, 1},
+                 .stator_C = {kStator_C, kStators},
+                 .winding_C = {kWinding_C, kWindings},
+                 .square_A2 = kSquare_A2,
+                 .most_current_A = kMostCurrent_A,
+                 .straight_below_A = 0.992F,
+                 .most_speed_rad_per_s = kMostSpeed_rad_per_s,
+                 .no_current_speed_rad_per_s = 845.12195F,
+                 .winding_per_stator_K = 1.0F};
   guard.belief[robot_core::guard_current_A] = {true, -kMostCurrent_A, kMostCurrent_A, kPossibleCurrent_A.values, kCandidates};
   guard.belief[robot_core::guard_speed_rad_per_s] = {true, -1.05F * kMostSpeed_rad_per_s, 1.05F * kMostSpeed_rad_per_s,
                                                      kPossibleSpeed_rad_per_s.values, kCandidates};

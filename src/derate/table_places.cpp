@@ -1,0 +1,339 @@
+#include "derate/table_places.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace heatsoak {
+namespace {
+
+/// Above its limit the winding's axis ends here: the barrier lets a winding that cools fast enough carry a current for some kelvins.
+constexpr double kAboveLimit_K = 3.0;
+
+enum Axis : std::size_t { speed, stator, winding, kAxes };
+using Index = std::array<std::size_t, kAxes>;
+using Places = std::array<std::vector<std::size_t>, kAxes>;  ///< of a table: which points of the grid, ascending
+
+/// The exact squares on a fine grid, whose points are the places that a table may have.
+struct ExactGrid {
+  std::array<std::vector<double>, kAxes> points;
+  std::vector<double> square_A2;  ///< [speed][stator][winding]
+  std::size_t limit = 0;          ///< point of the winding's axis at the winding's limit
+
+  [[nodiscard]] std::size_t place(const Index& at) const {
+    return (at[speed] * points[stator].size() + at[stator]) * points[winding].size() + at[winding];
+  }
+};
+
+/// Whether the exact answer changes with the speed at any of a few temperatures.
+bool depends_on_speed(Barrier& barrier, const BarrierRules& rules) {
+  constexpr double kSame_ratio = 1e-6;
+  const double span_K = rules.limits.winding_C - rules.hottest_ambient_C;
+  for (const double stator_share : {0.1, 0.45, 0.95}) {
+    for (const double winding_share : {0.15, 0.6, 0.99}) {
+      const double stator_C = rules.hottest_ambient_C + stator_share * span_K;
+      const double winding_C = rules.hottest_ambient_C + winding_share * span_K;
+      const double standing_A2 = barrier.square_A2(0.0, stator_C, winding_C);
+      for (const double speed_share : {0.13, 0.37, 0.5, 0.81, 1.0}) {
+        const double square_A2 = barrier.square_A2(speed_share * rules.most_speed_rad_per_s, stator_C, winding_C);
+        if (std::abs(square_A2 - standing_A2) > kSame_ratio * std::abs(standing_A2)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/// From `low` to `high` in about as many equal steps, the points between rounded to halves.
+std::vector<double> rounded_steps(double low, double high, int steps) {
+  std::vector<double> points = evenly(low, high, steps + 1);
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    points[i] = 0.5 * std::round(2.0 * points[i]);
+  }
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  std::erase_if(points, [&](double point) { return point < low || point > high; });
+  return points;
+}
+
+ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
+  constexpr int kSpeedSteps = 10;
+  constexpr int kStatorSteps = 16;
+  constexpr int kWindingSteps = 40;
+  const double limit_C = rules.limits.winding_C;
+  const double coldest_C = std::min(rules.hottest_ambient_C, limit_C - 1.0);
+  ExactGrid grid;
+  grid.points[speed] = depends_on_speed(barrier, rules) ? rounded_steps(0.0, rules.most_speed_rad_per_s, kSpeedSteps) : std::vector{0.0};
+  const double last_stator_C = std::min(limit_C, rules.limits.stator_C.value_or(limit_C));
+  grid.points[stator] = rounded_steps(std::min(coldest_C, last_stator_C - 1.0), last_stator_C, kStatorSteps);
+  grid.points[winding] = rounded_steps(coldest_C, limit_C, kWindingSteps);
+  grid.limit = grid.points[winding].size() - 1;
+  grid.points[winding].push_back(limit_C + kAboveLimit_K);
+  for (const double speed_rad_per_s : grid.points[speed]) {
+    for (const double stator_C : grid.points[stator]) {
+      for (const double winding_C : grid.points[winding]) {
+        const double square_A2 = barrier.square_A2(speed_rad_per_s, stator_C, winding_C);
+        grid.square_A2.push_back(winding_C > limit_C ? std::min(square_A2, 0.0) : square_A2);
+      }
+    }
+  }
+  return grid;
+}
+
+/// The part of an axis between two neighbouring places, or all of it where it has one place only.
+struct Segment {
+  std::size_t low = 0;  ///< point of the grid
+  std::size_t high = 0;
+};
+
+std::vector<Segment> segments(const std::vector<std::size_t>& places, std::size_t points) {
+  if (places.size() == 1) {
+    return {{0, points - 1}};
+  }
+  std::vector<Segment> all;
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    all.push_back({places[i], places[i + 1]});
+  }
+  return all;
+}
+
+/// Squares over chosen places of the grid.
+class Fit {
+ public:
+  Fit(const ExactGrid& grid, Places places, double straight_below_A, double most_current_A)
+      : grid_(&grid), places_(std::move(places)), straight_below_A_(straight_below_A), most_current_A_(most_current_A) {
+    for (const std::size_t i : places_[speed]) {
+      for (const std::size_t j : places_[stator]) {
+        for (const std::size_t k : places_[winding]) {
+          square_A2_.push_back(grid_->square_A2[grid_->place({i, j, k})]);
+        }
+      }
+    }
+    for_each_cell([this](const Index& cell, const std::array<Segment, kAxes>& at) { lower(cell, at); });
+    for_each_cell([this](const Index& cell, const std::array<Segment, kAxes>& at) { find_shortfall(cell, at); });
+  }
+
+  [[nodiscard]] const Places& places() const { return places_; }
+  [[nodiscard]] const std::vector<double>& square_A2() const { return square_A2_; }
+  [[nodiscard]] double shortfall_ratio() const { return shortfall_ratio_; }
+  [[nodiscard]] const Index& worst() const { return worst_; }
+  [[nodiscard]] std::size_t number_count() const {
+    return places_[speed].size() + places_[stator].size() + places_[winding].size() + square_A2_.size();
+  }
+
+ private:
+  template <class Visit>
+  void for_each_cell(const Visit& visit) {
+    const auto speeds = segments(places_[speed], grid_->points[speed].size());
+    const auto stators = segments(places_[stator], grid_->points[stator].size());
+    const auto windings = segments(places_[winding], grid_->points[winding].size());
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      for (std::size_t j = 0; j < stators.size(); ++j) {
+        for (std::size_t k = 0; k < windings.size(); ++k) {
+          visit(Index{i, j, k}, {speeds[i], stators[j], windings[k]});
+        }
+      }
+    }
+  }
+
+  template <class Visit>
+  void for_each_point(const std::array<Segment, kAxes>& at, const Visit& visit) const {
+    const auto share = [&](Axis axis, std::size_t point) {
+      const double low = grid_->points[axis][at[axis].low];
+      const double high = grid_->points[axis][at[axis].high];
+      return high > low ? (grid_->points[axis][point] - low) / (high - low) : 0.0;
+    };
+    for (std::size_t i = at[speed].low; i <= at[speed].high; ++i) {
+      for (std::size_t j = at[stator].low; j <= at[stator].high; ++j) {
+        for (std::size_t k = at[winding].low; k <= at[winding].high; ++k) {
+          visit(Index{i, j, k}, std::array{share(speed, i), share(stator, j), share(winding, k)});
+        }
+      }
+    }
+  }
+
+  /// Places of the squares at the corners of a cell, the winding's neighbours side by side; the same twice on an axis with one place.
+  [[nodiscard]] std::array<std::size_t, 8> corners(const Index& cell) const {
+    std::array<std::size_t, 8> places{};
+    for (std::size_t which = 0; which < places.size(); ++which) {
+      const auto along = [&](Axis axis, std::size_t bit) { return cell[axis] + (places_[axis].size() > 1 ? (which >> bit) & 1U : 0U); };
+      places.at(which) = (along(speed, 2) * places_[stator].size() + along(stator, 1)) * places_[winding].size() + along(winding, 0);
+    }
+    return places;
+  }
+
+  [[nodiscard]] double between_A2(const std::array<std::size_t, 8>& corner, const std::array<double, kAxes>& share) const {
+    const auto along = [&](std::size_t first) {
+      return square_A2_[corner[first]] + share[winding] * (square_A2_[corner[first + 1]] - square_A2_[corner[first]]);
+    };
+    const double low_A2 = along(0) + share[stator] * (along(2) - along(0));
+    const double high_A2 = along(4) + share[stator] * (along(6) - along(4));
+    return low_A2 + share[speed] * (high_A2 - low_A2);
+  }
+
+  /// By as much as the cell lies above the exact answer anywhere.
+  void lower(const Index& cell, const std::array<Segment, kAxes>& at) {
+    std::array<std::size_t, 8> corner = corners(cell);
+    double excess_A2 = 0.0;
+    for_each_point(at, [&](const Index& point, const std::array<double, kAxes>& share) {
+      excess_A2 = std::max(excess_A2, between_A2(corner, share) - grid_->square_A2[grid_->place(point)]);
+    });
+    std::ranges::sort(corner);
+    const auto end = std::unique(corner.begin(), corner.end());
+    std::for_each(corner.begin(), end, [&](std::size_t each) { square_A2_[each] -= excess_A2; });
+  }
+
+  /// Below 0 for a square below 0, so that a table that allows nothing is still told from one that is nearer; and beyond the most current,
+  /// so that the place between two points of the grid where that is reached counts.
+  [[nodiscard]] double current_A(double square_A2) const {
+    const double straight_A2 = straight_below_A_ * straight_below_A_;
+    constexpr double kBeyond_ratio = 1.1;
+    return std::min(kBeyond_ratio * most_current_A_, square_A2 < straight_A2 ? square_A2 / straight_below_A_ : std::sqrt(square_A2));
+  }
+
+  void find_shortfall(const Index& cell, const std::array<Segment, kAxes>& at) {
+    const std::array<std::size_t, 8> corner = corners(cell);
+    for_each_point(at, [&](const Index& point, const std::array<double, kAxes>& share) {
+      const double exact_A2 = grid_->square_A2[grid_->place(point)];
+      if (point[winding] > grid_->limit || exact_A2 < straight_below_A_ * straight_below_A_) {
+        return;
+      }
+      const double short_ratio = 1.0 - current_A(between_A2(corner, share)) / current_A(exact_A2);
+      if (short_ratio > shortfall_ratio_) {
+        shortfall_ratio_ = short_ratio;
+        worst_ = point;
+      }
+    });
+  }
+
+  const ExactGrid* grid_;
+  Places places_;
+  std::vector<double> square_A2_;
+  double straight_below_A_;
+  double most_current_A_;
+  double shortfall_ratio_ = 0.0;
+  Index worst_{};
+};
+
+/// The places with one more of that axis, as near to `wanted` as one is free; nothing where all are taken.
+std::vector<std::size_t> with_place(std::vector<std::size_t> places, std::size_t points, std::size_t wanted) {
+  if (places.size() == 1 && points > 1) {
+    return {0, points - 1};  // from none that matters to both ends
+  }
+  for (std::size_t away = 0; away < points; ++away) {
+    for (const std::size_t point : {wanted + away, wanted - away}) {
+      if (point < points && !std::ranges::binary_search(places, point)) {
+        places.insert(std::ranges::upper_bound(places, point), point);
+        return places;
+      }
+    }
+  }
+  return places;
+}
+
+double three_digits(double positive) {
+  const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 2.0);
+  return static_cast<float>(unit * std::round(positive / unit));
+}
+
+/// Adds places until the goal is reached.
+class Search {
+ public:
+  Search(const ExactGrid& grid, const BarrierRules& rules, const TableGoal& goal)
+      : grid_(grid), goal_(goal), most_current_A_(rules.most_current_A) {
+    double hottest_A2 = 0.0;
+    for (std::size_t j = 0; j < grid.points[stator].size(); ++j) {
+      hottest_A2 = std::max(hottest_A2, grid.square_A2[grid.place({0, j, grid.limit})]);
+    }
+    constexpr double kShare = 1.0 / 3.0;
+    constexpr double kLeast_share = 0.02;
+    straight_below_A_ = three_digits(std::max(kShare * std::sqrt(hottest_A2), kLeast_share * most_current_A_));
+  }
+
+  [[nodiscard]] double straight_below_A() const { return straight_below_A_; }
+
+  [[nodiscard]] Fit best() const {
+    Fit fit = of({std::vector<std::size_t>{0}, {0}, {0, grid_.points[winding].size() - 1}});
+    while (fit.shortfall_ratio() > goal_.shortfall_ratio) {
+      std::optional<Fit> next = refined(fit);
+      if (!next) {
+        break;
+      }
+      fit = std::move(*next);
+    }
+    return without_idle_places(std::move(fit));
+  }
+
+ private:
+  [[nodiscard]] Fit of(Places places) const { return {grid_, std::move(places), straight_below_A_, most_current_A_}; }
+
+  /// Of one more place on each axis the one that lessens the shortfall most for what it costs.
+  [[nodiscard]] std::optional<Fit> refined(const Fit& fit) const {
+    std::optional<Fit> best;
+    double best_gain = -std::numeric_limits<double>::infinity();
+    for (const Axis axis : {winding, stator, speed}) {
+      Places places = fit.places();
+      places[axis] = with_place(places[axis], grid_.points[axis].size(), fit.worst()[axis]);
+      if (places[axis].size() == fit.places()[axis].size()) {
+        continue;
+      }
+      Fit tried = of(std::move(places));
+      if (sizeof(float) * tried.number_count() > goal_.most_bytes) {
+        continue;
+      }
+      const double gain = std::log(fit.shortfall_ratio() / std::max(1e-9, tried.shortfall_ratio())) /
+                          static_cast<double>(tried.number_count() - fit.number_count());
+      if (gain > best_gain) {
+        best_gain = gain;
+        best.emplace(std::move(tried));
+      }
+    }
+    return best;
+  }
+
+  [[nodiscard]] Fit without_idle_places(Fit fit) const {
+    const double allowed_ratio = std::max(goal_.shortfall_ratio, fit.shortfall_ratio());
+    for (const Axis axis : {speed, stator, winding}) {
+      for (std::size_t i = 1; i + 1 < fit.places()[axis].size();) {
+        Places places = fit.places();
+        places[axis].erase(places[axis].begin() + static_cast<std::ptrdiff_t>(i));
+        Fit tried = of(std::move(places));
+        if (tried.shortfall_ratio() <= allowed_ratio) {
+          fit = std::move(tried);
+        } else {
+          ++i;
+        }
+      }
+    }
+    return fit;
+  }
+
+  const ExactGrid& grid_;
+  const TableGoal& goal_;
+  double most_current_A_;
+  double straight_below_A_ = 0.0;
+};
+
+}  // namespace
+
+void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal) {
+  const ExactGrid grid = exact_grid(barrier, rules);
+  const Search search(grid, rules, goal);
+  const Fit fit = search.best();
+  const std::array axes{&table.speed_rad_per_s, &table.stator_C, &table.winding_C};
+  for (const Axis axis : {speed, stator, winding}) {
+    axes.at(axis)->clear();
+    for (const std::size_t place : fit.places()[axis]) {
+      axes.at(axis)->push_back(grid.points[axis][place]);
+    }
+  }
+  // An axis that does not matter still says how far it goes.
+  table.stator_C.back() = grid.points[stator].back();
+  table.square_A2 = fit.square_A2();
+  table.straight_below_A = search.straight_below_A();
+  table.bound.shortfall_ratio = std::min(1.0, fit.shortfall_ratio());
+}
+
+}  // namespace heatsoak
