@@ -69,8 +69,8 @@ struct LastingCurrent {
 struct SensorPlan {
   SensorOptions options;
   std::optional<ResistanceReading> resistance = {};
-  /// Counts heat by the lower safety factor. Its winding stores winding_speed_ratio times less heat, so that a pulse from cold heats it as
-  /// fast as without a sensor: no sensor at the stator sees a pulse in time.
+  /// Counts heat by the lower safety factor. Its winding stores winding_speed_ratio times less heat, so that a pulse from cold heats it at
+  /// least as fast as without a sensor: no sensor at the stator sees a pulse in time.
   Observer observer;
   double winding_speed_ratio = 1.0;
   CurrentTable table;        ///< of that observer

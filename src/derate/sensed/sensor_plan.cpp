@@ -16,9 +16,12 @@ namespace {
 
 /// Of the search's loop: a tenth of the time in which the winding may come near its limit.
 constexpr double kStepsPerApproach = 10.0;
-/// Streams of chance of the search and of the check, apart from those of the guard without a sensor.
-constexpr std::uint64_t kSearchStream = std::uint64_t{1} << 40U;
-constexpr std::uint64_t kCheckStream = std::uint64_t{1} << 41U;
+/// The motors of the guard without a sensor: those of its search first, then those of each check.
+constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
+/// A pulse from cold heats a winding by safety factor times winding_speed_ratio. With an exponent of 1 that product is the one without a
+/// sensor and pulses decide the safety factor; with 2 the winding is so fast that the steady state gains no more (found on the motors of
+/// the search).
+constexpr double kPulseExponent = 1.5;
 
 /// The nominal motor with a winding that stores less heat.
 Network faster_network(const Motor& motor, double winding_speed_ratio) {
@@ -53,7 +56,7 @@ class PlanSearch {
   }
 
   [[nodiscard]] SensorPlan plan_with(double reserve) const {
-    const double winding_speed_ratio = std::max(1.0, model_only_.observer.heat_reserve_ratio() / reserve);
+    const double winding_speed_ratio = std::pow(std::max(1.0, model_only_.observer.heat_reserve_ratio() / reserve), kPulseExponent);
     Observer observer(faster_network(motor_, winding_speed_ratio), motor_.nominal, robot_, reserve);
     CurrentTable table = current_table(observer, model_only_.rules, model_only_.options.table);
     SensorPlan plan{.options = options_,
@@ -99,7 +102,7 @@ class PlanSearch {
     double high = model_only_.observer.heat_reserve_ratio();
     while (high > low * (1.0 + kTolerance)) {
       const double middle = std::sqrt(low * high);
-      (keeps(peaks(plan_with(middle), coarse_s, kSearchStream)) ? high : low) = middle;
+      (keeps(peaks(plan_with(middle), coarse_s, 0)) ? high : low) = middle;
       if (progress_) {
         progress_(std::min(++rounds_, kRounds), kRounds + 2);
       }
@@ -190,10 +193,9 @@ SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derati
   constexpr double kRaise = 1.005;
   constexpr int kMostRaises = 20;
   const double fine_s = 2.0 * model_only.options.period_s;
-  for (int number = 0; number < kMostRaises && reserve < model_only.observer.heat_reserve_ratio(); ++number, reserve *= kRaise) {
+  for (int number = 1; number <= kMostRaises && reserve < model_only.observer.heat_reserve_ratio(); ++number, reserve *= kRaise) {
     SensorPlan plan = search.plan_with(reserve);
-    const std::vector<SensedPeak> peaks =
-        search.peaks(plan, fine_s, kCheckStream + static_cast<std::uint64_t>(number) * (std::uint64_t{1} << 32U));
+    const std::vector<SensedPeak> peaks = search.peaks(plan, fine_s, static_cast<std::uint64_t>(number) * kStreamsApart);
     if (search.keeps(peaks)) {
       set_check(plan, peaks);
       set_guarantee(plan, peaks);
