@@ -124,7 +124,7 @@ Json sensor_json(const Derating& derating) {
       {"accuracy_K", plan.options.accuracy_K},
       {"lag_s", plan.options.lag_s},
       {"heat_reserve_ratio", rounded(plan.observer.heat_reserve_ratio(), 4)},
-      {"current_ratio", rounded(plan.current_ratio, 4)},
+      {"winding_speed_ratio", rounded(plan.winding_speed_ratio, 4)},
       {"samples", plan.samples},
       {"over", plan.over},
       {"winding_peak_C", {{"p95", rounded(plan.winding_p95_C, 2)}, {"most", rounded(plan.winding_most_C, 2)}}},

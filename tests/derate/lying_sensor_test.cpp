@@ -19,7 +19,7 @@ struct Attack {
 std::vector<Attack> attacks() {
   return {
       {"stuck at the cold air", true, [](double, double, double) { return 20.0F; }},
-      {"stuck where it was after 100 s", true,
+      {"stuck where it was after 100 s", false,
        [held = 40.0F](double time_s, double true_C, double) mutable {
          held = time_s < 100.0 ? static_cast<float>(true_C) : held;
          return held;

@@ -33,8 +33,8 @@ LinearObserver random_observer(std::mt19937_64& engine, int size) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto matrix = [&] { return Eigen::MatrixXd::NullaryExpr(size, size, [&] { return uniform(engine); }); };
   const Eigen::MatrixXd root = matrix();
-  return {Eigen::MatrixXd::Identity(size, size) + 0.02 * matrix(), Eigen::RowVectorXd::NullaryExpr(size, [&] { return uniform(engine); }),
-          1e-3 * root * root.transpose(), 0.7};
+  return {0.97 * Eigen::MatrixXd::Identity(size, size) + 0.02 * matrix(),
+          Eigen::RowVectorXd::NullaryExpr(size, [&] { return uniform(engine); }), 1e-3 * root * root.transpose(), 0.7};
 }
 
 TEST(Riccati, SolvesTheEquationAndIsTheLimitOfTheRecursion) {

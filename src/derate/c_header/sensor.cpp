@@ -206,10 +206,9 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
   }
   speed_rad_per_s = measured->speed_rad_per_s < 0.0f ? -measured->speed_rad_per_s : measured->speed_rad_per_s;
   state->capped_A = @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->capped_C), state->capped_C[0]);
-  sensed_A = @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->state_C), state->state_C[0]);
-  if (state->unread_s < @CAP@_SENSOR_HOLD_S) {
-    sensed_A *= @CAP@_SENSOR_CURRENT_RATIO;
-  }
+  sensed_A = state->unread_s < @CAP@_SENSOR_HOLD_S
+                 ? @_sensed_allowed_A(speed_rad_per_s, @_hottest_body_C(state->state_C), state->state_C[0])
+                 : @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->state_C), state->state_C[0]);
   most_A = state->capped_A + @CAP@_SENSOR_MOST_GAIN_A * (1.0f - state->cold_s / @CAP@_SENSOR_CONTRADICTION_S);
   sensed_A = sensed_A < most_A ? sensed_A : most_A;
   sensed_A = sensed_A < @CAP@_MOST_CURRENT_A ? sensed_A : @CAP@_MOST_CURRENT_A;
@@ -269,9 +268,8 @@ std::string constants(const Source& source, const SensorPlan& plan) {
   const auto define = [&](std::string_view name, double value) {
     return fmt::format("#define {}_{} {}\n", source.capital, name, literal(value));
   };
-  std::string text = define("SENSOR_ACCURACY_K", plan.options.accuracy_K) + define("SENSOR_CURRENT_RATIO", plan.current_ratio) +
-                     define("SENSOR_MOST_GAIN_A", plan.most_gain_A) + define("SENSOR_MOST_C", plan.check.most_C) +
-                     define("SENSOR_MOST_JUMP_K", plan.check.most_jump_K) +
+  std::string text = define("SENSOR_ACCURACY_K", plan.options.accuracy_K) + define("SENSOR_MOST_GAIN_A", plan.most_gain_A) +
+                     define("SENSOR_MOST_C", plan.check.most_C) + define("SENSOR_MOST_JUMP_K", plan.check.most_jump_K) +
                      define("SENSOR_MOST_RATE_K_PER_S", plan.check.most_rate_K_per_s) + define("SENSOR_COLD_RATIO", plan.check.cold_share) +
                      define("SENSOR_COLD_MARGIN_K", plan.check.cold_margin_K) + define("SENSOR_FROZEN_BAND_K", plan.check.frozen_band_K) +
                      define("SENSOR_FROZEN_K", plan.check.frozen_K) + define("SENSOR_CONTRADICTION_S", plan.check.contradiction_s) +
@@ -296,6 +294,25 @@ std::string comment(const SensorPlan& plan) {
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_reserve_ratio(), plan.samples,
       plan.over, plan.dropped, plan.lying_nominal_C, plan.lying_over);
+}
+
+/// The table for the lower safety factor, under the same rules.
+std::string sensed_table(const Source& source, const SensorPlan& plan) {
+  const CurrentTable& table = plan.table;
+  const std::string name = source.prefix + "_sensed";
+  return array(name + "_speed_rad_per_s", table.speed_rad_per_s) + array(name + "_stator_C", table.stator_C) +
+         array(name + "_winding_C", table.winding_C) + array(name + "_square_A2", table.square_A2) +
+         fmt::format(
+             "static const heatsoak_current_table {0}_table = {{\n    {{{0}_speed_rad_per_s, {1}}},\n    {{{0}_stator_C, {2}}},\n"
+             "    {{{0}_winding_C, {3}}},\n    {0}_square_A2,\n    {4},\n    {5},\n    {6},\n    {7},\n    {8}}};\n\n",
+             name, table.speed_rad_per_s.size(), table.stator_C.size(), table.winding_C.size(), literal(table.most_current_A),
+             literal(table.straight_below_A), literal(table.most_speed_rad_per_s), literal(table.no_current_speed_rad_per_s),
+             literal(table.winding_per_stator_K)) +
+         fmt::format(
+             "static inline float {0}_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) {{\n"
+             "  const heatsoak_row row = heatsoak_find_row(&{0}_table, speed_rad_per_s, stator_C);\n"
+             "  return heatsoak_allowed_A(&{0}_table, &row, winding_C);\n}}\n\n",
+             name);
 }
 
 }  // namespace
@@ -329,7 +346,8 @@ Rates sensor_functions(const Source& source) {
                   fmt::format("/* dT/dt of every node while the sensor is used */\nstatic inline void {0}_sensed_rates(const {0}_input "
                               "*input, const float *state_C, float *rate_K_per_s) {{\n{1}}}\n\n",
                               source.prefix, lines.text()) +
-                  replaced(kCheck, words) + replaced(kStep, words) + (plan.resistance ? replaced(kResistance, words) : ""),
+                  sensed_table(source, plan) + replaced(kCheck, words) + replaced(kStep, words) +
+                  (plan.resistance ? replaced(kResistance, words) : ""),
           .calls_square_root = lines.calls_square_root() || plan.resistance.has_value(),
           .calls_thermal_math = lines.calls_thermal_math()};
 }

@@ -52,8 +52,8 @@ class LaneGuard {
       for (std::size_t node = states::first_own; node < state_C_.size(); ++node) {
         body_C = std::max(body_C, state_C_[node][lane]);
       }
-      const double listed_A = loop_.table.allowed_A(speed_rad_per_s, body_C, state_C_[states::winding][lane]);
-      allowed[lane] = is_trusted(lane) ? std::min(loop_.rules.most_current_A, loop_.plan.current_ratio * listed_A) : listed_A;
+      const CurrentTable& table = is_trusted(lane) ? loop_.plan.table : loop_.table;
+      allowed[lane] = table.allowed_A(speed_rad_per_s, body_C, state_C_[states::winding][lane]);
     }
     return allowed;
   }

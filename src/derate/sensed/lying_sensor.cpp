@@ -57,8 +57,7 @@ UsePlayed play_lying(const SensorPlan& plan, const Derating& model_only, const M
     if (is_on) {
       counted_A =
           model_only.table.allowed_A(static_cast<float>(speed_rad_per_s), capped.hottest_body_C(), capped.state_C()[states::winding]);
-      const double cold_A =
-          plan.current_ratio * model_only.table.allowed_A(speed_rad_per_s, rules.hottest_ambient_C, rules.hottest_ambient_C);
+      const double cold_A = plan.table.allowed_A(speed_rad_per_s, rules.hottest_ambient_C, rules.hottest_ambient_C);
       flowing_A = std::min({rules.most_current_A, cold_A, counted_A + gain_A});
     }
     intervals.take(time_s, flowing_A, speed_rad_per_s, period_s);

@@ -8,7 +8,7 @@
 
 namespace heatsoak {
 
-/// The current of one use where the sensor hides all heat: the table's current of a motor as cold as its air times current_ratio, but no
+/// The current of one use where the sensor hides all heat: the sensed table's current of a motor as cold as its air, but no
 /// more than `gain_A` above what the guard without a sensor allows, which counts only its own allowed current.
 UsePlayed play_lying(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot, const Use& use,
                      double gain_A);

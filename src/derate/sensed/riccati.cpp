@@ -20,7 +20,7 @@ Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
     G += A * lu.solve(G) * A.transpose();
     A = A * solved_A;
     H += change;
-    if (change.norm() <= kConverged * H.norm()) {
+    if (H.allFinite() && change.norm() <= kConverged * H.norm()) {
       return 0.5 * (H + H.transpose());
     }
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "derate/current_table.h"
 #include "derate/observer.h"
 #include "motor/datasheet_network.h"
 
@@ -68,11 +69,14 @@ struct LastingCurrent {
 struct SensorPlan {
   SensorOptions options;
   std::optional<ResistanceReading> resistance = {};
-  Observer observer;           ///< counts heat by the lower safety factor
-  std::vector<double> gain;    ///< of the states per period and kelvin of innovation
-  double lag_gain = 0.0;       ///< of the sensor's own temperature, where it lags
-  double current_ratio = 1.0;  ///< of the table's currents, for the lower safety factor
-  double most_gain_A = 0.0;    ///< above what the guard without a sensor allows: the most that a lying sensor can add
+  /// Counts heat by the lower safety factor. Its winding stores winding_speed_ratio times less heat, so that a pulse from cold heats it at
+  /// least as fast as without a sensor: no sensor at the stator sees a pulse in time.
+  Observer observer;
+  double winding_speed_ratio = 1.0;
+  CurrentTable table;        ///< of that observer
+  std::vector<double> gain;  ///< of the states per period and kelvin of innovation
+  double lag_gain = 0.0;     ///< of the sensor's own temperature, where it lags
+  double most_gain_A = 0.0;  ///< above what the guard without a sensor allows: the most that a lying sensor can add
   ReadingCheck check = {};
   std::vector<LastingCurrent> lasting = {};
   int samples = 0;  ///< drawn motors, each with a drawn sensor error

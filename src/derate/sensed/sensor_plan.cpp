@@ -16,35 +16,18 @@ namespace {
 
 /// Of the search's loop: a tenth of the time in which the winding may come near its limit.
 constexpr double kStepsPerApproach = 10.0;
-/// Streams of chance of the search and of the check, apart from those of the guard without a sensor.
-constexpr std::uint64_t kSearchStream = std::uint64_t{1} << 40U;
-constexpr std::uint64_t kCheckStream = std::uint64_t{1} << 41U;
+/// The motors of the guard without a sensor: those of its search first, then those of each check.
+constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
+/// A pulse from cold heats a winding by safety factor times winding_speed_ratio. With an exponent of 1 that product is the one without a
+/// sensor and pulses decide the safety factor; with 2 the winding is so fast that the steady state gains no more (found on the motors of
+/// the search).
+constexpr double kPulseExponent = 1.5;
 
-/// The largest ratio to the table's currents, at least 1, at which the barrier of the sensed observer holds at every place of the table and
-/// between. The table falls with the root of the safety factor where copper loss alone heats the winding.
-double current_ratio(const Observer& sensed, const Derating& model_only) {
-  const CurrentTable& table = model_only.table;
-  double ratio = std::sqrt(model_only.observer.heat_reserve_ratio() / sensed.heat_reserve_ratio());
-  const auto middles = [](const std::vector<double>& axis) {
-    std::vector<double> places = axis;
-    for (std::size_t i = 1; i < axis.size(); ++i) {
-      places.push_back(0.5 * (axis[i - 1] + axis[i]));
-    }
-    return places;
-  };
-  for (const double speed_rad_per_s : middles(table.speed_rad_per_s)) {
-    for (const double stator_C : middles(table.stator_C)) {
-      for (const double winding_C : middles(table.winding_C)) {
-        const double listed_A = table.allowed_A(speed_rad_per_s, stator_C, winding_C);
-        const bool is_fading = winding_C > model_only.rules.limits.winding_C || speed_rad_per_s > model_only.rules.most_speed_rad_per_s;
-        if (listed_A > 0.0 && !is_fading &&
-            ratio * listed_A > barrier_current_A(sensed, model_only.rules, speed_rad_per_s, stator_C, winding_C)) {
-          ratio = std::min(ratio, barrier_current_A(sensed, model_only.rules, speed_rad_per_s, stator_C, winding_C) / listed_A);
-        }
-      }
-    }
-  }
-  return std::max(1.0, ratio);
+/// The nominal motor with a winding that stores less heat.
+Network faster_network(const Motor& motor, double winding_speed_ratio) {
+  MotorSample sample = nominal_sample(motor);
+  sample.values.thermal_time_constant_winding_s /= winding_speed_ratio;
+  return datasheet_network(motor, sample);
 }
 
 ReadingCheck first_check(const Derating& model_only, const SensorOptions& options) {
@@ -65,7 +48,6 @@ class PlanSearch {
         model_only_(model_only),
         options_(options),
         progress_(progress),
-        network_(datasheet_network(motor, nominal_sample(motor))),
         uses_(hardest_uses(model_only.observer, model_only.rules)) {
     const SensorGain gain = sensor_gain(motor, robot, model_only.rules, options, model_only.options.period_s, limp_current_A(model_only),
                                         model_only.options.guarantee.samples, model_only.options.guarantee.seed);
@@ -74,15 +56,19 @@ class PlanSearch {
   }
 
   [[nodiscard]] SensorPlan plan_with(double reserve) const {
+    const double winding_speed_ratio = std::pow(std::max(1.0, model_only_.observer.heat_reserve_ratio() / reserve), kPulseExponent);
+    Observer observer(faster_network(motor_, winding_speed_ratio), motor_.nominal, robot_, reserve);
+    CurrentTable table = current_table(observer, model_only_.rules, model_only_.options.table);
     SensorPlan plan{.options = options_,
-                    .observer = Observer(network_, motor_.nominal, robot_, reserve),
+                    .observer = std::move(observer),
+                    .winding_speed_ratio = winding_speed_ratio,
+                    .table = std::move(table),
                     .gain = gain_,
                     .lag_gain = lag_gain_,
                     .check = first_check(model_only_, options_)};
     if (options_.kind == SensorKind::winding_resistance) {
       plan.resistance = resistance_reading(motor_, options_, model_only_.options.period_s);
     }
-    plan.current_ratio = current_ratio(plan.observer, model_only_);
     return plan;
   }
 
@@ -116,7 +102,7 @@ class PlanSearch {
     double high = model_only_.observer.heat_reserve_ratio();
     while (high > low * (1.0 + kTolerance)) {
       const double middle = std::sqrt(low * high);
-      (keeps(peaks(plan_with(middle), coarse_s, kSearchStream)) ? high : low) = middle;
+      (keeps(peaks(plan_with(middle), coarse_s, 0)) ? high : low) = middle;
       if (progress_) {
         progress_(std::min(++rounds_, kRounds), kRounds + 2);
       }
@@ -133,7 +119,6 @@ class PlanSearch {
   const Derating& model_only_;
   const SensorOptions& options_;
   const Progress& progress_;
-  Network network_;
   std::vector<Use> uses_;
   std::vector<double> gain_;
   double lag_gain_ = 0.0;
@@ -208,10 +193,9 @@ SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derati
   constexpr double kRaise = 1.005;
   constexpr int kMostRaises = 20;
   const double fine_s = 2.0 * model_only.options.period_s;
-  for (int number = 0; number < kMostRaises && reserve < model_only.observer.heat_reserve_ratio(); ++number, reserve *= kRaise) {
+  for (int number = 1; number <= kMostRaises && reserve < model_only.observer.heat_reserve_ratio(); ++number, reserve *= kRaise) {
     SensorPlan plan = search.plan_with(reserve);
-    const std::vector<SensedPeak> peaks =
-        search.peaks(plan, fine_s, kCheckStream + static_cast<std::uint64_t>(number) * (std::uint64_t{1} << 32U));
+    const std::vector<SensedPeak> peaks = search.peaks(plan, fine_s, static_cast<std::uint64_t>(number) * kStreamsApart);
     if (search.keeps(peaks)) {
       set_check(plan, peaks);
       set_guarantee(plan, peaks);
