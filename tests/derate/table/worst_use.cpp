@@ -49,7 +49,7 @@ struct Tally {
   std::uint64_t uses = 0;
   std::uint64_t trials = 0;
   std::uint64_t over = 0;
-  Worst worst;
+  Worst worst = {};
   static constexpr int kFrom_C = 0;
   static constexpr int kCells = 600;  ///< of 1 K
   std::vector<std::uint64_t> peaks = std::vector<std::uint64_t>(kCells);
