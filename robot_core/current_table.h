@@ -88,16 +88,18 @@ static inline float heatsoak_along_stator(const float *square_A2, const heatsoak
 
 /* Square of the current; 0 above the axis of the winding and for what is not a number. */
 static inline float heatsoak_allowed_A2(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
-  float share, low_A2;
+  const float first_C = table->winding_C.points[0];
+  float counted_C = winding_C;
+  float share = 0.0f;
+  float low_A2;
   int32_t at;
   if (row->hotter_K > 0.0f) {
-    const float first_C = table->winding_C.points[0];
-    winding_C = (winding_C < first_C ? first_C : winding_C) + row->hotter_K;
+    counted_C = (winding_C < first_C ? first_C : winding_C) + row->hotter_K;
   }
-  if (row->first < 0 || !(winding_C <= table->winding_C.points[table->winding_C.count - 1])) {
+  if (row->first < 0 || !(counted_C <= table->winding_C.points[table->winding_C.count - 1])) {
     return 0.0f;
   }
-  at = row->first + heatsoak_find(&table->winding_C, winding_C, &share);
+  at = row->first + heatsoak_find(&table->winding_C, counted_C, &share);
   low_A2 = heatsoak_along_stator(table->square_A2, row, at, share);
   return row->next_speed == 0
              ? low_A2

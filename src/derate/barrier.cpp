@@ -78,7 +78,9 @@ double Barrier::stator_margin(const HotCase& each, const Place& at, double curre
   const Signals signals = each.signals(rules_, std::sqrt(current_square_A2), at.speed_rad_per_s);
   find_rates(signals, at.stator_C, at.winding_C);
   find_rates(signals, at.stator_C, at.winding_C + rules_.approach_s * rate_[states::winding]);
-  return (*rules_.limits.stator_C - at.stator_C) / rules_.stator_approach_s - rate_[states::stator];
+  // When the speed rises suddenly the winding still hands on the heat of the lower speed's current.
+  constexpr double kHandedOn_K = 0.5;
+  return (*rules_.limits.stator_C - kHandedOn_K - at.stator_C) / rules_.stator_approach_s - rate_[states::stator];
 }
 
 void Barrier::find_rates(const Signals& signals, double stator_C, double winding_C) {

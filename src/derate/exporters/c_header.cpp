@@ -33,7 +33,7 @@ std::string write(const Derating& derating) {
   const c_header::Source source{derating, prefix, c_header::in_capitals(prefix), c_header::used_signals(derating.observer)};
   const c_header::Rates rates = c_header::rates(source);
   return c_header::head_comment(source) + fmt::format("#ifndef {0}\n#define {0}\n\n", include_guard(derating, source.capital)) +
-         (rates.calls_square_root ? "#include <math.h>\n" : "") + "#include <stdint.h>\n\n" +
+         "#include <stdbool.h>\n#include <stdint.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"without -ffast-math: it takes away what tells a number from none, and the rounding that is "
          "carried\"\n#endif\n\n" +
          (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +
