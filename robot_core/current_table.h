@@ -115,9 +115,8 @@ static inline float heatsoak_square_root(float x) {
 #endif
 }
 
-/* From 0 to most_current_A. */
-static inline float heatsoak_allowed_A(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
-  const float square_A2 = heatsoak_allowed_A2(table, row, winding_C);
+/* Current of a square of that row, from 0 to most_current_A. */
+static inline float heatsoak_current_A(const heatsoak_current_table *table, const heatsoak_row *row, float square_A2) {
   const float straight_A = table->straight_below_A;
   float current_A;
   if (!(square_A2 > 0.0f)) {
@@ -126,6 +125,10 @@ static inline float heatsoak_allowed_A(const heatsoak_current_table *table, cons
   current_A = square_A2 < straight_A * straight_A ? square_A2 / straight_A : heatsoak_square_root(square_A2);
   current_A = current_A < table->most_current_A ? current_A : table->most_current_A;
   return row->fade < 1.0f ? current_A * row->fade : current_A;
+}
+
+static inline float heatsoak_allowed_A(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
+  return heatsoak_current_A(table, row, heatsoak_allowed_A2(table, row, winding_C));
 }
 
 #endif
