@@ -34,7 +34,7 @@ typedef struct {
   float stator_share; /* 0 to 1, place in the cell */
   float speed_share;
   float hotter_K; /* that the winding counts hotter, for the stator */
-  float fade;     /* 0 to 1, current that a speed above the highest leaves */
+  float fade_ratio;     /* 0 to 1, current that a speed above the highest leaves */
 } heatsoak_row;
 
 /* Segment of an axis, from 0, and the place in it, 0 to 1; the ends for what lies outside. */
@@ -68,7 +68,7 @@ static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table
       row.hotter_K = table->winding_per_stator_K * (stator_C - last_stator_C);
     }
     if (speed_rad_per_s > table->most_speed_rad_per_s) {
-      row.fade = (table->no_current_speed_rad_per_s - speed_rad_per_s) /
+      row.fade_ratio = (table->no_current_speed_rad_per_s - speed_rad_per_s) /
                  (table->no_current_speed_rad_per_s - table->most_speed_rad_per_s);
     }
   }
@@ -124,7 +124,7 @@ static inline float heatsoak_current_A(const heatsoak_current_table *table, cons
   }
   current_A = square_A2 < straight_A * straight_A ? square_A2 / straight_A : heatsoak_square_root(square_A2);
   current_A = current_A < table->most_current_A ? current_A : table->most_current_A;
-  return row->fade < 1.0f ? current_A * row->fade : current_A;
+  return row->fade_ratio < 1.0f ? current_A * row->fade_ratio : current_A;
 }
 
 static inline float heatsoak_allowed_A(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {

@@ -56,7 +56,7 @@ std::vector<std::int64_t> widened(const std::vector<Number>& values) {
 /// Added to a node's rate, in its own steps, so that rounding never makes it cooler.
 std::int64_t heat_for_rounding(const FixedPoint& rate) {
   const double most = std::max(std::abs(rate.low), std::abs(rate.high));
-  return static_cast<std::int64_t>(std::ceil(std::ldexp(rate.error + std::ldexp(most, -29), rate.bits))) + 1;
+  return static_cast<std::int64_t>(std::ceil(std::ldexp(rate.absolute + std::ldexp(most, -29), rate.bits))) + 1;
 }
 
 /// By how much the temperatures of this form may lie above the exact ones, in K: what heats for rounding, until all has settled.
@@ -78,7 +78,7 @@ double temperature_excess_K(const Derating& derating, const IntegerLines& lines)
       run.run(inputs, rate);
       for (std::size_t node = 0; node < nodes; ++node) {
         const FixedPoint& fixed = lines.rate_K_per_s[node];
-        const double extra = form == 0 ? 0.0 : std::ldexp(static_cast<double>(heat_for_rounding(fixed)), -fixed.bits) + fixed.error;
+        const double extra = form == 0 ? 0.0 : std::ldexp(static_cast<double>(heat_for_rounding(fixed)), -fixed.bits) + fixed.absolute;
         state_C[form][node] += step_s * (rate[node] + extra);
       }
     }

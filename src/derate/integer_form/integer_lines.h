@@ -11,14 +11,14 @@ namespace heatsoak::integer_form {
 /// Temperatures of the states: 2^-20 K a step, up to ±1000 °C.
 inline constexpr int kStateBits = 20;
 /// An input counts thousandths: mA, mrad/s, 0.001 °C.
-inline constexpr double kPerUnit = 1000.0;
+inline constexpr double kThousandths_ratio = 1000.0;
 
-/// A value n·2^-bits with |n| < 2^30, and how far it may be from the exact one for all inputs that are believed.
+/// A value n·2^-bits with |n| < 2^30, and (absolute) how far it may be from the exact one for all inputs that are believed.
 struct FixedPoint {
   double low = 0.0;
   double high = 0.0;
   int bits = 0;
-  double error = 0.0;
+  double absolute = 0.0;
 };
 
 struct IntegerLines {
