@@ -278,7 +278,7 @@ class Search {
       }
       fit = std::move(*next);
     }
-    return reduced_to_size(without_idle_places(std::move(fit)));
+    return settled(reduced_to_size(without_idle_places(std::move(fit))));
   }
 
  private:
@@ -348,6 +348,33 @@ class Search {
         break;
       }
       fit = std::move(*best);
+    }
+    return fit;
+  }
+
+  /// Moves single places by a few points of the grid as long as that lessens the shortfall, where the goal is not reached.
+  [[nodiscard]] Fit settled(Fit fit) const {
+    constexpr std::size_t kFurthest = 4;
+    constexpr int kMostRounds = 20;
+    bool has_moved = fit.shortfall_ratio() > goal_.shortfall_ratio;
+    for (int round = 0; has_moved && round < kMostRounds; ++round) {
+      has_moved = false;
+      for (const Axis axis : {winding, stator, speed}) {
+        for (std::size_t i = 1; i + 1 < fit.places()[axis].size(); ++i) {
+          for (std::size_t point = fit.places()[axis][i] - std::min(kFurthest, fit.places()[axis][i]);
+               point <= fit.places()[axis][i] + kFurthest; ++point) {
+            Places moved = fit.places();
+            if (point <= moved[axis][i - 1] || point >= moved[axis][i + 1]) {
+              continue;
+            }
+            moved[axis][i] = point;
+            if (Fit tried = of(std::move(moved)); tried.shortfall_ratio() < fit.shortfall_ratio()) {
+              fit = std::move(tried);
+              has_moved = true;
+            }
+          }
+        }
+      }
     }
     return fit;
   }
