@@ -98,7 +98,7 @@ TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
       missing.figures.at(key).spread.reset();
     }
   }
-  EXPECT_EQ(derate(tiny, twente(), few_samples()).table.current_A, derate(missing, twente(), few_samples()).table.current_A);
+  EXPECT_EQ(derate(tiny, twente(), few_samples()).table.square_A2, derate(missing, twente(), few_samples()).table.square_A2);
 }
 
 TEST(Derate, KeepsALimitThatIsARangeAtItsLowerEnd) {
