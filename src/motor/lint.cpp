@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
@@ -121,8 +122,13 @@ void add_lint_errors(const Motor& motor, Diagnostics& diagnostics) {
     checked.effects.clear();
     checked.sensors.clear();
   }
+  std::set<int> lines;
+  for (const Diagnostic& each : diagnostics.list()) {
+    lines.insert(each.at.line);
+  }
   for (const LintFinding& each : lint(checked)) {
-    if (each.level == LintFinding::Level::error && each.check != "spreads") {
+    // What a line lacks that could not be read is no second problem.
+    if (each.level == LintFinding::Level::error && each.check != "spreads" && !lines.contains(each.at.line)) {
       diagnostics.add(each.at, each.check, each.message);
     }
   }

@@ -22,7 +22,7 @@ using testing::StartsWith;
 
 const std::string kEvaluate =
     "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v "
-    "--samples 16";
+    "--samples 120";
 
 class FrontDoor : public testing::Test {
  protected:
@@ -39,7 +39,7 @@ class FrontDoor : public testing::Test {
 
 /// Fills the blanks of a template that stand in front of `unit` in the line of `key`.
 void fill(std::string& text, const std::string& key, const std::string& value) {
-  text = std::regex_replace(text, std::regex("(\n" + key + " = [^\n?]*)\\?"), "$1" + value, std::regex_constants::format_first_only);
+  text = std::regex_replace(text, std::regex("(\n" + key + " = [^\n?]*)\\?"), "$01" + value, std::regex_constants::format_first_only);
 }
 
 // The values are those of the sheet of the EC 45 flat.
@@ -189,7 +189,7 @@ TEST_F(FrontDoor, an_interrupted_command_leaves_nothing) {
   const std::string robot = " --robot roboteam_twente_v2024 --duty division_a_match";
   for (const std::string& line : std::vector<std::string>{
            "timeout -s INT 1 heatsoak evaluate" + robot + " --samples 2000 --plot p.svg --json a.json",
-           "timeout -s INT 1 heatsoak simulate --motor maxon_ecx_flat_32l_48v" + robot + " --planner both --out t.csv --plot t.svg",
+           "timeout -s INT 1 heatsoak simulate --motor maxon_ecx_flat_32l_48v" + robot + " --out t.csv --plot t.svg",
            "timeout -s INT 1 heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out core"}) {
     EXPECT_EQ(run_here(line).exit_code, 124) << line << " ended before it was interrupted";
     EXPECT_THAT(folder_.names(), IsEmpty()) << line;

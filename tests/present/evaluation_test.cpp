@@ -23,7 +23,7 @@ MotorEvaluation heating_to(double peak_C) {
 }
 
 TEST(Sparkline, rises_with_the_winding_from_ambient_to_limit) {
-  EXPECT_EQ(sparkline(heating_to(125.0), 25.0), "▂▃▄▅▆▇██");
+  EXPECT_EQ(sparkline(heating_to(125.0), 25.0), "▁▂▃▄▅▆▇█");
   EXPECT_EQ(sparkline(heating_to(25.0), 25.0), "▁▁▁▁▁▁▁▁");
   EXPECT_EQ(sparkline(heating_to(1000.0), 25.0), "████████");
   EXPECT_EQ(sparkline(MotorEvaluation{}, 25.0), "");
