@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "drive_rows.h"
-#include "identify/attribution/advisor.h"
+#include "attribution/advisor.h"
 #include "scoring.h"
 
 namespace heatsoak::truth {

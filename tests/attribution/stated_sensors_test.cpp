@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "examination.h"
-#include "identify/attribution/model_file.h"
-#include "identify/attribution/terms.h"
+#include "attribution/model_file.h"
+#include "attribution/terms.h"
 #include "motor/write_motor.h"
 
 namespace heatsoak::truth {

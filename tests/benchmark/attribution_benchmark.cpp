@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "examination.h"
-#include "identify/attribution/diagnosis.h"
+#include "attribution/diagnosis.h"
 #include "missing_effects.h"
 
 namespace heatsoak::truth {
