@@ -65,17 +65,15 @@ std::string effect_in_words(const FoundEffect& effect) {
 }
 
 /// What the reader must know before he trusts the model on other runs.
-std::string doubts_in_words(const Diagnosis& diagnosis) {
+std::string doubts_in_words(const Diagnosis& diagnosis, const HoldoutScore& score) {
   constexpr double kElsewhere_ratio = 3.0;
   std::string text;
-  const double before_K = rms_K(diagnosis.before_holdout);
-  const double after_K = rms_K(diagnosis.after_holdout), train_K = rms_K(diagnosis.after_train);
+  const double before_K = rms_K(score.before);
+  const double after_K = rms_K(score.after), train_K = rms_K(diagnosis.after_train);
   if (is_plainly_worse(after_K, before_K)) {
     text += " The error on runs the fit never saw grows: do not rely on the new model there.";
   }
-  if (diagnosis.selection.keeps_figures) {
-    text += " Figures refitted to the training runs follow the others worse: the model keeps those of its file.";
-  } else if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
+  if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
     text += " The error on the training runs grows: keep the model's own figures.";
   }
   const auto tell_grown = [&](const Errors& before, const Errors& after, std::string_view where) {
@@ -87,7 +85,7 @@ std::string doubts_in_words(const Diagnosis& diagnosis) {
       }
     }
   };
-  tell_grown(diagnosis.before_holdout, diagnosis.after_holdout, "the runs held out");
+  tell_grown(score.before, score.after, "the runs held out");
   tell_grown(diagnosis.before_train, diagnosis.after_train, "the training runs");
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
     text += fmt::format(" It is {:.0f} times that on the training runs: those runs hold something that these do not show.",
@@ -110,10 +108,6 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                    "smooth heat of the size that every model leaves."
                  : "No effect is missing that these runs show, but not all of the file's figures hold in them.";
     case DiagnosisVerdict::unexplained:
-      if (diagnosis.selection.is_withdrawn) {
-        return "The training runs show more than the model has, but what would explain them does not hold on the runs never seen: it is no "
-               "answer.";
-      }
       return "The runs show heat that the model does not have, and no law of the catalogue explains it.";
     case DiagnosisVerdict::not_identifiable:
       break;
@@ -163,8 +157,7 @@ std::string watts_in_words(std::span<const Unexplained* const> curves) {
 std::string unexplained_in_words(std::span<const Unexplained* const> curves, const Diagnosis& diagnosis) {
   const Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {
-    const std::string_view no_driver = diagnosis.selection.is_withdrawn ? "what follows them here does not on the runs held out"
-                                       : std::ranges::any_of(diagnosis.runs, turns_unseen)
+    const std::string_view no_driver = std::ranges::any_of(diagnosis.runs, turns_unseen)
                                            ? "while not every log has a speed no signal is taken for what follows them"
                                            : "no signal that all logs have follows them";
     return fmt::format("Unexplained: {} W rms into the {}{} that come and go within {:.0f} s; {}.", significant(heat.rms_W, 2), heat.node,
@@ -177,9 +170,8 @@ std::string unexplained_in_words(std::span<const Unexplained* const> curves, con
                         : fmt::format("Unnamed: heat {} that follows {}{}", where,
                                       heat.times.empty() ? "" : heat.times + " times a curve over ", fmt::join(heat.drivers, " or "))) +
          fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
-         (heat.is_in_model                    ? " The extended model has it as a curve."
-          : diagnosis.selection.keeps_figures ? " The extended model does not have it."
-                                              : " The extended model does not have it: its figures carry what they can of it.");
+         (heat.is_in_model ? " The extended model has it as a curve."
+                           : " The extended model does not have it: its figures carry what they can of it.");
 }
 
 /// Curves over one signal share what they have in common to say.
@@ -199,7 +191,7 @@ void add_unexplained(const Diagnosis& diagnosis, std::vector<std::string>& all) 
 }
 
 /// Where some runs have more or less of something, the motor's file cannot follow them as well as was said.
-std::string file_alone_in_words(const Diagnosis& diagnosis) {
+std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& score) {
   const std::vector<RunDeviation>& deviations = diagnosis.selection.after.model.deviations;
   if (deviations.empty()) {
     return {};
@@ -208,9 +200,9 @@ std::string file_alone_in_words(const Diagnosis& diagnosis) {
   for (const RunDeviation& each : deviations) {
     names.insert(fmt::format("{} in {}", each.type->name, each.condition.begin()->second));
   }
-  const bool is_held_out = !diagnosis.file_holdout.empty();
+  const bool is_held_out = !score.file.empty();
   std::vector<std::string> errors;
-  for (const auto& [signal, error] : is_held_out ? diagnosis.file_holdout : diagnosis.file_train) {
+  for (const auto& [signal, error] : is_held_out ? score.file : diagnosis.file_train) {
     errors.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(error.rmse_K, 2)));
   }
   return fmt::format("{} is of those runs, not of the motor, so the motor file has it as a note only: the file alone follows {} to {}.",
@@ -219,7 +211,7 @@ std::string file_alone_in_words(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::vector<std::string> describe(const Diagnosis& diagnosis) {
+std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore& score) {
   std::vector<std::string> all{verdict_in_words(diagnosis)};
   if (diagnosis.selection.is_held) {
     all.emplace_back(
@@ -239,19 +231,19 @@ std::vector<std::string> describe(const Diagnosis& diagnosis) {
     all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
   }
   add_unexplained(diagnosis, all);
-  const bool is_held_out = !diagnosis.before_holdout.empty();
+  const bool is_held_out = !score.before.empty();
   const bool is_more = !diagnosis.effects.empty();
-  all.push_back(errors_in_words(is_held_out ? diagnosis.before_holdout : diagnosis.before_train,
+  all.push_back(errors_in_words(is_held_out ? score.before : diagnosis.before_train,
                                 !is_more      ? Errors{}
-                                : is_held_out ? diagnosis.refitted_holdout
+                                : is_held_out ? score.refitted
                                               : diagnosis.refitted_train,
-                                is_held_out ? diagnosis.after_holdout : diagnosis.after_train,
+                                is_held_out ? score.after : diagnosis.after_train,
                                 is_held_out ? "runs the fit never saw" : "the training runs") +
-                doubts_in_words(diagnosis));
-  if (const std::string alone = file_alone_in_words(diagnosis); !alone.empty()) {
+                doubts_in_words(diagnosis, score));
+  if (const std::string alone = file_alone_in_words(diagnosis, score); !alone.empty()) {
     all.push_back(alone);
   }
-  all.insert(all.end(), diagnosis.beyond_training.begin(), diagnosis.beyond_training.end());
+  all.insert(all.end(), score.beyond_training.begin(), score.beyond_training.end());
   for (const Refusal& refused : diagnosis.selection.refused) {
     all.push_back(fmt::format("Not named: {}.", refused.words));
   }

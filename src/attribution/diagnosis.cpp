@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <optional>
 
 #include "base/parallel.h"
 #include "base/quantity.h"
@@ -35,14 +34,6 @@ constexpr double kWorse_ratio = 1.1;
 /// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
 constexpr double kLeastSeen_share = 0.5;
 
-/// Sure enough, and runs that the fit never saw are followed plainly better with what was found.
-bool foretells(const FoundEffect& effect, const Diagnosis& told) {
-  constexpr double kForetells_share = 0.7;
-  constexpr double kClear_nats = 20.0;
-  return effect.gain_nats > kClear_nats && !told.after_holdout.empty() &&
-         rms_K(told.after_holdout) < kForetells_share * std::min(rms_K(told.before_holdout), rms_K(told.refitted_holdout));
-}
-
 /// At its node as much heat is left as half of its own, or as the part of its own that nothing else could be, and nothing that could be
 /// added explains it: a signal that does, though the network cannot follow, must be half as sure as the effect. Constant heat may be no
 /// more than the mean of heat that comes and goes by the clock: there a quarter is enough. A sensor's error has no heat: beside
@@ -59,11 +50,10 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   }
   constexpr double kManyTimes_ratio = 4.0;
   const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
-  // Heat that follows no signal may stand in for little; not for what is this sure or foretells. Constant heat may be the mean of any.
+  // Heat that follows no signal may stand in for little; not for what is this sure. Constant heat may be the mean of any.
   constexpr double kBeyondDoubt_nats = 100.0;
   const bool is_alone = std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
-  const bool is_beyond_doubt =
-      effect.id != "constant_heat" && (foretells(effect, told) || (effect.gain_nats > kBeyondDoubt_nats && is_alone));
+  const bool is_beyond_doubt = effect.id != "constant_heat" && effect.gain_nats > kBeyondDoubt_nats && is_alone;
   if (!is_beyond_doubt &&
       std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
       is_hardly_better) {
@@ -92,14 +82,20 @@ std::map<std::string, std::string> outweighed_in(const Diagnosis& told) {
   return outweighed;
 }
 
+/// Without the conditions that only some runs have: those are no property of the motor.
+Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
+  model.deviations.clear();
+  return open_loop_errors(model, runs, before_them);
+}
+
 class Teller {
  public:
   Teller(const DiagnosisInput& input, Selection selection) : input_(input) {
     out_.selection = std::move(selection);
-    set_column(input_, out_.selection);
+    set_column(input_.train, out_.selection.after.model.column);
   }
 
-  Diagnosis tell(std::optional<DiagnosisVerdict> verdict_known = {}) {
+  Diagnosis tell() {
     for (const AcceptedTerm& term : out_.selection.terms) {
       out_.effects.push_back(found_effect(term, out_.selection, input_.train));
     }
@@ -113,10 +109,9 @@ class Teller {
     if (!follows_as_usual()) {
       out_.unexplained = unexplained_heat(out_, input_.train);
     }
-    out_.verdict = verdict_known.value_or(verdict());
+    out_.verdict = verdict();
     out_.experiments = next_experiments(out_.selection, input_.train);
-    out_.beyond_training = beyond_fitted(input_.train, input_.holdout);
-    out_.words = describe(out_);
+    out_.words = describe(out_, {});
     out_.description = fmt::format("{}", fmt::join(out_.words, " "));
     return std::move(out_);
   }
@@ -142,16 +137,7 @@ class Teller {
     out_.before_train = open_loop_errors(input_.model, input_.train, {});
     out_.refitted_train = open_loop_errors(out_.selection.own.model, input_.train, {});
     out_.after_train = open_loop_errors(after().model, input_.train, {});
-    out_.before_holdout = open_loop_errors(input_.model, input_.holdout, input_.train);
-    out_.refitted_holdout = open_loop_errors(out_.selection.own.model, input_.holdout, input_.train);
-    out_.after_holdout = open_loop_errors(after().model, input_.holdout, input_.train);
-    out_.file_train = out_.after_train;
-    out_.file_holdout = out_.after_holdout;
-    if (ExtendedModel alone = after().model; !alone.deviations.empty()) {
-      alone.deviations.clear();
-      out_.file_train = open_loop_errors(alone, input_.train, {});
-      out_.file_holdout = open_loop_errors(alone, input_.holdout, input_.train);
-    }
+    out_.file_train = errors_of_file(after().model, input_.train, {});
   }
 
   [[nodiscard]] LatentFlux flux_at(const RefitResult& fit) const { return out_.selection.grid.at(fit.place); }
@@ -306,12 +292,11 @@ class Teller {
     if (out_.selection.is_held) {
       return follows_as_usual() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::unexplained;
     }
-    const bool holds = !out_.selection.is_withdrawn && !fails_on_holdout(out_);
-    if (holds && std::ranges::any_of(out_.effects,
-                                     [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
+    if (std::ranges::any_of(out_.effects,
+                            [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
       return DiagnosisVerdict::effect_found;
     }
-    if (!out_.unexplained.empty() || !holds) {
+    if (!out_.unexplained.empty()) {
       return DiagnosisVerdict::unexplained;
     }
     const bool is_same_mounting = std::ranges::none_of(
@@ -328,25 +313,6 @@ class Teller {
 }  // namespace
 
 bool is_plainly_worse(double error_K, double than_K) { return error_K > than_K + kMatters_K && error_K > kWorse_ratio * than_K; }
-
-bool fails_on_holdout(const Diagnosis& diagnosis) {
-  const double after_K = rms_K(diagnosis.after_holdout);
-  const double refitted_K = rms_K(diagnosis.refitted_holdout);
-  // What is hardly sure must not follow them worse at all.
-  const bool is_hardly_sure =
-      std::ranges::all_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.gain_nats < SelectionRules{}.least_gain_nats; });
-  // A little worse than figures bent to do without it is no answer to what it takes off the training runs.
-  constexpr double kOfGain_share = 0.25;
-  const double gain_K = rms_K(diagnosis.refitted_train) - rms_K(diagnosis.after_train);
-  const bool is_worse = is_plainly_worse(after_K, rms_K(diagnosis.before_holdout)) ||
-                        (is_plainly_worse(after_K, refitted_K) && after_K - refitted_K > kOfGain_share * gain_K);
-  return !diagnosis.effects.empty() && (is_worse || (is_hardly_sure && after_K > kWorse_ratio * refitted_K));
-}
-
-void set_column(DiagnosisInput& input, const Selection& found) {
-  set_column(input.train, found.after.model.column);
-  set_column(input.holdout, found.after.model.column);
-}
 
 std::string_view to_string(DiagnosisVerdict verdict) {
   switch (verdict) {
@@ -372,20 +338,9 @@ std::string settle_turning_rows(DiagnosisInput& input) {
     return {};
   }
   input.train = std::move(turning);
-  std::ranges::transform(input.holdout, input.holdout.begin(), turning_within_rows);
+  input.turns_within_rows = true;
   return std::string(kTurningRowsTold);
 }
-
-namespace {
-
-std::string why_withdrawn(const Diagnosis& told) {
-  return fmt::format("what was found takes the error of the training runs from {} to {} K and that of the runs held out from {} to {} K",
-                     significant(rms_K(told.refitted_train), 2), significant(rms_K(told.after_train), 2),
-                     significant(std::min(rms_K(told.before_holdout), rms_K(told.refitted_holdout)), 2),
-                     significant(rms_K(told.after_holdout), 2));
-}
-
-}  // namespace
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   SelectionInput asked;
@@ -397,33 +352,30 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   if (!asked.refused.empty()) {
     told = tell_of_asked();
   }
-  if (fails_on_holdout(told) && told.selection.waits_for_others) {
-    asked.waits_for_others = false;
-    told = tell_of_asked();
-  }
-  // One that is wrong beside others that are right: the least sure goes first.
-  while (fails_on_holdout(told) && told.selection.terms.size() > 1) {
-    const std::vector<AcceptedTerm>& terms = told.selection.terms;
-    const std::string least_sure = std::ranges::min_element(terms, {}, &AcceptedTerm::loss_without_nats)->own_name();
-    if (!asked.refused.emplace(least_sure, why_withdrawn(told)).second) {
-      break;
-    }
-    told = tell_of_asked();
-  }
-  if (fails_on_holdout(told)) {
-    asked.adds_terms = false;
-    told = Teller(input, withdrawn(told.selection, select_effects(asked, rules), why_withdrawn(told))).tell();
-  }
-  if (told.effects.empty() && !told.selection.is_held && is_plainly_worse(rms_K(told.after_holdout), rms_K(told.before_holdout))) {
-    asked.adds_terms = false;
-    asked.model.hold_figures();
-    told = Teller(input, with_figures_of_file(told.selection, select_effects(asked, rules))).tell(told.verdict);
-  }
-  // Where nothing that was found holds on other runs, heat remains unexplained though little of it shows in these.
+  // The verdict names the place of the unexplained heat even where little of it shows.
   if (told.verdict == DiagnosisVerdict::unexplained && told.unexplained.empty()) {
     told.unexplained.push_back(most_heat_left(told, input.train));
   }
   return told;
+}
+
+HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout) {
+  HoldoutScore score;
+  if (holdout.empty()) {
+    return score;
+  }
+  const ExtendedModel& after = diagnosis.selection.after.model;
+  if (input.turns_within_rows) {
+    std::ranges::transform(holdout, holdout.begin(), turning_within_rows);
+  }
+  set_column(holdout, after.column);
+  score.before = open_loop_errors(input.model, holdout, diagnosis.runs);
+  score.refitted = open_loop_errors(diagnosis.selection.own.model, holdout, diagnosis.runs);
+  score.after = open_loop_errors(after, holdout, diagnosis.runs);
+  score.file = errors_of_file(after, holdout, diagnosis.runs);
+  score.beyond_training = beyond_fitted(diagnosis.runs, holdout);
+  score.runs = std::move(holdout);
+  return score;
 }
 
 }  // namespace heatsoak

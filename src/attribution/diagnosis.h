@@ -14,10 +14,11 @@ namespace heatsoak {
 enum class DiagnosisVerdict { effect_found, nothing_missing, unexplained, not_identifiable };
 std::string_view to_string(DiagnosisVerdict verdict);
 
+/// Nothing in it is held out: hold-out runs are scored by score_holdout() after everything is decided.
 struct DiagnosisInput {
   ExtendedModel model;  ///< as calibrated
   std::vector<MeasuredRun> train;
-  std::vector<MeasuredRun> holdout;
+  bool turns_within_rows = false;  ///< set by settle_turning_rows()
 };
 
 struct Unexplained {
@@ -64,10 +65,9 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;
   std::vector<ChangedFigure> changed;  ///< figures of the file that do not hold in these runs
   std::vector<Unexplained> unexplained;
-  Errors before_train, before_holdout, after_train, after_holdout;
-  Errors refitted_train, refitted_holdout;  ///< the model's own figures fitted to the training runs, nothing added
-  /// Of the written model alone: without what some runs have more or less of, which is no property of the motor.
-  Errors file_train, file_holdout;
+  Errors before_train, after_train;
+  Errors refitted_train;          ///< the model's own figures fitted to the training runs, nothing added
+  Errors file_train;              ///< of the written model alone: without the conditions that only some runs have
   std::vector<MeasuredRun> runs;  ///< of the training
   std::vector<InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;
@@ -75,10 +75,17 @@ struct Diagnosis {
   std::vector<BalanceRow> balance;
   std::vector<Experiment> experiments;
   std::vector<std::string> notes;
-  std::vector<std::string> beyond_training;  ///< sentences: where the runs held out go and those of the training do not
-  std::vector<std::string> words;            ///< what to say first, what was found, what it does to the error, what to do next
-  std::string description;                   ///< the same as one paragraph
+  std::vector<std::string> words;  ///< what to say first, what was found, what it does to the error, what to do next
+  std::string description;         ///< the same as one paragraph
   Selection selection;
+};
+
+/// Errors of the free-running models on runs that decided nothing.
+struct HoldoutScore {
+  std::vector<MeasuredRun> runs;
+  Errors before, refitted, after;            ///< as in Diagnosis, of the hold-out runs
+  Errors file;                               ///< of the written model alone
+  std::vector<std::string> beyond_training;  ///< sentences: where the hold-out runs exceed the range of the training runs
 };
 
 /// By a tenth, and by more than matters to anybody.
@@ -88,16 +95,12 @@ bool is_plainly_worse(double error_K, double than_K);
 /// them; says so in a sentence, or nothing.
 std::string settle_turning_rows(DiagnosisInput& input);
 
-/// The model as it was, or its own figures refitted without anything that was added, follows the runs held out plainly better; those
-/// figures by more than a quarter of what the training runs gain by it.
-bool fails_on_holdout(const Diagnosis& diagnosis);
-
-/// Whoever runs the model that was found on the runs needs the column in them that one of its curves is drawn over.
-void set_column(DiagnosisInput& input, const Selection& found);
-
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
 
-/// Of everything else in the diagnosis, for Diagnosis::words.
-std::vector<std::string> describe(const Diagnosis& diagnosis);
+/// Scores `holdout` (runs as read from their logs) with the models of a finished diagnosis. Nothing of the diagnosis may depend on it.
+HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout);
+
+/// Of everything else in the diagnosis and, where there are hold-out runs, of their score.
+std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore& score);
 
 }  // namespace heatsoak

@@ -84,8 +84,6 @@ struct Selection {
   RefitResult after;
   bool is_held = false;           ///< whole runs had decided the figures, and with nothing that was found they are followed plainly better
   bool waits_for_others = false;  ///< with one of the curves, when it was taken, whole runs were followed worse
-  bool is_withdrawn = false;      ///< what was found follows the runs held out plainly worse: nothing of it was added
-  bool keeps_figures = false;     ///< so does the model with figures refitted alone: those of the file stay
   ExtendedModel base;             ///< the model as it was, with doubt where the runs contradict its file
   std::vector<ChangedFigure> changed;
   RefitResult own;  ///< `before` once more with that doubt: the model's own figures, nothing added
@@ -124,18 +122,12 @@ inline constexpr std::string_view kMoreRemains = "more remains unexplained than 
 /// Why, of a refusal where whole runs decided the figures.
 inline constexpr std::string_view kHardlyBetterTold =
     "whole runs, which decided the figures of the model, are followed hardly better with it";
-/// Why, of what fits the training runs only.
-inline constexpr std::string_view kFailsElsewhere = "with it the runs held out are followed worse";
 /// Why, of a curve beside one over another column of the log.
 inline constexpr std::string_view kNoRoom = "a model has room for one column of the logs";
 /// Why, of a curve that something else may balance, which was not found.
 inline constexpr std::string_view kStraysAlone = "with it alone whole runs are followed worse";
 /// Then what an effect leaves of the error of free runs is at most this share, or it is not named.
 inline constexpr double kPlainlyBetter_share = 0.85;
-/// `none`, which has nothing added, with what is to be said of all that was `found` and fails on the runs held out.
-Selection withdrawn(const Selection& found, Selection none, std::string_view why);
-/// `held`, which has the file's figures, in place of `refitted`, whose figures follow the runs held out plainly worse.
-Selection with_figures_of_file(const Selection& refitted, Selection held);
 
 /// One way through the rounds.
 Selection select_once(const SelectionInput& input, const SelectionRules& rules);

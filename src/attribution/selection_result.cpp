@@ -75,33 +75,6 @@ void Selection::refuse(const std::string& id, double gain_nats, std::string_view
   refused.push_back({id, fmt::format("{}: {:.0f} nats, but {}", id, gain_nats, why), is_negligible});
 }
 
-Selection withdrawn(const Selection& found, Selection none, std::string_view why) {
-  none.is_withdrawn = true;
-  for (const AcceptedTerm& term : found.terms) {
-    none.refuse(term.what(found.drivers), std::max(term.gain_nats, term.loss_without_nats), why);
-    if (term.curve && !none.open_curve) {
-      none.open_curve = none.with_drivers_of(found, *term.curve);
-    }
-  }
-  return none;
-}
-
-Selection with_figures_of_file(const Selection& refitted, Selection held) {
-  held.keeps_figures = true;
-  held.is_withdrawn = refitted.is_withdrawn;
-  for (const Refusal& refusal : refitted.refused) {
-    held.forget_refusal(refusal.id);
-    held.refused.push_back(refusal);
-  }
-  for (const ChangedFigure& figure : refitted.changed) {
-    held.refuse(fmt::format("another {}", figure.name), figure.gain_nats, kFailsElsewhere);
-  }
-  if (refitted.open_curve) {
-    held.open_curve = held.with_drivers_of(refitted, *refitted.open_curve);
-  }
-  return held;
-}
-
 namespace {
 
 /// Whole runs, with what was found, than with the model's own figures alone.

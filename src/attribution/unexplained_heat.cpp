@@ -102,9 +102,7 @@ class HeatTeller {
 
   /// A law that the base could stand for gets no name, but the signal that its heat goes with is known. Null where nothing was refused.
   [[nodiscard]] const ScanResult* driver_of_what_was_refused(const std::vector<std::string>& nodes) const {
-    // What does not hold elsewhere has no driver that another signal could take the place of.
-    if (told_.selection.is_withdrawn || !told_.selection.leaves_doubt() || told_.selection.rounds.empty() ||
-        std::ranges::any_of(train_, turns_unseen)) {
+    if (!told_.selection.leaves_doubt() || told_.selection.rounds.empty() || std::ranges::any_of(train_, turns_unseen)) {
       return nullptr;
     }
     // The round whose model is the one that is left.

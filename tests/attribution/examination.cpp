@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "base/unknown.h"
 #include "drive_rows.h"
@@ -159,10 +160,13 @@ DiagnosisInput question(const Case& sealed, const Runs& runs) {
   for (const TrueRun& run : runs.training) {
     input.train.push_back(measured(run));
   }
-  for (const TrueRun& run : runs.unseen) {
-    input.holdout.push_back(measured(run));
-  }
   return input;
+}
+
+std::vector<MeasuredRun> holdout(const Runs& runs) {
+  std::vector<MeasuredRun> all;
+  std::ranges::transform(runs.unseen, std::back_inserter(all), measured);
+  return all;
 }
 
 Answer examine(const Case& sealed) {
@@ -173,6 +177,7 @@ Answer examine(const Case& sealed) {
   settle_turning_rows(input);
   answer.diagnosis = diagnose(input, {});
   answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  answer.score = score_holdout(input, answer.diagnosis, holdout(runs));
   const Selection& selection = answer.diagnosis.selection;
   for (const AcceptedTerm& term : selection.terms) {
     const std::string curve =

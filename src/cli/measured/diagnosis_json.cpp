@@ -133,15 +133,15 @@ Json ladder_json(const Selection& selection) {
 
 }  // namespace
 
-Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
+Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
   Json json{{"schema", "heatsoak.diagnosis/1"}, {"verdict", to_string(diagnosis.verdict)}, {"effects", Json::array()}};
   for (const FoundEffect& effect : diagnosis.effects) {
     json["effects"].push_back(effect_json(effect));
   }
-  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(diagnosis.before_holdout)}};
-  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(diagnosis.after_holdout)}};
-  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(diagnosis.refitted_holdout)}};
-  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(diagnosis.file_holdout)}};
+  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(score.before)}};
+  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(score.after)}};
+  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(score.refitted)}};
+  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(score.file)}};
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = diagnosis.description;
   json["figures_contradicted"] = Json::array();
@@ -165,7 +165,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
     json["runs"]["train"].push_back(
         {{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
   }
-  for (const MeasuredRun& run : input.holdout) {
+  for (const MeasuredRun& run : score.runs) {
     json["runs"]["holdout"].push_back({{"name", run.name},
                                        {"before", errors_json(open_loop_errors(input.model, {run}, input.train))},
                                        {"after", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, input.train))}});

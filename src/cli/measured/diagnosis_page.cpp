@@ -35,7 +35,7 @@ std::string row(const std::vector<std::string>& cells, std::string_view tag = "t
   return text + "</tr>\n";
 }
 
-std::string error_table(const Diagnosis& diagnosis) {
+std::string error_table(const Diagnosis& diagnosis, const HoldoutScore& score) {
   std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "own figures refitted: rms / K", "after: rms / K",
                                       "before: worst / K", "after: worst / K"},
                                      "th");
@@ -50,7 +50,7 @@ std::string error_table(const Diagnosis& diagnosis) {
     }
   };
   add(diagnosis.before_train, diagnosis.refitted_train, diagnosis.after_train, "training");
-  add(diagnosis.before_holdout, diagnosis.refitted_holdout, diagnosis.after_holdout, "never seen");
+  add(score.before, score.refitted, score.after, "never seen");
   return text + "</table>\n";
 }
 
@@ -242,7 +242,7 @@ constexpr std::string_view kStyle =
 
 }  // namespace
 
-std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input,
+std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score,
                            const std::vector<std::pair<std::string, std::string>>& svg) {
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
@@ -251,11 +251,12 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     text += fmt::format("<p>{}</p>\n", escaped(each));
   }
   text += "</div>\n";
-  const std::vector<std::string> train = names_of(input.train, input.holdout);
-  const std::vector<std::string> holdout = names_of(input.holdout, input.train);
+  const std::vector<std::string> train = names_of(input.train, score.runs);
+  const std::vector<std::string> holdout = names_of(score.runs, input.train);
   text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", escaped(fmt::format("{}", fmt::join(train, ", "))),
                       holdout.empty() ? "none" : escaped(fmt::format("{}", fmt::join(holdout, ", "))));
-  text += "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis);
+  text +=
+      "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis, score);
   if (!diagnosis.effects.empty()) {
     text += "<h2>Effects added</h2>" + effect_table(diagnosis);
   }
