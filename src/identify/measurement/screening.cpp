@@ -228,7 +228,8 @@ void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& no
       const bool is_saturated =
           (is_low && low_is_cut) || (is_high && high_is_cut) || ((is_low || is_high) && climb_stops_dead(run, at, habits));
       const bool goes_on = stretch.value == was_frozen_at && stretch.begin < reported.first && stretch.end > reported.first;
-      if (!is_saturated && !goes_on && !is_improbable(stretch, habits) && !ends_in_isolated_jump(run, at, habits) && !stays_still_to_the_end(run, at, habits)) {
+      if (!is_saturated && !goes_on && !is_improbable(stretch, habits) && !ends_in_isolated_jump(run, at, habits) &&
+          !stays_still_to_the_end(run, at, habits)) {
         continue;
       }
       if (!is_saturated && stretch.begin < reported.last && stretch.end >= reported.last) {
