@@ -222,8 +222,7 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
       const JudgedCandidate* const own = judged(selection, term.candidate->id);
       const std::vector<Candidate> pair{*term.candidate, other->candidate};
       for (const Plan& plan : menu_here) {
-        const double nats =
-            separation_nats(selection.before, selection.grid.at(selection.after.place), pair, own ? own->size_share : 1.0, plan);
+        const double nats = separation_nats(selection.before, selection.after.flux, pair, own ? own->size_share : 1.0, plan);
         if (nats > best.expected_nats) {
           best.expected_nats = nats;
           best.what = plan.what;

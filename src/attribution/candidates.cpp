@@ -188,7 +188,7 @@ void add_conditional_candidates(const ExtendedModel& model, const std::vector<Me
       const bool is_there = std::ranges::any_of(model.deviations, [&](const RunDeviation& each) { return each.is_same(&type, condition); });
       if (!is_there && !type.places_in(network).empty()) {
         list.candidates.push_back(
-            {nullptr, nullptr, &type, fmt::format("{} in {}", type.name, in_words(condition)), {}, {type.usual}, 0, condition});
+            {nullptr, nullptr, &type, fmt::format("{} in {}", type.name, in_words(condition)), {}, {type.usual}, 0, 1.0, condition});
       }
     }
   }
@@ -215,7 +215,7 @@ void add_network_candidates(const ExtendedModel& model, const std::vector<Measur
     for (const std::vector<std::string>& nodes : placements(model.model.network, type)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
-        Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, size), variant++, {}};
+        Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, size), variant++, 1.0, {}};
         if (!is_in(model, candidate)) {
           list.candidates.push_back(std::move(candidate));
         }
@@ -237,10 +237,11 @@ Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
 /// All of them in one network at a size of 0: they do not change what it does, but it has their derivatives.
 struct Extended {
   Network network;
-  std::vector<int> wanted;       ///< sizes; where an effect brings nodes of its own, their capacities behind the size
-  std::vector<double> slope;     ///< what each of them counts in its candidate's column
-  std::vector<std::size_t> own;  ///< which candidate it belongs to
-  std::vector<double> state_C;   ///< at the start of an interval; nodes of their own behind the network's
+  std::vector<int> wanted;           ///< sizes; where an effect brings nodes of its own, their capacities behind the size
+  std::vector<double> slope;         ///< what each of them counts in its candidate's column
+  std::vector<std::size_t> own;      ///< which candidate it belongs to
+  std::vector<double> state_C;       ///< at the start of an interval; nodes of their own behind the network's
+  std::vector<Eigen::Index> bodies;  ///< those nodes
 };
 
 /// Where a body of its own comes with the effect, its capacity goes with the size: a body of a given time constant that takes hardly
@@ -255,6 +256,7 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (const int capacity = candidate.type->nodes[role].own_capacity; capacity >= 0) {
       nodes[role] += fmt::format(" {}", own);
+      extended.bodies.push_back(static_cast<Eigen::Index>(extended.state_C.size()));
       extended.state_C.push_back(ambient_C);
       scaled.push_back(static_cast<std::size_t>(capacity));
     }
@@ -288,15 +290,21 @@ void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd
 }
 
 /// The tangent of the extended network along the path that the fit has taken: laws are asked once per interval, halfway.
+/// `first_body`: place of the columns of the bodies' starts.
 void add_network_columns(Extended& extended, std::span<const double> parameters, const LinearisedRun& fitted, const MeasuredRun& run,
-                         Columns& columns) {
+                         Eigen::Index first_body, Columns& columns) {
   const Eigen::Index own = fitted.states;
   const auto states = static_cast<Eigen::Index>(extended.state_C.size());
   const auto wanted = static_cast<Eigen::Index>(extended.wanted.size());
   std::vector<double> values = extended.network.values();
   std::ranges::copy(parameters, values.begin());
+  const auto bodies = static_cast<Eigen::Index>(extended.bodies.size());
   Linearised slope;
-  Eigen::MatrixXd rate(states, wanted + 1), moved = Eigen::MatrixXd::Zero(states, wanted + 1), next = moved;
+  // How far the states go with what is wanted, with the bodies' starts, and by themselves in this interval.
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(states, wanted + bodies + 1), moved = rate, next = rate;
+  for (Eigen::Index body = 0; body < bodies; ++body) {
+    moved(extended.bodies[static_cast<std::size_t>(body)], wanted + body) = 1.0;
+  }
   Eigen::MatrixXd power, forward, held_s;
   for (Eigen::Index k = 0; k + 1 < fitted.samples(); ++k) {
     for (Eigen::Index node = 0; node < own; ++node) {
@@ -309,7 +317,6 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
     const double fastest_per_s = slope.by_state.cwiseAbs().rowwise().sum().maxCoeff();
     const int parts = std::max(1, static_cast<int>(std::ceil(2.0 * duration_s * fastest_per_s)));
     set_step(slope.by_state, duration_s / parts, power, forward, held_s);
-    // The last column is how far the bodies of the candidates themselves go in this interval.
     moved.rightCols<1>().setZero();
     for (int part = 0; part < parts; ++part) {
       next.noalias() = forward * moved;
@@ -317,13 +324,19 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
       moved.swap(next);
     }
     for (Eigen::Index node = own; node < states; ++node) {
-      extended.state_C[static_cast<std::size_t>(node)] += moved(node, wanted);
+      extended.state_C[static_cast<std::size_t>(node)] += moved(node, wanted + bodies);
     }
     for (Eigen::Index i = 0; i < wanted; ++i) {
       const auto place = static_cast<std::size_t>(i);
       for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
         columns((k + 1) * fitted.sensors() + sensor, static_cast<Eigen::Index>(extended.own[place])) +=
             extended.slope[place] * moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], i);
+      }
+    }
+    for (Eigen::Index body = 0; body < bodies; ++body) {
+      for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
+        columns((k + 1) * fitted.sensors() + sensor, first_body + body) =
+            moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], wanted + body) / kHardly_share;
       }
     }
   }
@@ -383,16 +396,27 @@ CandidateList candidates_for(const ExtendedModel& model, const std::vector<Measu
   for (const SensorEffectType& type : all_sensor_effects()) {
     const bool is_there = std::ranges::find(model.sensors, &type, &SensorTerm::type) != model.sensors.end();
     if (!is_there && is_measured(runs, type.signal)) {
-      list.candidates.push_back({nullptr, &type, nullptr, std::string(type.name), {}, {type.typical_size}, 0, {}});
+      list.candidates.push_back({nullptr, &type, nullptr, std::string(type.name), {}, {type.typical_size}, 0, 1.0, {}});
     }
   }
   return list;
 }
 
+std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates) {
+  std::vector<int> found;
+  for (int j = 0; j < static_cast<int>(candidates.size()); ++j) {
+    const EffectType* const type = candidates[static_cast<std::size_t>(j)].type;
+    if (type && std::ranges::any_of(type->nodes, [](const NodeRole& role) { return role.own_capacity >= 0; })) {
+      found.push_back(j);
+    }
+  }
+  return found;
+}
+
 Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
                           const MeasuredRun& run) {
   const std::vector<double> parameters = model.values_in(run);
-  Extended extended{model.model.network, {}, {}, {}, {}};
+  Extended extended{model.model.network, {}, {}, {}, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
   extended.state_C.assign(start_C.begin(), start_C.end());
   for (std::size_t j = 0; j < candidates.size(); ++j) {
@@ -409,8 +433,9 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
       }
     }
   }
-  Columns columns = Columns::Zero(fitted.residual_K.size(), static_cast<Eigen::Index>(candidates.size()));
-  add_network_columns(extended, parameters, fitted, run, columns);
+  const auto count = static_cast<Eigen::Index>(candidates.size());
+  Columns columns = Columns::Zero(fitted.residual_K.size(), count + static_cast<Eigen::Index>(extended.bodies.size()));
+  add_network_columns(extended, parameters, fitted, run, count, columns);
   show(run, columns);
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
@@ -420,11 +445,11 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
     Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
     apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, true_C);
-    // The change at the typical size, not the slope at none: a lag is far from linear in its size.
+    // The change at a size of that order, not the slope at none: a lag is far from linear in its size.
     Eigen::VectorXd shown_C = true_C;
-    candidate.sensor_type->law.apply(run.time_s, candidate.typical_size(), false, shown_C);
+    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, shown_C);
     for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
-      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = shown_C[k] - true_C[k];
+      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = (shown_C[k] - true_C[k]) / candidate.column_at_share;
     }
   }
   return columns;

@@ -22,7 +22,8 @@ struct Candidate {
   std::vector<std::string> nodes;  ///< as the type's roles
   std::vector<double> parameters;  ///< at the typical size, in declared order
   int variant = 0;
-  Condition condition;  ///< where it acts; empty: everywhere
+  double column_at_share = 1.0;  ///< of a sensor's fault: size in typical sizes at which its column is taken
+  Condition condition;           ///< where it acts; empty: everywhere
 
   /// Named for unmistakable evidence only: what few runs have, and laws at another node than their usual one.
   [[nodiscard]] bool is_rare() const;
@@ -42,7 +43,11 @@ struct CandidateList {
 /// the conditions that part the runs, each run by itself among them.
 CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs);
 
-/// One column per candidate, per typical size, at the model's present parameters; n·s rows.
+/// Candidates that bring a body of their own, in their order.
+std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates);
+
+/// One column per candidate, per typical size, at the model's present parameters; then one per candidate with a body, per kelvin that the
+/// body begins above ambient at the typical size. n·s rows.
 Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
                           const MeasuredRun& run);
 

@@ -2,10 +2,9 @@
 // was calibrated knows its figures well, and what has changed since then must not pass for an effect.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
-#include "attribution/evidence_table.h"
 #include "attribution/extended_model.h"
 
 namespace heatsoak {
@@ -22,11 +21,10 @@ struct ChangedFigure {
   double high = 0.0;
 };
 
-/// Prior with the doubt of a data sheet added to one coordinate.
-Prior with_doubt(const Prior& prior, Eigen::Index coordinate);
+/// Prior with the doubt of a data sheet (`sheet_sd`, of the logarithm) added to one coordinate.
+Prior with_doubt(const Prior& prior, Eigen::Index coordinate, double sheet_sd);
 
-/// The figure whose doubt explains the runs best, from a table whose first columns are the model's coordinates; nothing where none does by
-/// `least_nats`.
-std::optional<ChangedFigure> most_contradicted(const ExtendedModel& model, EvidenceTable& table, const SetScore& base, double least_nats);
+/// Coordinates of figures that are known more than twice as well as a sheet knows them.
+std::vector<Eigen::Index> well_known_figures(const ExtendedModel& model, double sheet_sd);
 
 }  // namespace heatsoak

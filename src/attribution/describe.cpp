@@ -7,8 +7,8 @@
 #include <set>
 #include <span>
 
-#include "base/quantity.h"
 #include "attribution/diagnosis.h"
+#include "base/quantity.h"
 #include "identify/calibration/unlogged_speed.h"
 
 namespace heatsoak {
@@ -213,11 +213,6 @@ std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& 
 
 std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore& score) {
   std::vector<std::string> all{verdict_in_words(diagnosis)};
-  if (diagnosis.selection.is_held) {
-    all.emplace_back(
-        "Whole runs decided this model's figures, and what follows the load at once is known to ask for others, as in a motor of more "
-        "parts: unknown heat of that kind is no evidence, and the figures stay as they are.");
-  }
   for (const FoundEffect& effect : diagnosis.effects) {
     // What has no name in the catalogue is told below, with its driver.
     if (effect.is_from_catalogue) {

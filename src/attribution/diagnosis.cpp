@@ -8,15 +8,14 @@
 #include <functional>
 #include <iterator>
 
-#include "base/parallel.h"
-#include "base/quantity.h"
 #include "attribution/advisor.h"
 #include "attribution/coverage.h"
 #include "attribution/curve.h"
-#include "attribution/first_fit.h"
 #include "attribution/mean_heat.h"
 #include "attribution/terms.h"
 #include "attribution/unexplained_heat.h"
+#include "base/parallel.h"
+#include "base/quantity.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
 #include "identify/log_columns.h"
@@ -31,57 +30,6 @@ constexpr double kOtherMounting = 0.1;
 /// Errors that grow by more have grown.
 constexpr double kWorse_ratio = 1.1;
 
-/// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
-constexpr double kLeastSeen_share = 0.5;
-
-/// At its node as much heat is left as half of its own, or as the part of its own that nothing else could be, and nothing that could be
-/// added explains it: a signal that does, though the network cannot follow, must be half as sure as the effect. Constant heat may be no
-/// more than the mean of heat that comes and goes by the clock: there a quarter is enough. A sensor's error has no heat: beside
-/// unexplained heat it must still let the runs be followed plainly better, and so must heat beside many times as much anywhere.
-bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
-  constexpr double kLeftByHeat_share = 0.7;
-  const bool is_hardly_better = rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train);
-  if (!effect.is_from_catalogue) {
-    double curves_W = 0.0;
-    for (const FoundEffect& other : told.effects) {
-      curves_W += !other.is_from_catalogue && other.node == effect.node && other.drivers == effect.drivers ? other.mean_W : 0.0;
-    }
-    return told.flux_rms_after_W.contains(effect.node) && told.flux_rms_after_W.at(effect.node) > curves_W && is_hardly_better;
-  }
-  constexpr double kManyTimes_ratio = 4.0;
-  const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
-  // Heat that follows no signal may stand in for little; not for what is this sure. Constant heat may be the mean of any.
-  constexpr double kBeyondDoubt_nats = 100.0;
-  const bool is_alone = std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
-  const bool is_beyond_doubt = effect.id != "constant_heat" && effect.gain_nats > kBeyondDoubt_nats && is_alone;
-  if (!is_beyond_doubt &&
-      std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
-      is_hardly_better) {
-    return true;
-  }
-  if (!effect.has_heat || is_beyond_doubt) {
-    return false;
-  }
-  return std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) {
-    const bool goes_by_clock = !heat.drivers.empty() && heat.drivers.front() == kTimeDriver;
-    const double outweighs_share = goes_by_clock && effect.id == "constant_heat" ? 0.25 : 0.5;
-    const bool is_sure = heat.drivers.empty() || goes_by_clock || heat.gain_nats > 0.5 * effect.gain_nats;
-    return is_sure && !heat.is_in_model && heat.node == effect.node &&
-           heat.rms_W > std::min(outweighs_share, std::sqrt(effect.visibility_ratio)) * effect.mean_W;
-  });
-}
-
-/// What got a name though nothing of what was found is more than what remains.
-std::map<std::string, std::string> outweighed_in(const Diagnosis& told) {
-  std::map<std::string, std::string> outweighed;
-  for (std::size_t i = 0; told.verdict == DiagnosisVerdict::unexplained && i < told.effects.size(); ++i) {
-    if (is_outweighed(told.effects[i], told)) {
-      outweighed.emplace(told.selection.terms[i].own_name(), kMoreRemains);
-    }
-  }
-  return outweighed;
-}
-
 /// Without the conditions that only some runs have: those are no property of the motor.
 Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
   model.deviations.clear();
@@ -90,7 +38,7 @@ Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs,
 
 class Teller {
  public:
-  Teller(const DiagnosisInput& input, Selection selection) : input_(input) {
+  Teller(const DiagnosisInput& input, const SelectionRules& rules, Selection selection) : rules_(rules), input_(input) {
     out_.selection = std::move(selection);
     set_column(input_.train, out_.selection.after.model.column);
   }
@@ -106,9 +54,7 @@ class Teller {
     tell_balance();
     out_.tests_before = tests_of(out_.selection.before);
     out_.tests_after = tests_of(out_.selection.after);
-    if (!follows_as_usual()) {
-      out_.unexplained = unexplained_heat(out_, input_.train);
-    }
+    out_.unexplained = unexplained_heat(out_, input_.train);
     out_.verdict = verdict();
     out_.experiments = next_experiments(out_.selection, input_.train);
     out_.words = describe(out_, {});
@@ -140,14 +86,12 @@ class Teller {
     out_.file_train = errors_of_file(after().model, input_.train, {});
   }
 
-  [[nodiscard]] LatentFlux flux_at(const RefitResult& fit) const { return out_.selection.grid.at(fit.place); }
-
   /// Smoothed unknown heat of every run: fluxes × samples.
   [[nodiscard]] std::vector<FluxEstimate> smoothed(const RefitResult& fit) const {
     std::vector<FluxEstimate> all(fit.fitted.size());
-    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {}, {});
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
     in_parallel(all.size(), 0, [&](std::size_t r) {
-      all[r] = Whitening(fit.fitted[r], flux_at(fit), designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
+      all[r] = Whitening(fit.fitted[r], fit.flux, designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
     });
     return all;
   }
@@ -237,11 +181,11 @@ class Teller {
   [[nodiscard]] std::vector<InnovationTests> tests_of(const RefitResult& fit) const {
     std::map<std::string, Eigen::VectorXd> innovations;
     std::map<std::string, std::vector<NamedInput>> inputs;
-    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.errors, {}, {});
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       const LinearisedRun& path = fit.fitted[r];
-      const Eigen::VectorXd standardised = Whitening(path, flux_at(fit), designs[r].noise).innovations(path.residual_K).standardised;
-      const Eigen::VectorXd& weight = out_.selection.errors.weights[r];
+      const Eigen::VectorXd standardised = Whitening(path, fit.flux, designs[r].noise).innovations(path.residual_K).standardised;
+      const Eigen::VectorXd& weight = out_.selection.weights[r];
       for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
         Eigen::VectorXd& all = innovations[signal];
@@ -285,27 +229,24 @@ class Teller {
     add("input power", Signal::input_power, [](const Point& at) { return at.input_power_W; });
   }
 
-  /// Where whole runs decided the figures, unknown heat is also what follows the load at once; those runs tell how much is usual.
-  [[nodiscard]] bool follows_as_usual() const { return out_.selection.is_held && input_.model.is_as_usual(rms_K(out_.before_train)); }
-
   [[nodiscard]] DiagnosisVerdict verdict() const {
-    if (out_.selection.is_held) {
-      return follows_as_usual() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::unexplained;
+    if (out_.selection.is_unexplained) {
+      return DiagnosisVerdict::unexplained;
     }
-    if (std::ranges::any_of(out_.effects,
-                            [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
+    if (!out_.effects.empty()) {
       return DiagnosisVerdict::effect_found;
     }
-    if (!out_.unexplained.empty()) {
-      return DiagnosisVerdict::unexplained;
+    if (out_.selection.is_as_usual) {
+      return DiagnosisVerdict::nothing_missing;
     }
     const bool is_same_mounting = std::ranges::none_of(
         out_.changed, [](const ChangedFigure& figure) { return std::abs(std::log(figure.value / figure.before)) > kOtherMounting; });
-    const bool would_show = out_.selection.seen_share >= kLeastSeen_share;
-    return !out_.selection.leaves_doubt() && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
-                                                                            : DiagnosisVerdict::not_identifiable;
+    const bool would_show = out_.selection.seen_share >= rules_.least_seen_share;
+    return !out_.selection.leaves_doubt(rules_) && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
+                                                                                  : DiagnosisVerdict::not_identifiable;
   }
 
+  const SelectionRules& rules_;
   DiagnosisInput input_;
   Diagnosis out_;
 };
@@ -334,7 +275,7 @@ std::string settle_turning_rows(DiagnosisInput& input) {
   }
   std::vector<MeasuredRun> turning;
   std::ranges::transform(input.train, std::back_inserter(turning), turning_within_rows);
-  if (first_fit(input.model, turning).fit.evidence_nats <= first_fit(input.model, input.train).fit.evidence_nats) {
+  if (evidence_without_effects_nats({input.model, turning}) <= evidence_without_effects_nats({input.model, input.train})) {
     return {};
   }
   input.train = std::move(turning);
@@ -343,20 +284,7 @@ std::string settle_turning_rows(DiagnosisInput& input) {
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
-  SelectionInput asked;
-  asked.model = input.model;
-  asked.runs = input.train;
-  const auto tell_of_asked = [&] { return Teller(input, select_effects(asked, rules)).tell(); };
-  Diagnosis told = tell_of_asked();
-  asked.refused = outweighed_in(told);
-  if (!asked.refused.empty()) {
-    told = tell_of_asked();
-  }
-  // The verdict names the place of the unexplained heat even where little of it shows.
-  if (told.verdict == DiagnosisVerdict::unexplained && told.unexplained.empty()) {
-    told.unexplained.push_back(most_heat_left(told, input.train));
-  }
-  return told;
+  return Teller(input, rules, select_effects({input.model, input.train}, rules)).tell();
 }
 
 HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout) {

@@ -138,43 +138,7 @@ void add_operating_points(Collector& all) {
   all.add_where({Signal::age}, "age", "h", [](const Point& at) { return at.age_h; });
 }
 
-/// How far a run's model is off at a sensor in the mean, as a share of what it makes the node move.
-double off_share(const LinearisedRun& run, Eigen::Index sensor) {
-  double squares_K2 = 0.0;
-  double count = 0.0;
-  for (Eigen::Index k = 0; k < run.samples(); ++k) {
-    if (const double residual_K = run.residual_K[k * run.sensors() + sensor]; !std::isnan(residual_K)) {
-      squares_K2 += residual_K * residual_K;
-      count += 1.0;
-    }
-  }
-  const auto state_C = run.state_C.row(run.sensor_node[static_cast<std::size_t>(sensor)]);
-  return std::sqrt(squares_K2 / std::max(1.0, count)) / std::max(1.0, state_C.maxCoeff() - state_C.minCoeff());
-}
-
-/// Of the nodes, nodes × samples: the model's, which have no noise; where it is far off, as measured.
-std::vector<Eigen::MatrixXd> temperatures_C(const std::vector<LinearisedRun>& fitted) {
-  constexpr double kFarOff_share = 0.05;
-  std::vector<Eigen::MatrixXd> all;
-  for (const LinearisedRun& run : fitted) {
-    Eigen::MatrixXd& here_C = all.emplace_back(run.state_C);
-    for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
-      if (off_share(run, sensor) < kFarOff_share) {
-        continue;
-      }
-      double off_K = 0.0;
-      for (Eigen::Index k = 0; k < run.samples(); ++k) {
-        const double residual_K = run.residual_K[k * run.sensors() + sensor];
-        off_K = std::isnan(residual_K) ? off_K : residual_K;
-        here_C(run.sensor_node[static_cast<std::size_t>(sensor)], k) += off_K;
-      }
-    }
-  }
-  return all;
-}
-
 void add_temperatures(Collector& all, const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
-  const std::vector<Eigen::MatrixXd> state_C = temperatures_C(fitted);
   const auto ambient_C = [&](std::size_t r, Eigen::Index k) { return runs[r].at[static_cast<std::size_t>(k)].ambient_C; };
   const std::string ambient(Network::kAmbient);
   for (int node = 0; node < model.network.state_count(); ++node) {
@@ -187,12 +151,12 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     absolute.choice = "temperature";
     absolute.watched = name;
     absolute.reference = ambient;
-    all.add(absolute, [&](std::size_t r, Eigen::Index k) { return state_C[r](node, k); });
+    all.add(absolute, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k); });
     Driver excess = driver_of(name + "_excess", "K", DriverKind::node_temperature);
     excess.choice = "temperature_difference";
     excess.watched = name;
     excess.reference = ambient;
-    all.add(excess, [&](std::size_t r, Eigen::Index k) { return state_C[r](node, k) - ambient_C(r, k); });
+    all.add(excess, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k) - ambient_C(r, k); });
   }
   if (model.network.state_count() > 1) {
     Driver between =
@@ -200,7 +164,7 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     between.choice = "temperature_difference";
     between.watched = model.network.node_name(0);
     between.reference = model.network.node_name(1);
-    all.add(between, [&](std::size_t r, Eigen::Index k) { return state_C[r](0, k) - state_C[r](1, k); });
+    all.add(between, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(0, k) - fitted[r].state_C(1, k); });
   }
   if (std::ranges::all_of(runs, [](const MeasuredRun& run) { return run.has(Signal::neighbour_temperature); })) {
     Driver neighbour = driver_of("neighbour_above_stator", "K", DriverKind::node_temperature);
@@ -208,8 +172,9 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     neighbour.choice = "neighbour_difference";
     neighbour.watched = model.network.node_name(stator);
     neighbour.reference = ambient;
-    all.add(neighbour,
-            [&](std::size_t r, Eigen::Index k) { return runs[r].at[static_cast<std::size_t>(k)].neighbour_C - state_C[r](stator, k); });
+    all.add(neighbour, [&](std::size_t r, Eigen::Index k) {
+      return runs[r].at[static_cast<std::size_t>(k)].neighbour_C - fitted[r].state_C(stator, k);
+    });
   }
   Driver air = driver_of("ambient_temperature", "degC", DriverKind::node_temperature);
   air.choice = "temperature";

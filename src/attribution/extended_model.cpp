@@ -108,12 +108,10 @@ double factor_in(const ExtendedModel& model, int place, const MeasuredRun& run) 
   return factor;
 }
 
-}  // namespace
-
-LinearisedRun linearise(const ExtendedModel& model, std::span<const double> start_C, const MeasuredRun& run) {
+/// `along`: of wanted parameters of the network, by values.
+template <class Along>
+LinearisedRun linearised(const ExtendedModel& model, const MeasuredRun& run, const Along& along) {
   const Network& network = model.model.network;
-  std::vector<double> start(start_C.begin(), start_C.end());
-  start.resize(static_cast<std::size_t>(network.state_count()), run.at.front().ambient_C);
   std::vector<int> wanted;
   for (const FreeParameter& free : model.model.free) {
     wanted.push_back(free.place);
@@ -127,7 +125,7 @@ LinearisedRun linearise(const ExtendedModel& model, std::span<const double> star
     }
   }
   const std::vector<double> values = model.values_in(run);
-  LinearisedRun out = linearise(network, values, wanted, model.model.flux_nodes, start, run);
+  LinearisedRun out = along(values, wanted);
   Columns by_theta(out.by_parameter.rows(), model.free_count());
   by_theta.rightCols(model.free_count() - model.model.free_count()).setZero();
   for (std::size_t i = 0; i < deviates.size(); ++i) {
@@ -155,6 +153,23 @@ LinearisedRun linearise(const ExtendedModel& model, std::span<const double> star
     }
   }
   return out;
+}
+
+}  // namespace
+
+LinearisedRun linearise(const ExtendedModel& model, std::span<const double> start_C, const MeasuredRun& run) {
+  const Network& network = model.model.network;
+  std::vector<double> start(start_C.begin(), start_C.end());
+  start.resize(static_cast<std::size_t>(network.state_count()), run.at.front().ambient_C);
+  return linearised(model, run, [&](const std::vector<double>& values, const std::vector<int>& wanted) {
+    return linearise(network, values, wanted, model.model.flux_nodes, start, run);
+  });
+}
+
+LinearisedRun linearise_along(const ExtendedModel& model, const Eigen::MatrixXd& path_C, const MeasuredRun& run) {
+  return linearised(model, run, [&](const std::vector<double>& values, const std::vector<int>& wanted) {
+    return linearise_along(model.model.network, values, wanted, model.model.flux_nodes, path_C, run);
+  });
 }
 
 }  // namespace heatsoak

@@ -31,15 +31,9 @@ struct ExtendedModel {
   std::vector<ConditionalTerm> conditional;
   std::vector<SensorTerm> sensors;
   std::vector<RunDeviation> deviations;
-  std::string column;             ///< of the logs, that a curve is drawn over; set_column puts it into runs; empty: none
-  double free_run_error_K = 0.0;  ///< of MotorFit: above 0 what is added must let the model follow whole runs better
-
-  /// How much surer of its figures a model is taken to hold them.
-  static constexpr double kHeld_ratio = 1e4;
-  /// Other runs of the same motor are followed this much worse, nothing missing.
-  static constexpr double kAsUsual_ratio = 1.5;
-  [[nodiscard]] bool is_as_usual(double error_K) const { return error_K < kAsUsual_ratio * free_run_error_K; }
-  void hold_figures() { model.prior.precision *= kHeld_ratio; }
+  std::string column;          ///< of the logs, that a curve is drawn over; set_column puts it into runs; empty: none
+  double usual_error_K = 0.0;  ///< of whole runs, where those decided the file's figures (free_run_error_K of MotorFit); else 0
+  double usual_flux_W = 0.0;   ///< rms of the unknown heat in runs that the file was fitted to: such motors always leave it
 
   [[nodiscard]] Eigen::Index free_count() const {
     return model.free_count() + static_cast<Eigen::Index>(sensors.size() + deviations.size());
@@ -59,5 +53,7 @@ struct ExtendedModel {
 /// As linearise(), with the sensors as they are; columns by coordinate (per unit of θ). `start_C` may be shorter than the
 /// network has nodes: the rest begin at the ambient temperature.
 LinearisedRun linearise(const ExtendedModel& model, std::span<const double> start_C, const MeasuredRun& run);
+/// As linearise_along().
+LinearisedRun linearise_along(const ExtendedModel& model, const Eigen::MatrixXd& path_C, const MeasuredRun& run);
 
 }  // namespace heatsoak

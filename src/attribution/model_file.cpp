@@ -132,8 +132,7 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   const RefitResult& fit = diagnosis.selection.after;
   const auto free = model.model.model.free_count();
   const Eigen::VectorXd moved = fit.model.model.theta().head(free) - model.model.model.theta();
-  const bool is_held = diagnosis.selection.is_held;
-  const Eigen::MatrixXd covariance = (is_held ? ExtendedModel::kHeld_ratio : 1.0) * fit.covariance.topLeftCorner(free, free);
+  const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
   std::vector<const FittedFigure*> of_file;
   for (const FittedFigure& each : model.figures) {
     if (each.is_of_file) {
@@ -166,10 +165,9 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   correlation = sd.cwiseInverse().asDiagonal() * correlation * sd.cwiseInverse().asDiagonal();
   correlation.diagonal().setOnes();
   together.correlation = correlation;
-  const LatentFlux flux = diagnosis.selection.grid.at(fit.place);
+  const LatentFlux flux = fit.flux;
   together.latent_flux_W = flux.rms_W;
   together.latent_flux_time_scale_s = flux.time_scale_s;
-  together.free_run_error_K = is_held ? model.model.free_run_error_K : 0.0;
   std::map<std::string, double> noise_K;
   for (const MeasuredRun& run : diagnosis.runs) {
     for (const Sensor& sensor : run.sensors) {
@@ -225,7 +223,8 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
                     significant(most_loss_at_speed_W(motor), 2)));
   }
   out.model.model = std::move(built.model);
-  out.model.free_run_error_K = motor.fit ? motor.fit->free_run_error_K : 0.0;
+  out.model.usual_error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
+  out.model.usual_flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
   out.figures = std::move(built.figures);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));

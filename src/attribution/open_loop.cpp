@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "attribution/open_loop.h"
+#include "base/parallel.h"
 
 namespace heatsoak {
 namespace {

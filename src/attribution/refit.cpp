@@ -6,9 +6,9 @@
 #include <limits>
 #include <numeric>
 
+#include "attribution/uneven_bodies.h"
 #include "base/diagnostic.h"
 #include "base/parallel.h"
-#include "attribution/uneven_bodies.h"
 #include "identify/averaged_run.h"
 #include "identify/open_loop.h"
 
@@ -108,7 +108,7 @@ class Fitter {
       : runs_(runs), options_(options) {
     now_.model = std::move(model);
     now_.start_C = std::move(start_C);
-    now_.place = options.place;
+    now_.flux = options.flux;
     const Eigen::Index count = now_.model.free_count();
     low_.resize(count);
     high_.resize(count);
@@ -120,30 +120,19 @@ class Fitter {
 
   RefitResult run() {
     linearise_all(now_);
-    EvidenceTable table = table_of(now_);
+    std::vector<DesignRun> designs = design_of(now_);
     for (int step = 0; step < options_.most_steps; ++step) {
-      // Far from the best fit its misfit would pass for unknown heat.
-      if (step > 0) {
-        now_.place = table.best({}, now_.place, Search::rough).place;
-      }
-      const double misfit = table.misfit_now(now_.place);
-      const LinearFit fit = bounded_step(table);
-      const double promised = misfit - fit.misfit;
-      now_.evidence_nats = fit.log_evidence + options_.grid.log_prior_nats(now_.place);
+      const RunEvidence all = all_runs(designs, now_.flux);
+      const double misfit = misfit_of(all, now_);
+      const LinearFit fit = bounded_step(all);
+      now_.evidence_nats = fit.log_evidence;
       now_.covariance = fit.covariance;
-      now_.converged = promised < kConverged_nats;
-      const bool rests = now_.converged || !take(fit, misfit, table);
-      // What no step improves at first may move once the unknown heat is what the misfit asks for.
-      if (!rests || step == 0) {
-        continue;
-      }
-      const FluxGrid::Place place = table.best({}, now_.place).place;
-      if (place == now_.place) {
+      now_.converged = misfit - fit.misfit < kConverged_nats;
+      if (now_.converged || !take(fit, misfit, designs)) {
         break;
       }
-      now_.place = place;
     }
-    if (options_.averages_flux) {
+    if (!options_.around.empty()) {
       average();
     }
     return std::move(now_);
@@ -155,58 +144,68 @@ class Fitter {
     in_parallel(runs_.size(), 0, [&](std::size_t r) { at.fitted[r] = linearise(at.model, at.start_C[r], runs_[r]); });
   }
 
-  [[nodiscard]] EvidenceTable table_of(const RefitResult& at) const {
-    return {
-        design(at.model.model.network, at.fitted, runs_, options_.errors, options_.merged, {}), options_.grid, prior_here(at.model), {}};
-  }
-
-  [[nodiscard]] LinearFit bounded_step(EvidenceTable& table) const {
-    const Eigen::VectorXd theta = now_.model.theta();
-    return bounded_fit(table.all_runs(now_.place), table.prior_of({}), low_ - theta, high_ - theta);
-  }
-
-  /// The places beside the best one, itself among them.
-  [[nodiscard]] std::vector<FluxGrid::Place> places_around() const {
-    std::vector<FluxGrid::Place> places{now_.place};
-    for (std::size_t axis = 0; axis < now_.place.size(); ++axis) {
-      const auto count = static_cast<int>(axis + 1 < now_.place.size() ? options_.grid.rms_W.size() : options_.grid.time_scale_s.size());
-      const std::size_t known = places.size();
-      for (std::size_t i = 0; i < known; ++i) {
-        for (const int step : {-1, 1}) {
-          FluxGrid::Place place = places[i];
-          place[axis] += step;
-          if (place[axis] >= 0 && place[axis] < count) {
-            places.push_back(place);
-          }
-        }
-      }
+  [[nodiscard]] std::vector<DesignRun> design_of(const RefitResult& at, const std::vector<Columns>& extra = {}) const {
+    std::vector<DesignRun> designs = design(at.model.model.network, at.fitted, runs_, options_.weights, options_.merged, extra);
+    for (DesignRun& each : designs) {
+      std::ranges::transform(each.noise.noise_K, each.noise.noise_K.begin(),
+                             [&](double own_K) { return options_.white_noise_K > 0.0 ? options_.white_noise_K : own_K; });
     }
-    return places;
+    return designs;
   }
 
-  /// Mean and covariance over the places around the best: Σ w·(covariance + step·stepᵀ), w by evidence. Bodies may be a little uneven.
+  /// Triangle of [columns, residual] of all runs.
+  [[nodiscard]] static RunEvidence all_runs(const std::vector<DesignRun>& designs, const LatentFlux& flux) {
+    std::vector<RunEvidence> each(designs.size());
+    in_parallel(designs.size(), 0, [&](std::size_t r) {
+      const DesignRun& one = designs[r];
+      each[r] = run_evidence(one.run, one.columns, Whitening(one.run, flux, one.noise), one.start);
+    });
+    RunEvidence all{stacked(each), 0.0, 0};
+    for (const RunEvidence& run : each) {
+      all.log_determinant += run.log_determinant;
+      all.count += run.count;
+    }
+    return all;
+  }
+
+  /// Whitened squares that are left where the columns were taken, the start temperatures at their best, the prior's included.
+  [[nodiscard]] static double misfit_of(const RunEvidence& all, const RefitResult& at) {
+    const ThetaPrior prior = prior_here(at.model);
+    return all.triangle.rightCols<1>().squaredNorm() + prior.mean.dot(prior.precision * prior.mean);
+  }
+
+  [[nodiscard]] LinearFit bounded_step(const RunEvidence& all) const {
+    const Eigen::VectorXd theta = now_.model.theta();
+    const Eigen::ArrayXd longest = Eigen::ArrayXd::Constant(theta.size(), options_.longest_step);
+    return bounded_fit(all, prior_here(now_.model), (low_ - theta).array().max(-longest), (high_ - theta).array().min(longest));
+  }
+
+  /// Mean and covariance over the suppositions: Σ w·(covariance + step·stepᵀ), w by evidence. Bodies may be a little uneven.
   void average() {
     const std::vector<Columns> uneven = uneven_bodies(now_.fitted, runs_);
-    std::vector<int> doubts(static_cast<std::size_t>(uneven.front().cols()));
-    std::iota(doubts.begin(), doubts.end(), 0);
-    EvidenceTable table(design(now_.model.model.network, now_.fitted, runs_, options_.errors, options_.merged, uneven), options_.grid,
-                        prior_here(now_.model), std::vector<CandidateColumn>(doubts.size(), {true, kUneven_share}));
+    const std::vector<DesignRun> designs = design_of(now_, uneven);
     const Eigen::VectorXd theta = now_.model.theta();
     const Eigen::Index count = theta.size();
-    const ThetaPrior prior = table.prior_of(doubts);
-    Eigen::VectorXd low = Eigen::VectorXd::Constant(prior.mean.size(), -1.0);
+    const Eigen::Index doubts = uneven.front().cols();
+    const ThetaPrior own = prior_here(now_.model);
+    ThetaPrior prior{Eigen::MatrixXd::Identity(count + doubts, count + doubts) / (kUneven_share * kUneven_share),
+                     Eigen::VectorXd::Zero(count + doubts)};
+    prior.precision.topLeftCorner(count, count) = own.precision;
+    prior.precision.topRightCorner(count, doubts).setZero();
+    prior.precision.bottomLeftCorner(doubts, count).setZero();
+    prior.mean.head(count) = own.mean;
+    Eigen::VectorXd low = Eigen::VectorXd::Constant(count + doubts, -1.0);
     Eigen::VectorXd high = -low;
     low.head(count) = low_ - theta;
     high.head(count) = high_ - theta;
     std::vector<LinearFit> fits;
     double best_nats = -std::numeric_limits<double>::infinity();
-    for (const FluxGrid::Place& place : places_around()) {
-      fits.push_back(bounded_fit(table.all_runs(place), prior, low, high));
-      fits.back().log_evidence += options_.grid.log_prior_nats(place);
+    for (const LatentFlux& flux : options_.around) {
+      fits.push_back(bounded_fit(all_runs(designs, flux), prior, low, high));
       best_nats = std::max(best_nats, fits.back().log_evidence);
     }
     double total_weight = 0.0;
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(prior.mean.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(count + doubts);
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(mean.size(), mean.size());
     for (const LinearFit& fit : fits) {
       const double weight = std::exp(fit.log_evidence - best_nats);
@@ -215,21 +214,19 @@ class Fitter {
       square += weight * (fit.covariance + fit.coefficients * fit.coefficients.transpose());
     }
     mean /= total_weight;
-    now_.evidence_nats = best_nats;
     now_.covariance = (square / total_weight - mean * mean.transpose()).topLeftCorner(count, count);
     try {
-      now_ = moved(mean.head(count), start_steps_K(mean, table), 1.0);
+      now_ = moved(mean.head(count), start_steps_K(mean, designs), 1.0);
     } catch (const Failure&) {
       return;
     }
   }
 
   /// What the start temperatures do when the coordinates make a step.
-  [[nodiscard]] std::vector<Eigen::VectorXd> start_steps_K(const Eigen::VectorXd& step, const EvidenceTable& table) const {
-    const LatentFlux flux = options_.grid.at(now_.place);
+  [[nodiscard]] std::vector<Eigen::VectorXd> start_steps_K(const Eigen::VectorXd& step, const std::vector<DesignRun>& designs) const {
     std::vector<Eigen::VectorXd> steps_K;
-    for (const DesignRun& design : table.runs()) {
-      steps_K.push_back(start_correction_K(design.run, design.columns, step, Whitening(design.run, flux, design.noise), design.start));
+    for (const DesignRun& one : designs) {
+      steps_K.push_back(start_correction_K(one.run, one.columns, step, Whitening(one.run, now_.flux, one.noise), one.start));
     }
     return steps_K;
   }
@@ -239,7 +236,7 @@ class Fitter {
     RefitResult next;
     next.model = now_.model;
     next.model.set_theta((now_.model.theta() + share * step).cwiseMax(low_).cwiseMin(high_));
-    next.place = now_.place;
+    next.flux = now_.flux;
     next.start_C = now_.start_C;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       next.start_C[r].resize(static_cast<std::size_t>(start_step_K[r].size()), runs_[r].at.front().ambient_C);
@@ -255,15 +252,15 @@ class Fitter {
   }
 
   /// The longest of the halved steps that lowers the squares; false where none does.
-  bool take(const LinearFit& fit, double misfit, EvidenceTable& table) {
-    const std::vector<Eigen::VectorXd> start_step_K = start_steps_K(fit.coefficients, table);
+  bool take(const LinearFit& fit, double misfit, std::vector<DesignRun>& designs) {
+    const std::vector<Eigen::VectorXd> start_step_K = start_steps_K(fit.coefficients, designs);
     for (double share = 1.0; share > 0.05; share *= 0.5) {
       try {
         RefitResult next = moved(fit.coefficients, start_step_K, share);
-        EvidenceTable next_table = table_of(next);
-        if (next_table.misfit_now(now_.place) < misfit + 1e-9) {
+        std::vector<DesignRun> next_designs = design_of(next);
+        if (misfit_of(all_runs(next_designs, now_.flux), next) < misfit + 1e-9) {
           now_ = std::move(next);
-          table = std::move(next_table);
+          designs = std::move(next_designs);
           return true;
         }
       } catch (const Failure&) {
@@ -292,57 +289,10 @@ RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs,
     return refit(std::move(model), runs, std::move(start_C), options);
   } catch (const Failure&) {
     RefitResult none;
-    none.place = options.place;
+    none.flux = options.flux;
     none.evidence_nats = -std::numeric_limits<double>::infinity();
     return none;
   }
-}
-
-void set_wander(SensorNoise& noise, const MeasuredRun& run, const SensorErrors& errors) {
-  noise.wander_K.clear();
-  for (const Sensor& sensor : run.sensors) {
-    if (!errors.wander_K.empty()) {
-      const auto found = errors.wander_K.find(sensor.signal);
-      noise.wander_K.push_back(found == errors.wander_K.end() ? 0.0 : found->second);
-    }
-  }
-  noise.wander_time_scale_s = errors.wander_time_scale_s;
-}
-
-std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const SensorErrors& errors, const std::vector<int>& merged, const std::vector<Columns>& extra) {
-  std::vector<DesignRun> all(runs.size());
-  in_parallel(runs.size(), 0, [&](std::size_t r) {
-    DesignRun& one = all[r];
-    const Eigen::VectorXd weight = errors.weights.empty() ? Eigen::VectorXd() : errors.weights[r];
-    const Averaging averaging(fitted[r], weight, merged.empty() ? 1 : merged[r]);
-    one.run = averaging.run();
-    one.noise.weight = averaging.weight();
-    one.interval_of = averaging.interval_of();
-    for (const Sensor& sensor : runs[r].sensors) {
-      one.noise.noise_K.push_back(sensor.noise_K);
-    }
-    set_wander(one.noise, runs[r], errors);
-    const RunStart start = start_of(network, runs[r]);
-    one.start = {start.prior_C - fitted[r].state_C.col(0), start.prior_sd_K};
-    const Eigen::Index inner = fitted[r].by_parameter.cols();
-    one.columns.resize(one.run.residual_K.size(), inner + (extra.empty() ? 0 : extra[r].cols()));
-    one.columns.leftCols(inner) = averaging.average(fitted[r].by_parameter);
-    if (!extra.empty()) {
-      one.columns.rightCols(extra[r].cols()) = averaging.average(extra[r]);
-    }
-  });
-  return all;
-}
-
-ThetaPrior prior_here(const ExtendedModel& model) {
-  const Prior prior = model.prior();
-  return {prior.precision, prior.mean - model.theta()};
-}
-
-std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run) {
-  const Eigen::VectorXd start_C = start_of(network, run).state_C;
-  return {start_C.begin(), start_C.end()};
 }
 
 }  // namespace heatsoak

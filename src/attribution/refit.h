@@ -1,54 +1,40 @@
-// All runs together once more: Gauss-Newton in whitened space from a model that is near already, bounds kept.
+// All runs together once more in the equations: Gauss-Newton in whitened space under one supposition about the unknown heat, bounds kept.
 #pragma once
 
+#include <limits>
 #include <vector>
 
-#include "attribution/evidence_table.h"
-#include "attribution/extended_model.h"
-#include "attribution/sensor_errors.h"
+#include "attribution/design.h"
 
 namespace heatsoak {
 
 struct RefitResult {
   ExtendedModel model;
   std::vector<std::vector<double>> start_C;  ///< per run
-  std::vector<LinearisedRun> fitted;
-  FluxGrid::Place place;  ///< of the unknown heat that is most probable
+  std::vector<LinearisedRun> fitted;         ///< free runs of the model
+  LatentFlux flux;                           ///< supposed
   double evidence_nats = 0.0;
   Eigen::MatrixXd covariance;  ///< of the coordinates; 0 for those at a bound
   bool converged = false;
 };
 
 struct RefitOptions {
-  FluxGrid grid;
-  FluxGrid::Place place;  ///< to begin with
-  SensorErrors errors;
-  std::vector<int> merged;  ///< per run how many samples are averaged; results with others are not comparable
+  LatentFlux flux;
+  std::vector<Eigen::VectorXd> weights = {};  ///< per run and sample; empty: all count
+  std::vector<int> merged = {};               ///< per run how many samples are averaged; empty: none
+  double white_noise_K = 0.0;                 ///< above 0: of every sensor, instead of its own; for a model that lacks something
   int most_steps = 8;
-  /// Average the result over how probable neighbouring suppositions about the unknown heat are: intervals that hold what they
-  /// promise. Otherwise the most probable one alone counts.
-  bool averages_flux = false;
+  double longest_step = std::numeric_limits<double>::infinity();  ///< of a coordinate
+  /// The result is averaged over these as they are probable, for intervals that hold what they promise. Empty: `flux` alone.
+  std::vector<LatentFlux> around = {};
 };
 
-/// `start_C` per run, as linearise() takes it. Throws Failure (numerics_failed) where no step can be made at all.
+/// `start_C` per run, as linearise() takes it. Throws Failure (numerics_failed) where the model cannot be run at all.
 RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                   const RefitOptions& options);
 
 /// The same for a model that is only tried: where its temperatures run away its evidence is −∞, and nothing of it is fitted.
 RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                       const RefitOptions& options);
-
-/// The slow errors of a run's sensors.
-void set_wander(SensorNoise& noise, const MeasuredRun& run, const SensorErrors& errors);
-
-/// The runs as the table takes them, with `extra` columns beside those of the model's coordinates. `merged` is empty where no samples are
-/// averaged.
-std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const SensorErrors& errors, const std::vector<int>& merged, const std::vector<Columns>& extra);
-/// The prior of the model's coordinates relative to where they are.
-ThetaPrior prior_here(const ExtendedModel& model);
-
-/// First measured temperatures; nodes without a sensor begin between the measured ones.
-std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run);
 
 }  // namespace heatsoak

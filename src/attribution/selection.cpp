@@ -2,497 +2,737 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
+#include <set>
 
-#include "base/parallel.h"
-#include "attribution/backward_check.h"
-#include "attribution/effect_sets.h"
-#include "attribution/first_fit.h"
-#include "attribution/ladder.h"
+#include "attribution/flux_grid.h"
+#include "attribution/mean_heat.h"
 #include "attribution/open_loop.h"
+#include "attribution/set_search.h"
 #include "attribution/terms.h"
-#include "attribution/trials.h"
+#include "base/parallel.h"
+#include "identify/averaged_run.h"
+#include "identify/calibration/motor_model.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/log_columns.h"
+#include "identify/model_screening.h"
+#include "identify/smoothed_path.h"
 
 namespace heatsoak {
 namespace {
 
-/// More unknown heat than this, as a share of what the model knows, raises the question whether sensors show what is not there.
-constexpr double kMuchUnknown_share = 0.05;
+/// K/W: how far the outermost body that unknown heat may reach is warmed by a heat that is held, mean over the runs.
+double steady_rise_K_per_W(const std::vector<LinearisedRun>& runs) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Index x = runs.front().states;
+  const Eigen::Index q = runs.front().fluxes;
+  Eigen::MatrixXd lost = Eigen::MatrixXd::Zero(x, x);
+  Eigen::MatrixXd gained = Eigen::MatrixXd::Zero(x, q);
+  for (const LinearisedRun& run : runs) {
+    for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
+      lost += Eigen::MatrixXd::Identity(x, x) - Eigen::Map<const RowMajor>(run.transition.data() + k * x * x, x, x);
+      gained += Eigen::Map<const RowMajor>(run.injection.data() + k * x * q, x, q);
+    }
+  }
+  return (lost.colPivHouseholderQr().solve(gained)).colwise().maxCoeff().minCoeff();
+}
 
-constexpr std::size_t kMostCurvesTried = 3;
-/// A curve that nothing in the network can follow has so many times the evidence of all laws before none of them is named for it.
-constexpr double kOutweighed_ratio = 1.6;
-/// Laws that the base could stand for are look-alikes of one that is named where they are no further behind it.
-constexpr double kHiddenBeside_share = 0.1;
-/// Of the evidence that the scan has for a curve, what its refit has to reach within what physics allows.
-constexpr double kKeptPromise_ratio = 0.5;
+/// What the search is told of a candidate: those that act in some runs only, or at unusual nodes, share the odds of one effect.
+std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, const SelectionRules& rules) {
+  const auto group = [](const Candidate& each) {
+    if (each.condition.empty()) {
+      return each.is_rare() ? fmt::format("{} elsewhere", each.type->name) : each.id;
+    }
+    return fmt::format("{} in some runs", each.type ? each.type->name : each.deviation_type->name);
+  };
+  std::map<std::string, int> counts;
+  for (const Candidate& each : candidates) {
+    ++counts[group(each)];
+  }
+  std::vector<CandidateRule> all;
+  for (const Candidate& each : candidates) {
+    CandidateRule rule;
+    rule.has_sign = each.size_spec().range.low >= 0.0;
+    const double kind_nats = each.condition.empty() ? rules.inclusion_nats : rules.conditional_nats;
+    rule.prior_nats = kind_nats - std::log(static_cast<double>(counts[group(each)]));
+    rule.id = each.id;
+    // An offset of one sensor and one of the other differ by heat that both the runs and the figures may have.
+    rule.family = each.sensor_type ? each.id.substr(0, each.id.rfind('_')) : std::string(each.family());
+    for (const auto& [key, value] : each.condition) {
+      rule.family += fmt::format(" where {} is {}", key, value);
+    }
+    all.push_back(std::move(rule));
+  }
+  return all;
+}
 
-/// Of a curve with which whole runs are followed worse: so much evidence is waited for what balances it.
-constexpr double kBalanced_nats = 50.0;
+/// A round's linear algebra and what the search makes of it.
+struct Judged {
+  std::vector<LinearisedRun> fitted;
+  std::vector<DesignRun> designs;
+  std::vector<FluxPlace> places;
+  std::vector<int> best;  ///< members of the best set
+  SetSearch::AtBest at_best;
+  FluxPlace empty_place;  ///< most probable without any effect
+  FluxPlace best_place;
+};
 
 class Selector {
  public:
   Selector(const SelectionInput& input, const SelectionRules& rules)
       : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
 
+  double evidence_without_effects_nats() {
+    begin();
+    const std::vector<DesignRun> designs = design(now_.model.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
+    RefitOptions options = final_options(best_place(designs, prior_here(now_.model), {}, place_));
+    options.around.clear();
+    return refit(now_.model, input_.runs, now_.start_C, options).evidence_nats;
+  }
+
   Selection run() {
-    FirstFit first = first_fit(input_.model, input_.runs);
-    out_.mean_heat_W = first.mean_heat_W;
-    options_ = std::move(first.options);
-    first_place_ = std::move(first.place);
-    out_.before = std::move(first.fit);
-    fit_beside_sensor_errors();
-    out_.after = out_.before;
-    out_.base = out_.before.model;
-    out_.grid = options_.grid;
-    while (static_cast<int>(out_.terms.size()) < rules_.most_terms && one_round()) {
+    begin();
+    std::set<std::vector<int>> seen;
+    Judged judged;
+    for (int round = 0; round < rules_.most_rounds; ++round) {
+      judged = judge();
+      const bool repeats = round > 0 && judged.best == best_;
+      const bool circles = !seen.insert(judged.best).second;
+      best_ = judged.best;
+      if (repeats || circles) {
+        break;
+      }
+      follow(judged);
     }
-    out_.errors = options_.errors;
-    check_backwards(out_, input_, rules_, options_);
-    while (input_.adds_terms && input_.refused.empty() && (!out_.refused.empty() || out_.open_curve) && doubt_once_more()) {
-    }
-    look_more_finely();
-    out_.own = out_.before;
-    if (!out_.changed.empty()) {
-      options_.place = out_.before.place;
-      out_.own = refit(out_.base, input_.runs, out_.before.start_C, options_);
-    }
-    if (!out_.terms.empty() || !out_.changed.empty()) {
-      settle(out_, input_, rules_, options_);
-    }
-    for (const AcceptedTerm& term : out_.terms) {
-      // A later round has found what an earlier one could not tell.
-      out_.forget_refusal(term.what(out_.drivers));
-    }
+    own_figures(judged);
+    note_sight();
+    decide(judged);
     return std::move(out_);
   }
 
  private:
-  void look_more_finely() {
-    options_.grid = out_.grid = options_.grid.finer();
-    out_.before.place = FluxGrid::in_finer(out_.before.place);
-    out_.after.place = FluxGrid::in_finer(out_.after.place);
+  [[nodiscard]] const std::vector<Candidate>& candidates() const { return list_.candidates; }
+  [[nodiscard]] bool is_figure(int member) const { return member >= static_cast<int>(candidates().size()); }
+  [[nodiscard]] Eigen::Index figure_of(int member) const { return figures_[static_cast<std::size_t>(member) - candidates().size()]; }
+  [[nodiscard]] Eigen::Index free_count() const { return input_.model.free_count(); }
+
+  void begin() {
+    out_.mean_heat_W = mean_heat_W(input_.model.model, input_.runs);
+    RefitOptions plain;
+    plain.white_noise_K = rules_.start_error_K;
+    plain.longest_step = rules_.longest_step;
+    plain.most_steps = 20;
+    plain.flux = {std::vector<double>(input_.model.model.flux_nodes.size(), 0.0), 100.0};
+    std::vector<std::vector<double>> start_C;
+    std::vector<LinearisedRun> paths;
+    for (const MeasuredRun& run : input_.runs) {
+      start_C.push_back(measured_start_C(input_.model.model.network, run));
+      paths.push_back(linearise(input_.model, start_C.back(), run));
+      merged_.push_back(mergeable_samples(paths.back()));
+    }
+    plain.merged = merged_;
+    unit_W_ = rules_.material_K / std::max(1e-6, steady_rise_K_per_W(paths));
+    now_ = refit(input_.model, input_.runs, start_C, plain);
+    out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.model.usual_flux_W});
+    grid_ = flux_grid(unit_W_, input_.model.model.flux_nodes.size());
+    out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
+    list_ = candidates_for(input_.model, input_.runs);
+    if (is_speed_open_) {
+      // Heat at the stator may well be the loss at the speed that nobody logged.
+      std::erase_if(list_.candidates, [](const Candidate& each) { return each.type && each.nodes.front() == "stator"; });
+    }
+    out_.not_judged = list_.not_judged;
+    figures_ = well_known_figures(input_.model, kSheet_sd);
+    set_rules_ = rules_of(candidates(), rules_);
+    for (const Eigen::Index figure : figures_) {
+      const std::string name = "figure " + input_.model.model.name(figure);
+      set_rules_.push_back({false, rules_.inclusion_nats, name, name});
+    }
+    bodies_ = candidates_with_body(candidates());
+    auto companion = static_cast<int>(set_rules_.size());
+    for (const int body : bodies_) {
+      CandidateRule& rule = set_rules_[static_cast<std::size_t>(body)];
+      rule.companion_sd = rules_.body_start_K;
+      for (std::size_t r = 0; r < input_.runs.size(); ++r) {
+        rule.companions.push_back(companion++);
+      }
+    }
+    place_ = grid_.middle();
   }
 
-  /// At a bad fit sensors seem to do what they do not: the better one tells, until nothing moves any more.
-  void fit_beside_sensor_errors() {
-    RefitResult& fit = out_.before;
-    options_.place = fit.place;
-    const std::vector<double> unknown_W = options_.grid.at(fit.place).rms_W;
-    if (*std::ranges::max_element(unknown_W) > kMuchUnknown_share * out_.mean_heat_W) {
-      options_.errors = with_wander(fit, input_.runs, options_.grid, options_.merged, options_.errors);
-    }
-    options_.errors.weights = outlier_weights(fit, input_.runs, options_.grid, options_.errors);
-    if (!options_.errors.wander_K.empty()) {
-      options_.place = first_place_;
-    }
-    fit = refit(fit.model, input_.runs, fit.start_C, options_);
-    constexpr int kMostLooks = 3;
-    for (int look = 0; look < kMostLooks; ++look) {
-      RefitOptions options = options_at(fit.place);
-      options.errors = wander_at(fit, input_.runs, options_.grid, options_.merged, options_.errors);
-      if (options.errors.is_same_wander(options_.errors)) {
-        return;
-      }
-      RefitResult next = refit(fit.model, input_.runs, fit.start_C, options);
-      if (next.evidence_nats < fit.evidence_nats) {
-        return;
-      }
-      fit = std::move(next);
-      options_.errors = std::move(options.errors);
-    }
-  }
+  /// The base model about the path of the last fit.
+  [[nodiscard]] ExtendedModel base_here() const { return with_values_of(input_.model, now_.model); }
 
-  /// True where a term was taken in.
-  bool one_round() {
-    const CandidateList list = candidates_for(out_.after.model, input_.runs);
-    out_.not_judged = list.not_judged;
-    std::vector<Columns> columns(input_.runs.size());
+  Judged judge() {
+    Judged judged;
+    const ExtendedModel base = base_here();
+    std::vector<Columns> extra(input_.runs.size());
+    judged.fitted.resize(input_.runs.size());
     in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
-      columns[r] = candidate_columns(list.candidates, out_.after.model, out_.after.fitted[r], input_.runs[r]);
+      const MeasuredRun& run = input_.runs[r];
+      judged.fitted[r] = linearise_along(base, now_.fitted[r].state_C.topRows(base.model.network.state_count()), run);
+      const auto own = static_cast<Eigen::Index>(set_rules_.size());
+      const auto bodies = static_cast<Eigen::Index>(bodies_.size());
+      const auto runs = static_cast<Eigen::Index>(input_.runs.size());
+      extra[r].setZero(judged.fitted[r].residual_K.size(), own + bodies * runs);
+      const Columns columns = candidate_columns(candidates(), base, judged.fitted[r], run);
+      const auto count = static_cast<Eigen::Index>(candidates().size());
+      extra[r].leftCols(count) = columns.leftCols(count);
+      for (Eigen::Index body = 0; body < bodies; ++body) {
+        extra[r].col(own + body * runs + static_cast<Eigen::Index>(r)) = columns.col(count + body);
+      }
+      for (std::size_t i = 0; i < figures_.size(); ++i) {
+        extra[r].col(static_cast<Eigen::Index>(candidates().size() + i)) = kSheet_sd * judged.fitted[r].by_parameter.col(figures_[i]);
+      }
     });
-    EvidenceTable of_all(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, columns),
-                         options_.grid, prior_here(out_.after.model), column_rules(list.candidates));
-    const SetScore base = of_all.best({}, out_.after.place);
-    out_.after.evidence_nats = std::max(out_.after.evidence_nats, base.evidence_nats);
-    out_.after.place = base.place;
-    if (out_.rounds.empty()) {
-      const Sight sight = sight_of(list.candidates, of_all.typical_gains_nats(base), rules_.least_gain_nats);
-      out_.unseen = sight.unseen;
-      out_.seen_share = sight.seen_share;
+    judged.designs = design(base.model.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
+    const ThetaPrior prior = prior_here(base);
+    judged.empty_place = best_place(judged.designs, prior, {}, place_);
+    std::map<FluxPlace, Reduced> points;
+    add_points(judged.designs, prior, grid_.star(judged.empty_place), points);
+    if (!best_.empty()) {
+      add_points(judged.designs, prior, grid_.star(best_place_), points);
     }
-    const std::vector<int> few = most_promising(of_all.single_gains_nats(base), static_cast<std::size_t>(rules_.in_question));
-    std::vector<Candidate> candidates;
-    std::ranges::transform(few, std::back_inserter(candidates), [&](int j) { return list.candidates[static_cast<std::size_t>(j)]; });
-    EvidenceTable table = std::move(of_all).only(few);
+    // The unknown heat beside the best set is not that beside nothing.
+    constexpr int kMostMoves = 3;
+    for (int move = 0; move < kMostMoves; ++move) {
+      std::vector<Reduced> all;
+      judged.places.clear();
+      for (const auto& [place, reduced] : points) {
+        judged.places.push_back(place);
+        all.push_back(reduced);
+      }
+      search_.emplace(std::move(all), set_rules_, rules_);
+      judged.best = search_->sets().front().members;
+      judged.at_best = search_->at_best(judged.best);
+      judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[judged.at_best.point]);
+      const std::size_t before = points.size();
+      add_points(judged.designs, prior, grid_.star(judged.best_place), points);
+      if (points.size() == before) {
+        break;
+      }
+    }
+    place_ = judged.empty_place;
+    best_place_ = judged.best_place;
+    note(judged);
+    return judged;
+  }
+
+  void add_points(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<FluxPlace>& places,
+                  std::map<FluxPlace, Reduced>& points) const {
+    std::vector<std::pair<const FluxPlace, Reduced>*> wanted;
+    for (const FluxPlace& place : places) {
+      const auto [entry, is_new] = points.try_emplace(place);
+      if (is_new) {
+        wanted.push_back(&*entry);
+      }
+    }
+    in_parallel(wanted.size(), 0,
+                [&](std::size_t i) { wanted[i]->second = reduced(products_of(designs, grid_.at(wanted[i]->first), {}), prior); });
+  }
+
+  [[nodiscard]] FluxPlace best_place(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<int>& members,
+                                     const FluxPlace& start) const {
+    SetColumns set = columns_of(members, set_rules_, rules_.size_sd);
+    std::vector<Eigen::Index> columns;
+    for (Eigen::Index i = 0; i < free_count(); ++i) {
+      columns.push_back(i);
+    }
+    for (Eigen::Index& column : set.columns) {
+      columns.push_back(free_count() + column);
+      column = static_cast<Eigen::Index>(columns.size()) - 1 - free_count();
+    }
+    return most_probable(grid_, start, [&](const FluxPlace& place) {
+      const Reduced own = reduced(products_of(designs, grid_.at(place), columns), prior);
+      return own.base_nats + set_gain_nats(own, set);
+    });
+  }
+
+  /// The model with a set of effects, near where the linear algebra has them.
+  [[nodiscard]] ExtendedModel with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const {
+    ExtendedModel model = base_here();
+    Eigen::VectorXd theta = model.theta() + at.theta;
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
+    }
+    model.set_theta(theta);
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      if (is_figure(members[m])) {
+        const Eigen::Index figure = figure_of(members[m]);
+        model.model.prior = with_doubt(model.model.prior, figure, kSheet_sd);
+        Eigen::VectorXd moved = model.theta();
+        moved[figure] =
+            std::clamp(moved[figure] + kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)], model.low(figure), model.high(figure));
+        model.set_theta(moved);
+      }
+    }
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      if (!is_figure(members[m])) {
+        const Candidate& candidate = candidates()[static_cast<std::size_t>(members[m])];
+        model = with_candidate(model, candidate, at.sizes[static_cast<Eigen::Index>(m)], {}, shapes);
+      }
+    }
+    return model;
+  }
+
+  /// Moves the path to the free run of the best set, and the columns of its members to their shapes and sizes.
+  void follow(const Judged& judged) {
+    RefitOptions options;
+    options.flux = grid_.at(judged.best_place);
+    options.weights = out_.weights;
+    options.merged = merged_;
+    RefitResult next = try_refit(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
+    if (!std::isfinite(next.evidence_nats)) {
+      return;
+    }
+    now_ = std::move(next);
+    std::size_t instance = input_.model.model.network.effects().size();
+    for (const int member : judged.best) {
+      if (is_figure(member)) {
+        continue;
+      }
+      Candidate& candidate = list_.candidates[static_cast<std::size_t>(member)];
+      if (candidate.type) {
+        take_shapes(now_.model.model.network.effects()[instance++], candidate);
+      } else if (candidate.sensor_type) {
+        candidate.column_at_share = away_from_zero(now_.model.theta()[size_coordinate(now_.model, candidate, {})]);
+      }
+    }
+    out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
+  }
+
+  static double away_from_zero(double share) {
+    constexpr double kLeast_share = 0.1;
+    return std::abs(share) < kLeast_share ? std::copysign(kLeast_share, share) : share;
+  }
+
+  /// The candidate's exponents, thresholds and time constants as the fit has them; its size stays the typical one.
+  void take_shapes(const EffectInPlace& fitted, Candidate& candidate) const {
+    const auto value_of = [&](std::size_t p) { return now_.model.model.values[static_cast<std::size_t>(fitted.parameter_index[p])]; };
+    const auto size = static_cast<std::size_t>(candidate.size_parameter());
+    const double share = away_from_zero(value_of(size) / candidate.typical_size());
+    for (std::size_t p = 0; p < candidate.parameters.size(); ++p) {
+      const bool is_capacity =
+          std::ranges::any_of(candidate.type->nodes, [&](const NodeRole& role) { return role.own_capacity == static_cast<int>(p); });
+      if (p != size && candidate.type->parameters[p].choices.empty()) {
+        candidate.parameters[p] = is_capacity ? value_of(p) / share : value_of(p);
+      }
+    }
+  }
+
+  void note(const Judged& judged) {
+    constexpr std::size_t kTold = 12;
     Round round;
-    round.evidence_nats = base.evidence_nats;
-    round.ladder = judge(candidates, table, base);
-    if (input_.scans_drivers) {
-      round.scan = scan(table, base);
+    for (int j = 0; j < static_cast<int>(candidates().size()); ++j) {
+      const double gain_nats = search_->single_gain_nats(j);
+      if (gain_nats > 0.0) {
+        JudgedCandidate each{candidates()[static_cast<std::size_t>(j)], gain_nats, search_->visibility_ratio(j), 0.0, 0.0};
+        each.size_share = search_->at_best({j}).sizes[0];
+        for (const EffectSet& set : search_->sets()) {
+          each.probability += std::ranges::find(set.members, j) != set.members.end() ? set.probability : 0.0;
+        }
+        round.ladder.push_back(std::move(each));
+      }
     }
-    const std::size_t terms_before = out_.terms.size();
-    const std::size_t changed_before = out_.changed.size();
-    const bool taken = input_.adds_terms && take_best(round, candidates, table, base);
-    out_.close(std::move(round), terms_before, changed_before);
-    return taken;
-  }
-
-  [[nodiscard]] ScanInput scan_input(const std::vector<Driver>& drivers) const {
-    return {&out_.after.model.model, &input_.runs, &out_.after.fitted, &drivers, std::max(0.05, out_.mean_heat_W)};
-  }
-
-  /// Its results name drivers by their places in the list of all rounds: what one round looks at, another may not have.
-  std::vector<ScanResult> scan(EvidenceTable& table, const SetScore& base) {
-    std::vector<Driver> drivers = drivers_of(out_.after.model.model, out_.after.fitted, input_.runs);
-    std::vector<ScanResult> results = scan_drivers(scan_input(drivers), table, base, 8);
-    std::vector<int> place;
-    std::ranges::transform(drivers, std::back_inserter(place), [&](Driver& driver) { return out_.place_of(std::move(driver)); });
-    for (ScanResult& each : results) {
-      each.term.driver = place[static_cast<std::size_t>(each.term.driver)];
+    std::ranges::stable_sort(round.ladder, std::greater(), &JudgedCandidate::gain_nats);
+    round.ladder.resize(std::min(round.ladder.size(), kTold));
+    const EffectSet& best = search_->sets().front();
+    for (const int member : best.members) {
+      round.taken.push_back(set_rules_[static_cast<std::size_t>(member)].id);
     }
-    return results;
+    const auto empty = std::ranges::find_if(search_->sets(), [](const EffectSet& set) { return set.members.empty(); });
+    round.taken_nats = best.log_probability_nats - empty->log_probability_nats;
+    out_.nothing_probability = empty->probability;
+    out_.rounds.push_back(std::move(round));
+    (void)judged;
   }
 
-  [[nodiscard]] RefitOptions options_at(const FluxGrid::Place& place) const {
-    RefitOptions options = options_;
-    options.place = place;
+  void note_sight() {
+    std::map<std::string, double> best_nats;
+    for (std::size_t j = 0; j < candidates().size(); ++j) {
+      if (candidates()[j].type && candidates()[j].condition.empty()) {
+        double& best = best_nats[std::string(candidates()[j].type->name)];
+        best = std::max(best, search_->typical_gain_nats(static_cast<int>(j)));
+      }
+    }
+    for (const auto& [name, nats] : best_nats) {
+      if (nats < rules_.seen_nats) {
+        out_.unseen.push_back(name);
+      }
+    }
+    const auto all = static_cast<double>(std::max<std::size_t>(1, best_nats.size()));
+    out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
+  }
+
+  [[nodiscard]] RefitOptions final_options(const FluxPlace& place) const {
+    RefitOptions options;
+    options.flux = grid_.at(place);
+    options.weights = out_.weights;
+    options.merged = merged_;
+    for (const FluxPlace& each : grid_.star(place)) {
+      options.around.push_back(grid_.at(each));
+    }
     return options;
   }
 
-  [[nodiscard]] Trials trials() const { return {input_, out_, options_, first_place_}; }
-
-  /// A judged candidate after its refit in the equations.
-  struct Tried {
-    const JudgedCandidate* judged = nullptr;
-    RefitResult fit;
-    double gain_nats = 0.0;
-  };
-
-  /// Where an effect may not be named, or no model can follow it, a figure of the file may still have changed.
-  bool doubt_once_more() {
-    EvidenceTable table(design(out_.after.model.model.network, out_.after.fitted, input_.runs, options_.errors, options_.merged, {}),
-                        options_.grid, prior_here(out_.after.model), {});
-    return take_doubt(table, table.best({}, out_.after.place), 0.0);
+  /// The model with nothing added, as the file has it and with doubt in what does not hold.
+  void own_figures(const Judged& judged) {
+    const ExtendedModel start = base_here();
+    out_.before = refit(start, input_.runs, starts_of(start), final_options(judged.empty_place));
+    out_.own = out_.before;
+    std::vector<int> doubted;
+    std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_figure(member); });
+    if (!doubted.empty()) {
+      const ExtendedModel with_doubts = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
+      out_.own = refit(with_doubts, input_.runs, starts_of(with_doubts), final_options(judged.best_place));
+    }
   }
 
-  /// Gives the figure that the runs contradict most its doubt back, where that explains them as well as anything else does.
-  bool take_doubt(EvidenceTable& table, const SetScore& base, double rival_nats) {
-    const double least_nats = std::max(rules_.least_gain_nats, rival_nats - rules_.ambiguous_within_nats);
-    std::optional<ChangedFigure> figure = most_contradicted(out_.after.model, table, base, least_nats);
-    if (!figure) {
-      return false;
+  /// Of the last fit; nodes that it does not have begin at the ambient temperature.
+  [[nodiscard]] std::vector<std::vector<double>> starts_of(const ExtendedModel& model) const {
+    std::vector<std::vector<double>> start_C = now_.start_C;
+    for (std::vector<double>& each : start_C) {
+      each.resize(std::min(each.size(), static_cast<std::size_t>(model.model.network.state_count())));
     }
-    ExtendedModel doubted = out_.after.model;
-    doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
-    RefitResult fit = try_refit(std::move(doubted), input_.runs, out_.after.start_C, options_at(base.place));
-    figure->gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-    if (figure->gain_nats < least_nats || leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
-      return false;
-    }
-    out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
-    out_.after = std::move(fit);
-    out_.changed.push_back(std::move(*figure));
-    return true;
+    return start_C;
   }
 
-  /// A file that was calibrated with a model that lacked the law has figures that are wrong because of it, and sure of them: the law and
-  /// the figure's doubt together may explain what neither does.
-  bool take_law_beside_doubt(std::vector<Tried>& tried, EvidenceTable& table, const SetScore& base, double least_nats) {
-    const Tried* law = nullptr;
-    std::optional<ChangedFigure> figure;
-    double best_nats = base.evidence_nats + least_nats;
-    for (std::size_t i = 0; i < std::min(tried.size(), kMostCurvesTried); ++i) {
-      const SetScore score = table.best(std::vector<int>{tried[i].judged->column}, tried[i].judged->place);
-      const auto doubtful = most_contradicted(out_.after.model, table, score, rules_.least_gain_nats);
-      if (doubtful && score.evidence_nats + doubtful->gain_nats > best_nats) {
-        best_nats = score.evidence_nats + doubtful->gain_nats;
-        law = &tried[i];
-        figure = doubtful;
+  /// Root mean square of what a fit leaves, by node.
+  [[nodiscard]] std::map<std::string, double> left_by(const RefitResult& fit) const {
+    std::vector<Eigen::VectorXd> squares(input_.runs.size());
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
+    in_parallel(designs.size(), 0, [&](std::size_t r) {
+      const DesignRun& one = designs[r];
+      squares[r] = Whitening(one.run, fit.flux, one.noise).smoothed_flux(one.run.residual_K).mean_W.rowwise().squaredNorm();
+    });
+    std::map<std::string, double> left;
+    for (std::size_t f = 0; f < input_.model.model.flux_nodes.size(); ++f) {
+      double sum = 0.0;
+      double count = 0.0;
+      for (std::size_t r = 0; r < designs.size(); ++r) {
+        sum += squares[r][static_cast<Eigen::Index>(f)];
+        count += static_cast<double>(designs[r].run.samples());
+      }
+      left[std::string(input_.model.model.network.node_name(input_.model.model.flux_nodes[f]))] = std::sqrt(sum / count);
+    }
+    return left;
+  }
+
+  void decide(const Judged& judged) {
+    const EffectSet& best = search_->sets().front();
+    RefitOptions options = final_options(judged.best_place);
+    options.around.clear();
+    const ExtendedModel with_best = with_members(best.members, judged.at_best, ShapesAre::held);
+    const RefitResult full = try_refit(with_best, input_.runs, starts_of(with_best), options);
+    out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
+    std::vector<std::size_t> named;
+    for (std::size_t m = 0; m < best.members.size(); ++m) {
+      const double probability = search_->family_probability(best, m);
+      if (is_figure(best.members[m])) {
+        add_changed(best, m);
+      } else if (probability > rules_.named_probability) {
+        named.push_back(m);
+      } else {
+        refuse(best.members[m], fmt::format("its probability is {:.0f} %, and a name needs {:.0f} %", 100.0 * probability,
+                                            100.0 * rules_.named_probability));
       }
     }
-    if (!law) {
+    if (rules_.scans_drivers && !is_speed_open_ && (out_.is_material() || !named.empty())) {
+      scan(judged, best);
+    }
+    weigh_curve(best, named);
+    if (input_.model.usual_flux_W > 0.0) {
+      keep_what_helps(best, named);
+    }
+    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    build(judged, best, named);
+  }
+
+  void refuse(int member, const std::string& why) {
+    const std::string& id = set_rules_[static_cast<std::size_t>(member)].id;
+    out_.refused.push_back({id, fmt::format("{}: {}", id, why)});
+  }
+
+  void add_changed(const EffectSet& best, std::size_t place) {
+    const Eigen::Index coordinate = figure_of(best.members[place]);
+    const FreeParameter& free = input_.model.model.free[static_cast<std::size_t>(coordinate)];
+    const NetworkParameter& parameter = input_.model.model.network.parameters()[static_cast<std::size_t>(free.place)];
+    ChangedFigure figure;
+    figure.coordinate = coordinate;
+    figure.name = parameter.name;
+    figure.unit = parameter.unit;
+    figure.gain_nats = search_->loss_without_nats(best, place);
+    out_.changed.push_back(std::move(figure));
+  }
+
+  void scan(const Judged& judged, const EffectSet& best) {
+    constexpr std::size_t kTold = 8;
+    const ExtendedModel base = base_here();
+    // Where the model is far off, curves are drawn over temperatures as they were measured, smoothed. What heat is multiplied with stays
+    // the model's: noise in it would be that of the residual.
+    std::vector<LinearisedRun> path = judged.fitted;
+    for (std::size_t r = 0; out_.is_material() && r < path.size(); ++r) {
+      const std::vector<DesignRun> own = design(now_.model.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
+      path[r].state_C = smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
+    }
+    out_.drivers = drivers_of(base.model, path, input_.runs);
+    ScanInput input{&base.model,
+                    &input_.runs,
+                    &judged.fitted,
+                    &out_.drivers,
+                    &judged.designs,
+                    prior_here(base),
+                    {},
+                    grid_,
+                    {judged.best_place, judged.empty_place},
+                    out_.mean_heat_W};
+    input.members.size_sd = rules_.size_sd;
+    input.members.companion_sd = rules_.body_start_K;
+    for (const int member : best.members) {
+      for (const int companion : set_rules_[static_cast<std::size_t>(member)].companions) {
+        input.members.companions.push_back(free_count() + companion);
+      }
+      input.members.columns.push_back(free_count() + member);
+      input.members.has_sign.push_back(set_rules_[static_cast<std::size_t>(member)].has_sign);
+      input.members.prior_nats.push_back(set_rules_[static_cast<std::size_t>(member)].prior_nats);
+    }
+    out_.rounds.back().scan = scan_drivers(input, rules_, kTold);
+  }
+
+  /// Whether heat remains that no effect is, whether a curve is it, and which names a curve takes away.
+  void weigh_curve(const EffectSet& best, std::vector<std::size_t>& named) {
+    const std::vector<ScanResult>& scan = out_.rounds.back().scan;
+    const bool has_curve = !scan.empty() && scan.front().gain_nats > rules_.curve_gain_nats;
+    if (!has_curve) {
+      out_.is_unexplained = out_.is_material();
+      for (const std::size_t m : out_.is_unexplained ? named : std::vector<std::size_t>()) {
+        refuse(best.members[m], "more heat remains than what every model leaves");
+      }
+      named.resize(out_.is_unexplained ? 0 : named.size());
+      return;
+    }
+    const ScanResult& curve = scan.front();
+    for (std::size_t m = 0; m < best.members.size(); ++m) {
+      const double share = curve.gain_nats / (curve.gain_nats + search_->loss_without_nats(best, m));
+      // Another shape of the same effect is that effect.
+      if (!is_figure(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio && share < rules_.same_shape_share) {
+        if (std::ranges::find(named, m) == named.end()) {
+          named.push_back(m);
+        }
+        return;
+      }
+    }
+    std::erase_if(named, [&](std::size_t m) {
+      const bool goes = std::ranges::find(curve.beside, static_cast<int>(m)) == curve.beside.end();
+      if (goes) {
+        refuse(best.members[m],
+               fmt::format("a curve over {} explains the runs better", out_.drivers[static_cast<std::size_t>(curve.term.driver)].name));
+      }
+      return goes;
+    });
+    out_.is_unexplained = true;
+    out_.open_curve = curve;
+  }
+
+  [[nodiscard]] double free_run_error_K(const ExtendedModel& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
+
+  /// What a calibrated model leaves of the runs at once it left of the runs that it was fitted to as well: a name must let whole runs be
+  /// followed plainly better, and where whole runs decided the file's figures, runs that are followed as usual show nothing.
+  void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
+    if (input_.model.usual_error_K > 0.0 && free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.model.usual_error_K) {
+      named.clear();
+      out_.open_curve.reset();
+      out_.is_unexplained = false;
+      out_.is_as_usual = true;
+      return;
+    }
+    const auto error_with_K = [&](const std::vector<std::size_t>& members) {
+      std::vector<int> kept;
+      std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
+      std::ranges::sort(kept);
+      const SetSearch::AtBest at = search_->at_best(kept);
+      const ExtendedModel model = with_members(kept, at, ShapesAre::held);
+      RefitOptions options = final_options(best_place_);
+      options.around.clear();
+      const RefitResult fit = try_refit(model, input_.runs, starts_of(model), options);
+      return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
+    };
+    // The surest stays longest.
+    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    for (std::size_t i = named.size(); i-- > 0;) {
+      std::vector<std::size_t> others = named;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const double better_share = input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share;
+      if (error_with_K(named) > better_share * error_with_K(others)) {
+        refuse(best.members[named[i]], "whole runs are followed hardly better with it");
+        named = std::move(others);
+      }
+    }
+  }
+
+  void build(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named) {
+    std::vector<int> kept;
+    for (std::size_t m = 0; m < best.members.size(); ++m) {
+      if (is_figure(best.members[m]) || std::ranges::find(named, m) != named.end()) {
+        kept.push_back(best.members[m]);
+      }
+    }
+    out_.after = out_.own;
+    if (out_.is_as_usual) {
+      RefitOptions as_it_is = final_options(judged.empty_place);
+      as_it_is.most_steps = 0;
+      as_it_is.around.clear();
+      out_.after = out_.own = refit(input_.model, input_.runs, starts_of(input_.model), as_it_is);
+      out_.after.covariance = input_.model.prior().precision.inverse();
+    } else if (!named.empty()) {
+      const SetSearch::AtBest at = search_->at_best(kept);
+      const ExtendedModel model = with_members(kept, at, ShapesAre::free);
+      RefitResult fit = try_refit(model, input_.runs, starts_of(model), final_options(judged.best_place));
+      if (!std::isfinite(fit.evidence_nats)) {
+        out_.is_unexplained = true;
+        return;
+      }
+      out_.after = std::move(fit);
+      add_terms(best, named, kept);
+    }
+    if (out_.open_curve && !adopt_curve(judged)) {
+      // A part of what is missing foretells no better than the model without it.
+      for (const AcceptedTerm& term : out_.terms) {
+        out_.refused.push_back({term.candidate->id, fmt::format("{}: more heat remains than what every model leaves", term.candidate->id)});
+      }
+      out_.terms.clear();
+      out_.after = out_.own;
+    }
+  }
+
+  void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
+    constexpr double kAmbiguous_nats = 5.0;
+    // Instances stand in the network in the order in which they were added.
+    const std::size_t first = input_.model.model.network.effects().size();
+    std::map<int, std::string> names;
+    std::size_t instance = first;
+    for (const int member : kept) {
+      if (!is_figure(member) && candidates()[static_cast<std::size_t>(member)].type) {
+        names[member] = out_.after.model.model.network.effects()[instance++].name;
+      }
+    }
+    for (const std::size_t m : named) {
+      const int member = best.members[m];
+      AcceptedTerm term;
+      term.candidate = candidates()[static_cast<std::size_t>(member)];
+      term.effect_name = names.contains(member) ? names[member] : "";
+      term.probability = search_->family_probability(best, m);
+      term.loss_without_nats = search_->loss_without_nats(best, m);
+      term.visibility_ratio = search_->visibility_ratio(member);
+      for (const int other : search_->stand_ins(best, m, kAmbiguous_nats)) {
+        if (!is_figure(other)) {
+          const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
+          if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
+            term.confusable_with.push_back(rival.id);
+            term.experiments.emplace_back(rival.experiment());
+          }
+        }
+      }
+      out_.terms.push_back(std::move(term));
+    }
+  }
+
+  /// The model follows a curve where that foretells training runs that the fit did not see.
+  bool adopt_curve(const Judged& judged) {
+    const Driver& driver = out_.drivers[static_cast<std::size_t>(out_.open_curve->term.driver)];
+    const std::optional<ExtendedModel> curved = with_curve(out_.after.model, *out_.open_curve, driver);
+    if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
       return false;
     }
-    ExtendedModel doubted = law->fit.model;
-    doubted.model.prior = with_doubt(doubted.model.prior, figure->coordinate);
-    RefitResult fit = try_refit(std::move(doubted), input_.runs, law->fit.start_C, options_at(law->fit.place));
-    figure->gain_nats = fit.evidence_nats - law->fit.evidence_nats;
-    if (fit.evidence_nats - out_.after.evidence_nats < least_nats || figure->gain_nats < rules_.least_gain_nats ||
-        leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
+    std::vector<MeasuredRun> runs = input_.runs;
+    set_column(runs, curved->column);
+    RefitOptions options = final_options(judged.best_place);
+    options.around.clear();
+    double without_K2 = 0.0;
+    double with_K2 = 0.0;
+    for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
+      const auto error_K2 = [&](const ExtendedModel& model, const LatentFlux& flux) {
+        std::vector<MeasuredRun> others;
+        std::vector<std::vector<double>> start_C;
+        RefitOptions own;
+        own.flux = flux;
+        for (std::size_t r = 0; r < runs.size(); ++r) {
+          if (r != left_out) {
+            others.push_back(runs[r]);
+            start_C.push_back(out_.after.start_C[r]);
+            own.weights.push_back(out_.weights[r]);
+            own.merged.push_back(merged_[r]);
+          }
+        }
+        const RefitResult fit = try_refit(model, others, start_C, own);
+        return std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
+                                                : std::numeric_limits<double>::infinity();
+      };
+      without_K2 += error_K2(out_.after.model, out_.after.flux);
+      with_K2 += error_K2(*curved, options.flux);
+    }
+    if (!(with_K2 < without_K2)) {
       return false;
     }
-    std::vector<Tried> front;
-    front.push_back({law->judged, std::move(fit), law->gain_nats + figure->gain_nats});
-    if (!take_front(front)) {
-      return false;
-    }
-    out_.base.model.prior = with_doubt(out_.base.model.prior, figure->coordinate);
-    out_.changed.push_back(std::move(*figure));
-    return true;
-  }
-
-  bool take_best(Round& round, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base) {
-    double least_nats = rules_.least_gain_nats;
-    for (const AcceptedTerm& term : out_.terms) {
-      least_nats = std::max(least_nats, term.curve ? rules_.beside_curve_share * term.gain_nats : 0.0);
-    }
-    std::vector<Tried> tried = try_ladder(round, least_nats);
-    const EffectSets sets(round.ladder, candidates, table, base, rules_);
-    out_.open_curve.reset();
-    const double best_nats = tried.empty() ? 0.0 : tried.front().gain_nats;
-    if (!round.scan.empty() && round.scan.front().gain_nats > best_nats) {
-      zoom_in(scan_input(out_.drivers), table, base, round.scan);
-    }
-    const double best_scan_nats = round.scan.empty() ? 0.0 : round.scan.front().gain_nats;
-    const double beyond_nats = std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_scan_nats);
-    if (take_doubt(table, base, std::max(best_nats, best_scan_nats - beyond_nats))) {
-      return true;
-    }
-    const bool is_ahead = best_scan_nats >= least_nats && best_scan_nats > best_nats + beyond_nats;
-    if (is_ahead && take_law_beside_doubt(tried, table, base, best_scan_nats - beyond_nats)) {
-      return true;
-    }
-    const double catalogue_nats = is_ahead ? sets.catalogue_gain_nats() : 0.0;
-    if (is_ahead && best_scan_nats > catalogue_nats + beyond_nats) {
-      if (!is_speed_open_ && take_curve(round, std::max(best_nats, 0.0) + rules_.outside_beyond_nats)) {
-        return true;
-      }
-      // A signal that did not hold in the equations and is no better than the clock: it may well be the clock.
-      const auto clock = std::ranges::find_if(round.scan, [&](const ScanResult& each) {
-        return driver_name(each) == kTimeDriver && each.gain_nats > best_scan_nats - rules_.ambiguous_within_nats;
-      });
-      const ScanResult& front = clock != round.scan.end() ? *clock : round.scan.front();
-      // What is left over the signal that a curve follows already is the shape between its knots.
-      if (std::ranges::any_of(out_.terms, [&](const AcceptedTerm& term) {
-            return term.curve && term.curve->term.driver == front.term.driver && term.curve->term.node == front.term.node;
-          })) {
-        return false;
-      }
-      // In place of a speed that nobody logged another signal is no answer.
-      const bool is_answer = out_.is_known(front) && (!is_speed_open_ || driver_name(front) == kTimeDriver);
-      out_.open_curve = is_answer ? std::optional(front) : std::nullopt;
-      // Heat that goes by the clock, or of which all laws together explain much less, is none of theirs.
-      if (driver_name(front) == kTimeDriver || front.gain_nats > kOutweighed_ratio * std::max(best_nats, catalogue_nats)) {
-        return false;
-      }
-    }
-    if (take_set(sets, candidates, table, base, best_nats)) {
-      return true;
-    }
-    if (best_nats < least_nats) {
-      return false;
-    }
-    // What explains more and may not be named is the better explanation still; a runner-up gets no name in its place.
-    if (!hidden_.empty() &&
-        hidden_.front().gain_nats > best_nats + std::max(rules_.outside_beyond_nats, rules_.outside_beyond_share * best_nats)) {
-      return take_doubt(table, base, 0.0);
-    }
-    return take_front(tried);
-  }
-
-  /// Refits of those that may be named, best first; tells which may not.
-  std::vector<Tried> try_ladder(Round& round, double least_nats) {
-    double worth_nats = 0.5 * least_nats;
-    hidden_.clear();
-    std::vector<JudgedCandidate*> worthy;
-    std::vector<JudgedCandidate*> variants;
-    for (JudgedCandidate& each : round.ladder) {
-      if (each.gain_nats < worth_nats || !may_be_named(each, least_nats)) {
-        continue;
-      }
-      worth_nats = std::max(worth_nats, 0.8 * each.gain_nats - 20.0);
-      const bool is_variant = std::ranges::any_of(worthy, [&](const JudgedCandidate* w) { return w->candidate.id == each.candidate.id; });
-      (is_variant ? variants : worthy).push_back(&each);
-    }
-    worthy.resize(std::min(worthy.size(), static_cast<std::size_t>(rules_.refitted)));
-    std::vector<Tried> tried(worthy.size());
-    in_parallel(worthy.size(), 0, [&](std::size_t i) { tried[i] = try_out(*worthy[i]); });
-    for (JudgedCandidate* const each : variants) {
-      // Shapes are free in a refit: another variant of an effect is only worth one where it promises more than the refit has reached.
-      const auto own = std::ranges::find_if(tried, [&](const Tried& t) { return t.judged->candidate.id == each->candidate.id; });
-      if (own != tried.end() && each->gain_nats > own->gain_nats) {
-        tried.push_back(try_out(*each));
-      }
-    }
-    std::ranges::stable_sort(tried, [](const Tried& a, const Tried& b) { return a.gain_nats > b.gain_nats; });
-    return tried;
-  }
-
-  Tried try_out(JudgedCandidate& judged) const {
-    RefitResult fit = trials().of_term(judged, 0.5 * judged.gain_nats);
-    judged.gain_nats = std::isfinite(fit.evidence_nats) ? fit.evidence_nats - out_.after.evidence_nats : 0.0;
-    return {&judged, std::move(fit), judged.gain_nats};
-  }
-
-  /// Tells where it may not though it explains something.
-  bool may_be_named(const JudgedCandidate& judged, double least_nats) {
-    std::string why_not;
-    bool is_negligible = false;
-    if (is_speed_open_ && judged.candidate.type && judged.candidate.nodes.front() == "stator") {
-      why_not = "the loss at the speed that not every log has could be it";
-    } else if (judged.visibility_ratio < rules_.least_visibility_ratio) {
-      why_not = fmt::format("all but {:.1f} % of it could be the base parameters", 100.0 * judged.visibility_ratio);
-    } else if (judged.candidate.is_rare() && judged.gain_nats < rules_.unmistakable_nats) {
-      why_not = "that is rare and needs clearer evidence";
-      is_negligible =
-          judged.candidate.deviation_type && std::abs(judged.size_share) * judged.candidate.typical_size() < rules_.least_deviation_share;
-    } else if (judged.runs_acting > 1 && judged.left_out_gain_nats <= 0.0) {
-      why_not = "runs left out of the fit get no better";
-    }
-    if (judged.visibility_ratio < rules_.least_visibility_ratio) {
-      hidden_.push_back(judged);
-    }
-    if (!why_not.empty() && judged.gain_nats >= least_nats) {
-      out_.refuse(judged.candidate.id, judged.gain_nats, why_not, is_negligible);
-    }
-    return why_not.empty();
-  }
-
-  /// The best one that follows the runs, and beside it what could stand in its place.
-  bool take_front(std::vector<Tried>& tried) {
-    for (std::string_view why; !tried.empty() && !(why = trials().why_not(*tried.front().judged, tried.front().fit)).empty();) {
-      out_.refuse(tried.front().judged->candidate.id, tried.front().gain_nats, why);
-      tried.erase(tried.begin());
-    }
-    if (tried.empty() || tried.front().gain_nats < rules_.least_gain_nats) {
+    RefitResult fit = try_refit(*curved, runs, out_.after.start_C, final_options(judged.best_place));
+    if (!std::isfinite(fit.evidence_nats)) {
       return false;
     }
     AcceptedTerm term;
-    term.candidate = tried.front().judged->candidate;
-    term.gain_nats = tried.front().gain_nats;
-    term.visibility_ratio = tried.front().judged->visibility_ratio;
-    // No law is exact: with much evidence the runner-up may be the right one by more than chance allows.
-    const double within_nats = std::max(rules_.ambiguous_within_nats, rules_.beside_law_share * term.gain_nats);
-    for (const Tried& each : tried) {
-      if (each.gain_nats > term.gain_nats - within_nats) {
-        term.add_rival(each.judged->candidate);
+    term.curve = out_.open_curve;
+    term.effect_name = fit.model.model.network.effects().back().name;
+    term.loss_without_nats = out_.open_curve->gain_nats;
+    term.probability = 1.0;
+    for (const ScanResult& each : out_.rounds.back().scan) {
+      constexpr double kAmbiguous_nats = 5.0;
+      const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
+      if (each.gain_nats > out_.open_curve->gain_nats - kAmbiguous_nats && other != driver.name &&
+          std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
+        term.confusable_with.push_back(other);
       }
     }
-    const double hidden_within_nats = std::max(rules_.ambiguous_within_nats, kHiddenBeside_share * term.gain_nats);
-    for (const JudgedCandidate& hidden : hidden_) {
-      if (hidden.gain_nats > term.gain_nats - hidden_within_nats) {
-        term.add_rival(hidden.candidate);
-      }
-    }
-    term.effect_name = term.candidate->type ? std::string(tried.front().fit.model.model.network.effects().back().name) : std::string();
-    out_.after = std::move(tried.front().fit);
-    out_.terms.push_back(std::move(term));
+    out_.after = std::move(fit);
+    // In the order of their evidence.
+    const auto behind =
+        std::ranges::find_if(out_.terms, [&](const AcceptedTerm& other) { return other.loss_without_nats < term.loss_without_nats; });
+    out_.terms.insert(behind, std::move(term));
+    out_.open_curve.reset();
     return true;
   }
 
-  /// Effects that hide each other: none is seen while unknown heat stands in for the others. Asked only where that heat is much.
-  bool take_set(const EffectSets& sets, const std::vector<Candidate>& candidates, EvidenceTable& table, const SetScore& base,
-                double best_single_nats) {
-    const LatentFlux flux = table.grid().at(base.place);
-    if (is_speed_open_ || *std::ranges::max_element(flux.rms_W) <= kMuchUnknown_share * out_.mean_heat_W) {
-      return false;
-    }
-    double best_worth_nats = std::max(0.0, worth_nats(best_single_nats, 1, rules_));
-    // Where no single effect holds up in the equations the linear evidence is no judge.
-    const double least_worth_nats = best_single_nats > 0.0 ? best_worth_nats : std::numeric_limits<double>::lowest();
-    const auto most = static_cast<std::size_t>(rules_.most_terms) - out_.terms.size();
-    const std::vector<SetScore> best_sets = sets.best(most, least_worth_nats);
-    std::vector<RefitResult> fits(best_sets.size());
-    in_parallel(fits.size(), 0, [&](std::size_t i) { fits[i] = trials().of_set(best_sets[i], candidates); });
-    RefitResult* best = nullptr;
-    std::vector<int> chosen;
-    for (std::size_t i = 0; i < fits.size(); ++i) {
-      const double set_worth_nats = worth_nats(fits[i].evidence_nats - out_.after.evidence_nats, best_sets[i].candidates.size(), rules_);
-      if (set_worth_nats > best_worth_nats) {
-        best_worth_nats = set_worth_nats;
-        best = &fits[i];
-        chosen = best_sets[i].candidates;
-      }
-    }
-    if (!best) {
-      return false;
-    }
-    auto name = best->model.model.network.effects().end() -
-                std::ranges::count_if(chosen, [&](int j) { return candidates[static_cast<std::size_t>(j)].type != nullptr; });
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      AcceptedTerm term;
-      term.candidate = candidates[static_cast<std::size_t>(chosen[i])];
-      term.effect_name = term.candidate->type ? (name++)->name : std::string();
-      term.gain_nats = (best->evidence_nats - out_.after.evidence_nats) / static_cast<double>(chosen.size());
-      term.visibility_ratio = table.visibility_ratio(base.candidates, base.place, chosen[i]);
-      term.is_of_set = chosen.size() > 1;
-      sets.tell_rivals(chosen, i, term);
-      out_.terms.push_back(std::move(term));
-    }
-    out_.after = std::move(*best);
-    return true;
-  }
-
-  [[nodiscard]] const std::string& driver_name(const ScanResult& curve) const {
-    return out_.drivers[static_cast<std::size_t>(curve.term.driver)].name;
-  }
-
-  /// The first curve that is still worth `least_nats` when it is refitted in the equations within what physics allows.
-  bool take_curve(const Round& round, double least_nats) {
-    std::size_t tries = 0;
-    const ScanResult& front = round.scan.front();
-    const double rival_nats = front.gain_nats - std::max(rules_.ambiguous_within_nats, rules_.beside_curve_share * front.gain_nats);
-    for (const ScanResult& each : round.scan) {
-      if (each.gain_nats < least_nats || tries == kMostCurvesTried) {
-        break;
-      }
-      // What is far behind another signal only looks like it; of one signal the law that the equations want may be far behind.
-      const bool is_front = each.term.driver == front.term.driver;
-      if (!out_.is_known(is_front ? front : each) || (!is_front && each.gain_nats < rival_nats)) {
-        continue;
-      }
-      const Driver& driver = out_.drivers[static_cast<std::size_t>(each.term.driver)];
-      const std::optional<ExtendedModel> with = with_curve(out_.after.model, each, driver);
-      if (!with) {
-        if (driver.choice == kColumnChoice) {
-          out_.refuse(driver.name, each.gain_nats, kNoRoom);
-        }
-        continue;
-      }
-      set_column(input_.runs, with->column);
-      ++tries;
-      RefitResult fit = try_refit(*with, input_.runs, out_.after.start_C, options_at(each.place));
-      if (fit.evidence_nats < out_.after.evidence_nats + least_nats) {
-        fit = try_refit(with_values_of(*with, input_.model), input_.runs, out_.before.start_C, options_at(first_place_));
-      }
-      AcceptedTerm term;
-      term.curve = each;
-      term.gain_nats = fit.evidence_nats - out_.after.evidence_nats;
-      if (term.gain_nats < std::max(least_nats, kKeptPromise_ratio * each.gain_nats)) {
-        continue;
-      }
-      if (leads_away(out_.after.model, fit.model, input_.runs, kMostWorse_ratio)) {
-        if (!input_.waits_for_others || term.gain_nats < kBalanced_nats) {
-          out_.refuse(driver.name, term.gain_nats, kStraysAlone, true);
-          continue;
-        }
-        out_.waits_for_others = true;
-      }
-      term.effect_name = std::string(fit.model.model.network.effects().back().name);
-      out_.tell_other_drivers(term, round.scan, rules_.ambiguous_within_nats);
-      out_.after = std::move(fit);
-      out_.terms.push_back(std::move(term));
-      return true;
-    }
-    return false;
-  }
-
-  SelectionInput input_;  ///< whose runs get the column that a curve is drawn over
+  const SelectionInput& input_;
   const SelectionRules& rules_;
   bool is_speed_open_;  ///< heat at the stator then may well be the loss at the speed that nobody logged
-  RefitOptions options_;
-  FluxGrid::Place first_place_;
-  std::vector<JudgedCandidate> hidden_;  ///< of this round, best first: what the base parameters could stand for
   Selection out_;
+  RefitResult now_;  ///< the fit whose path the equations are linearised about
+  std::vector<int> merged_;
+  double unit_W_ = 0.0;  ///< of unknown heat
+  FluxGrid grid_;
+  FluxPlace place_, best_place_;
+  CandidateList list_;
+  std::vector<Eigen::Index> figures_;
+  std::vector<CandidateRule> set_rules_;
+  std::vector<int> bodies_;  ///< candidates with a body of their own
+  std::vector<int> best_;
+  std::optional<SetSearch> search_;
 };
 
 }  // namespace
 
-Selection select_once(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
+bool Selection::is_material() const {
+  return std::ranges::any_of(left_W, [&](const auto& each) { return each.second > material_W; });
+}
+
+double evidence_without_effects_nats(const SelectionInput& input) {
+  const SelectionRules rules;
+  return Selector(input, rules).evidence_without_effects_nats();
+}
+
+Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
 
 }  // namespace heatsoak

@@ -6,12 +6,13 @@
 #include <cctype>
 
 #include "attribution/curve.h"
+#include "attribution/rules.h"
 
 namespace heatsoak {
 namespace {
 
-/// What a candidate's size may be before anything is measured: within some two typical sizes of nothing.
-constexpr double kSizeSpread_share = 2.0;
+/// Standard deviation of a size before anything is measured, in typical sizes.
+constexpr double kSizeSpread_share = SelectionRules{}.size_sd;
 /// Of a shape parameter's logarithm before anything is measured.
 constexpr double kShapeSpread = 0.3;
 /// Of the ends of a curve over a temperature, in gaps between its knots.
@@ -120,14 +121,19 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
 
 }  // namespace
 
-ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name) {
+ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name,
+                             ShapesAre shapes) {
   ExtendedModel out = model;
   if (candidate.sensor_type) {
-    out.sensors.push_back({candidate.sensor_type, size_share * candidate.typical_size(), kSizeSpread_share * candidate.typical_size()});
+    const Range& faults = candidate.sensor_type->size.range;
+    out.sensors.push_back({candidate.sensor_type, std::clamp(size_share * candidate.typical_size(), faults.low, faults.high),
+                           kSizeSpread_share * candidate.typical_size()});
     return out;
   }
   if (candidate.deviation_type) {
-    out.deviations.push_back({candidate.deviation_type, candidate.condition, size_share * candidate.typical_size(),
+    const Range& deviations = candidate.deviation_type->size.range;
+    out.deviations.push_back({candidate.deviation_type, candidate.condition,
+                              std::clamp(size_share * candidate.typical_size(), deviations.low, deviations.high),
                               kSizeSpread_share * candidate.typical_size()});
     return out;
   }
@@ -144,7 +150,7 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   }
   const EffectInPlace effect =
       add(out.model, std::string(name.empty() ? candidate.type->name : name), *candidate.type, candidate.nodes, parameters);
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
+  for (std::size_t p = 0; shapes == ShapesAre::free && p < parameters.size(); ++p) {
     const ParameterSpec& spec = candidate.type->parameters[p];
     if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
       // Exponents, thresholds, capacities: near what is usual, yet the runs may say otherwise.

@@ -9,8 +9,12 @@
 
 namespace heatsoak {
 
+/// Exponents, thresholds and capacities that come with an effect.
+enum class ShapesAre { free, held };
+
 /// The candidate in place with its size free, beginning at `size_share` typical sizes. Without a `name` it gets one that is not used.
-ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name = {});
+ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name = {},
+                             ShapesAre shapes = ShapesAre::free);
 
 /// The coordinate of the candidate's size in a model that has it: as an effect of that name, or a fault of a sensor, or a run's deviation.
 Eigen::Index size_coordinate(const ExtendedModel& model, const Candidate& candidate, std::string_view effect_name);

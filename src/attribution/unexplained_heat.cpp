@@ -12,9 +12,6 @@
 namespace heatsoak {
 namespace {
 
-/// Unknown heat below this share of the heat that the model knows is what every model leaves.
-constexpr double kTolerableUnknown_share = 0.03;
-
 class HeatTeller {
  public:
   HeatTeller(const Diagnosis& told, const std::vector<MeasuredRun>& train) : told_(told), train_(train) {}
@@ -30,20 +27,14 @@ class HeatTeller {
     if (told_.selection.open_curve) {
       add_curve(*told_.selection.open_curve, {});
     }
-    for (const auto& [node, members] : unknown_by_sensor()) {
-      Unexplained heat = unnamed_heat(node, members);
-      if (heat.rms_W <= kTolerableUnknown_share * told_.selection.mean_heat_W || is_told(members)) {
-        continue;
-      }
-      if (const ScanResult* const refused = driver_of_what_was_refused(members)) {
-        add_curve(*refused, {});
-      } else {
-        heats_.push_back(std::move(heat));
-      }
+    if (heats_.empty() && told_.selection.is_unexplained) {
+      heats_.push_back(most());
     }
     return std::move(heats_);
   }
 
+ private:
+  /// What is left at the node where most is.
   [[nodiscard]] Unexplained most() const {
     Unexplained most;
     for (const auto& [node, members] : unknown_by_sensor()) {
@@ -55,9 +46,8 @@ class HeatTeller {
     return most;
   }
 
- private:
   [[nodiscard]] const RefitResult& after() const { return told_.selection.after; }
-  [[nodiscard]] double time_scale_s() const { return told_.selection.grid.at(after().place).time_scale_s; }
+  [[nodiscard]] double time_scale_s() const { return after().flux.time_scale_s; }
 
   [[nodiscard]] bool has_sensor(const std::string& node) const {
     return std::ranges::any_of(
@@ -100,22 +90,6 @@ class HeatTeller {
     return heat;
   }
 
-  /// A law that the base could stand for gets no name, but the signal that its heat goes with is known. Null where nothing was refused.
-  [[nodiscard]] const ScanResult* driver_of_what_was_refused(const std::vector<std::string>& nodes) const {
-    if (!told_.selection.leaves_doubt() || told_.selection.rounds.empty() || std::ranges::any_of(train_, turns_unseen)) {
-      return nullptr;
-    }
-    // The round whose model is the one that is left.
-    const Round& round =
-        told_.selection.terms.empty() && told_.selection.changed.empty() ? told_.selection.rounds.front() : told_.selection.rounds.back();
-    const std::vector<ScanResult>& scan = round.scan;
-    const auto found = std::ranges::find_if(scan, [&](const ScanResult& each) {
-      return std::ranges::find(nodes, each.term.node) != nodes.end() && !each.leaves_heat &&
-             each.gain_nats >= SelectionRules{}.least_gain_nats;
-    });
-    return found == scan.end() ? nullptr : &*found;
-  }
-
   /// The curve as the model has it, which is what physics leaves of the scan's.
   void tell_as_added(const AcceptedTerm& term, Unexplained& heat) const {
     const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
@@ -133,11 +107,6 @@ class HeatTeller {
       const Eigen::Index own = free - model.free.begin();
       heat.curve_sd[knot] = free == model.free.end() ? 0.0 : free->scale * std::sqrt(after().covariance(own, own));
     }
-  }
-
-  /// Whether something was said of the heat into one of the nodes.
-  [[nodiscard]] bool is_told(const std::vector<std::string>& nodes) const {
-    return std::ranges::any_of(heats_, [&](const Unexplained& each) { return std::ranges::find(nodes, each.node) != nodes.end(); });
   }
 
   void add_curve(const ScanResult& curve, const std::vector<std::string>& others) {
@@ -172,7 +141,5 @@ class HeatTeller {
 std::vector<Unexplained> unexplained_heat(const Diagnosis& told, const std::vector<MeasuredRun>& train) {
   return HeatTeller(told, train).tell();
 }
-
-Unexplained most_heat_left(const Diagnosis& told, const std::vector<MeasuredRun>& train) { return HeatTeller(told, train).most(); }
 
 }  // namespace heatsoak

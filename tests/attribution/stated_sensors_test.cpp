@@ -8,9 +8,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "examination.h"
 #include "attribution/model_file.h"
 #include "attribution/terms.h"
+#include "examination.h"
 #include "motor/write_motor.h"
 
 namespace heatsoak::truth {

@@ -2,8 +2,8 @@
 // half-hour runs at 1 Hz.
 #include <benchmark/benchmark.h>
 
-#include "examination.h"
 #include "attribution/diagnosis.h"
+#include "examination.h"
 #include "missing_effects.h"
 
 namespace heatsoak::truth {
