@@ -8,6 +8,7 @@
 #include "attribution/found_effects.h"
 #include "attribution/open_loop.h"
 #include "attribution/residual_tests.h"
+#include "identify/forecast/prediction.h"
 
 namespace heatsoak {
 
@@ -83,9 +84,10 @@ struct Diagnosis {
 /// Errors of the free-running models on runs that decided nothing.
 struct HoldoutScore {
   std::vector<MeasuredRun> runs;
-  Errors before, refitted, after;            ///< as in Diagnosis, of the hold-out runs
-  Errors file;                               ///< of the written model alone
-  std::vector<std::string> beyond_training;  ///< sentences: where the hold-out runs exceed the range of the training runs
+  Errors before, refitted, after;                     ///< as in Diagnosis, of the hold-out runs
+  Errors file;                                        ///< of the written model alone
+  std::vector<PredictedRun> runs_before, runs_after;  ///< predictions by the motor file and by the extended one: score_files()
+  std::vector<std::string> beyond_training;           ///< sentences: where the hold-out runs exceed the range of the training runs
 };
 
 /// By a tenth, and by more than matters to anybody.

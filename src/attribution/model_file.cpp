@@ -10,6 +10,7 @@
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "identify/admission.h"
+#include "identify/calibration/error_before_after.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/interval.h"
 #include "identify/log_columns.h"
@@ -213,7 +214,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
     out.fitted = everywhere.fit->runs;
   }
   std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
-  MotorModel built = motor_model(everywhere, heat_input_for(recordings), have(Signal::speed));
+  MotorModel built = motor_model(everywhere, heat_input_of(everywhere, recordings, false), have(Signal::speed));
   out.how = how_to_read(motor);
   out.model.column = out.how.column;
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
@@ -246,6 +247,19 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
         "not every log has a torque: where there is none, current times torque constant less the no-load drag stands for it");
   }
   return out;
+}
+
+void score_files(const Motor& before, const Motor& after, const std::vector<Recording>& holdout, const PredictionOptions& options,
+                 HoldoutScore& score) {
+  if (holdout.empty()) {
+    return;
+  }
+  score.runs_before = predict(before, holdout, options).runs;
+  score.runs_after = predict(after, holdout, options).runs;
+  for (const ErrorBeforeAfter& each : worst_errors(score.runs_before, score.runs_after)) {
+    score.before[each.signal] = {each.before.rmse_K, each.before.max_abs_K};
+    score.after[each.signal] = score.file[each.signal] = {each.after.rmse_K, each.after.max_abs_K};
+  }
 }
 
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {

@@ -27,4 +27,9 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
 /// a run's heat are no properties of a motor: they become notes.
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
+/// The score of two motor files on recordings that decided nothing, by predict(): replaces errors before and after in `score`, per signal
+/// those of the run that it is worst in after the diagnosis.
+void score_files(const Motor& before, const Motor& after, const std::vector<Recording>& holdout, const PredictionOptions& options,
+                 HoldoutScore& score);
+
 }  // namespace heatsoak

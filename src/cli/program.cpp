@@ -33,7 +33,7 @@ constexpr std::string_view kFooter =
     "Start here:\n  heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --plot verdict.svg\n";
 
 constexpr std::string_view kWithoutMeasured =
-    "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
+    "\nThis program was built without log, friction, calibrate, predict and diagnose; `./bootstrap build` adds them.\n";
 
 /// Options that name what a verb writes.
 constexpr std::array kOutputs{"--out", "--plot", "--json", "--junit"};

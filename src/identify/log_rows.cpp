@@ -30,6 +30,9 @@ bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torq
     const bool is_told = is_recorded(Signal::current) && is_recorded(Signal::speed) && is_recorded(Signal::bus_voltage);
     return is_told || is_recorded(signal);
   }
+  if (signal == Signal::current && torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::shaft_power)) {
+    return true;
+  }
   if (signal != Signal::shaft_power) {
     return is_recorded(signal);
   }
@@ -98,7 +101,8 @@ LogRows::LogRows(const Recording& recording, const MeasuredRunOptions& options)
 OperatingPoint<double> LogRows::at(std::size_t row) const {
   const double speed_rad_per_s = of(speed_rad_per_s_, row);
   OperatingPoint<double> at;
-  at.current_rms_A = std::abs(of(current_A_, row));
+  const bool has_torque_only = !current_A_ && torque_Nm_ && options_.torque.per_current_Nm_per_A > 0.0;
+  at.current_rms_A = std::abs(has_torque_only ? current_of_torque_A(of(torque_Nm_, row), speed_rad_per_s) : of(current_A_, row));
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
   at.velocity_rad_per_s = speed_rad_per_s;
   if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
@@ -116,6 +120,11 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
   at.age_h = of(age_h_, row);
   return at;
+}
+
+double LogRows::current_of_torque_A(double torque_Nm, double speed_rad_per_s) const {
+  const double drag_Nm = speed_rad_per_s == 0.0 ? 0.0 : std::copysign(options_.torque.drag_Nm, speed_rad_per_s);
+  return (torque_Nm + drag_Nm) / options_.torque.per_current_Nm_per_A;
 }
 
 bool LogRows::is_known(std::size_t row) const {

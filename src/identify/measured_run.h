@@ -43,6 +43,8 @@ struct MeasuredRun {
 
   [[nodiscard]] Eigen::Index samples() const { return static_cast<Eigen::Index>(time_s.size()); }
   [[nodiscard]] bool has(Signal signal) const;
+  /// Whether all of the conditions are said of the run.
+  [[nodiscard]] bool has(const std::map<std::string, std::string>& of_conditions) const;
   /// -1 where no sensor sits at the node.
   [[nodiscard]] Eigen::Index sensor_at(std::string_view node) const;
 };

@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/measured/diagnosis_answer.h"
+#include "cli/measured/prediction_answer.h"
 
 namespace heatsoak {
 namespace {
@@ -160,16 +161,12 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, con
       json["unexplained_all"].push_back(unexplained_json(heat));
     }
   }
-  json["runs"] = {{"train", Json::array()}, {"holdout", Json::array()}};
+  json["runs"] = {{"train", Json::array()}, {"holdout", Json::object()}};
   for (const MeasuredRun& run : input.train) {
     json["runs"]["train"].push_back(
         {{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
   }
-  for (const MeasuredRun& run : score.runs) {
-    json["runs"]["holdout"].push_back({{"name", run.name},
-                                       {"before", errors_json(open_loop_errors(input.model, {run}, input.train))},
-                                       {"after", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, input.train))}});
-  }
+  json["runs"]["holdout"] = {{"before", runs_json(score.runs_before)}, {"after", runs_json(score.runs_after)}};
   json["ladder"] = ladder_json(diagnosis.selection);
   json["refused"] = words_of(diagnosis.selection.refused);
   json["would_not_show"] = diagnosis.selection.unseen;

@@ -96,7 +96,9 @@ ExitCode run(const Options& options, Session& session) {
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   set_column(input.train, diagnosis.selection.after.model.column);
   refuse_where_nothing_follows(diagnosis, input);
-  const HoldoutScore score = score_holdout(input, diagnosis, runs_of(holdout, how, notes));
+  const Motor extended = extended_motor(motor, model, diagnosis);
+  HoldoutScore score = score_holdout(input, diagnosis, runs_of(holdout, how, notes));
+  score_files(motor, extended, holdout, {options.logs.ambient_C, input.turns_within_rows}, score);
   diagnosis.words = describe(diagnosis, score);
   diagnosis.description = fmt::format("{}", fmt::join(diagnosis.words, " "));
   if (std::string lacking = column_lacking(diagnosis.selection.after.model.column, holdout);
@@ -109,7 +111,7 @@ ExitCode run(const Options& options, Session& session) {
     session.say(fmt::format("note: {}\n", note));
   }
   if (!options.out.empty()) {
-    hand_out(options, extended_motor(motor, model, diagnosis), diagnosis, input, score, session);
+    hand_out(options, extended, diagnosis, input, score, session);
     session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
   }
   session.answer(diagnosis_json(diagnosis, input, score));
