@@ -37,13 +37,13 @@ double value_at(const std::vector<double>& knots, const Eigen::VectorXd& curve, 
   return (1.0 - hats.right_share) * curve[hats.left] + hats.right_share * curve[hats.left + 1];
 }
 
-Eigen::MatrixXd curve_precision(Eigen::Index knots) {
-  Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(knots, knots) * 0.1;
+Eigen::MatrixXd curve_precision(Eigen::Index knots, const SelectionRules& rules) {
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(knots, knots) * rules.curve_level_precision;
   for (Eigen::Index i = 0; i + 1 < knots; ++i) {
-    precision(i, i) += 2.0;
-    precision(i + 1, i + 1) += 2.0;
-    precision(i, i + 1) -= 2.0;
-    precision(i + 1, i) -= 2.0;
+    precision(i, i) += rules.curve_step_precision;
+    precision(i + 1, i + 1) += rules.curve_step_precision;
+    precision(i, i + 1) -= rules.curve_step_precision;
+    precision(i + 1, i) -= rules.curve_step_precision;
   }
   return precision;
 }

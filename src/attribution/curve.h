@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "attribution/drivers.h"
+#include "attribution/rules.h"
 
 namespace heatsoak {
 
@@ -24,7 +25,7 @@ HatsAt hats_at(const std::vector<double>& knots, double value);
 /// A curve with its values at the knots.
 double value_at(const std::vector<double>& knots, const Eigen::VectorXd& curve, double value);
 
-/// Precision of a curve before anything is measured, in units of its usual size: 0.1 · I + 2 · DᵀD.
-Eigen::MatrixXd curve_precision(Eigen::Index knots);
+/// Precision of a curve before anything is measured, in units of its usual size: level · I + step · DᵀD.
+Eigen::MatrixXd curve_precision(Eigen::Index knots, const SelectionRules& rules);
 
 }  // namespace heatsoak

@@ -80,7 +80,7 @@ struct SharedRun {
 class Scanner {
  public:
   Scanner(const ScanInput& input, const SelectionRules& rules)
-      : input_(input), rules_(rules), precision_(curve_prior(rules)), subsets_(std::size_t{1} << input.members.columns.size()) {
+      : input_(input), rules_(rules), precision_(curve_precision(kKnots, rules)), subsets_(std::size_t{1} << input.members.columns.size()) {
     const Eigen::Index own = input.prior.mean.size();
     const auto more = static_cast<Eigen::Index>(input.members.companions.size());
     prior_.mean = Eigen::VectorXd::Zero(own + more);
@@ -116,17 +116,6 @@ class Scanner {
       results.push_back(result(each, without_nats));
     }
     return results;
-  }
-
-  static Eigen::MatrixXd curve_prior(const SelectionRules& rules) {
-    Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(kKnots, kKnots) * rules.curve_level_precision;
-    for (Eigen::Index i = 0; i + 1 < kKnots; ++i) {
-      precision(i, i) += rules.curve_step_precision;
-      precision(i + 1, i + 1) += rules.curve_step_precision;
-      precision(i, i + 1) -= rules.curve_step_precision;
-      precision(i + 1, i) -= rules.curve_step_precision;
-    }
-    return precision;
   }
 
  private:

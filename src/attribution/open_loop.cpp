@@ -91,10 +91,4 @@ double rms_K(const Errors& errors) {
   return std::sqrt(squares_K2 / static_cast<double>(std::max<std::size_t>(1, errors.size())));
 }
 
-bool leads_away(const ExtendedModel& from, const ExtendedModel& to, const std::vector<MeasuredRun>& runs, double most_ratio) {
-  const double before_K = rms_K(open_loop_errors(from, runs, {}));
-  const double after_K = rms_K(open_loop_errors(to, runs, {}));
-  return after_K > most_ratio * before_K && after_K > before_K + kMatters_K;
-}
-
 }  // namespace heatsoak

@@ -26,7 +26,5 @@ Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRu
 Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);
 /// Over all signals, each counting alike.
 double rms_K(const Errors& errors);
-/// What explains the unknown from second to second may still be worse over whole runs, by more than this ratio.
-bool leads_away(const ExtendedModel& from, const ExtendedModel& to, const std::vector<MeasuredRun>& runs, double most_ratio);
 
 }  // namespace heatsoak

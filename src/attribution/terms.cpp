@@ -115,7 +115,7 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
     set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
   }
-  out.model.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size());
+  out.model.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size(), {});
   return out;
 }
 
