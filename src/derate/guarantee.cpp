@@ -73,16 +73,16 @@ void PlayedIntervals::take(double time_s, double current_A, double speed_rad_per
   speed_rad_per_s_ = speed_rad_per_s;
   first_A_ = duration_s_ > 0.0 ? first_A_ : current_A;
   duration_s_ += period_s;
-  current2_A2_s_ += current_A * current_A * period_s;
+  heat_A2_s_ += current_A * current_A * period_s;
 }
 
 void PlayedIntervals::end(double time_s) {
-  const double current_rms_A = std::sqrt(current2_A2_s_ / duration_s_);
+  const double current_rms_A = std::sqrt(heat_A2_s_ / duration_s_);
   const Signals signals = played_.use.hot_case.signals(rules_, current_rms_A, speed_rad_per_s_);
   played_.intervals.push_back({duration_s_, operating_point<double>(motor_.nominal, robot_, signals)});
   played_.time_s.push_back(time_s);
   played_.current_A.push_back(current_rms_A);
-  duration_s_ = current2_A2_s_ = 0.0;
+  duration_s_ = heat_A2_s_ = 0.0;
 }
 
 double use_duration_s(const MotorValues& motor) {

@@ -54,7 +54,7 @@ class PlayedIntervals {
   const Robot& robot_;
   const BarrierRules& rules_;
   double duration_s_ = 0.0;
-  double current2_A2_s_ = 0.0;
+  double heat_A2_s_ = 0.0;
   double first_A_ = 0.0;
   double speed_rad_per_s_ = 0.0;
 };

@@ -330,7 +330,7 @@ Rates sensor_functions(const Source& source) {
     gains += (gains.empty() ? "" : ", ") + literal(gain);
   }
   const Words words{{"@PREDICTED@", lags ? "state->lag_C" : node},
-                    {"@CORRECT_LAG@", lags ? fmt::format("  state->lag_C += {} * innovation_K;\n", literal(plan.lag_gain)) : ""},
+                    {"@CORRECT_LAG@", lags ? fmt::format("  state->lag_C += {} * innovation_K;\n", literal(plan.lag_gain_ratio)) : ""},
                     {"@ADVANCE_LAG@", lags ? fmt::format("  state->lag_C += {} * ({} - state->lag_C);\n",
                                                          literal(source.derating.options.period_s / plan.options.lag_s), node)
                                            : ""},

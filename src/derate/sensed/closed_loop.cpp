@@ -93,7 +93,7 @@ class LaneGuard {
     for (std::size_t node = 0; node < state_C_.size(); ++node) {
       state_C_[node] += std::min(1.0, steps * plan.gain[node]) * innovation_K;
     }
-    lag_C_ += std::min(1.0, steps * plan.lag_gain) * innovation_K;
+    lag_C_ += std::min(1.0, steps * plan.lag_gain_ratio) * innovation_K;
   }
 
  private:

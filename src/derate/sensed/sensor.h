@@ -73,10 +73,10 @@ struct SensorPlan {
   /// least as fast as without a sensor: no sensor at the stator sees a pulse in time.
   Observer observer;
   double winding_speed_ratio = 1.0;
-  CurrentTable table;        ///< of that observer
-  std::vector<double> gain;  ///< of the states per period and kelvin of innovation
-  double lag_gain = 0.0;     ///< of the sensor's own temperature, where it lags
-  double most_gain_A = 0.0;  ///< above what the guard without a sensor allows: the most that a lying sensor can add
+  CurrentTable table;           ///< of that observer
+  std::vector<double> gain;     ///< of the states per period and kelvin of innovation
+  double lag_gain_ratio = 0.0;  ///< of the sensor's own temperature, where it lags
+  double most_gain_A = 0.0;     ///< above what the guard without a sensor allows: the most that a lying sensor can add
   ReadingCheck check = {};
   std::vector<LastingCurrent> lasting = {};
   int samples = 0;  ///< drawn motors, each with a drawn sensor error
