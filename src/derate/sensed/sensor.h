@@ -49,7 +49,8 @@ struct ReadingCheck {
   double most_C = 300.0;
   double most_rate_K_per_s = 0.0;  ///< of the node
   double most_jump_K = 0.0;        ///< between two readings, beyond that rate
-  /// The rise of the node above the coldest air is at least this share of the nominal motor's, less `cold_margin_K`.
+  /// The rise of the node above the air is at least this share of the nominal motor's, less `cold_margin_K`. Where the
+  /// air is not measured it counts as the coldest here, and as the hottest in the nominal motor.
   double cold_share = 0.0;
   double cold_margin_K = 0.0;
   double frozen_band_K = 0.0;    ///< a reading that stays within it …

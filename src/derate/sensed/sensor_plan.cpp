@@ -31,7 +31,7 @@ Network faster_network(const Motor& motor, double winding_speed_ratio) {
 }
 
 ReadingCheck first_check(const Derating& model_only, const SensorOptions& options) {
-  constexpr double kColdMargin_K = 3.0;
+  constexpr double kColdMargin_K = 5.0;  // an air sensor has an error too
   constexpr double kFrozenBand = 0.25;
   return {.least_C = model_only.options.coldest_ambient_C,
           .most_C = 300.0,
