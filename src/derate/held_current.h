@@ -8,7 +8,7 @@ namespace heatsoak {
 /// One interval with its rms current: as long as the current changes by little, and no longer than a second.
 struct HeldCurrent {
   double duration_s = 0.0;
-  double current2_A2_s = 0.0;
+  double heat_A2_s = 0.0;
   double first_A = 0.0;
   double speed_rad_per_s = 0.0;
 
@@ -23,9 +23,9 @@ struct HeldCurrent {
     speed_rad_per_s = at_rad_per_s;
     first_A = duration_s > 0.0 ? first_A : current_A;
     duration_s += period_s;
-    current2_A2_s += current_A * current_A * period_s;
+    heat_A2_s += current_A * current_A * period_s;
   }
-  [[nodiscard]] double rms_A() const { return std::sqrt(current2_A2_s / duration_s); }
+  [[nodiscard]] double rms_A() const { return std::sqrt(heat_A2_s / duration_s); }
 };
 
 }  // namespace heatsoak

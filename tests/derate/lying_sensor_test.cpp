@@ -124,6 +124,20 @@ TEST_F(LyingSensor, AJumpIsNotUsedAndOneThatLastsEndsTheSensor) {
   EXPECT_NE(status, CompiledGuard::used);
 }
 
+// In a cold room with air that nobody measures the guard takes 40 °C; a correct sensor that shows the room is no liar.
+TEST_F(LyingSensor, ACorrectSensorInAColdRoomIsKept) {
+  SensedGuard sensed(guard());
+  sensed.start(15.0F);
+  Plant plant(ecx_32(), nominal_sample(ecx_32()), 15.0);
+  for (int i = 0; i < 100'000; ++i) {
+    const double current_A = i / 20'000 % 2 == 0 ? 0.0 : 2.0;
+    plant.step(current_A, 100.0, 15.0, 0.01);
+    const CompiledGuard::Output out =
+        sensed.step({static_cast<float>(current_A), 100.0F, 40.0F}, static_cast<float>(plant.true_C(states::stator)));
+    ASSERT_EQ(out.sensor, CompiledGuard::used) << i;
+  }
+}
+
 // A hot reading is believed, whatever the model says: it only takes current away.
 TEST_F(LyingSensor, AHotReadingTakesCurrentAway) {
   SensedGuard sensed(guard());

@@ -12,7 +12,8 @@ namespace heatsoak {
 namespace {
 
 LinearObserver scalar(double transition, double process_K2, double sensor_K2) {
-  return {Eigen::MatrixXd::Constant(1, 1, transition), Eigen::RowVectorXd::Ones(1), Eigen::MatrixXd::Constant(1, 1, process_K2), sensor_K2};
+  return {Eigen::MatrixXd::Constant(1, 1, transition), Eigen::RowVectorXd::Ones(1), Eigen::MatrixXd::Constant(1, 1, process_K2),
+          std::sqrt(sensor_K2)};
 }
 
 TEST(Riccati, ScalarHasItsClosedForm) {
@@ -34,7 +35,7 @@ LinearObserver random_observer(std::mt19937_64& engine, int size) {
   const auto matrix = [&] { return Eigen::MatrixXd::NullaryExpr(size, size, [&] { return uniform(engine); }); };
   const Eigen::MatrixXd root = matrix();
   return {0.97 * Eigen::MatrixXd::Identity(size, size) + 0.02 * matrix(),
-          Eigen::RowVectorXd::NullaryExpr(size, [&] { return uniform(engine); }), 1e-3 * root * root.transpose(), 0.7};
+          Eigen::RowVectorXd::NullaryExpr(size, [&] { return uniform(engine); }), 1e-3 * root * root.transpose(), 0.8};
 }
 
 TEST(Riccati, SolvesTheEquationAndIsTheLimitOfTheRecursion) {
@@ -43,7 +44,7 @@ TEST(Riccati, SolvesTheEquationAndIsTheLimitOfTheRecursion) {
     const LinearObserver observer = random_observer(engine, size);
     const auto next = [&](const Eigen::MatrixXd& P) -> Eigen::MatrixXd {
       const Eigen::VectorXd seen = observer.transition * P * observer.output.transpose();
-      const double variance_K2 = observer.output * P * observer.output.transpose() + observer.sensor_variance_K2;
+      const double variance_K2 = observer.output * P * observer.output.transpose() + observer.sensor_sd_K * observer.sensor_sd_K;
       return observer.transition * P * observer.transition.transpose() - seen * seen.transpose() / variance_K2 + observer.process_noise;
     };
     const Eigen::MatrixXd solved = steady_covariance(observer);
@@ -61,7 +62,7 @@ TEST(Riccati, RefusesAnUnstableStateThatTheSensorDoesNotSee) {
   observer.transition = Eigen::Vector2d(1.1, 0.9).asDiagonal();
   observer.output = Eigen::RowVector2d(0.0, 1.0);
   observer.process_noise = Eigen::MatrixXd::Identity(2, 2);
-  observer.sensor_variance_K2 = 1.0;
+  observer.sensor_sd_K = 1.0;
   EXPECT_THROW(steady_covariance(observer), Failure);
 }
 

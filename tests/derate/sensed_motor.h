@@ -71,7 +71,7 @@ inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating
                             unsigned driver_seed, bool is_always_all = false) {
   SensedGuard sensed(guard);
   ModelGuard model(guard);
-  const double ambient_C = 40.0;
+  const double ambient_C = 39.5;  // measured: the hottest declared stands for one that is not
   sensed.start(static_cast<float>(ambient_C));
   model.start(static_cast<float>(ambient_C));
   SensedRun run;

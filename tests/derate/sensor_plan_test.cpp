@@ -21,19 +21,19 @@ TEST(SensorGain, FollowsTheAccuracy) {
   double last = 1.0;
   for (const double accuracy_K : {0.01, 0.5, 2.0, 8.0, 1000.0}) {
     const SensorGain gain = gain_of({.accuracy_K = accuracy_K});
-    EXPECT_GT(gain.by_state[states::stator], 0.0);
-    EXPECT_LT(gain.by_state[states::stator], last) << accuracy_K;
-    last = gain.by_state[states::stator];
+    EXPECT_GT(gain.gain[states::stator], 0.0);
+    EXPECT_LT(gain.gain[states::stator], last) << accuracy_K;
+    last = gain.gain[states::stator];
   }
   EXPECT_LT(last, 1e-5);
 }
 
 TEST(SensorGain, CorrectsTheSensedNodeAndTheSensorItself) {
   const SensorGain at_winding = gain_of({.node = states::winding});
-  EXPECT_GT(at_winding.by_state[states::winding], at_winding.by_state[states::stator]);
+  EXPECT_GT(at_winding.gain[states::winding], at_winding.gain[states::stator]);
   const SensorGain lagging = gain_of({.lag_s = 5.0});
-  EXPECT_GT(lagging.of_lag, 0.0);
-  EXPECT_EQ(gain_of({}).of_lag, 0.0);
+  EXPECT_GT(lagging.lag_gain_ratio, 0.0);
+  EXPECT_EQ(gain_of({}).lag_gain_ratio, 0.0);
 }
 
 TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {

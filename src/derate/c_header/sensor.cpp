@@ -59,8 +59,10 @@ static inline void @_sensed_start(@_sensed_state *state, float body_C) {
 
 )";
 
-constexpr std::string_view kCheck = R"(/* Cross-check of a reading against what the motor can do. */
-static inline @_sensor_status @_check_reading(@_sensed_state *state, float reading_C) {
+constexpr std::string_view kCheck =
+    R"(/* Cross-check of a reading against what the motor can do. The hottest air stands for one that is not measured: it may be the coldest. */
+static inline @_sensor_status @_check_reading(@_sensed_state *state, float reading_C, float ambient_C) {
+  const float air_C = ambient_C < @CAP@_HOTTEST_AMBIENT_C ? ambient_C : @CAP@_COLDEST_AMBIENT_C;
   const float nominal_C = state->model.nominal_C[@SENSOR_NODE@];
   float change_K, swing_K;
   state->gap_s += @CAP@_PERIOD_S;
@@ -73,8 +75,7 @@ static inline @_sensor_status @_check_reading(@_sensed_state *state, float readi
     state->dropped = state->jumped_s > @CAP@_SENSOR_CONTRADICTION_S ? @_sensor_jumped : state->dropped;
     return @_sensor_jumped;
   }
-  if (reading_C + @CAP@_SENSOR_ACCURACY_K + @CAP@_SENSOR_COLD_MARGIN_K - @CAP@_COLDEST_AMBIENT_C <
-      @CAP@_SENSOR_COLD_RATIO * (nominal_C - @CAP@_COLDEST_AMBIENT_C)) {
+  if (reading_C + @CAP@_SENSOR_ACCURACY_K + @CAP@_SENSOR_COLD_MARGIN_K - air_C < @CAP@_SENSOR_COLD_RATIO * (nominal_C - ambient_C)) {
     state->cold_s += @CAP@_PERIOD_S;
     state->dropped = state->cold_s >= @CAP@_SENSOR_CONTRADICTION_S ? @_sensor_too_cold : state->dropped;
   } else {
@@ -85,7 +86,7 @@ static inline @_sensor_status @_check_reading(@_sensed_state *state, float readi
   if (change_K > @CAP@_SENSOR_FROZEN_BAND_K || state->gap_s > @CAP@_SENSOR_HOLD_S) {
     state->frozen_C = reading_C;
     state->frozen_nominal_C = nominal_C;
-  } else if (swing_K > @CAP@_SENSOR_FROZEN_K) {
+  } else if (swing_K > @CAP@_SENSOR_FROZEN_K + (ambient_C - air_C)) {
     state->dropped = @_sensor_frozen;
   }
   state->last_C = reading_C;
@@ -196,7 +197,7 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
     return out;
   }
   @_advance_sensed(state, measured);
-  out.sensor = @_check_reading(state, reading_C);
+  out.sensor = @_check_reading(state, reading_C, measured->ambient_C);
   if (out.sensor == @_sensor_used) {
     @_correct(state, reading_C);
     state->unread_s = 0.0f;
@@ -330,7 +331,7 @@ Rates sensor_functions(const Source& source) {
     gains += (gains.empty() ? "" : ", ") + literal(gain);
   }
   const Words words{{"@PREDICTED@", lags ? "state->lag_C" : node},
-                    {"@CORRECT_LAG@", lags ? fmt::format("  state->lag_C += {} * innovation_K;\n", literal(plan.lag_gain)) : ""},
+                    {"@CORRECT_LAG@", lags ? fmt::format("  state->lag_C += {} * innovation_K;\n", literal(plan.lag_gain_ratio)) : ""},
                     {"@ADVANCE_LAG@", lags ? fmt::format("  state->lag_C += {} * ({} - state->lag_C);\n",
                                                          literal(source.derating.options.period_s / plan.options.lag_s), node)
                                            : ""},

@@ -93,7 +93,7 @@ class LaneGuard {
     for (std::size_t node = 0; node < state_C_.size(); ++node) {
       state_C_[node] += std::min(1.0, steps * plan.gain[node]) * innovation_K;
     }
-    lag_C_ += std::min(1.0, steps * plan.lag_gain) * innovation_K;
+    lag_C_ += std::min(1.0, steps * plan.lag_gain_ratio) * innovation_K;
   }
 
  private:
@@ -124,11 +124,11 @@ class Bounds {
       nominal_C_[node] += loop_.step_s * rate[node];
     }
     const Lanes& nominal_node_C = nominal_C_[static_cast<std::size_t>(loop_.plan.options.node)];
-    const double coldest_C = loop_.plan.check.least_C;
+    const double air_C = loop_.rules.hottest_ambient_C;
     for (int lane = 0; lane < kLanes; ++lane) {
       SensedPeak& peak = peaks_[static_cast<std::size_t>(lane)];
-      const double rise_K = true_C[lane] + loop_.plan.check.cold_margin_K - coldest_C;
-      peak.cold_share = std::min(peak.cold_share, rise_K / std::max(1.0, nominal_node_C[lane] - coldest_C));
+      const double rise_K = true_C[lane] + loop_.plan.check.cold_margin_K - air_C;
+      peak.cold_share = std::min(peak.cold_share, rise_K / std::max(1.0, nominal_node_C[lane] - air_C));
       peak.rate_K_per_s = std::max(peak.rate_K_per_s, std::abs(true_C[lane] - last_C_[lane]) / loop_.step_s);
       if (std::abs(true_C[lane] - reference_C_[lane]) > loop_.plan.check.frozen_band_K) {
         reference_C_[lane] = true_C[lane];

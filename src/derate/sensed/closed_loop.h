@@ -29,7 +29,7 @@ struct SensedLoop {
 struct SensedPeak {
   double winding_C = 0.0;
   bool is_over = false;
-  double cold_share = 1.0;    ///< smallest (rise of the node + margin)/(rise of the nominal motor's node), above the coldest air
+  double cold_share = 1.0;    ///< smallest (rise of the node + margin)/(rise of the nominal motor's node), above the air
   double frozen_K = 0.0;      ///< most that the nominal node changed while the true one stayed within the band
   double rate_K_per_s = 0.0;  ///< fastest change of the node
 };

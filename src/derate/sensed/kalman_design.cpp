@@ -1,6 +1,7 @@
 #include "derate/sensed/kalman_design.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "derate/sensed/riccati.h"
 
@@ -71,10 +72,10 @@ SensorGain sensor_gain(const Motor& motor, const Robot& robot, const BarrierRule
   }
   observer.process_noise = Eigen::MatrixXd::Zero(size, size);
   observer.process_noise.topLeftCorner(states, states) = period_s * period_s * second_moments(motor, nominal, points, samples, seed);
-  // Anywhere within the accuracy: the variance of a uniform distribution.
-  observer.sensor_variance_K2 = options.accuracy_K * options.accuracy_K / 3.0;
+  // Anywhere within the accuracy: the standard deviation of a uniform distribution.
+  observer.sensor_sd_K = options.accuracy_K / std::sqrt(3.0);
   const Eigen::VectorXd gain = steady_kalman_gain(observer);
-  return {.by_state = {gain.data(), gain.data() + states}, .of_lag = lags ? gain[states] : 0.0};
+  return {.gain = {gain.data(), gain.data() + states}, .lag_gain_ratio = lags ? gain[states] : 0.0};
 }
 
 }  // namespace heatsoak

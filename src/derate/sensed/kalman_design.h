@@ -10,8 +10,8 @@
 namespace heatsoak {
 
 struct SensorGain {
-  std::vector<double> by_state;
-  double of_lag = 0.0;  ///< 0 without a lag
+  std::vector<double> gain;     ///< of each state
+  double lag_gain_ratio = 0.0;  ///< 0 without a lag
 };
 
 /// Steady-state Kalman gain per period of the network linearised while it works hot. Process noise: second moments of the difference

@@ -11,7 +11,7 @@ Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
   constexpr double kConverged = 1e-13;
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(observer.transition.rows(), observer.transition.cols());
   Eigen::MatrixXd A = observer.transition.transpose();
-  Eigen::MatrixXd G = observer.output.transpose() * observer.output / observer.sensor_variance_K2;
+  Eigen::MatrixXd G = observer.output.transpose() * observer.output / (observer.sensor_sd_K * observer.sensor_sd_K);
   Eigen::MatrixXd H = observer.process_noise;
   for (int i = 0; i < kMostDoublings; ++i) {
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(identity + G * H);
@@ -30,7 +30,7 @@ Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
 Eigen::VectorXd steady_kalman_gain(const LinearObserver& observer) {
   const Eigen::MatrixXd covariance = steady_covariance(observer);
   const Eigen::VectorXd seen = covariance * observer.output.transpose();
-  return seen / (observer.output.dot(seen) + observer.sensor_variance_K2);
+  return seen / (observer.output.dot(seen) + observer.sensor_sd_K * observer.sensor_sd_K);
 }
 
 }  // namespace heatsoak

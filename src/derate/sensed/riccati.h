@@ -10,7 +10,7 @@ struct LinearObserver {
   Eigen::MatrixXd transition;     ///< n × n, over one period
   Eigen::RowVectorXd output;      ///< 1 × n
   Eigen::MatrixXd process_noise;  ///< n × n, positive semidefinite, K²
-  double sensor_variance_K2 = 0.0;
+  double sensor_sd_K = 0.0;       ///< standard deviation of v
 };
 
 /// Covariance of the state before the reading: the stabilising solution of P = A·P·Aᵀ − A·P·Cᵀ·(C·P·Cᵀ + R)⁻¹·C·P·Aᵀ + Q.

@@ -49,7 +49,8 @@ struct ReadingCheck {
   double most_C = 300.0;
   double most_rate_K_per_s = 0.0;  ///< of the node
   double most_jump_K = 0.0;        ///< between two readings, beyond that rate
-  /// The rise of the node above the coldest air is at least this share of the nominal motor's, less `cold_margin_K`.
+  /// The rise of the node above the air is at least this share of the nominal motor's, less `cold_margin_K`. Where the
+  /// air is not measured it counts as the coldest here, and as the hottest in the nominal motor.
   double cold_share = 0.0;
   double cold_margin_K = 0.0;
   double frozen_band_K = 0.0;    ///< a reading that stays within it …
@@ -73,10 +74,10 @@ struct SensorPlan {
   /// least as fast as without a sensor: no sensor at the stator sees a pulse in time.
   Observer observer;
   double winding_speed_ratio = 1.0;
-  CurrentTable table;        ///< of that observer
-  std::vector<double> gain;  ///< of the states per period and kelvin of innovation
-  double lag_gain = 0.0;     ///< of the sensor's own temperature, where it lags
-  double most_gain_A = 0.0;  ///< above what the guard without a sensor allows: the most that a lying sensor can add
+  CurrentTable table;           ///< of that observer
+  std::vector<double> gain;     ///< of the states per period and kelvin of innovation
+  double lag_gain_ratio = 0.0;  ///< of the sensor's own temperature, where it lags
+  double most_gain_A = 0.0;     ///< above what the guard without a sensor allows: the most that a lying sensor can add
   ReadingCheck check = {};
   std::vector<LastingCurrent> lasting = {};
   int samples = 0;  ///< drawn motors, each with a drawn sensor error

@@ -31,7 +31,7 @@ Network faster_network(const Motor& motor, double winding_speed_ratio) {
 }
 
 ReadingCheck first_check(const Derating& model_only, const SensorOptions& options) {
-  constexpr double kColdMargin_K = 3.0;
+  constexpr double kColdMargin_K = 5.0;  // an air sensor has an error too
   constexpr double kFrozenBand = 0.25;
   return {.least_C = model_only.options.coldest_ambient_C,
           .most_C = 300.0,
@@ -51,8 +51,8 @@ class PlanSearch {
         uses_(hardest_uses(model_only.observer, model_only.rules)) {
     const SensorGain gain = sensor_gain(motor, robot, model_only.rules, options, model_only.options.period_s, limp_current_A(model_only),
                                         model_only.options.guarantee.samples, model_only.options.guarantee.seed);
-    gain_ = gain.by_state;
-    lag_gain_ = gain.of_lag;
+    gain_ = gain.gain;
+    lag_gain_ratio_ = gain.lag_gain_ratio;
   }
 
   [[nodiscard]] SensorPlan plan_with(double reserve) const {
@@ -64,7 +64,7 @@ class PlanSearch {
                     .winding_speed_ratio = winding_speed_ratio,
                     .table = std::move(table),
                     .gain = gain_,
-                    .lag_gain = lag_gain_,
+                    .lag_gain_ratio = lag_gain_ratio_,
                     .check = first_check(model_only_, options_)};
     if (options_.kind == SensorKind::winding_resistance) {
       plan.resistance = resistance_reading(motor_, options_, model_only_.options.period_s);
@@ -121,7 +121,7 @@ class PlanSearch {
   const Progress& progress_;
   std::vector<Use> uses_;
   std::vector<double> gain_;
-  double lag_gain_ = 0.0;
+  double lag_gain_ratio_ = 0.0;
   std::size_t rounds_ = 0;
 };
 
