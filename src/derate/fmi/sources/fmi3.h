@@ -1,5 +1,5 @@
-/* The declarations of FMI 3.0 that fmi3.c needs, after the standard (https://fmi-standard.org). With FMI_OFFICIAL_HEADERS the standard's own
-   headers take their place. */
+/* The declarations of FMI 3.0 that fmi3.c needs, after the standard (https://fmi-standard.org). With FMI_OFFICIAL_HEADERS the
+   standard's own headers take their place. */
 #ifndef FMI3_H
 #define FMI3_H
 
