@@ -66,7 +66,7 @@ TEST_P(EveryExporter, RefusesWhatIsNoNumber) {
   EXPECT_THAT(refusal(GetParam(), broken), HasSubstr("is not a number"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryExporter, testing::Values("json", "moteus", "odrive", "vesc", "simplefoc", "mujoco"));
+INSTANTIATE_TEST_SUITE_P(All, EveryExporter, testing::Values("c_header", "c_header_q15", "json", "moteus", "odrive", "vesc", "simplefoc", "mujoco"));
 
 TEST(Exporters, InputHashFollowsTheOptions) {
   DerateOptions other;
