@@ -68,8 +68,8 @@ TEST_P(EveryExporter, RefusesWhatIsNoNumber) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryExporter,
-                         testing::Values("json", "csv", "moteus", "odrive", "vesc", "simplefoc", "mujoco", "fmi2_motor", "fmi2_guard",
-                                         "fmi3_motor", "fmi3_guard"));
+                         testing::Values("c_header", "c_header_q15", "json", "csv", "moteus", "odrive", "vesc", "simplefoc", "mujoco",
+                                         "fmi2_motor", "fmi2_guard", "fmi3_motor", "fmi3_guard"));
 
 TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   const Guarantee& checked = ecx_derating().guarantee;
@@ -85,7 +85,7 @@ TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   const nlohmann::json guarantee = nlohmann::json::parse(exported("json"))["guarantee"];
   EXPECT_EQ(guarantee["certainty"], kCertainty_share);
   EXPECT_EQ(guarantee["least_samples"], 59);
-  EXPECT_NEAR(guarantee["least_kept_shareer_bound"].get<double>(), checked.least_kept_share, 1e-4);
+  EXPECT_NEAR(guarantee["least_kept_share"].get<double>(), checked.least_kept_share, 1e-4);
   EXPECT_THAT(exported("csv"), HasSubstr("# Safety factor on heat"));
 }
 

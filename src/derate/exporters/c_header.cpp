@@ -29,6 +29,7 @@ std::string shared_text(std::string_view file) {
 }
 
 std::string write(const Derating& derating) {
+  require_finite(derating);
   const std::string prefix = identifier(derating.motor_id);
   const c_header::Source source{derating, prefix, c_header::in_capitals(prefix), c_header::used_signals(derating.observer)};
   const unsigned signature = signature_of(derating);
