@@ -46,7 +46,7 @@ std::vector<Column> columns() {
           {"motor", "", 0, kLeft},
           {"verdict", "", 0, kLeft},
           {"peak", "°C", 0},
-          {"limit", "°C", 0},
+          {"limit", "", 0},
           {"margin", "K", 0},
           {"winding", "", 1, kLeft},
           {"P over", "%", 2},
@@ -55,7 +55,7 @@ std::vector<Column> columns() {
           {"A rms", "", 5},
           {"more A", "", 6},
           {"stator", "°C", 7},
-          {"limit", "°C", 8},
+          {"limit", "", 8},
           {"data", "", 9, kLeft},
           {"P interval", "%", 10},
           {"p95 interval", "°C", 11}};
