@@ -34,7 +34,7 @@ typedef struct {
   float stator_share; /* 0 to 1, place in the cell */
   float speed_share;
   float hotter_K; /* that the winding counts hotter, for the stator */
-  float fade;     /* 0 to 1, current that a speed above the highest leaves */
+  float fade_ratio;     /* 0 to 1, current that a speed above the highest leaves */
 } heatsoak_row;
 
 /* Segment of an axis, from 0, and the place in it, 0 to 1; the ends for what lies outside. */
@@ -68,7 +68,7 @@ static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table
       row.hotter_K = table->winding_per_stator_K * (stator_C - last_stator_C);
     }
     if (speed_rad_per_s > table->most_speed_rad_per_s) {
-      row.fade = (table->no_current_speed_rad_per_s - speed_rad_per_s) /
+      row.fade_ratio = (table->no_current_speed_rad_per_s - speed_rad_per_s) /
                  (table->no_current_speed_rad_per_s - table->most_speed_rad_per_s);
     }
   }
@@ -88,16 +88,18 @@ static inline float heatsoak_along_stator(const float *square_A2, const heatsoak
 
 /* Square of the current; 0 above the axis of the winding and for what is not a number. */
 static inline float heatsoak_allowed_A2(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
-  float share, low_A2;
+  const float first_C = table->winding_C.points[0];
+  float counted_C = winding_C;
+  float share = 0.0f;
+  float low_A2;
   int32_t at;
   if (row->hotter_K > 0.0f) {
-    const float first_C = table->winding_C.points[0];
-    winding_C = (winding_C < first_C ? first_C : winding_C) + row->hotter_K;
+    counted_C = (winding_C < first_C ? first_C : winding_C) + row->hotter_K;
   }
-  if (row->first < 0 || !(winding_C <= table->winding_C.points[table->winding_C.count - 1])) {
+  if (row->first < 0 || !(counted_C <= table->winding_C.points[table->winding_C.count - 1])) {
     return 0.0f;
   }
-  at = row->first + heatsoak_find(&table->winding_C, winding_C, &share);
+  at = row->first + heatsoak_find(&table->winding_C, counted_C, &share);
   low_A2 = heatsoak_along_stator(table->square_A2, row, at, share);
   return row->next_speed == 0
              ? low_A2
@@ -113,9 +115,8 @@ static inline float heatsoak_square_root(float x) {
 #endif
 }
 
-/* From 0 to most_current_A. */
-static inline float heatsoak_allowed_A(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
-  const float square_A2 = heatsoak_allowed_A2(table, row, winding_C);
+/* Current of a square of that row, from 0 to most_current_A. */
+static inline float heatsoak_current_A(const heatsoak_current_table *table, const heatsoak_row *row, float square_A2) {
   const float straight_A = table->straight_below_A;
   float current_A;
   if (!(square_A2 > 0.0f)) {
@@ -123,7 +124,11 @@ static inline float heatsoak_allowed_A(const heatsoak_current_table *table, cons
   }
   current_A = square_A2 < straight_A * straight_A ? square_A2 / straight_A : heatsoak_square_root(square_A2);
   current_A = current_A < table->most_current_A ? current_A : table->most_current_A;
-  return row->fade < 1.0f ? current_A * row->fade : current_A;
+  return row->fade_ratio < 1.0f ? current_A * row->fade_ratio : current_A;
+}
+
+static inline float heatsoak_allowed_A(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
+  return heatsoak_current_A(table, row, heatsoak_allowed_A2(table, row, winding_C));
 }
 
 #endif

@@ -90,26 +90,31 @@ bool is_started(const GuardModel& model, const GuardState& state) {
 
 namespace {
 
+// One copy each for all callers.
+[[gnu::noinline]] heatsoak_row row_at(const heatsoak_current_table& table, float speed_rad_per_s, float stator_C) {
+  return heatsoak_find_row(&table, speed_rad_per_s, stator_C);
+}
+
+[[gnu::noinline]] float square_at_A2(const heatsoak_current_table& table, const heatsoak_row& row, float winding_C) {
+  return heatsoak_allowed_A2(&table, &row, winding_C);
+}
+
 /// Temperature at which the table allows no more than `current_A`: the squares fall in a straight line between the axis points.
-float limiting_temperature_C(const heatsoak_current_table& table, const heatsoak_row& row, float current_A) {
+[[gnu::cold]] float limiting_temperature_C(const heatsoak_current_table& table, heatsoak_row row, float current_A) {
   const heatsoak_axis& axis = table.winding_C;
   const float square_A2 = current_A * larger(current_A, table.straight_below_A);
-  heatsoak_row as_hot = row;
-  as_hot.hotter_K = 0.0F;
-  int low = 0;
-  int high = axis.count - 1;
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    if (heatsoak_allowed_A2(&table, &as_hot, axis.points[middle]) >= square_A2) {
-      low = middle;
-    } else {
-      high = middle;
-    }
+  const float hotter_K = row.hotter_K;
+  row.hotter_K = 0.0F;
+  float low_A2 = square_at_A2(table, row, axis.points[0]);
+  int above = 1;
+  float high_A2 = square_at_A2(table, row, axis.points[above]);
+  while (above + 1 < axis.count && high_A2 >= square_A2) {
+    ++above;
+    low_A2 = high_A2;
+    high_A2 = square_at_A2(table, row, axis.points[above]);
   }
-  const float at_low_A2 = heatsoak_allowed_A2(&table, &as_hot, axis.points[low]);
-  const float at_high_A2 = heatsoak_allowed_A2(&table, &as_hot, axis.points[high]);
-  const float share = at_low_A2 > at_high_A2 ? clamped((at_low_A2 - square_A2) / (at_low_A2 - at_high_A2), 0.0F, 1.0F) : 0.0F;
-  return axis.points[low] + share * (axis.points[high] - axis.points[low]) - row.hotter_K;
+  const float share = low_A2 > high_A2 ? clamped((low_A2 - square_A2) / (low_A2 - high_A2), 0.0F, 1.0F) : 0.0F;
+  return axis.points[above - 1] + share * (axis.points[above] - axis.points[above - 1]) - hotter_K;
 }
 
 /// If the load goes on: straight extrapolation of the smoothed heating, an estimate that is early while the winding approaches balance.
@@ -129,9 +134,9 @@ float find_time_to_limit_s(const GuardModel& model, const GuardState& state, con
 
 }  // namespace
 
-float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
-  const heatsoak_row row = heatsoak_find_row(&model.table, speed_rad_per_s, stator_C);
-  return heatsoak_allowed_A(&model.table, &row, winding_C);
+[[gnu::cold]] float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
+  const heatsoak_row row = row_at(model.table, speed_rad_per_s, stator_C);
+  return heatsoak_current_A(&model.table, &row, square_at_A2(model.table, row, winding_C));
 }
 
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
@@ -169,9 +174,11 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   state.speed_rad_per_s = believed[guard_speed_rad_per_s];
   ++state.steps;
   if ((unknown & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
-    const heatsoak_row row = heatsoak_find_row(&model.table, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
-    out.allowed_braking_A = heatsoak_allowed_A(&model.table, &row, out.winding_C);
-    out.allowed_A = smaller(out.allowed_braking_A, heatsoak_allowed_A(&model.table, &row, out.winding_C + braking_reserve_K));
+    const heatsoak_row row = row_at(model.table, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
+    const float braking_A2 = square_at_A2(model.table, row, out.winding_C);
+    const float driving_A2 = smaller(braking_A2, square_at_A2(model.table, row, out.winding_C + braking_reserve_K));
+    out.allowed_braking_A = heatsoak_current_A(&model.table, &row, braking_A2);
+    out.allowed_A = heatsoak_current_A(&model.table, &row, driving_A2);
     if (state.steps % kStepsPerEstimate == 0) {
       state.time_to_limit_s = find_time_to_limit_s(model, state, row, out, braking_reserve_K);
     }

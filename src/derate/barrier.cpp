@@ -47,7 +47,7 @@ Barrier::Barrier(const Observer& observer, const BarrierRules& rules)
     : rules_(rules),
       cases_(hot_cases(observer, rules)),
       rates_(observer.formula(), observer.rate_steps()),
-      inputs_(firmware::kSignalCount + observer.state_count()),
+      signals_(firmware::kSignalCount + observer.state_count()),
       rate_(observer.state_count()) {}
 
 double Barrier::square_A2(double speed_rad_per_s, double stator_C, double winding_C) {
@@ -78,14 +78,16 @@ double Barrier::stator_margin(const HotCase& each, const Place& at, double curre
   const Signals signals = each.signals(rules_, std::sqrt(current_square_A2), at.speed_rad_per_s);
   find_rates(signals, at.stator_C, at.winding_C);
   find_rates(signals, at.stator_C, at.winding_C + rules_.approach_s * rate_[states::winding]);
-  return (*rules_.limits.stator_C - at.stator_C) / rules_.stator_approach_s - rate_[states::stator];
+  // When the speed rises suddenly the winding still hands on the heat of the lower speed's current.
+  constexpr double kHandedOn_K = 0.5;
+  return (*rules_.limits.stator_C - kHandedOn_K - at.stator_C) / rules_.stator_approach_s - rate_[states::stator];
 }
 
 void Barrier::find_rates(const Signals& signals, double stator_C, double winding_C) {
-  std::ranges::copy(signals, inputs_.begin());
-  std::fill(inputs_.begin() + firmware::kSignalCount, inputs_.end(), stator_C);
-  inputs_[firmware::kSignalCount + states::winding] = winding_C;
-  rates_.run(inputs_, rate_);
+  std::ranges::copy(signals, signals_.begin());
+  std::fill(signals_.begin() + firmware::kSignalCount, signals_.end(), stator_C);
+  signals_[firmware::kSignalCount + states::winding] = winding_C;
+  rates_.run(signals_, rate_);
 }
 
 double barrier_current_A(const Observer& observer, const BarrierRules& rules, double speed_rad_per_s, double stator_C, double winding_C) {

@@ -34,7 +34,7 @@ class Barrier {
   const BarrierRules& rules_;
   std::vector<HotCase> cases_;
   FormulaRun<double> rates_;
-  std::vector<double> inputs_;
+  std::vector<double> signals_;  ///< and temperatures, as the formula takes them
   std::vector<double> rate_;
 };
 

@@ -1,6 +1,7 @@
 // current_table(): the places, then what holds of the table on points that are not its own.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "derate/table_places.h"
 
@@ -233,16 +234,21 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
   constexpr int kMostTries = 6;
   constexpr double kBetter = 0.75;
   double grid_goal = 0.97 * goal.shortfall_ratio;
+  std::optional<CurrentTable> best;
   for (int i = 0; i < kMostTries; ++i, grid_goal *= kBetter) {
     place_squares(table, barrier, rules, {grid_goal, goal.most_bytes});
     const std::vector<CheckPoint> points = check_points(table, rules);
     check_table(table, barrier, points);
     round_down(table);
     table.bound.shortfall_ratio = std::max(table.bound.shortfall_ratio, check_table(table, barrier, points));
+    if (!best || table.bound.shortfall_ratio < best->bound.shortfall_ratio) {
+      best = table;
+    }
     if (table.bound.shortfall_ratio <= goal.shortfall_ratio) {
       break;
     }
   }
+  table = *best;
   constexpr double kPerMille = 1000.0;
   table.bound.shortfall_ratio = std::ceil(kPerMille * table.bound.shortfall_ratio) / kPerMille;
   table.winding_per_stator_K = winding_per_stator_K(table, barrier, rules);

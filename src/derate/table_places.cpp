@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 
@@ -58,6 +59,17 @@ std::vector<double> rounded_steps(double low, double high, int steps) {
   return points;
 }
 
+void add_near_end(std::vector<double>& points, std::initializer_list<double> below_K) {
+  const double end = points.back();
+  for (const double each_K : below_K) {
+    if (end - each_K > points.front()) {
+      points.push_back(end - each_K);
+    }
+  }
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
 ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
   constexpr int kSpeedSteps = 10;
   constexpr int kStatorSteps = 16;
@@ -69,6 +81,9 @@ ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
   const double last_stator_C = std::min(limit_C, rules.limits.stator_C.value_or(limit_C));
   grid.points[stator] = rounded_steps(std::min(coldest_C, last_stator_C - 1.0), last_stator_C, kStatorSteps);
   grid.points[winding] = rounded_steps(coldest_C, limit_C, kWindingSteps);
+  // Near the limits the current is small, and its relative error large.
+  add_near_end(grid.points[stator], {3.0, 1.0});
+  add_near_end(grid.points[winding], {2.0, 1.0, 0.5});
   grid.limit = grid.points[winding].size() - 1;
   grid.points[winding].push_back(limit_C + kAboveLimit_K);
   for (const double speed_rad_per_s : grid.points[speed]) {
@@ -263,7 +278,7 @@ class Search {
       }
       fit = std::move(*next);
     }
-    return without_idle_places(std::move(fit));
+    return settled(reduced_to_size(without_idle_places(std::move(fit))));
   }
 
  private:
@@ -280,7 +295,7 @@ class Search {
         continue;
       }
       Fit tried = of(std::move(places));
-      if (sizeof(float) * tried.number_count() > goal_.most_bytes) {
+      if (size_bytes(tried) > kOvershoot * goal_.most_bytes) {
         continue;
       }
       const double gain = std::log(fit.shortfall_ratio() / std::max(1e-9, tried.shortfall_ratio())) /
@@ -309,6 +324,69 @@ class Search {
     }
     return fit;
   }
+
+  static std::size_t size_bytes(const Fit& fit) { return sizeof(float) * fit.number_count(); }
+
+  /// Takes out the place that is missed least, until the table fits.
+  [[nodiscard]] Fit reduced_to_size(Fit fit) const {
+    while (size_bytes(fit) > goal_.most_bytes) {
+      std::optional<Fit> best;
+      for (const Axis axis : {winding, stator, speed}) {
+        const std::vector<std::size_t>& places = fit.places()[axis];
+        for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+          Places fewer = fit.places();
+          fewer[axis].erase(fewer[axis].begin() + static_cast<std::ptrdiff_t>(i));
+          keep_better(best, of(std::move(fewer)));
+        }
+        if (places.size() == 2 && axis != winding) {
+          Places fewer = fit.places();
+          fewer[axis] = {0};
+          keep_better(best, of(std::move(fewer)));
+        }
+      }
+      if (!best) {
+        break;
+      }
+      fit = std::move(*best);
+    }
+    return fit;
+  }
+
+  /// Moves single places by a few points of the grid as long as that lessens the shortfall, where the goal is not reached.
+  [[nodiscard]] Fit settled(Fit fit) const {
+    constexpr std::size_t kFurthest = 4;
+    constexpr int kMostRounds = 20;
+    bool has_moved = fit.shortfall_ratio() > goal_.shortfall_ratio;
+    for (int round = 0; has_moved && round < kMostRounds; ++round) {
+      has_moved = false;
+      for (const Axis axis : {winding, stator, speed}) {
+        for (std::size_t i = 1; i + 1 < fit.places()[axis].size(); ++i) {
+          for (std::size_t point = fit.places()[axis][i] - std::min(kFurthest, fit.places()[axis][i]);
+               point <= fit.places()[axis][i] + kFurthest; ++point) {
+            Places moved = fit.places();
+            if (point <= moved[axis][i - 1] || point >= moved[axis][i + 1]) {
+              continue;
+            }
+            moved[axis][i] = point;
+            if (Fit tried = of(std::move(moved)); tried.shortfall_ratio() < fit.shortfall_ratio()) {
+              fit = std::move(tried);
+              has_moved = true;
+            }
+          }
+        }
+      }
+    }
+    return fit;
+  }
+
+  static void keep_better(std::optional<Fit>& best, Fit tried) {
+    if (!best || tried.shortfall_ratio() < best->shortfall_ratio()) {
+      best.emplace(std::move(tried));
+    }
+  }
+
+  /// While places are added; afterwards those that are missed least are taken out again.
+  static constexpr std::size_t kOvershoot = 4;
 
   const ExactGrid& grid_;
   const TableGoal& goal_;

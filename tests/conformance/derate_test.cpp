@@ -23,6 +23,27 @@ RunOptions here(const TemporaryFolder& folder) {
 
 double lasting_A(const nlohmann::json& answer) { return answer["limp_current_A"].get<double>(); }
 
+TEST(DerateCommand, TradesBytesForErrorAsAsked) {
+  const TemporaryFolder folder;
+  const auto table_with = [&](const Words& options) {
+    const ProgramRun done =
+        run(kDerate + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"} + options, here(folder));
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("below it from"));
+    return done.json()["table"];
+  };
+  const nlohmann::json fine = table_with({"--error", "0.5%"});
+  const nlohmann::json small = table_with({"--error", "0.5%", "--size", "80"});
+  EXPECT_LE(fine["bound"]["shortfall_ratio"].get<double>(), 0.005);
+  EXPECT_GT(small["bound"]["shortfall_ratio"].get<double>(), 0.005);
+  const auto bytes = [](const nlohmann::json& table) {
+    return 4 *
+           (table["speed_rad_per_s"].size() + table["stator_C"].size() + table["winding_C"].size() + table["current_squared_A2"].size());
+  };
+  EXPECT_LE(bytes(small), 80U);
+  EXPECT_GT(bytes(fine), 80U);
+}
+
 TEST(DerateCommand, TellsWhatItGuarantees) {
   const TemporaryFolder folder;
   const ProgramRun done = run(kDerate + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"}, here(folder));

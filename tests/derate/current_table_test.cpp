@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "derate/barrier.h"
 #include "guarded_motor.h"
 #include "thermal/steady_state.h"
 #include "thermal/transient.h"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "derate/barrier.h"
 #include "derate/belief.h"
 #include "guarded_motor.h"
 #include "thermal/transient.h"

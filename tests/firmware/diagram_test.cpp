@@ -404,16 +404,23 @@ int plan_runs = 0;
 TEST(BlockDiagram, RatesAreThoseOfTheCore) {
   const float axis[] = {0.0F, 100.0F};
   const float hot_C[] = {0.0F, 155.0F};
-  const float most_A[] = {9.0F, 9.0F, 9.0F, 9.0F, 9.0F, 9.0F, 9.0F, 9.0F};
+  const float most_A2[] = {81.0F, 81.0F, 81.0F, 81.0F, 81.0F, 81.0F, 81.0F, 81.0F};
   robot_core::GuardModel guard;
   guard.node_count = 2;
   guard.period_s = 0.01F;
   guard.winding_limit_C = 155.0F;
   guard.hottest_ambient_C = 40.0F;
   guard.most_current_A = 9.0F;
-  guard.speed_rad_per_s = {axis, 2};
-  guard.stator_C = guard.winding_C = {hot_C, 2};
-  guard.current_A = most_A;
+  guard.cold_current_A = 9.0F;
+  guard.table = {.speed_rad_per_s = {axis, 2},
+                 .stator_C = {hot_C, 2},
+                 .winding_C = {hot_C, 2},
+                 .square_A2 = most_A2,
+                 .most_current_A = 9.0F,
+                 .straight_below_A = 0.1F,
+                 .most_speed_rad_per_s = 100.0F,
+                 .no_current_speed_rad_per_s = 110.0F,
+                 .winding_per_stator_K = 1.0F};
   guard.rates = [](const void*, const float*, const float*, float* rate_K_per_s) {
     ++guard_runs;
     rate_K_per_s[0] = rate_K_per_s[1] = 0.0F;

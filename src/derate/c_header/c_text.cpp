@@ -7,19 +7,22 @@
 
 namespace heatsoak::c_header {
 
-std::string literal(double value) {
-  std::string text = fmt::format("{}", static_cast<float>(value));
-  if (text.find_first_of(".e") == std::string::npos) {
-    text += ".0";
-  }
-  return text.front() == '-' ? fmt::format("({}f)", text) : fmt::format("{}f", text);
+namespace {
+
+std::string bare_literal(double value) {
+  const std::string text = fmt::format("{}", static_cast<float>(value));
+  return text + (text.find_first_of(".e") == std::string::npos ? ".0f" : "f");
 }
+
+}  // namespace
+
+std::string literal(double value) { return value < 0.0 ? fmt::format("({})", bare_literal(value)) : bare_literal(value); }
 
 std::string array(std::string_view name, const std::vector<double>& values) {
   std::string text = fmt::format("static const float {}[{}] = {{", name, values.size());
   constexpr std::size_t kInLine = 10;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    text += fmt::format("{}{},", i % kInLine == 0 ? "\n    " : " ", literal(values[i]));
+    text += fmt::format("{}{},", i % kInLine == 0 ? "\n    " : " ", bare_literal(values[i]));
   }
   return text + "};\n";
 }
@@ -52,7 +55,7 @@ const LineStyle& line_style() {
       .literal = literal,
       .signal =
           [](firmware::Signal signal) { return fmt::format("input->{}", firmware::signals()[static_cast<std::size_t>(signal)].name); },
-      .square_root = "sqrtf"};
+      .square_root = "heatsoak_square_root"};
   return style;
 }
 

@@ -34,7 +34,6 @@ std::string tables(const Source& source);
 std::string allowed_function(const Source& source);
 struct Rates {
   std::string text;
-  bool calls_square_root = false;
   bool calls_thermal_math = false;
 };
 /// dT/dt of every node, of the guard and of the nominal motor.

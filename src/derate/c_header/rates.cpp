@@ -19,7 +19,6 @@ Rates rates(const Source& source) {
   const RateLines nominal(observer, observer.nominal_rate_steps(), line_style());
   return {.text = rates_function("/* dT/dt of every node of the guard */", "rates", source.prefix, guarded) +
                   rates_function("/* the same of the nominal motor */", "nominal_rates", source.prefix, nominal),
-          .calls_square_root = guarded.calls_square_root(),
           .calls_thermal_math = guarded.calls_thermal_math()};
 }
 

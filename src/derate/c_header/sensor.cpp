@@ -349,7 +349,6 @@ Rates sensor_functions(const Source& source) {
                               source.prefix, lines.text()) +
                   sensed_table(source, plan) + replaced(kCheck, words) + replaced(kStep, words) +
                   (plan.resistance ? replaced(kResistance, words) : ""),
-          .calls_square_root = lines.calls_square_root() || plan.resistance.has_value(),
           .calls_thermal_math = lines.calls_thermal_math()};
 }
 

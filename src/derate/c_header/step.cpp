@@ -10,16 +10,18 @@ namespace heatsoak::c_header {
 namespace {
 
 constexpr std::string_view kStart = R"(/* Not for what is no number, and not for what no motor has. */
-static inline int @_is_between(float low, float x, float high) { return x >= low && x <= high; }
-static inline int @_is_temperature(float x) { return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, 1000.0f); }
+static inline bool @_is_between(float low, float x, float high) { return x >= low && x <= high; }
+static inline bool @_is_temperature(float x) { return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, 1000.0f); }
 
 /* body_C: temperature of the whole motor after a rest; what cannot be one counts as the limit. */
 static inline void @_start(@_state *state, float body_C) {
   int node;
   const float start_C = @_is_temperature(body_C) ? body_C : @CAP@_WINDING_LIMIT_C;
   for (node = 0; node < @NODES@; ++node) {
-    state->state_C[node] = state->nominal_C[node] = start_C;
-    state->carry_K[node] = state->nominal_carry_K[node] = 0.0f;
+    state->state_C[node] = start_C;
+    state->nominal_C[node] = start_C;
+    state->carry_K[node] = 0.0f;
+    state->nominal_carry_K[node] = 0.0f;
   }
   state->started = @CAP@_STARTED;
 }
@@ -29,8 +31,11 @@ static inline void @_start(@_state *state, float body_C) {
 constexpr std::string_view kSweep =
     R"(/* Every node warms as fast as with the hottest of the possible values; the input takes the one that heats the winding most. */
 static inline void @_sweep(const @_input *in, float *input, const float *possible, int count, const float *state_C, float *most_K_per_s) {
-  float rate_K_per_s[@NODES@], hottest = possible[0], hottest_K_per_s = -1e30f;
-  int i, node;
+  float rate_K_per_s[@NODES@];
+  float hottest = possible[0];
+  float hottest_K_per_s = -1e30f;
+  int i;
+  int node;
   for (i = 0; i < count; ++i) {
     *input = possible[i];
     @_rates(in, state_C, rate_K_per_s);
@@ -61,9 +66,13 @@ static inline void @_advance(float *state_C, float *carry_K, const float *rate_K
 static inline @_output @_step(@_state *state, const @_input *measured) {
   @_output out;
   @_input in = *measured;
-  float rate_K_per_s[@NODES@], nominal_K_per_s[@NODES@], hottest_body_C, speed_rad_per_s;
-  int node, @PASS@is_started = state->started == @CAP@_STARTED;
-  unsigned unknown = 0u;
+  float rate_K_per_s[@NODES@];
+  float nominal_K_per_s[@NODES@];
+  float hottest_body_C;
+  float speed_rad_per_s;
+  int node;
+@PASS@  bool is_started = state->started == @CAP@_STARTED;
+  uint32_t unknown = 0u;
   for (node = 0; node < @NODES@; ++node) {
     is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_between(-1.0f, state->carry_K[node], 1.0f) &&
                  @_is_temperature(state->nominal_C[node]) && @_is_between(-1.0f, state->nominal_carry_K[node], 1.0f);
@@ -79,12 +88,16 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
 @BODIES@  speed_rad_per_s = in.speed_rad_per_s < 0.0f ? -in.speed_rad_per_s : in.speed_rad_per_s;
   out.guarded_winding_C = state->state_C[0];
   out.nominal_winding_C = state->nominal_C[0];
-  out.allowed_current_A = unknown & @SPEED_BIT@u ? 0.0f : @_allowed_A(speed_rad_per_s, hottest_body_C, out.guarded_winding_C);
-  out.reason = !is_started                                       ? @_not_started
-               : unknown                                         ? @_input_unknown
-               : out.allowed_current_A >= @CAP@_MOST_CURRENT_A ? @_full
-               : out.allowed_current_A > 0.0f                    ? @_derated
-                                                                 : @_no_current;
+  out.allowed_current_A = (unknown & @SPEED_BIT@u) != 0u ? 0.0f : @_allowed_A(speed_rad_per_s, hottest_body_C, out.guarded_winding_C);
+  if (!is_started) {
+    out.reason = @_not_started;
+  } else if (unknown != 0u) {
+    out.reason = @_input_unknown;
+  } else if (out.allowed_current_A >= @CAP@_MOST_CURRENT_A) {
+    out.reason = @_full;
+  } else {
+    out.reason = out.allowed_current_A > 0.0f ? @_derated : @_no_current;
+  }
   return out;
 }
 )";
@@ -122,7 +135,7 @@ std::string sweeps(const Source& source, const std::vector<firmware::Signal>& sw
   std::string text = swept.size() > 1 ? "  for (pass = 0; pass < 2; ++pass) {\n" : "";
   for (const firmware::Signal signal : swept) {
     text += fmt::format(
-        "{4}if (unknown & {0}u) {{\n{4}  {1}_sweep(&in, &in.{2}, {1}_possible_{2}, {3}, state->state_C, rate_K_per_s);\n{4}}}\n",
+        "{4}if ((unknown & {0}u) != 0u) {{\n{4}  {1}_sweep(&in, &in.{2}, {1}_possible_{2}, {3}, state->state_C, rate_K_per_s);\n{4}}}\n",
         bit(signal), source.prefix, name_of(signal), belief(source.derating, signal).values.size(), indent);
   }
   return text + (swept.size() > 1 ? "  }\n" : "");
@@ -145,7 +158,7 @@ std::string step_functions(const Source& source) {
   const Words words{{"@UNKNOWN@", beliefs(source)},
                     {"@SWEEPS@", sweeps(source, swept)},
                     {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
-                    {"@PASS@", swept.size() > 1 ? "pass, " : ""},
+                    {"@PASS@", swept.size() > 1 ? "  int pass;\n" : ""},
                     {"@SPEED_BIT@", std::to_string(bit(firmware::speed))},
                     {"@CAP@", source.capital},
                     {"@NODES@", std::to_string(nodes)},

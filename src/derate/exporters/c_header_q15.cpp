@@ -1,0 +1,340 @@
+// The guard in integers, for controllers without a floating-point unit.
+#include <embedded/integer_table_text.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "derate/belief.h"
+#include "derate/c_header/c_text.h"
+#include "derate/export_text.h"
+#include "derate/exporter.h"
+#include "derate/integer_form/integer_lines.h"
+#include "derate/integer_form/quantised_table.h"
+
+namespace heatsoak::exporters {
+namespace {
+
+using integer_form::FixedPoint;
+using integer_form::IntegerLines;
+using integer_form::QuantisedTable;
+
+constexpr int kStoredBits = 32;             ///< of a stored temperature's fraction
+constexpr std::int32_t kReadHotter_mC = 3;  ///< the table is read that much hotter: more than all that rounding may hide
+
+struct InputField {
+  firmware::Signal signal;
+  std::string_view name;
+  std::string_view meaning;
+};
+constexpr InputField kInputs[] = {
+    {firmware::current, "current_mA", "equivalent DC current, rms over the period, with the sign of the speed where it drives"},
+    {firmware::speed, "speed_mrad_per_s", "of the motor's shaft, signed"},
+    {firmware::ambient, "ambient_mC", "air around the motor in 0.001 degC; the hottest declared where it is not measured"}};
+
+std::int64_t thousandths_outward(double value) {
+  return static_cast<std::int64_t>(value < 0.0 ? std::floor(1000.0 * value) : std::ceil(1000.0 * value));
+}
+
+std::string integers(std::string_view type, const std::string& name, const std::vector<std::int64_t>& values) {
+  std::string text = fmt::format("static const {} {}[{}] = {{", type, name, values.size());
+  constexpr std::size_t kInLine = 12;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += fmt::format("{}{}{}", i % kInLine == 0 ? "\n    " : " ", values[i], i + 1 < values.size() ? "," : "");
+  }
+  return text + "};\n";
+}
+
+template <class Number>
+std::vector<std::int64_t> widened(const std::vector<Number>& values) {
+  return {values.begin(), values.end()};
+}
+
+/// Added to a node's rate, in its own steps, so that rounding never makes it cooler.
+std::int64_t heat_for_rounding(const FixedPoint& rate) {
+  const double most = std::max(std::abs(rate.low), std::abs(rate.high));
+  return static_cast<std::int64_t>(std::ceil(std::ldexp(rate.absolute + std::ldexp(most, -29), rate.bits))) + 1;
+}
+
+/// By how much the temperatures of this form may lie above the exact ones, in K: what heats for rounding, until all has settled.
+double temperature_excess_K(const Derating& derating, const IntegerLines& lines) {
+  const Observer& observer = derating.observer;
+  FormulaRun<double> run(observer.formula(), observer.rate_steps());
+  const std::size_t nodes = observer.state_count();
+  std::vector<double> inputs(firmware::kSignalCount + nodes, derating.rules.hottest_ambient_C);
+  inputs[firmware::current] = limp_current_A(derating);
+  inputs[firmware::speed] = 0.0;
+  std::vector<double> rate(nodes);
+  std::vector<std::vector<double>> state_C(2, std::vector<double>(nodes, derating.rules.hottest_ambient_C));
+  constexpr double kDuration_s = 4.0 * 3600.0;
+  const double step_s = 4.0 * derating.options.period_s;
+  double most_K = 0.0;
+  for (double time_s = 0.0; time_s < kDuration_s; time_s += step_s) {
+    for (std::size_t form = 0; form < 2; ++form) {
+      std::ranges::copy(state_C[form], inputs.begin() + firmware::kSignalCount);
+      run.run(inputs, rate);
+      for (std::size_t node = 0; node < nodes; ++node) {
+        const FixedPoint& fixed = lines.rate_K_per_s[node];
+        const double extra = form == 0 ? 0.0 : std::ldexp(static_cast<double>(heat_for_rounding(fixed)), -fixed.bits) + fixed.absolute;
+        state_C[form][node] += step_s * (rate[node] + extra);
+      }
+    }
+    for (std::size_t node = 0; node < nodes; ++node) {
+      most_K = std::max(most_K, state_C[1][node] - state_C[0][node]);
+    }
+  }
+  return most_K;
+}
+
+constexpr std::string_view kHelpers = R"(/* a * b / divisor, a power of two */
+static inline int32_t @_product(int32_t a, int32_t b, int64_t divisor) {
+  const int64_t whole = (int64_t)a * b;
+  return (int32_t)(whole / divisor);
+}
+
+)";
+
+constexpr std::string_view kQuotient = R"(/* a * factor / b, factor a power of two */
+static inline int32_t @_quotient(int32_t a, int32_t b, int64_t factor) {
+  const int64_t whole = a * factor;
+  return (int32_t)(whole / b);
+}
+
+)";
+
+constexpr std::string_view kStep = R"(static inline bool @_is_temperature(int64_t stored) {
+  return (stored >= (((int64_t)@CAP@_COLDEST_AMBIENT_MC - 1000) * @CAP@_STORED_PER_K / 1000)) && (stored <= (1000 * @CAP@_STORED_PER_K));
+}
+
+/* body_mC: temperature of the whole motor after a rest in 0.001 degC; what cannot be one counts as the limit. */
+static inline void @_start(@_state *state, int32_t body_mC) {
+  const int64_t asked = (int64_t)body_mC * @CAP@_STORED_PER_K / 1000;
+  int32_t node;
+  for (node = 0; node < @NODES@; ++node) {
+    state->stored[node] = @_is_temperature(asked) ? asked : ((int64_t)@CAP@_WINDING_LIMIT_MC * @CAP@_STORED_PER_K / 1000);
+  }
+  state->started = @CAP@_STARTED;
+}
+
+/* Every node warms as fast as with the hottest of the possible values; the input takes the one that heats the winding most. */
+static inline void @_sweep(const @_input *input, int32_t *which, const int32_t *possible, int32_t count, const int32_t *state_C, int64_t *most) {
+  int64_t change[@NODES@];
+  int64_t hottest_change = 0;
+  int32_t hottest = possible[0];
+  int32_t i;
+  int32_t node;
+  for (i = 0; i < count; ++i) {
+    *which = possible[i];
+    @_changes(input, state_C, change);
+    for (node = 0; node < @NODES@; ++node) {
+      most[node] = (change[node] > most[node]) ? change[node] : most[node];
+    }
+    if ((i == 0) || (change[0] > hottest_change)) {
+      hottest_change = change[0];
+      hottest = possible[i];
+    }
+  }
+  *which = hottest;
+}
+
+static inline @_output @_step(@_state *state, const @_input *measured) {
+  const int64_t coldest = (int64_t)@CAP@_COLDEST_AMBIENT_MC * @CAP@_STORED_PER_K / 1000;
+  @_output out;
+  @_input in = *measured;
+  int64_t change[@NODES@];
+  int32_t state_C[@NODES@];
+  int32_t hottest_body_mC;
+  int32_t node;
+  int32_t pass;
+  bool is_started = state->started == @CAP@_STARTED;
+  bool is_current_unknown = false;
+  bool is_speed_unknown = false;
+  bool is_ambient_unknown = false;
+  for (node = 0; node < @NODES@; ++node) {
+    is_started = is_started && @_is_temperature(state->stored[node]);
+  }
+  if (!is_started) {
+    @_start(state, @CAP@_WINDING_LIMIT_MC);
+  }
+@BELIEFS@  for (node = 0; node < @NODES@; ++node) {
+    state_C[node] = (int32_t)(state->stored[node] / @PER_STATE@);
+  }
+  @_changes(&in, state_C, change);
+  for (pass = 0; (pass < 2) && (is_current_unknown || is_speed_unknown); ++pass) {
+    if (is_current_unknown) {
+      @_sweep(&in, &in.current_mA, @_possible_current_mA, @CURRENTS@, state_C, change);
+    }
+    if (is_speed_unknown) {
+      @_sweep(&in, &in.speed_mrad_per_s, @_possible_speed_mrad_per_s, @SPEEDS@, state_C, change);
+    }
+  }
+  for (node = 0; node < @NODES@; ++node) {
+    const int64_t next = state->stored[node] + change[node];
+    state->stored[node] = (next > coldest) ? next : coldest;
+  }
+  out.guarded_winding_mC = (int32_t)((state->stored[0] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
+  hottest_body_mC = (int32_t)((state->stored[1] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
+@BODIES@  out.allowed_current_mA =
+      is_speed_unknown ? 0
+                       : heatsoak_integer_allowed_mA(&@_table, (in.speed_mrad_per_s < 0) ? -in.speed_mrad_per_s : in.speed_mrad_per_s,
+                                                     hottest_body_mC, out.guarded_winding_mC);
+  if (!is_started) {
+    out.reason = @_not_started;
+  } else if (is_current_unknown || is_speed_unknown || is_ambient_unknown) {
+    out.reason = @_input_unknown;
+  } else if (out.allowed_current_mA >= @_table.most_current_mA) {
+    out.reason = @_full;
+  } else {
+    out.reason = (out.allowed_current_mA > 0) ? @_derated : @_no_current;
+  }
+  return out;
+}
+)";
+
+constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node) {
+    const int32_t body_mC = (int32_t)((state->stored[node] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
+    hottest_body_mC = (body_mC > hottest_body_mC) ? body_mC : hottest_body_mC;
+  }
+)";
+
+/// Of several lines: nothing of a user's text ends the comment.
+std::string comment_lines(std::string text) {
+  for (std::size_t at = text.find("*/"); at != std::string::npos; at = text.find("*/")) {
+    text.replace(at, 2, "* /");
+  }
+  return text;
+}
+
+std::string head(const Derating& derating, const std::string& prefix, const IntegerLines& lines, const QuantisedTable& table) {
+  const double table_ratio = integer_form::quantised_shortfall_ratio(derating.table, table);
+  std::string text = "/*\n" + comment_lines(provenance_lines(derating, " *"));
+  text += fmt::format(
+      " *\n * Thermal observer and derating table in integers. Nominal temperatures and other signals: c_header.\n"
+      " * Temperatures are 0 to {0:.2g} K above those of the form in single precision. At equal temperatures the current is never above "
+      "that\n"
+      " * of its table and at most {1:.1f} % below it, from {2:.3g} A up.\n"
+      " * Once, after a long rest:      {3}_start(&motor, board_mC);   what was never started counts as hot as its limit\n"
+      " * every {4:.9g} s:                out = {3}_step(&motor, &in);   then |current| <= out.allowed_current_mA until the next call\n"
+      " */\n",
+      temperature_excess_K(derating, lines) + 1e-3 * kReadHotter_mC, 100.0 * table_ratio, derating.table.straight_below_A, prefix,
+      derating.options.period_s);
+  return text;
+}
+
+std::string structures(const Derating& derating, const std::string& prefix) {
+  std::string text = "typedef struct {\n";
+  for (const InputField& field : kInputs) {
+    text += fmt::format("  int32_t {}; /* {} */\n", field.name, field.meaning);
+  }
+  return text +
+         fmt::format(
+             "}} {0}_input;\n\ntypedef struct {{\n  uint32_t started;\n  int64_t stored[{1}]; /* 2^-{3} K:{4}; counts heat {2:.3g} times "
+             "*/\n"
+             "}} {0}_state;\n\ntypedef enum {{\n  {0}_full,\n  {0}_derated,\n  {0}_no_current,\n  {0}_input_unknown,\n  {0}_not_started\n"
+             "}} {0}_reason;\n\ntypedef struct {{\n  int32_t allowed_current_mA; /* equivalent DC current, magnitude, until the next step "
+             "*/\n"
+             "  int32_t guarded_winding_mC; /* 0.001 degC, pessimistic; decides what is allowed */\n  {0}_reason reason;\n}} "
+             "{0}_output;\n\n",
+             prefix, derating.observer.state_count(), derating.observer.heat_reserve_ratio(), kStoredBits, [&] {
+               std::string names;
+               for (const std::string& name : derating.observer.state_names()) {
+                 names += " " + c_header::in_comment(name);
+               }
+               return names;
+             }());
+}
+
+std::string table_text(const QuantisedTable& table, const std::string& prefix) {
+  return integers("int32_t", prefix + "_speed_mrad_per_s", widened(table.speed_mrad_per_s)) +
+         integers("int32_t", prefix + "_stator_mC", widened(table.stator_mC)) +
+         integers("int32_t", prefix + "_winding_mC", widened(table.winding_mC)) + "/* by speed, then stator, then winding */\n" +
+         integers("int16_t", prefix + "_square", widened(table.square)) +
+         fmt::format(
+             "static const heatsoak_integer_table {0}_table = {{\n    {{{0}_speed_mrad_per_s, {1}}}, {{{0}_stator_mC, {2}}}, "
+             "{{{0}_winding_mC, {3}}}, {0}_square,\n    {4}u, {5}, {6}, {7}, {8}, {9}}};\n\n",
+             prefix, table.speed_mrad_per_s.size(), table.stator_mC.size(), table.winding_mC.size(), table.unit_mA2, table.most_current_mA,
+             table.straight_below_mA, table.most_speed_mrad_per_s, table.no_current_speed_mrad_per_s, table.winding_per_stator_K);
+}
+
+/// Change of every node over a period, in 2^-kStoredBits K, with what rounding could hide added.
+std::string changes_function(const Derating& derating, const std::string& prefix, const IntegerLines& lines) {
+  const double period_s = derating.options.period_s;
+  const int period_bits = 29 - static_cast<int>(std::floor(std::log2(period_s)));
+  const auto period = static_cast<std::int64_t>(std::ceil(std::ldexp(period_s, period_bits)));
+  std::string text = fmt::format(
+      "/* what every node warms in a period, with what rounding could hide added */\n"
+      "static inline void {0}_changes(const {0}_input *input, const int32_t *state_C, int64_t *change) {{\n{1}",
+      prefix, lines.text);
+  for (std::size_t node = 0; node < lines.rates.size(); ++node) {
+    const FixedPoint& rate = lines.rate_K_per_s[node];
+    text += fmt::format("  change[{}] = ((((int64_t){} + {}) * {}) / INT64_C({})) + 1;\n", node, lines.rates[node], heat_for_rounding(rate),
+                        period, std::int64_t{1} << (rate.bits + period_bits - kStoredBits));
+  }
+  return text + "}\n\n";
+}
+
+std::string beliefs(const Derating& derating) {
+  std::string text;
+  for (const InputField& field : kInputs) {
+    const Belief believed = belief(derating, field.signal);
+    const std::string_view flag = field.signal == firmware::current ? "is_current_unknown"
+                                  : field.signal == firmware::speed ? "is_speed_unknown"
+                                                                    : "is_ambient_unknown";
+    text += fmt::format("  if ((in.{0} < {1}) || (in.{0} > {2})) {{\n    in.{0} = {3};\n    {4} = true;\n  }}\n", field.name,
+                        static_cast<std::int64_t>(std::ceil(1000.0 * believed.low)),
+                        static_cast<std::int64_t>(std::floor(1000.0 * believed.high)), thousandths_outward(believed.values.front()), flag);
+  }
+  return text;
+}
+
+std::vector<std::int64_t> candidates(const Derating& derating, firmware::Signal signal) {
+  std::vector<std::int64_t> values;
+  for (const float value : belief(derating, signal).values) {
+    values.push_back(thousandths_outward(value));
+  }
+  return values;
+}
+
+std::string write(const Derating& derating) {
+  require_finite(derating);
+  require_three_signals("c_header_q15", derating);
+  const std::string prefix = identifier(derating.motor_id) + "_q15";
+  const std::string capital = c_header::in_capitals(prefix);
+  const IntegerLines lines = integer_form::integer_lines(derating, prefix);
+  const QuantisedTable table(derating.table);
+  const std::vector<std::int64_t> currents = candidates(derating, firmware::current);
+  const std::vector<std::int64_t> speeds = candidates(derating, firmware::speed);
+  const std::size_t nodes = derating.observer.state_count();
+  const c_header::Words words{{"@BELIEFS@", beliefs(derating)},
+                              {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
+                              {"@NODES@", std::to_string(nodes)},
+                              {"@CURRENTS@", std::to_string(currents.size())},
+                              {"@SPEEDS@", std::to_string(speeds.size())},
+                              {"@READ_HOTTER@", std::to_string(kReadHotter_mC)},
+                              {"@PER_STATE@", std::to_string(1 << (kStoredBits - integer_form::kStateBits))},
+                              {"@CAP@", capital},
+                              {"@", prefix}};
+  const auto define = [&](std::string_view name, std::int64_t value) { return fmt::format("#define {}_{} {}\n", capital, name, value); };
+  return head(derating, prefix, lines, table) +
+         fmt::format("#ifndef HEATSOAK_{0}_H\n#define HEATSOAK_{0}_H\n\n#include <stdbool.h>\n#include <stdint.h>\n\n", capital) +
+         std::string(embedded::integer_table_text().front().text) + "\n" +
+         define("WINDING_LIMIT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.rules.limits.winding_C))) +
+         define("COLDEST_AMBIENT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.options.coldest_ambient_C))) +
+         fmt::format("#define {}_STORED_PER_K INT64_C({})\n#define {}_STARTED 0x48454154u\n\n", capital, std::int64_t{1} << kStoredBits,
+                     capital) +
+         structures(derating, prefix) + table_text(table, prefix) + c_header::replaced(kHelpers, words) +
+         (lines.text.find("_quotient(") == std::string::npos ? "" : c_header::replaced(kQuotient, words)) +
+         changes_function(derating, prefix, lines) + integers("int32_t", prefix + "_possible_current_mA", currents) +
+         integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) + "\n" + c_header::replaced(kStep, words) + "\n#endif\n";
+}
+
+}  // namespace
+
+ExporterType c_header_q15() {
+  return {.name = {}, .summary = "C99 header in integers (16-bit table, 32-bit observer) for controllers without an FPU", .write = write};
+}
+
+}  // namespace heatsoak::exporters

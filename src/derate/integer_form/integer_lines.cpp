@@ -1,0 +1,193 @@
+#include "derate/integer_form/integer_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/diagnostic.h"
+#include "derate/belief.h"
+#include "derate/export_text.h"
+
+namespace heatsoak::integer_form {
+namespace {
+
+constexpr int kNumberBits = 30;  ///< of a magnitude: sums of two still fit in 32 bits
+constexpr int kMostBits = 44;    ///< of a fraction, so that no shift of a product exceeds 62
+constexpr double kHottest_C = 1000.0;
+
+double unit(int bits) { return std::ldexp(1.0, -bits); }
+
+int bits_for(double low, double high) {
+  const double most = std::max(std::abs(low), std::abs(high));
+  return most > 0.0 ? std::min(kMostBits, kNumberBits - 1 - static_cast<int>(std::floor(std::log2(most)))) : kMostBits;
+}
+
+/// One run through the steps of a formula.
+class Writer {
+ public:
+  Writer(const Derating& derating, const std::string& prefix)
+      : derating_(derating), prefix_(prefix), formula_(derating.observer.formula()), values_(formula_.steps().size()) {}
+
+  IntegerLines write() {
+    const Observer& observer = derating_.observer;
+    const std::vector<char> needed = formula_.needed_for(observer.rate_steps());
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+      if (needed[i] != 0) {
+        add_step(static_cast<int>(i));
+      }
+    }
+    for (const int place : observer.rate_steps()) {
+      lines_.rates.push_back(name(place));
+      lines_.rate_K_per_s.push_back(values_[static_cast<std::size_t>(place)]);
+    }
+    return std::move(lines_);
+  }
+
+ private:
+  [[nodiscard]] static std::string name(int place) { return fmt::format("t{}", place); }
+  [[nodiscard]] const FixedPoint& value(int place) const { return values_[static_cast<std::size_t>(place)]; }
+
+  [[nodiscard]] Failure refusal(std::string_view what) const {
+    return {ExitCode::bad_input,
+            fmt::format("c_header_q15 cannot express the effects {}: {}; use --to c_header", own_effects_text(derating_), what)};
+  }
+
+  void set(int place, const FixedPoint& made, const std::string& expression) {
+    values_[static_cast<std::size_t>(place)] = made;
+    lines_.text += fmt::format("  const int32_t {} = {};\n", name(place), expression);
+  }
+
+  void add_step(int place) {
+    const Formula::Step& step = formula_.steps()[static_cast<std::size_t>(place)];
+    switch (step.operation) {
+      case Operation::constant:
+        return add_constant(place, step.value);
+      case Operation::input:
+        return add_input(place, static_cast<std::size_t>(step.left));
+      case Operation::add:
+        return add_sum(place, step, 1.0);
+      case Operation::subtract:
+        return add_sum(place, step, -1.0);
+      case Operation::multiply:
+        return add_product(place, step);
+      case Operation::divide:
+        return add_quotient(place, step);
+      case Operation::magnitude:
+        return add_magnitude(place, step);
+      case Operation::positive_part:
+        return add_positive_part(place, step);
+      default:
+        throw refusal("a law needs a square root, a power or an exponential");
+    }
+  }
+
+  void add_constant(int place, double number) {
+    FixedPoint made{.low = number, .high = number, .bits = bits_for(number, number), .absolute = 0.0};
+    made.absolute = 0.5 * unit(made.bits);
+    set(place, made, fmt::format("{}", static_cast<std::int64_t>(std::llround(std::ldexp(number, made.bits)))));
+  }
+
+  void add_input(int place, std::size_t input) {
+    if (input >= firmware::kSignalCount) {
+      const double coldest_C = derating_.options.coldest_ambient_C - 1.0;
+      return set(place, {.low = coldest_C, .high = kHottest_C, .bits = kStateBits, .absolute = unit(kStateBits)},
+                 fmt::format("state_C[{}]", input - firmware::kSignalCount));
+    }
+    const auto signal = static_cast<firmware::Signal>(input);
+    const Belief believed = belief(derating_, signal);
+    FixedPoint made{.low = believed.low, .high = believed.high, .bits = bits_for(believed.low, believed.high), .absolute = 0.0};
+    // Thousandths times 2^bits/1000, a number of 30 bits with a shift of its own.
+    const double per_thousandth = std::ldexp(1.0 / kThousandths_ratio, made.bits);
+    const int shift = bits_for(per_thousandth, per_thousandth);
+    made.absolute = unit(made.bits) + std::max(std::abs(made.low), std::abs(made.high)) * std::ldexp(1.0, -kNumberBits);
+    set(place, made,
+        fmt::format("{}_product(input->{}, {}, {})", prefix_, integer_name(signal),
+                    static_cast<std::int64_t>(std::llround(std::ldexp(per_thousandth, shift))), power_of_two(shift)));
+  }
+
+  [[nodiscard]] static std::string_view integer_name(firmware::Signal signal) {
+    return signal == firmware::current ? "current_mA" : signal == firmware::speed ? "speed_mrad_per_s" : "ambient_mC";
+  }
+
+  [[nodiscard]] static std::string power_of_two(int exponent) { return fmt::format("INT64_C({})", std::int64_t{1} << exponent); }
+
+  [[nodiscard]] std::string shifted(int place, int to_bits) const {
+    const int shift = value(place).bits - to_bits;
+    return shift == 0 ? name(place) : fmt::format("{}_product({}, 1, {})", prefix_, name(place), power_of_two(shift));
+  }
+
+  void add_sum(int place, const Formula::Step& step, double sign) {
+    const FixedPoint& a = value(step.left);
+    const FixedPoint& b = value(step.right);
+    FixedPoint made{.low = sign > 0.0 ? a.low + b.low : a.low - b.high,
+                    .high = sign > 0.0 ? a.high + b.high : a.high - b.low,
+                    .bits = 0,
+                    .absolute = 0.0};
+    made.bits = std::min({a.bits, b.bits, bits_for(made.low, made.high)});
+    made.absolute = a.absolute + b.absolute + (a.bits > made.bits ? unit(made.bits) : 0.0) + (b.bits > made.bits ? unit(made.bits) : 0.0);
+    set(place, made, fmt::format("{} {} {}", shifted(step.left, made.bits), sign > 0.0 ? "+" : "-", shifted(step.right, made.bits)));
+  }
+
+  void add_product(int place, const Formula::Step& step) {
+    const FixedPoint& a = value(step.left);
+    const FixedPoint& b = value(step.right);
+    const auto corners = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
+    FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .absolute = 0.0};
+    if (step.left == step.right) {
+      made.low = 0.0;
+    }
+    made.bits = std::min(bits_for(made.low, made.high), a.bits + b.bits);
+    const double most_a = std::max(std::abs(a.low), std::abs(a.high));
+    const double most_b = std::max(std::abs(b.low), std::abs(b.high));
+    made.absolute = most_a * b.absolute + most_b * a.absolute + a.absolute * b.absolute + unit(made.bits);
+    set(place, made,
+        fmt::format("{}_product({}, {}, {})", prefix_, name(step.left), name(step.right), power_of_two(a.bits + b.bits - made.bits)));
+  }
+
+  void add_quotient(int place, const Formula::Step& step) {
+    const FixedPoint& a = value(step.left);
+    const FixedPoint& b = value(step.right);
+    const double least = std::min(std::abs(b.low), std::abs(b.high)) - b.absolute;
+    if (b.low * b.high <= 0.0 || least <= 0.0) {
+      throw refusal("a law divides by a quantity that may be 0");
+    }
+    const auto corners = {a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high};
+    FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .absolute = 0.0};
+    const double most = std::max(std::abs(made.low), std::abs(made.high));
+    made.bits = std::min(bits_for(made.low, made.high), a.bits - b.bits + kNumberBits);
+    const int shift = made.bits + b.bits - a.bits;
+    if (shift < 0) {
+      throw refusal("a law divides numbers of too different sizes");
+    }
+    made.absolute = (a.absolute + most * b.absolute) / least + unit(made.bits);
+    set(place, made, fmt::format("{}_quotient({}, {}, {})", prefix_, name(step.left), name(step.right), power_of_two(shift)));
+  }
+
+  void add_magnitude(int place, const Formula::Step& step) {
+    FixedPoint made = value(step.left);
+    made.high = std::max(std::abs(made.low), std::abs(made.high));
+    made.low = 0.0;
+    set(place, made, fmt::format("({0} < 0) ? -{0} : {0}", name(step.left)));
+  }
+
+  void add_positive_part(int place, const Formula::Step& step) {
+    FixedPoint made = value(step.left);
+    made.high = std::max(made.high, 0.0);
+    made.low = std::max(made.low, 0.0);
+    set(place, made, fmt::format("({0} > 0) ? {0} : 0", name(step.left)));
+  }
+
+  const Derating& derating_;
+  const std::string& prefix_;
+  const Formula& formula_;
+  std::vector<FixedPoint> values_;
+  IntegerLines lines_;
+};
+
+}  // namespace
+
+IntegerLines integer_lines(const Derating& derating, const std::string& prefix) { return Writer(derating, prefix).write(); }
+
+}  // namespace heatsoak::integer_form

@@ -1,0 +1,81 @@
+#include "derate/integer_form/quantised_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace heatsoak::integer_form {
+namespace {
+
+constexpr double kPerUnit = 1000.0;
+
+std::int32_t thousandths_down(double value) { return static_cast<std::int32_t>(std::floor(kPerUnit * value)); }
+std::int32_t thousandths_up(double value) { return static_cast<std::int32_t>(std::ceil(kPerUnit * value)); }
+
+std::vector<std::int32_t> axis_of(const std::vector<double>& places) {
+  std::vector<std::int32_t> points(places.size());
+  std::ranges::transform(places, points.begin(), thousandths_down);
+  return points;
+}
+
+}  // namespace
+
+QuantisedTable::QuantisedTable(const CurrentTable& exact)
+    : speed_mrad_per_s(axis_of(exact.speed_rad_per_s)),
+      stator_mC(axis_of(exact.stator_C)),
+      winding_mC(axis_of(exact.winding_C)),
+      most_current_mA(thousandths_down(exact.most_current_A)),
+      straight_below_mA(thousandths_up(exact.straight_below_A)),
+      most_speed_mrad_per_s(thousandths_down(exact.most_speed_rad_per_s)),
+      no_current_speed_mrad_per_s(thousandths_down(exact.no_current_speed_rad_per_s)),
+      winding_per_stator_K(static_cast<std::int32_t>(std::ceil(exact.winding_per_stator_K))) {
+  constexpr double kMost = 32767.0;
+  double largest_A2 = 0.0;
+  for (const double square_A2 : exact.square_A2) {
+    largest_A2 = std::max(largest_A2, std::abs(square_A2));
+  }
+  unit_mA2 = static_cast<std::uint32_t>(std::ceil(kPerUnit * kPerUnit * largest_A2 / (kMost - 1.0)));
+  for (const double square_A2 : exact.square_A2) {
+    // One less for places that are rounded to thousandths.
+    square.push_back(static_cast<std::int16_t>(std::floor(kPerUnit * kPerUnit * square_A2 / unit_mA2) - 1.0));
+  }
+}
+
+heatsoak_integer_table QuantisedTable::table() const {
+  const auto axis = [](const std::vector<std::int32_t>& points) {
+    return heatsoak_integer_axis{points.data(), static_cast<std::int32_t>(points.size())};
+  };
+  return {.speed_mrad_per_s = axis(speed_mrad_per_s),
+          .stator_mC = axis(stator_mC),
+          .winding_mC = axis(winding_mC),
+          .square = square.data(),
+          .unit_mA2 = unit_mA2,
+          .most_current_mA = most_current_mA,
+          .straight_below_mA = straight_below_mA,
+          .most_speed_mrad_per_s = most_speed_mrad_per_s,
+          .no_current_speed_mrad_per_s = no_current_speed_mrad_per_s,
+          .winding_per_stator_K = winding_per_stator_K};
+}
+
+double quantised_shortfall_ratio(const CurrentTable& exact, const QuantisedTable& quantised) {
+  constexpr int kSpeeds = 10;
+  constexpr int kStators = 24;
+  constexpr double kStep_K = 0.5;
+  const heatsoak_integer_table table = quantised.table();
+  double most_ratio = 0.0;
+  for (const double speed_rad_per_s : evenly(0.0, exact.most_speed_rad_per_s, kSpeeds)) {
+    for (const double stator_C : evenly(exact.stator_C.front(), exact.stator_C.back(), kStators)) {
+      for (double winding_C = exact.winding_C.front(); winding_C < exact.winding_C.back(); winding_C += kStep_K) {
+        const double exact_A = exact.allowed_A(speed_rad_per_s, stator_C, winding_C);
+        if (exact_A >= exact.straight_below_A) {
+          const double shown_A =
+              heatsoak_integer_allowed_mA(&table, thousandths_up(speed_rad_per_s), thousandths_up(stator_C), thousandths_up(winding_C)) /
+              kPerUnit;
+          most_ratio = std::max(most_ratio, 1.0 - shown_A / exact_A);
+        }
+      }
+    }
+  }
+  return most_ratio;
+}
+
+}  // namespace heatsoak::integer_form

@@ -1,0 +1,284 @@
+// The header in integers beside the one in single precision: never more current, no colder, and the same on a Cortex-M0.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "base/diagnostic.h"
+#include "derate/export_text.h"
+#include "derate/integer_form/integer_lines.h"
+#include "derate/integer_form/quantised_table.h"
+#include "exported_motor.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::HasSubstr;
+
+/// Hard driving in both forms: shares of what the integers allow, speeds, air and now and then a broken sensor, each held for a while.
+/// Prints the largest excess of the integer form in mA, its least and largest temperature above the other in mK, and its largest shortfall
+/// in per mille of the other where that allows `straight_mA` or more.
+constexpr const char* kBoth = R"(
+#include "float_guard.h"
+#include "q15_guard.h"
+#include <stdio.h>
+#include <stdlib.h>
+static uint32_t seed = 12345u;
+static int32_t below(int32_t end) { seed = seed * 1664525u + 1013904223u; return (int32_t)(((uint64_t)seed * (uint32_t)end) >> 32); }
+int main(int argc, char **argv) {
+  const float straight_A = (float)atof(argv[1]);
+  const int broken = argc > 2;
+  MOTOR_state slow;
+  MOTOR_q15_state quick;
+  long i;
+  int hold = 0, share = 0;
+  float excess_mA = -1e9f, coldest_mK = 1e9f, hottest_mK = -1e9f, short_ratio = 0.0f;
+  int32_t allowed_mA = 0, speed = 0, air = 25000, sign = 1;
+  MOTOR_start(&slow, 31.0f);
+  MOTOR_q15_start(&quick, 31000);
+  for (i = 0; i < 200000; ++i) {
+    MOTOR_input in;
+    MOTOR_q15_input whole;
+    MOTOR_output out;
+    MOTOR_q15_output now;
+    float difference_mK;
+    if (hold-- == 0) {
+      hold = 1 + below(600);
+      share = below(3) == 0 ? 0 : 600 + below(401);
+      speed = below(4) == 0 ? 0 : below(500000) - 250000;
+      air = 15000 + below(25001);
+      sign = below(2) == 0 ? 1 : -1;
+    }
+    whole.current_mA = sign * (int32_t)((int64_t)allowed_mA * share / 1000);
+    whole.speed_mrad_per_s = speed;
+    whole.ambient_mC = air;
+    if (broken && below(200) == 0) {
+      whole.ambient_mC = -273150;
+    }
+    in.current_A = (float)whole.current_mA / 1000.0f;
+    in.speed_rad_per_s = (float)whole.speed_mrad_per_s / 1000.0f;
+    in.ambient_C = (float)whole.ambient_mC / 1000.0f;
+    out = MOTOR_step(&slow, &in);
+    now = MOTOR_q15_step(&quick, &whole);
+    allowed_mA = now.allowed_current_mA;
+    difference_mK = (float)now.guarded_winding_mC - 1000.0f * out.guarded_winding_C;
+    excess_mA = (float)now.allowed_current_mA - 1000.0f * out.allowed_current_A > excess_mA ? (float)now.allowed_current_mA - 1000.0f * out.allowed_current_A : excess_mA;
+    coldest_mK = difference_mK < coldest_mK ? difference_mK : coldest_mK;
+    hottest_mK = difference_mK > hottest_mK ? difference_mK : hottest_mK;
+    if (out.allowed_current_A >= straight_A) {
+      const float ratio = 1.0f - (float)now.allowed_current_mA / (1000.0f * out.allowed_current_A);
+      short_ratio = ratio > short_ratio ? ratio : short_ratio;
+    }
+  }
+  printf("%g %g %g %g\n", (double)excess_mA, (double)coldest_mK, (double)hottest_mK, 1000.0 * (double)short_ratio);
+  return 0;
+}
+)";
+
+/// Some thousand steps of the integers alone, and a check sum over all they answer.
+constexpr const char* kSteps = R"(
+#include "q15_guard.h"
+static uint32_t check_sum(void) {
+  MOTOR_q15_state state = {0u, {0}};
+  MOTOR_q15_input in;
+  uint32_t seed = 99u, sum = 2166136261u;
+  int i;
+  MOTOR_q15_start(&state, 31000);
+  for (i = 0; i < 3000; ++i) {
+    MOTOR_q15_output out;
+    seed = seed * 1664525u + 1013904223u;
+    in.current_mA = (int32_t)(seed >> 18) - 4000;
+    in.speed_mrad_per_s = (int32_t)(seed >> 13) - 200000;
+    in.ambient_mC = i % 500 == 0 ? -300000 : 20000 + (int32_t)(seed >> 22);
+    out = MOTOR_q15_step(&state, &in);
+    sum = (sum ^ (uint32_t)out.allowed_current_mA) * 16777619u;
+    sum = (sum ^ (uint32_t)out.guarded_winding_mC) * 16777619u;
+    sum = (sum ^ (uint32_t)out.reason) * 16777619u;
+  }
+  return sum;
+}
+)";
+
+constexpr const char* kHostMain = R"(
+#include <stdio.h>
+int main(void) {
+  printf("%08x", (unsigned)check_sum());
+  return 0;
+}
+)";
+
+/// Start-up of a Cortex-M0 and the two calls of ARM's semihosting.
+constexpr const char* kBareMain = R"(
+static int ask(int what, const void *with) {
+  register int r0 __asm__("r0") = what;
+  register const void *r1 __asm__("r1") = with;
+  __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
+  return r0;
+}
+void *memset(void *to, int value, __SIZE_TYPE__ count);
+void *memset(void *to, int value, __SIZE_TYPE__ count) {
+  unsigned char *at = (unsigned char *)to;
+  while (count-- > 0) *at++ = (unsigned char)value;
+  return to;
+}
+void *memcpy(void *to, const void *from, __SIZE_TYPE__ count);
+void *memcpy(void *to, const void *from, __SIZE_TYPE__ count) {
+  unsigned char *at = (unsigned char *)to;
+  const unsigned char *source = (const unsigned char *)from;
+  while (count-- > 0) *at++ = *source++;
+  return to;
+}
+void start(void);
+void start(void) {
+  static char text[9];
+  uint32_t sum = check_sum();
+  int i;
+  for (i = 7; i >= 0; --i) {
+    text[i] = "0123456789abcdef"[sum & 15u];
+    sum >>= 4;
+  }
+  ask(4, text);
+  ask(0x18, (const void *)0x20026);
+  for (;;) {
+  }
+}
+__attribute__((section(".vectors"), used)) static const void *const vectors[2] = {(const void *)0x20003f00, (const void *)start};
+)";
+
+constexpr const char* kLayout = R"(
+MEMORY { FLASH (rx) : ORIGIN = 0, LENGTH = 256K  RAM (rwx) : ORIGIN = 0x20000000, LENGTH = 16K }
+SECTIONS {
+  .text : { KEEP(*(.vectors)) *(.text*) *(.rodata*) } > FLASH
+  .bss : { *(.bss*) *(.data*) } > RAM
+  /DISCARD/ : { *(.ARM*) }
+}
+)";
+
+class Q15Header : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has("cc")) {
+      GTEST_SKIP() << "no compiler here";
+    }
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  static bool has(const std::string& program) { return std::system((program + " --version > /dev/null 2>&1").c_str()) == 0; }
+
+  void write(const char* file, const std::string& text, const Derating& derating) const {
+    std::ofstream(folder_ / file) << std::regex_replace(text, std::regex("MOTOR"), identifier(derating.motor_id));
+  }
+  void write_headers(const Derating& derating) const {
+    std::ofstream(folder_ / "float_guard.h") << exported("c_header", derating);
+    std::ofstream(folder_ / "q15_guard.h") << exported("c_header_q15", derating);
+  }
+  /// What the command prints; a failure with its errors.
+  [[nodiscard]] std::string output_of(const std::string& command) const {
+    const auto in_folder = fmt::format("cd '{}' && {{ {}; }} > out 2> errors", folder_.string(), command);
+    const int code = std::system(in_folder.c_str());
+    std::stringstream out;
+    std::stringstream errors;
+    out << std::ifstream(folder_ / "out").rdbuf();
+    errors << std::ifstream(folder_ / "errors").rdbuf();
+    EXPECT_EQ(code, 0) << command << "\n" << errors.str();
+    return out.str();
+  }
+
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_q15_{}", static_cast<int>(getpid()));
+};
+
+constexpr const char* kWarnings = "-O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Werror -ffp-contract=off";
+
+double number_after(const std::string& text, const std::string& pattern) {
+  std::smatch found;
+  EXPECT_TRUE(std::regex_search(text, found, std::regex(pattern))) << pattern;
+  return found.empty() ? std::nan("") : std::stod(found[1]);
+}
+
+TEST_F(Q15Header, AllowsNeverMoreThanSinglePrecisionAndLittleLess) {
+  for (const char* const id : {"maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_24v", "maxon_ec45_flat_70w_24v"}) {
+    Derating derating = derating_of(shipped_motor(id));
+    derating.motor_id = id;
+    const std::string header = exported("c_header_q15", derating);
+    write_headers(derating);
+    write("both.c", kBoth, derating);
+    static_cast<void>(output_of(fmt::format("cc -std=c99 {} -o both both.c -lm", kWarnings)));
+    const double excess_mK = 1000.0 * number_after(header, "are 0 to ([0-9.]+) K above");
+    const double table_permille = 10.0 * number_after(header, "at most ([0-9.]+) % below");
+    EXPECT_LT(excess_mK, 600.0) << id;
+    EXPECT_LT(table_permille, 50.0) << id;
+    // What a temperature that is so much higher costs, by the steepest line of the table.
+    const CurrentTable& table = derating.table;
+    const double by_heat_permille = excess_mK * table.bound.winding_slope_A_per_K / table.straight_below_A;
+    for (const char* const broken : {"", " broken"}) {
+      std::istringstream answer(output_of(fmt::format("./both {:.6g}{}", table.straight_below_A, broken)));
+      double most_mA = 0.0;
+      double coldest_mK = 0.0;
+      double hottest_mK = 0.0;
+      double short_permille = 0.0;
+      answer >> most_mA >> coldest_mK >> hottest_mK >> short_permille;
+      EXPECT_LE(most_mA, 0.0) << id << broken;
+      EXPECT_GE(coldest_mK, 0.0) << id << broken;
+      EXPECT_LE(hottest_mK, excess_mK + 1.0) << id << broken;
+      EXPECT_LE(short_permille, table_permille + by_heat_permille + 0.5) << id << broken;
+    }
+  }
+}
+
+TEST_F(Q15Header, HasTheSameBitsOnACortexM0WithoutAnyFloatingPoint) {
+  if (!has("arm-none-eabi-gcc") || !has("qemu-system-arm")) {
+    GTEST_SKIP() << "no compiler or no machine for a Cortex-M0 here";
+  }
+  const Derating& derating = ecx_derating();
+  write_headers(derating);
+  write("host.c", std::string(kSteps) + kHostMain, derating);
+  write("bare.c", std::string(kSteps) + kBareMain, derating);
+  std::ofstream(folder_ / "layout.ld") << kLayout;
+  static_cast<void>(output_of(fmt::format("cc -std=c99 {} -o host host.c", kWarnings)));
+  static_cast<void>(
+      output_of("arm-none-eabi-gcc -std=gnu99 -Os -Wall -Wextra -Werror -mcpu=cortex-m0 -mthumb -ffreestanding -nostdlib "
+                "-fno-tree-loop-distribute-patterns "
+                "-T layout.ld -o bare.elf bare.c -lgcc"));
+  // Soft-float helpers of the compiler's library would show here.
+  EXPECT_THAT(output_of("arm-none-eabi-nm bare.elf"),
+              testing::Not(testing::ContainsRegex("__aeabi_(f|d|i2f|ui2f|l2f|ul2f|i2d)[a-z0-9]*$")));
+  const std::string on_host = output_of("./host");
+  EXPECT_EQ(on_host.size(), 8U);
+  EXPECT_EQ(
+      output_of("timeout 60 qemu-system-arm -M microbit -nographic -semihosting-config enable=on,target=native -kernel bare.elf 2>&1"),
+      on_host);
+}
+
+// What an operation needs and integers do not have here is refused with the effect's name.
+TEST(Q15HeaderText, RefusesLawsThatItCannotCompute) {
+  const Derating derating = derating_of(ecx_32_with(R"([effects.air]
+type = "natural_convection"
+conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
+exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
+)"));
+  try {
+    static_cast<void>(exported("c_header_q15", derating));
+    FAIL() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_THAT(failure.what(), HasSubstr("air (natural_convection)"));
+  }
+}
+
+// Exact arithmetic on the statements' own scales: the bound on the rounding holds for the constants and is no wider than a few steps.
+TEST(Q15Lines, RoundingIsBounded) {
+  const integer_form::IntegerLines lines = integer_form::integer_lines(ecx_derating(), "motor");
+  ASSERT_EQ(lines.rate_K_per_s.size(), 2U);
+  for (const integer_form::FixedPoint& rate : lines.rate_K_per_s) {
+    EXPECT_GT(rate.absolute, 0.0);
+    EXPECT_LT(rate.absolute, 5e-3);
+    EXPECT_LT(std::ldexp(std::max(std::abs(rate.low), std::abs(rate.high)), rate.bits), std::ldexp(1.0, 30));
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
