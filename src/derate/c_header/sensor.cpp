@@ -233,7 +233,11 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
   }
   out.guard.allowed_current_A = sensed_A > 0.0f ? sensed_A : 0.0f;
   out.guard.guarded_winding_C = state->state_C[0];
-  out.guard.reason = sensed_A >= @CAP@_MOST_CURRENT_A ? @_full : sensed_A > 0.0f ? @_derated : @_no_current;
+  if (sensed_A >= @CAP@_MOST_CURRENT_A) {
+    out.guard.reason = @_full;
+  } else {
+    out.guard.reason = sensed_A > 0.0f ? @_derated : @_no_current;
+  }
   return out;
 }
 
