@@ -22,6 +22,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #ifdef __FAST_MATH__
 #error "without -ffast-math: it takes away what tells a number from none, and the rounding that is carried"
@@ -418,6 +419,195 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
     out.reason = out.allowed_current_A > 0.0f ? maxon_ecx_flat_42m_24v_derated : maxon_ecx_flat_42m_24v_no_current;
   }
   return out;
+}
+
+#define MAXON_ECX_FLAT_42M_24V_SIGNATURE 0x2e24e119u
+#define MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS 4096
+/* What is kept over power-off: motor and guard (MAXON_ECX_FLAT_42M_24V_SIGNATURE), temperatures, CRC-32 (IEEE 802.3); little-endian. */
+#define MAXON_ECX_FLAT_42M_24V_SAVED_SIZE 24
+typedef enum {
+  maxon_ecx_flat_42m_24v_restored,        /* cooled for the time that has passed */
+  maxon_ecx_flat_42m_24v_time_unknown,    /* as hot as it may be after any time */
+  maxon_ecx_flat_42m_24v_nothing_restored /* not saved, damaged or of another guard: as hot as the limit */
+} maxon_ecx_flat_42m_24v_restored_from;
+
+static inline uint32_t maxon_ecx_flat_42m_24v_crc_32(const uint8_t *bytes, int count) {
+  uint32_t crc = 0xffffffffu;
+  int i;
+  int bit;
+  for (i = 0; i < count; ++i) {
+    crc ^= bytes[i];
+    for (bit = 0; bit < 8; ++bit) {
+      crc = (crc & 1u) != 0u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
+    }
+  }
+  return ~crc;
+}
+
+static inline void maxon_ecx_flat_42m_24v_pack(uint8_t *to, uint32_t word) {
+  to[0] = (uint8_t)(word & 0xffu);
+  to[1] = (uint8_t)((word >> 8) & 0xffu);
+  to[2] = (uint8_t)((word >> 16) & 0xffu);
+  to[3] = (uint8_t)((word >> 24) & 0xffu);
+}
+
+static inline uint32_t maxon_ecx_flat_42m_24v_unpack(const uint8_t *from) {
+  return (uint32_t)from[0] | ((uint32_t)from[1] << 8) | ((uint32_t)from[2] << 16) | ((uint32_t)from[3] << 24);
+}
+
+static inline uint32_t maxon_ecx_flat_42m_24v_bits(float x) {
+  uint32_t word;
+  const void *from = &x;
+  (void)memcpy(&word, from, sizeof word);
+  return word;
+}
+
+static inline float maxon_ecx_flat_42m_24v_number(uint32_t word) {
+  float x;
+  const void *from = &word;
+  (void)memcpy(&x, from, sizeof x);
+  return x;
+}
+
+/* buffer: MAXON_ECX_FLAT_42M_24V_SAVED_SIZE bytes. Call it now and then, and before power goes. */
+static inline void maxon_ecx_flat_42m_24v_save(const maxon_ecx_flat_42m_24v_state *state, uint8_t *buffer) {
+  int node;
+  maxon_ecx_flat_42m_24v_pack(buffer, state->started == MAXON_ECX_FLAT_42M_24V_STARTED ? MAXON_ECX_FLAT_42M_24V_SIGNATURE : 0u);
+  for (node = 0; node < 2; ++node) {
+    maxon_ecx_flat_42m_24v_pack(&buffer[4 + 4 * node], maxon_ecx_flat_42m_24v_bits(state->state_C[node]));
+    maxon_ecx_flat_42m_24v_pack(&buffer[4 + 4 * (2 + node)], maxon_ecx_flat_42m_24v_bits(state->nominal_C[node]));
+  }
+  maxon_ecx_flat_42m_24v_pack(&buffer[MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4], maxon_ecx_flat_42m_24v_crc_32(buffer, MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4));
+}
+
+typedef void (*maxon_ecx_flat_42m_24v_law)(const maxon_ecx_flat_42m_24v_input *, const float *, float *);
+
+/* Longest Euler step at these temperatures: 1/20 of the shortest time constant, whose rate is at most the largest sum of a row's
+   derivatives (Gershgorin). */
+static inline float maxon_ecx_flat_42m_24v_cooling_step_s(maxon_ecx_flat_42m_24v_law law, const maxon_ecx_flat_42m_24v_input *off, const float *state_C) {
+  float moved_C[2];
+  float rate_K_per_s[2];
+  float moved_K_per_s[2];
+  float sum_per_s[2];
+  float fastest_per_s = 0.0f;
+  int from;
+  int node;
+  law(off, state_C, rate_K_per_s);
+  for (node = 0; node < 2; ++node) {
+    moved_C[node] = state_C[node];
+    sum_per_s[node] = 0.0f;
+  }
+  for (from = 0; from < 2; ++from) {
+    moved_C[from] += 1.0f;
+    law(off, moved_C, moved_K_per_s);
+    moved_C[from] -= 1.0f;
+    for (node = 0; node < 2; ++node) {
+      const float change_per_s = moved_K_per_s[node] - rate_K_per_s[node];
+      sum_per_s[node] += change_per_s < 0.0f ? -change_per_s : change_per_s;
+    }
+  }
+  for (node = 0; node < 2; ++node) {
+    fastest_per_s = sum_per_s[node] > fastest_per_s ? sum_per_s[node] : fastest_per_s;
+  }
+  return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : MAXON_ECX_FLAT_42M_24V_PERIOD_S;
+}
+
+/* Without current in the hottest air; no more than MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS steps, what is left of the time counts as no time. An Euler
+   step of 1/20 of a time constant cools as 1/20 + 1/800 of it would, so 3 % of the time are left out. peak_C: hottest on the way. */
+static inline void maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_law law, float elapsed_s, float *state_C, float *peak_C) {
+  maxon_ecx_flat_42m_24v_input off;
+  float rate_K_per_s[2];
+  float carry_K[2];
+  float step_s;
+  float left_s = 0.97f * elapsed_s;
+  int node;
+  int step;
+  (void)memset(&off, 0, sizeof off);
+  off.ambient_C = MAXON_ECX_FLAT_42M_24V_HOTTEST_AMBIENT_C;
+  step_s = maxon_ecx_flat_42m_24v_cooling_step_s(law, &off, state_C);
+  for (node = 0; node < 2; ++node) {
+    peak_C[node] = state_C[node];
+    carry_K[node] = 0.0f;
+  }
+  for (step = 0; step < MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
+    const float this_s = left_s < step_s ? left_s : step_s;
+    law(&off, state_C, rate_K_per_s);
+    for (node = 0; node < 2; ++node) {
+      const float change_K = this_s * rate_K_per_s[node] - carry_K[node];
+      const float next_C = state_C[node] + change_K;
+      carry_K[node] = (next_C - state_C[node]) - change_K;
+      state_C[node] = next_C;
+      peak_C[node] = next_C > peak_C[node] ? next_C : peak_C[node];
+    }
+    left_s -= this_s;
+  }
+}
+
+/* All that the driver can give at the highest speed, up to the limit that the guard has kept. */
+static inline void maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_law law, float unsaved_s, float *state_C) {
+  maxon_ecx_flat_42m_24v_input on;
+  float drive_K_per_s[2];
+  float brake_K_per_s[2];
+  float left_s = unsaved_s;
+  int node;
+  int step;
+  (void)memset(&on, 0, sizeof on);
+  on.ambient_C = MAXON_ECX_FLAT_42M_24V_HOTTEST_AMBIENT_C;
+  on.speed_rad_per_s = MAXON_ECX_FLAT_42M_24V_MOST_SPEED_RAD_PER_S;
+  for (step = 0; step < MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
+    on.current_A = MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A;
+    law(&on, state_C, drive_K_per_s);
+    on.current_A = -MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A;
+    law(&on, state_C, brake_K_per_s);
+    for (node = 0; node < 2; ++node) {
+      const float most_K_per_s = drive_K_per_s[node] > brake_K_per_s[node] ? drive_K_per_s[node] : brake_K_per_s[node];
+      const float next_C = state_C[node] + MAXON_ECX_FLAT_42M_24V_PERIOD_S * (most_K_per_s > 0.0f ? most_K_per_s : 0.0f);
+      state_C[node] = next_C < MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C ? next_C : MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C;
+    }
+    left_s -= MAXON_ECX_FLAT_42M_24V_PERIOD_S;
+  }
+  for (node = 0; node < 2 && left_s > 0.0f; ++node) {
+    state_C[node] = MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C;
+  }
+}
+
+/* elapsed_s: without power, by a clock that ran meanwhile; below 0 or no number: unknown. After an unknown time every node is as hot as
+   it was saved or may have become since from the heat of the others: power can have been back at once. unsaved_s: longest time from the
+   last save to the loss of power, 0 where the falling supply starts the save; no number counts as very long. board_C: no node is colder,
+   for the motor stood in the same warmth; what is no temperature counts as the hottest air. */
+static inline maxon_ecx_flat_42m_24v_restored_from maxon_ecx_flat_42m_24v_restore(maxon_ecx_flat_42m_24v_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
+  float peak_C[2];
+  float nominal_peak_C[2];
+  const float least_C = maxon_ecx_flat_42m_24v_is_temperature(board_C) ? board_C : MAXON_ECX_FLAT_42M_24V_HOTTEST_AMBIENT_C;
+  const bool is_known = elapsed_s >= 0.0f;
+  int node;
+  bool is_whole = maxon_ecx_flat_42m_24v_unpack(buffer) == MAXON_ECX_FLAT_42M_24V_SIGNATURE &&
+                       maxon_ecx_flat_42m_24v_unpack(&buffer[MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4]) == maxon_ecx_flat_42m_24v_crc_32(buffer, MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4);
+  for (node = 0; node < 2; ++node) {
+    state->state_C[node] = maxon_ecx_flat_42m_24v_number(maxon_ecx_flat_42m_24v_unpack(&buffer[4 + 4 * node]));
+    state->nominal_C[node] = maxon_ecx_flat_42m_24v_number(maxon_ecx_flat_42m_24v_unpack(&buffer[4 + 4 * (2 + node)]));
+    is_whole = is_whole && maxon_ecx_flat_42m_24v_is_temperature(state->state_C[node]) && maxon_ecx_flat_42m_24v_is_temperature(state->nominal_C[node]);
+  }
+  if (!is_whole) {
+    maxon_ecx_flat_42m_24v_start(state, MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C);
+    return maxon_ecx_flat_42m_24v_nothing_restored;
+  }
+  if (!(unsaved_s <= 0.0f)) {
+    maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
+    maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_nominal_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
+  }
+  maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_rates, is_known ? elapsed_s : 1e9f, state->state_C, peak_C);
+  maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_nominal_rates, is_known ? elapsed_s : 1e9f, state->nominal_C, nominal_peak_C);
+  for (node = 0; node < 2; ++node) {
+    const float guarded_C = is_known ? state->state_C[node] : peak_C[node];
+    const float nominal_C = is_known ? state->nominal_C[node] : nominal_peak_C[node];
+    state->state_C[node] = guarded_C > least_C ? guarded_C : least_C;
+    state->nominal_C[node] = nominal_C > least_C ? nominal_C : least_C;
+    state->carry_K[node] = 0.0f;
+    state->nominal_carry_K[node] = 0.0f;
+  }
+  state->started = MAXON_ECX_FLAT_42M_24V_STARTED;
+  return is_known ? maxon_ecx_flat_42m_24v_restored : maxon_ecx_flat_42m_24v_time_unknown;
 }
 
 #endif

@@ -96,7 +96,7 @@ Json guarantee_json(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return {{"confidence", derating.options.guarantee.confidence},
           {"certainty", kCertainty_share},
-          {"least_kept_shareer_bound", std::floor(1e4 * checked.least_kept_share) / 1e4},
+          {"least_kept_share", std::floor(1e4 * checked.least_kept_share) / 1e4},
           {"samples", checked.samples},
           {"least_samples", least_samples(derating.options.guarantee)},
           {"over", checked.over},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iostream>
 #include <limits>
 
 #include "sensed_motor.h"
@@ -68,8 +69,8 @@ TEST_F(LyingSensor, GainsNoMoreThanStatedAndSparesTheNominalMotor) {
       if (attack.is_noticed && is_all) {
         EXPECT_GE(run.dropped_at_s, 0.0) << attack.name;
       }
-      printf("%-32s all %d excess %.2f A peak %.1f C dropped at %.0f s status %d last %.2f A\n", attack.name, is_all, run.most_excess_A,
-             run.winding_peak_C, run.dropped_at_s, run.status, run.last_allowed_A);
+      std::cout << fmt::format("{} ({}): {:.2f} A more, winding {:.0f} °C, dropped at {:.0f} s\n", attack.name, is_all ? "all" : "random",
+                               run.most_excess_A, run.winding_peak_C, run.dropped_at_s);
     }
   }
 }

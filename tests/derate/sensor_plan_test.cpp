@@ -46,12 +46,10 @@ TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
   EXPECT_GT(plan.most_gain_A, 0.1);
   EXPECT_LE(plan.lying_nominal_C, derating.rules.limits.winding_C);
   EXPECT_LE(plan.over, 0.05 * plan.samples);
-  printf(
-      "factor %.3f -> %.3f ratio %.3f gain %.5f %.5f most_gain %.2f A cold %.3f frozen %.1f K rate %.2f K/s dropped %d lying over %d "
-      "nominal %.1f p95 %.1f most %.1f\n",
-      derating.observer.heat_reserve_ratio(), plan.observer.heat_reserve_ratio(), plan.winding_speed_ratio, plan.gain[0], plan.gain[1],
-      plan.most_gain_A, plan.check.cold_share, plan.check.frozen_K, plan.check.most_rate_K_per_s, plan.dropped, plan.lying_over,
-      plan.lying_nominal_C, plan.winding_p95_C, plan.winding_most_C);
+  RecordProperty("safety_factor_without", fmt::format("{:.3f}", derating.observer.heat_reserve_ratio()));
+  RecordProperty("safety_factor_with", fmt::format("{:.3f}", plan.observer.heat_reserve_ratio()));
+  RecordProperty("most_gain_A", fmt::format("{:.2f}", plan.most_gain_A));
+  RecordProperty("honest_dropped", std::to_string(plan.dropped));
 }
 
 TEST(SensorPlan, RefusesWhatIsNoSensor) {

@@ -20,11 +20,12 @@ typedef enum {
 
 static inline uint32_t @_crc_32(const uint8_t *bytes, int count) {
   uint32_t crc = 0xffffffffu;
-  int i, bit;
+  int i;
+  int bit;
   for (i = 0; i < count; ++i) {
     crc ^= bytes[i];
     for (bit = 0; bit < 8; ++bit) {
-      crc = crc & 1u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
+      crc = (crc & 1u) != 0u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
     }
   }
   return ~crc;
@@ -32,27 +33,38 @@ static inline uint32_t @_crc_32(const uint8_t *bytes, int count) {
 
 static inline void @_pack(uint8_t *to, uint32_t word) {
   to[0] = (uint8_t)(word & 0xffu);
-  to[1] = (uint8_t)(word >> 8 & 0xffu);
-  to[2] = (uint8_t)(word >> 16 & 0xffu);
-  to[3] = (uint8_t)(word >> 24 & 0xffu);
+  to[1] = (uint8_t)((word >> 8) & 0xffu);
+  to[2] = (uint8_t)((word >> 16) & 0xffu);
+  to[3] = (uint8_t)((word >> 24) & 0xffu);
 }
 
 static inline uint32_t @_unpack(const uint8_t *from) {
-  return (uint32_t)from[0] | (uint32_t)from[1] << 8 | (uint32_t)from[2] << 16 | (uint32_t)from[3] << 24;
+  return (uint32_t)from[0] | ((uint32_t)from[1] << 8) | ((uint32_t)from[2] << 16) | ((uint32_t)from[3] << 24);
+}
+
+static inline uint32_t @_bits(float x) {
+  uint32_t word;
+  const void *from = &x;
+  (void)memcpy(&word, from, sizeof word);
+  return word;
+}
+
+static inline float @_number(uint32_t word) {
+  float x;
+  const void *from = &word;
+  (void)memcpy(&x, from, sizeof x);
+  return x;
 }
 
 /* buffer: @CAP@_SAVED_SIZE bytes. Call it now and then, and before power goes. */
 static inline void @_save(const @_state *state, uint8_t *buffer) {
-  uint32_t word;
   int node;
   @_pack(buffer, state->started == @CAP@_STARTED ? @CAP@_SIGNATURE : 0u);
   for (node = 0; node < @NODES@; ++node) {
-    memcpy(&word, &state->state_C[node], sizeof word);
-    @_pack(buffer + 4 + 4 * node, word);
-    memcpy(&word, &state->nominal_C[node], sizeof word);
-    @_pack(buffer + 4 + 4 * (@NODES@ + node), word);
+    @_pack(&buffer[4 + 4 * node], @_bits(state->state_C[node]));
+    @_pack(&buffer[4 + 4 * (@NODES@ + node)], @_bits(state->nominal_C[node]));
   }
-  @_pack(buffer + @CAP@_SAVED_SIZE - 4, @_crc_32(buffer, @CAP@_SAVED_SIZE - 4));
+  @_pack(&buffer[@CAP@_SAVED_SIZE - 4], @_crc_32(buffer, @CAP@_SAVED_SIZE - 4));
 }
 
 )";
@@ -62,8 +74,13 @@ constexpr std::string_view kCool = R"(typedef void (*@_law)(const @_input *, con
 /* Longest Euler step at these temperatures: 1/20 of the shortest time constant, whose rate is at most the largest sum of a row's
    derivatives (Gershgorin). */
 static inline float @_cooling_step_s(@_law law, const @_input *off, const float *state_C) {
-  float moved_C[@NODES@], rate_K_per_s[@NODES@], moved_K_per_s[@NODES@], sum_per_s[@NODES@], fastest_per_s = 0.0f;
-  int from, node;
+  float moved_C[@NODES@];
+  float rate_K_per_s[@NODES@];
+  float moved_K_per_s[@NODES@];
+  float sum_per_s[@NODES@];
+  float fastest_per_s = 0.0f;
+  int from;
+  int node;
   law(off, state_C, rate_K_per_s);
   for (node = 0; node < @NODES@; ++node) {
     moved_C[node] = state_C[node];
@@ -88,9 +105,13 @@ static inline float @_cooling_step_s(@_law law, const @_input *off, const float 
    step of 1/20 of a time constant cools as 1/20 + 1/800 of it would, so 3 % of the time are left out. peak_C: hottest on the way. */
 static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *peak_C) {
   @_input off;
-  float rate_K_per_s[@NODES@], carry_K[@NODES@], step_s, left_s = 0.97f * elapsed_s;
-  int node, step;
-  memset(&off, 0, sizeof off);
+  float rate_K_per_s[@NODES@];
+  float carry_K[@NODES@];
+  float step_s;
+  float left_s = 0.97f * elapsed_s;
+  int node;
+  int step;
+  (void)memset(&off, 0, sizeof off);
   off.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
 @OFF@  step_s = @_cooling_step_s(law, &off, state_C);
   for (node = 0; node < @NODES@; ++node) {
@@ -117,9 +138,12 @@ static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *pea
 constexpr std::string_view kUnsaved = R"(/* All that the driver can give at the highest speed, up to the limit that the guard has kept. */
 static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
   @_input on;
-  float drive_K_per_s[@NODES@], brake_K_per_s[@NODES@], left_s = unsaved_s;
-  int node, step;
-  memset(&on, 0, sizeof on);
+  float drive_K_per_s[@NODES@];
+  float brake_K_per_s[@NODES@];
+  float left_s = unsaved_s;
+  int node;
+  int step;
+  (void)memset(&on, 0, sizeof on);
   on.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
   on.speed_rad_per_s = @CAP@_MOST_SPEED_RAD_PER_S;
 @ON@  for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
@@ -147,17 +171,16 @@ constexpr std::string_view kRestore =
    last save to the loss of power, 0 where the falling supply starts the save; no number counts as very long. board_C: no node is colder,
    for the motor stood in the same warmth; what is no temperature counts as the hottest air. */
 static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
-  float peak_C[@NODES@], nominal_peak_C[@NODES@];
-  uint32_t word;
+  float peak_C[@NODES@];
+  float nominal_peak_C[@NODES@];
   const float least_C = @_is_temperature(board_C) ? board_C : @CAP@_HOTTEST_AMBIENT_C;
-  const int is_known = elapsed_s >= 0.0f;
-  int node, is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
-                       @_unpack(buffer + @CAP@_SAVED_SIZE - 4) == @_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
+  const bool is_known = elapsed_s >= 0.0f;
+  int node;
+  bool is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
+                       @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == @_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
   for (node = 0; node < @NODES@; ++node) {
-    word = @_unpack(buffer + 4 + 4 * node);
-    memcpy(&state->state_C[node], &word, sizeof word);
-    word = @_unpack(buffer + 4 + 4 * (@NODES@ + node));
-    memcpy(&state->nominal_C[node], &word, sizeof word);
+    state->state_C[node] = @_number(@_unpack(&buffer[4 + 4 * node]));
+    state->nominal_C[node] = @_number(@_unpack(&buffer[4 + 4 * (@NODES@ + node)]));
     is_whole = is_whole && @_is_temperature(state->state_C[node]) && @_is_temperature(state->nominal_C[node]);
   }
   if (!is_whole) {
@@ -175,7 +198,8 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
     const float nominal_C = is_known ? state->nominal_C[node] : nominal_peak_C[node];
     state->state_C[node] = guarded_C > least_C ? guarded_C : least_C;
     state->nominal_C[node] = nominal_C > least_C ? nominal_C : least_C;
-    state->carry_K[node] = state->nominal_carry_K[node] = 0.0f;
+    state->carry_K[node] = 0.0f;
+    state->nominal_carry_K[node] = 0.0f;
   }
   state->started = @CAP@_STARTED;
   return is_known ? @_restored : @_time_unknown;

@@ -25,9 +25,13 @@ typedef struct {
   float capped_carry_K[@NODES@];
   float capped_A;
   float lag_C;                  /* temperature of the sensor itself */
-  float last_C, unread_s, gap_s; /* last plausible reading, time since it was used, time since it came */
-  float jumped_s, cold_s;       /* how long the reading has contradicted the motor */
-  float frozen_C, frozen_nominal_C;
+  float last_C;                 /* last plausible reading */
+  float unread_s;               /* since a reading was used */
+  float gap_s;                  /* since a plausible reading came */
+  float jumped_s;               /* how long the readings have contradicted the motor */
+  float cold_s;
+  float frozen_C;
+  float frozen_nominal_C;
   uint32_t rejected;            /* readings that were not used */
   @_sensor_status dropped;      /* why the sensor is not used any more; @_sensor_used: it is */
 } @_sensed_state;
@@ -44,14 +48,20 @@ static inline void @_sensed_start(@_sensed_state *state, float body_C) {
   int node;
   @_start(&state->model, body_C);
   for (node = 0; node < @NODES@; ++node) {
-    state->state_C[node] = state->capped_C[node] = state->model.state_C[node];
-    state->carry_K[node] = state->capped_carry_K[node] = 0.0f;
+    state->state_C[node] = state->model.state_C[node];
+    state->capped_C[node] = state->model.state_C[node];
+    state->carry_K[node] = 0.0f;
+    state->capped_carry_K[node] = 0.0f;
   }
   state->capped_A = 0.0f;
-  state->lag_C = state->last_C = state->frozen_C = state->frozen_nominal_C = state->model.state_C[0];
+  state->lag_C = state->model.state_C[0];
+  state->last_C = state->model.state_C[0];
+  state->frozen_C = state->model.state_C[0];
+  state->frozen_nominal_C = state->model.state_C[0];
   state->unread_s = @CAP@_SENSOR_HOLD_S;
   state->gap_s = 1e6f;
-  state->jumped_s = state->cold_s = 0.0f;
+  state->jumped_s = 0.0f;
+  state->cold_s = 0.0f;
   state->rejected = 0u;
   state->dropped = @_sensor_used;
   state->started = @CAP@_STARTED;
@@ -64,7 +74,8 @@ constexpr std::string_view kCheck =
 static inline @_sensor_status @_check_reading(@_sensed_state *state, float reading_C, float ambient_C) {
   const float air_C = ambient_C < @CAP@_HOTTEST_AMBIENT_C ? ambient_C : @CAP@_COLDEST_AMBIENT_C;
   const float nominal_C = state->model.nominal_C[@SENSOR_NODE@];
-  float change_K, swing_K;
+  float change_K;
+  float swing_K;
   state->gap_s += @CAP@_PERIOD_S;
   if (!@_is_between(@CAP@_COLDEST_AMBIENT_C - @CAP@_SENSOR_ACCURACY_K, reading_C, @CAP@_SENSOR_MOST_C)) {
     return @_sensor_silent;
@@ -86,11 +97,13 @@ static inline @_sensor_status @_check_reading(@_sensed_state *state, float readi
   if (change_K > @CAP@_SENSOR_FROZEN_BAND_K || state->gap_s > @CAP@_SENSOR_HOLD_S) {
     state->frozen_C = reading_C;
     state->frozen_nominal_C = nominal_C;
-  } else if (swing_K > @CAP@_SENSOR_FROZEN_K + (ambient_C - air_C)) {
+  }
+  if (change_K <= @CAP@_SENSOR_FROZEN_BAND_K && state->gap_s <= @CAP@_SENSOR_HOLD_S && swing_K > @CAP@_SENSOR_FROZEN_K + (ambient_C - air_C)) {
     state->dropped = @_sensor_frozen;
   }
   state->last_C = reading_C;
-  state->gap_s = state->jumped_s = 0.0f;
+  state->gap_s = 0.0f;
+  state->jumped_s = 0.0f;
   return state->dropped;
 }
 
@@ -121,16 +134,19 @@ constexpr std::string_view kStep =
 static inline void @_forget_sensor(@_sensed_state *state, float allowed_A) {
   int node;
   for (node = 0; node < @NODES@; ++node) {
-    state->state_C[node] = state->capped_C[node] = state->model.state_C[node];
-    state->carry_K[node] = state->capped_carry_K[node] = 0.0f;
+    state->state_C[node] = state->model.state_C[node];
+    state->capped_C[node] = state->model.state_C[node];
+    state->carry_K[node] = 0.0f;
+    state->capped_carry_K[node] = 0.0f;
   }
   state->capped_A = allowed_A;
   state->lag_C = state->model.state_C[@SENSOR_NODE@];
   state->unread_s = @CAP@_SENSOR_HOLD_S;
 }
 
-static inline int @_is_sensed_started(const @_sensed_state *state) {
-  int node, is_started = state->started == @CAP@_STARTED && @_is_temperature(state->lag_C) &&
+static inline bool @_is_sensed_started(const @_sensed_state *state) {
+  int node;
+  bool is_started = state->started == @CAP@_STARTED && @_is_temperature(state->lag_C) &&
                          @_is_between(0.0f, state->capped_A, @CAP@_MOST_CURRENT_A) &&
                          @_is_between(0.0f, state->unread_s, 2.0f * @CAP@_SENSOR_HOLD_S) && @_is_between(0.0f, state->gap_s, 2e6f) &&
                          @_is_between(0.0f, state->jumped_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S) &&
@@ -165,11 +181,8 @@ static inline @_output @_step_model(@_sensed_state *state, const @_input *measur
 static inline void @_advance_sensed(@_sensed_state *state, const @_input *measured) {
   @_input capped = *measured;
   float rate_K_per_s[@NODES@];
-  if (capped.current_A > state->capped_A) {
-    capped.current_A = state->capped_A;
-  } else if (capped.current_A < -state->capped_A) {
-    capped.current_A = -state->capped_A;
-  }
+  capped.current_A = capped.current_A < state->capped_A ? capped.current_A : state->capped_A;
+  capped.current_A = capped.current_A > -state->capped_A ? capped.current_A : -state->capped_A;
   @_rates(&capped, state->capped_C, rate_K_per_s);
   @_advance(state->capped_C, state->capped_carry_K, rate_K_per_s);
   if (state->unread_s < @CAP@_SENSOR_HOLD_S) {
@@ -183,8 +196,10 @@ static inline void @_advance_sensed(@_sensed_state *state, const @_input *measur
 /* reading_C: of the sensor; NAN where there is none in this period. In place of @_step. */
 static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
   @_sensed_output out;
-  float speed_rad_per_s, sensed_A, most_A;
-  const int was_started = @_is_sensed_started(state);
+  float speed_rad_per_s;
+  float sensed_A;
+  float most_A;
+  const bool was_started = @_is_sensed_started(state);
   if (!was_started) {
     @_sensed_start(state, @CAP@_WINDING_LIMIT_C);
   }
@@ -203,8 +218,7 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
     state->unread_s = 0.0f;
   } else {
     state->unread_s = state->unread_s < @CAP@_SENSOR_HOLD_S ? state->unread_s + @CAP@_PERIOD_S : @CAP@_SENSOR_HOLD_S;
-    state->rejected += @REJECTED@;
-  }
+@REJECTED@  }
   speed_rad_per_s = measured->speed_rad_per_s < 0.0f ? -measured->speed_rad_per_s : measured->speed_rad_per_s;
   state->capped_A = @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->capped_C), state->capped_C[0]);
   sensed_A = state->unread_s < @CAP@_SENSOR_HOLD_S
@@ -219,7 +233,11 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
   }
   out.guard.allowed_current_A = sensed_A > 0.0f ? sensed_A : 0.0f;
   out.guard.guarded_winding_C = state->state_C[0];
-  out.guard.reason = sensed_A >= @CAP@_MOST_CURRENT_A ? @_full : sensed_A > 0.0f ? @_derated : @_no_current;
+  if (sensed_A >= @CAP@_MOST_CURRENT_A) {
+    out.guard.reason = @_full;
+  } else {
+    out.guard.reason = sensed_A > 0.0f ? @_derated : @_no_current;
+  }
   return out;
 }
 
@@ -243,7 +261,8 @@ static inline void @_resistance_start(@_resistance *sensor, float body_C) {
    small, the motor too fast or the current changes too fast for the accuracy. */
 static inline float @_resistance_reading_C(@_resistance *sensor, const @_sensed_state *state, const @_input *measured, float voltage_V) {
   const float nothing = (float)NAN;
-  const float current_A = measured->current_A, speed_rad_per_s = measured->speed_rad_per_s;
+  const float current_A = measured->current_A;
+  const float speed_rad_per_s = measured->speed_rad_per_s;
   const float size_A = current_A < 0.0f ? -current_A : current_A;
   const float size_rad_per_s = speed_rad_per_s < 0.0f ? -speed_rad_per_s : speed_rad_per_s;
   const float nominal_C = state->model.nominal_C[0];
@@ -336,7 +355,8 @@ Rates sensor_functions(const Source& source) {
                                                          literal(source.derating.options.period_s / plan.options.lag_s), node)
                                            : ""},
                     // A resistance has no reading most of the time: only what was read and not used counts.
-                    {"@REJECTED@", plan.resistance ? "out.sensor == @_sensor_silent ? 0u : 1u" : "1u"},
+                    {"@REJECTED@", plan.resistance ? "    if (out.sensor != @_sensor_silent) {\n      state->rejected += 1u;\n    }\n"
+                                                   : "    state->rejected += 1u;\n"},
                     {"@GAINS@", gains},
                     {"@RESERVE@", fmt::format("{:.3g}", plan.observer.heat_reserve_ratio())},
                     {"@SENSOR_NODE@", std::to_string(plan.options.node)},

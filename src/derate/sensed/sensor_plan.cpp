@@ -19,8 +19,8 @@ constexpr double kStepsPerApproach = 10.0;
 /// The motors of the guard without a sensor: those of its search first, then those of each check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 /// A pulse from cold heats a winding by safety factor times winding_speed_ratio. With an exponent of 1 that product is the one without a
-/// sensor and pulses decide the safety factor; with 2 the winding is so fast that the steady state gains no more (found on the motors of
-/// the search).
+/// sensor and pulses decide the safety factor; with 2 the winding is so fast that the steady state gains no more (found on motors drawn for
+/// the ECX FLAT 32 L).
 constexpr double kPulseExponent = 1.5;
 
 /// The nominal motor with a winding that stores less heat.
@@ -30,14 +30,10 @@ Network faster_network(const Motor& motor, double winding_speed_ratio) {
   return datasheet_network(motor, sample);
 }
 
-ReadingCheck first_check(const Derating& model_only, const SensorOptions& options) {
+ReadingCheck first_check(const SensorOptions& options) {
   constexpr double kColdMargin_K = 5.0;  // an air sensor has an error too
   constexpr double kFrozenBand = 0.25;
-  return {.least_C = model_only.options.coldest_ambient_C,
-          .most_C = 300.0,
-          .cold_share = 0.0,
-          .cold_margin_K = kColdMargin_K,
-          .frozen_band_K = kFrozenBand * options.accuracy_K};
+  return {.most_C = 300.0, .cold_share = 0.0, .cold_margin_K = kColdMargin_K, .frozen_band_K = kFrozenBand * options.accuracy_K};
 }
 
 class PlanSearch {
@@ -65,7 +61,7 @@ class PlanSearch {
                     .table = std::move(table),
                     .gain = gain_,
                     .lag_gain_ratio = lag_gain_ratio_,
-                    .check = first_check(model_only_, options_)};
+                    .check = first_check(options_)};
     if (options_.kind == SensorKind::winding_resistance) {
       plan.resistance = resistance_reading(motor_, options_, model_only_.options.period_s);
     }
