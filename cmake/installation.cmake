@@ -14,6 +14,7 @@ install(DIRECTORY robot_core/robots/ DESTINATION "${HEATSOAK_SHARE}/robots" ${DA
 install(DIRECTORY reports/soak reports/friction_test reports/check DESTINATION "${HEATSOAK_SHARE}/reports" ${DATA_ONLY})
 # The page of the project, and what it links to where it links to it.
 install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY reports DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(DIRECTORY docs reports DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(DIRECTORY "${PROJECT_BINARY_DIR}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}")
 install(FILES motor_db/README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/motor_db")
 install(FILES robot_core/robots/README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/robot_core/robots")

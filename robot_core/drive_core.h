@@ -214,7 +214,8 @@ struct alignas(8) ComparisonState {
   /// Copies of WheelState::speed_fault and State::yaw_fault: they outlast a flipped bit in the rest of State.
   std::uint8_t speed_fault[kMostWheels] = {};
   std::uint8_t yaw_fault = 0;
-  std::uint8_t unused[7] = {};
+  std::uint8_t unused[3] = {};
+  float standing_s = 0.0F;  ///< how long no speed sample has changed while more than the limp current would flow through standing motors
 };
 
 /// What evolves. Only start() and step() write it; a copy can be logged. The check sum covers what follows it up to `comparison`;
@@ -264,6 +265,8 @@ struct Output {
 inline constexpr float kLongestGap_periods = 3.0F;
 /// A sensor that was faulty is believed again after so long in agreement with the rest.
 inline constexpr float kSteadyAgain_s = 0.25F;
+/// Wheels that are driven for so long without any sample changing: their sensors are dead, or the robot is held.
+inline constexpr float kStanding_s = 0.3F;
 
 /// What is known when the robot is switched on.
 struct StartUp {

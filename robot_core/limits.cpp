@@ -13,6 +13,7 @@ namespace {
 constexpr float kOvercurrent_ratio = 1.3F;
 constexpr float kBoundDecay = 0.8F;  // of the bound's memory, per period: sampling and actuation are late by one or two
 
+constexpr float kRounding = 1.0001F;
 constexpr float kSensedSlack_share = 0.05F;  // of the driver's limit
 
 /// What one wheel wants and may have.
@@ -100,7 +101,6 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   }
   reason = reason == Reason::none ? Reason::slip : reason;
   voltage_V = clamped(voltage_V, implied_V - band_V, implied_V + band_V);
-  constexpr float kRounding = 1.0001F;
   return absolute(voltage_V) <= kRounding * most_V && absolute(voltage_V - demand.back_V) <= kRounding * band_V;
 }
 
@@ -148,20 +148,30 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   return smaller(least, demand.share);
 }
 
-/// The guards of a robot with a hot motor. A stopping robot brakes as a whole: a wheel that turns over or is pulled along drives for a
-/// moment, and without current for it the common factor would leave none to the others. So all wheels may use the braking reserve while the
-/// wanted currents take power out of the body, and a wheel that brakes may always. Returns the new least share.
-[[gnu::noinline]] float apply_guards(const Config& config, State& state, const Believed& believed, const BodyReference& body, float most_V,
-                                     WheelDemand* demand, LimitedVoltages& limited, float least) {
+/// The guards of a robot with a hot motor, or whose wheel speeds are dead. A stopping robot brakes as a whole: a wheel that turns over or
+/// is pulled along drives for a moment, and without current for it the common factor would leave none to the others. So all wheels may use
+/// the braking reserve while the wanted currents take power out of the body, and do so without the wheel that brakes most: its speed sensor
+/// may lie. A wheel that brakes may always. Returns the new least share.
+[[gnu::cold, gnu::noinline]] float apply_guards(const Config& config, State& state, const Believed& believed, const BodyReference& body,
+                                                float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
   float body_W = 0.0F;
+  float most_braking_W = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    body_W += demand[i].back_V * demand[i].current_A;
+    const float driving_W = demand[i].back_V * demand[i].current_A;
+    body_W += driving_W;
+    most_braking_W = smaller(most_braking_W, driving_W);
   }
+  const bool body_brakes = body_W < most_braking_W && !body.is_wheelwise;
+  const bool are_speeds_dead = state.comparison.standing_s > kStanding_s;
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
-    const bool brakes = demand[i].back_V * demand[i].current_A < 0.0F || (body_W < 0.0F && !body.is_wheelwise);
+    const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
     const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     would_limit = apply_guard(config, state, allowed_A, believed.elapsed_s, demand[i]) || would_limit;
+    if (are_speeds_dead && config.limp_current_A < demand[i].most_A) {
+      demand[i].most_A = config.limp_current_A;
+      demand[i].reason = Reason::wheel_speeds_dead;
+    }
     if (believed.wheel[i].is_speed_known) {
       least = share_of_wheel(config, i, most_V, demand[i], limited.wheel[i].reason, least);
     }
@@ -175,7 +185,7 @@ float find_demands(const Config& config, State& state, const Believed& believed,
                    float most_V, WheelDemand* demand, LimitedVoltages& limited) {
   float least = 1.0F;
   float power_W = 0.0F;
-  bool is_hot = false;
+  bool is_hot = state.comparison.standing_s > kStanding_s;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const BelievedWheel& sensed = believed.wheel[i];
@@ -221,6 +231,7 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 [[gnu::noinline]] bool hold_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i,
                                   float most_V, float& voltage_V, Reason& reason) {
   const BelievedWheel& sensed = believed.wheel[i];
+  const float band_V = kRounding * config.lowest_resistance_ohm * demand.most_A;
   if (sensed.is_current_sensed && sensed.is_speed_sensed) {
     const float asked_V = voltage_V;
     hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
@@ -228,14 +239,14 @@ Reason strongest(const WheelState& wheel, Reason limit) {
       reason = reason_of(config.wheel[i], demand);
     }
     // A current sensor may lie too: it never takes the voltage out of the window of the sensed speed.
-    const float band_V = config.lowest_resistance_ohm * demand.most_A;
     voltage_V = clamped(voltage_V, demand.back_V - band_V, demand.back_V + band_V);
   }
-  const bool is_held = sensed.is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V, reason)
-                                             : limp_blindly(config, believed, demand, i, most_V, voltage_V);
+  bool is_held = sensed.is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V, reason)
+                                       : limp_blindly(config, believed, demand, i, most_V, voltage_V);
   if (sensed.is_current_sensed && !sensed.is_speed_sensed) {
-    // Better evidence than speeds that others imply.
+    // Better evidence than a speed that others imply, but it may lie: where both leave no voltage the bridge is opened.
     hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
+    is_held = is_held && !(sensed.is_speed_known && absolute(voltage_V - demand.back_V) > band_V);
   }
   wheel.current_bound_A = larger(demand.most_A, kBoundDecay * wheel.current_bound_A);
   return is_held && is_finite(voltage_V) && !(sensed.is_current_sensed && is_overcurrent(config, sensed, wheel));

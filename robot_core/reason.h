@@ -25,6 +25,9 @@
 // |        | (swapped)                                                   |                                                   |                                 |
 // | 114 W  | speed unknown: too few other wheels to estimate it          | voltage of at most limp_current_A times the       | as 110                          |
 // |        |                                                             | resistance; open where current is not sensed      |                                 |
+// | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A, as  | a wheel speed changes           |
+// |        | limp_current_A would flow through standing motors: all      | of standing motors: the robot does not run away   |                                 |
+// |        | sensors dead, or the robot is held                          |                                                   |                                 |
 // | 120 W  | motor current not finite or beyond what the battery drives  | current from voltage, speed and guard temperature | next valid sample               |
 // | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard takes the larger of both        | kSteadyAgain_s of agreement     |
 // | 130 R  | battery voltage not finite, below half of the lowest or     | PWM as for a full battery, limits as for an empty | next valid sample               |
@@ -45,20 +48,16 @@
 //
 // Not recognised (tests/robot_core/adversarial_test.cpp has the sizes); current limits and guard hold unless stated:
 //   - Swapped wheel sensors until they are found, after 0.1 to 0.4 s of driving on average. Swapped samples of opposite wheels, or of any
-//   two
-//     of three, fit a different motion of the robot equally well; only the reaction to currents shows the swap. Until then the current may
-//     be above its limit.
+//     two of three, fit a different motion of the robot equally well; only the reaction to currents shows the swap. Until then the current
+//     may be above its limit.
 //   - One wheel sensor with a wrong scale, sign or offset, or one that is stuck with noise: the robot turns and its wheels work against
-//   each
-//     other. Sliding wheels look the same. The robot may seem to brake, and then driving may use the reserve kept for braking. A slipping
-//     wheel whose own sensor lies and whose current is not sensed may exceed its limit.
-//   - Two or more speed sensors (wheels, gyro) that lie at once. If all wheel speeds show 0, the robot accelerates without control. Current
-//     limits may be exceeded.
+//     each other. Sliding wheels look the same. A slipping wheel whose own sensor lies and whose current is not sensed may exceed its limit.
+//   - Two or more speed sensors (wheels, gyro) that lie at once: current limits may be exceeded. If all show 0 the robot accelerates for
+//     kStanding_s before it is held to the limp current (115).
 //   - A gyro with a wrong sign, scale or offset: the robot turns wrongly.
-//   - A battery sensor that is wrong by the same factor since the start, or sinks more slowly than 0.4 % of the full battery per second:
-//   the
-//     current may exceed its limit by that factor.
-//   - Combinations of three faults. On three wheels some of them exceed the current limit for a few periods.
+//   - A battery sensor that is wrong by the same factor since the start or since a fault, or sinks more slowly than 0.4 % of the full
+//     battery per second: the current may exceed its limit by that factor.
+//   - Combinations of three faults: on three wheels some exceed the current limit for a few periods.
 //   - A command that is wrong but possible.
 // Faults 111, 112 and 121 are found later, or not at all, if the robot's file has no current limit of the driver.
 #pragma once
@@ -91,6 +90,7 @@ enum class Reason : std::uint8_t {
   wheel_speed_stuck = 112,
   wheel_speed_swapped = 113,
   wheel_speed_unknown = 114,
+  wheel_speeds_dead = 115,
   current_missing = 120,
   current_implausible = 121,
   battery_voltage_missing = 130,

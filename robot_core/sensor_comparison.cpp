@@ -130,6 +130,23 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
   state.has_yaw_spoken_wrongly = 0;
 }
 
+/// All speeds at once: sensors that are dead together agree with each other.
+[[gnu::cold]] void compare_standing(const Config& config, State& state, float since_s) {
+  bool is_driven = false;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const WheelState& wheel = state.wheel[i];
+    if (wheel.same_steps < kStepsPerComparison) {
+      state.comparison.standing_s = 0.0F;
+      return;
+    }
+    const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
+    is_driven = is_driven || absolute(driven_V) > config.lowest_resistance_ohm * config.limp_current_A;
+  }
+  // Up to twice the threshold is counted: limited to the limp current, a wheel stays below it.
+  float& standing_s = state.comparison.standing_s;
+  standing_s = is_driven ? smaller(standing_s + since_s, 2.0F * kStanding_s) : standing_s;
+}
+
 /// What the currents do to one wheel: (V − K·n·ω), and the speed that it has gained since the last comparison.
 struct WheelResponse {
   float driving_V;
@@ -284,6 +301,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
       compare_heat(config, state, believed, input.motor_current_A[i], i, since_s);
     }
     if (turn == 8) {
+      compare_standing(config, state, since_s);
       compare_yaw_rate(config, state, believed, since_s);
     }
   }

@@ -1,6 +1,7 @@
 #include "check/check_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -179,7 +180,7 @@ class CheckReader {
       known.emplace_back(type.name);
     }
     if (limits->keys().empty()) {
-      table_.problem("limits", fmt::format("is empty; expected one of {}", known.front()));
+      table_.problem("limits", fmt::format("is empty; expected one or more of {}", fmt::join(known, ", ")));
     }
     for (const std::string& key : limits->keys()) {
       const ThresholdType* type = find_threshold(key);

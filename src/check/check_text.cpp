@@ -251,7 +251,7 @@ std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view
   const Counts counts = counts_of(outcomes);
   std::string text = fmt::format("### heatsoak check: {}\n\n",
                                  counts.exceeded + counts.not_evaluated == 0
-                                     ? fmt::format("all {} limits hold", counts.all)
+                                     ? counts.all == 1 ? std::string("the limit holds") : fmt::format("all {} limits hold", counts.all)
                                      : fmt::format("{} of {} limits do not hold", counts.exceeded + counts.not_evaluated, counts.all));
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const Outcome& each : outcomes) {

@@ -63,7 +63,11 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
     return {0.0, {}, fmt::format("{} (\"{}\")", parsed.problem, type.example)};
   }
   if (!type.range.contains(parsed.value)) {
-    return {0.0, {}, fmt::format("\"{}\" is out of range; expected {}", all, to_string(type.range, type.unit))};
+    return {
+        0.0, {}, fmt::format("\"{}\" is out of range; expected {}, such as \"{}\"", all, to_string(type.range, type.unit), type.example)};
+  }
+  if (type.is_whole && parsed.value != std::floor(parsed.value)) {
+    return {0.0, {}, fmt::format("\"{}\" is no whole number; {}", all, expected(type))};
   }
   return {parsed.value, unit_behind(quantity), {}};
 }

@@ -40,6 +40,7 @@ struct ThresholdType {
   std::string_view name;  ///< the file's name; set by all_thresholds()
   std::string_view unit;  ///< UDUNITS text; "" is a pure number
   bool is_share = false;  ///< a pure number that people read in per cent
+  bool is_whole = false;  ///< counts something: a limit with a fraction is a mistake
   Bound direction = Bound::at_most;
   Range range = {};          ///< of limits
   Room room = Room::share;   ///< of --update

@@ -7,7 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/match_simulation.h"
-#include "cli/verdict_words.h"
+#include "present/evaluation.h"
 
 namespace heatsoak {
 namespace {
@@ -36,6 +36,23 @@ double margin_K(const ClosedLoopRank& rank) { return rank.winding_limit_C - rank
 std::string text_of(const GameSpread& spread, double scale, int decimals) {
   return fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * spread.nominal, decimals, scale * spread.low, decimals, scale * spread.high,
                      decimals);
+}
+
+std::vector<present::Text> row(std::size_t rank, const ClosedLoopRank& of) {
+  const GameDrives& drives = of.drives;
+  if (drives.games.empty()) {
+    std::vector<present::Text> cells{{fmt::format("{}", rank)}, {drives.motor_id}, {"not driven", present::Tone::bad}};
+    cells.resize(8, {"–"});
+    return cells;
+  }
+  return {{fmt::format("{}", rank)},
+          {drives.motor_id},
+          {std::string(to_string(of.verdict)), present::tone_of(of.verdict)},
+          {text_of(drives.spread(&DriveScore::winding_peak_C), 1.0, 0)},
+          {text_of(drives.spread(&DriveScore::stator_peak_C), 1.0, 0)},
+          {drives.is_guarded ? text_of(drives.spread(&DriveScore::guard_limited_s), 1.0, 0) : "no guard"},
+          {text_of(drives.spread(&DriveScore::tracking_rms_m), 1e3, 0)},
+          {text_of(drives.spread(&DriveScore::distance_m), 1.0, 0)}};
 }
 
 nlohmann::ordered_json json(const GameSpread& spread, int decimals) {
@@ -70,41 +87,49 @@ std::vector<ClosedLoopRank> rank_closed_loop(std::vector<GameDrives> drives, std
   return ranks;
 }
 
-std::string closed_loop_text(const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed) {
-  std::string text = fmt::format(
-      "\nclosed loop: {} driven by the drive core, seeds {} to {}; first game [lowest…highest of all]\n"
-      "{:3}  {:32} {:10}  {:>18}  {:>18}  {:>18}  {:>18}  {:>18}\n",
-      counted(static_cast<std::size_t>(games), "game"), seed, seed + static_cast<std::uint64_t>(games) - 1, "", "motor", "verdict",
-      "winding peak °C", "stator peak °C", "driven / m", "error / mm rms", "guard limits / s");
+void add_closed_loop(present::Document& document, const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed) {
+  using present::Alignment;
+  using present::Severity;
+  present::Table table{
+      .title = fmt::format("Closed loop: {} driven by the drive core, seeds {} to {}; first game [lowest…highest of all]",
+                           counted(static_cast<std::size_t>(games), "game"), seed, seed + static_cast<std::uint64_t>(games) - 1),
+      .columns = {{"", "", 0},
+                  {"motor", "", 0, Alignment::left},
+                  {"verdict", "", 0, Alignment::left},
+                  {"winding peak", "°C", 0},
+                  {"stator peak", "°C", 2},
+                  {"guard limits", "s", 1},
+                  {"error", "mm rms", 3},
+                  {"driven", "m", 4}}};
   for (std::size_t i = 0; i < ranks.size(); ++i) {
+    table.rows.push_back(row(i + 1, ranks[i]));
     const GameDrives& drives = ranks[i].drives;
     if (drives.games.empty()) {
-      text += fmt::format("{:3}  {:32} {:10}  {}\n", i + 1, drives.motor_id, "not driven", drives.why_none);
-      continue;
+      document.add_note(Severity::warning, fmt::format("{} was not driven: {}", drives.motor_id, drives.why_none));
     }
-    const std::string guard = drives.is_guarded ? text_of(drives.spread(&DriveScore::guard_limited_s), 1.0, 0) : "no guard";
-    text += fmt::format("{:3}  {:32} {:10}  {:>18}  {:>18}  {:>18}  {:>18}  {:>18}\n", i + 1, drives.motor_id, to_string(ranks[i].verdict),
-                        text_of(drives.spread(&DriveScore::winding_peak_C), 1.0, 0),
-                        text_of(drives.spread(&DriveScore::stator_peak_C), 1.0, 0), text_of(drives.spread(&DriveScore::distance_m), 1.0, 0),
-                        text_of(drives.spread(&DriveScore::tracking_rms_m), 1e3, 0), guard);
-  }
-  for (const ClosedLoopRank& rank : ranks) {
-    const auto bad = std::ranges::find_if(rank.drives.games, [](const DriveScore& game) { return !not_driven(game).empty(); });
-    if (bad != rank.drives.games.end()) {
-      text += fmt::format("{}: {}\n", rank.drives.motor_id, not_driven(*bad));
+    const auto bad = std::ranges::find_if(drives.games, [](const DriveScore& game) { return !not_driven(game).empty(); });
+    if (bad != drives.games.end()) {
+      document.add_note(Severity::warning, fmt::format("{}: {}", drives.motor_id, not_driven(*bad)));
     }
-    if (!rank.drives.why_no_guard.empty()) {
-      text += fmt::format("{}: no thermal guard: {}\n", rank.drives.motor_id, rank.drives.why_no_guard);
+    if (!drives.why_no_guard.empty()) {
+      document.add_note(Severity::note, fmt::format("{} has no thermal guard: {}", drives.motor_id, drives.why_no_guard));
     }
   }
-  return text +
-         "The list above takes the torque that an exactly followed plan needs. Here the drive core controls the wheels from noisy, "
-         "delayed\n"
-         "sensors and lost radio packets, wheels creep and slide, the battery sags and empties, windings warm and resist more. "
-         "Corrections\n"
-         "make more heat; what grip, voltage and current limits take away makes less. Motors are nominal: tolerances stand in the list "
-         "above.\n"
-         "guard limits: time in which the thermal guard would have limited a motor; here it only counts.\n";
+  const auto passed = std::ranges::count(ranks, Verdict::pass, &ClosedLoopRank::verdict);
+  document.headline.insert(document.headline.begin(),
+                           {fmt::format("Driven in a closed loop, {} of {} pass. The ranking below follows these games.", passed,
+                                        counted(ranks.size(), "motor")),
+                            passed == 0 ? present::Tone::bad : present::Tone::good});
+  document.tables.insert(document.tables.begin(), std::move(table));
+  document.add_note(
+      Severity::note,
+      "The two tables differ: the one without a closed loop takes the torque that an exactly followed plan needs. In the closed loop the "
+      "drive core works with noisy, delayed sensors and lost packets, wheels slip, and the battery sags. Corrections add heat; grip, "
+      "voltage "
+      "and current limits take heat away.");
+  document.add_note(Severity::background,
+                    "In the closed loop motors are nominal; tolerances are in the other table. guard limits: time in which the "
+                    "thermal guard would have limited a motor; here it only counts.");
 }
 
 nlohmann::ordered_json closed_loop_json(const ClosedLoopRank& rank, std::uint64_t seed) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "present/document.h"
 #include "select/evaluate.h"
 #include "simulate/game_drives.h"
 
@@ -23,7 +24,8 @@ struct ClosedLoopRank {
 /// limit. `drives` has the motors of `results` in any order.
 std::vector<ClosedLoopRank> rank_closed_loop(std::vector<GameDrives> drives, std::vector<MotorEvaluation>& results);
 
-std::string closed_loop_text(const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed);
+/// Puts the verdicts of the driven games first, and their table and notes beside those of the evaluation.
+void add_closed_loop(present::Document& document, const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed);
 nlohmann::ordered_json closed_loop_json(const ClosedLoopRank& rank, std::uint64_t seed);
 
 }  // namespace heatsoak

@@ -10,7 +10,9 @@
 
 #include "base/diagnostic.h"
 #include "base/files.h"
+#include "cli/terminal.h"
 #include "input/data_folders.h"
+#include "present/document.h"
 #include "select/evaluate.h"
 
 namespace CLI {
@@ -22,14 +24,17 @@ namespace heatsoak {
 /// The options that every verb has, and where answers go.
 class Session {
  public:
-  void add_data_option(CLI::App& app);  ///< --db
-  void add_json_option(CLI::App& app);  ///< --json
+  void add_data_option(CLI::App& app);   ///< --db
+  void add_json_option(CLI::App& app);   ///< --json
+  void add_text_options(CLI::App& app);  ///< --explain, --quiet and --report, for verbs that show() documents
 
   [[nodiscard]] DataFolders folders() const;
   // What a verb has to tell is kept until it is done: finish() puts out all of it or, where a file cannot be written, none.
 
-  /// Text for people: stdout, or stderr where the JSON takes stdout.
-  void say(std::string_view text) { text_ += text; }
+  /// Text for people: stdout, or stderr where the JSON takes stdout. Control characters are shown as '?'.
+  void say(std::string_view text);
+  /// The same as a document: as wide as the terminal, with its notes as --explain and --quiet say, and as a file for --report.
+  void show(const present::Document& document);
   /// A file that the user asked for.
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
   /// A file of the user's that this command has read and changes in place, because it was asked to.
@@ -50,7 +55,10 @@ class Session {
  private:
   std::string database_;
   std::string json_target_;
-  std::string text_;
+  std::string report_;
+  bool explains_ = false;
+  bool is_quiet_ = false;
+  std::string text_;       ///< free of control characters but those that colour it
   std::string json_text_;  ///< for stdout
   std::vector<std::filesystem::path> folders_;
   std::vector<OutputFile> files_;
@@ -76,9 +84,6 @@ struct Command {
   std::function<std::vector<Topic>()> topics{};  ///< for `list` and `describe`
 };
 std::vector<Command> all_commands();
-
-/// A bar with the time left on stderr; silent where that is no terminal.
-Progress progress_bar(std::string what);
 
 /// "1 file", "2 files".
 std::string counted(std::size_t count, std::string_view what);

@@ -19,8 +19,8 @@ CLI::Option* add_conditions(CLI::App& app, std::map<std::string, std::string>& c
               conditions[each.substr(0, equals)] = each.substr(equals + 1);
             }
           },
-          "what holds of effects that were found under a condition only, as cooling=fan; without it such heat is reckoned with, such "
-          "cooling not")
+          "condition of effects that were found under it only, such as cooling=fan; without it their heat counts, their "
+          "cooling does not")
       ->type_name("KEY=VALUE...");
 }
 

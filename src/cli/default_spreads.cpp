@@ -11,8 +11,10 @@ std::string default_spreads_text(std::span<const Motor> motors) {
   std::string text;
   for (const Motor& motor : motors) {
     if (const std::vector<DefaultSpread> spreads = default_spreads(motor); !spreads.empty()) {
-      text += fmt::format("{}: the file gives no tolerance for these values, defaults by origin are assumed: {}; state the real ones\n",
-                          motor.id, to_string(spreads));
+      text += fmt::format(
+          "{}: the file gives no tolerance for these values, or one that is narrower than their origin supports; defaults by origin are "
+          "assumed: {}; state the real ones\n",
+          motor.id, to_string(spreads));
     }
   }
   return text;

@@ -25,13 +25,14 @@ void add_derate_options(CLI::App& app, DerateOptions& options) {
                {"approach", "s", Range::between(0.01, 100.0),
                 "in which the winding may come near its limit: shorter lets peaks through for longer; 0.5 s unless given"});
   add_quantity(app, "--confidence", guarantee.confidence,
-               {"confidence", "", Range::between(0.5, 0.999), "share of motors that keep their limits; 0.95 unless given"});
+               {"confidence", "", Range::between(0.5, 0.999),
+                "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});
   add_quantity(app, "--error", options.table.shortfall_ratio,
                {"error", "", Range::between(0.002, 0.5), "most that the table gives away against the exact answer; 1 % unless given"});
   app.add_option("--size", options.table.most_bytes, "bytes of the table at most: what fits decides where --error needs more")
       ->check(CLI::Range(std::size_t{64}, std::size_t{1} << 20U))
       ->capture_default_str();
-  app.add_option("--samples", guarantee.samples, "motors drawn to find the reserve, and as many fresh ones to check it")
+  app.add_option("--samples", guarantee.samples, "motors drawn to find the reserve, and as many fresh ones to show the confidence")
       ->check(whole_number(100'000))
       ->capture_default_str();
   add_seed(app, guarantee.seed, "of the draws; same seed, same bytes");

@@ -109,7 +109,7 @@ ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const DriveOptions& 
       "sliding begins somewhat below\n\n{}",
       motor.id, robot.id, table(results, robot)));
   if (!plot.empty()) {
-    session.write(plot, draw_svg(picture(results, robot, motor)));
+    session.write(plot, draw_picture(picture(results, robot, motor), plot));
     session.say(fmt::format("picture: {}\n", plot));
   }
   session.answer({{"schema", "heatsoak.jerk_sweep/1"},

@@ -22,11 +22,7 @@ auto NamedFiles::attempt(const Read& read) -> std::optional<decltype(read())> {
 }
 
 std::optional<Motor> NamedFiles::motor(const std::string& name) {
-  return attempt([&] {
-    Motor motor = read_motor(file(FileKind::motor, name));
-    require_sound(motor);
-    return motor;
-  });
+  return attempt([&] { return read_sound_motor(file(FileKind::motor, name)); });
 }
 
 std::optional<Motor> NamedFiles::motor_as_written(const std::string& name) {

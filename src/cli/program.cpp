@@ -6,7 +6,6 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -21,8 +20,11 @@
 #include "check/check_text.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
+#include "cli/help_text.h"
+#include "cli/terminal.h"
 #include "cli/usage.h"
 #include "input/document.h"
+#include "present/renderer.h"
 
 namespace heatsoak {
 namespace {
@@ -30,13 +32,13 @@ namespace {
 constexpr std::string_view kFooter =
     "\nExit codes: 0 done and within limits, 1 a limit is exceeded, 2 bad input or usage,\n"
     "3 the data cannot answer the question, 4 the numerics failed, 70 a bug.\n\n"
-    "Start here:\n  heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --plot verdict.svg\n";
+    "Start here:\n  heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --plot verdict.svg\n";
 
 constexpr std::string_view kWithoutMeasured =
-    "\nThis program was built without log, friction, calibrate and diagnose; `./bootstrap build` adds them.\n";
+    "\nThis program was built without log, friction, calibrate, predict and diagnose; `./bootstrap build` adds them.\n";
 
 /// Options that name what a verb writes.
-constexpr std::array kOutputs{"--out", "--plot", "--json", "--junit"};
+constexpr std::array kOutputs{"--out", "--plot", "--json", "--junit", "--report"};
 
 /// An option that stands where a file should is none.
 bool is_output(std::string_view word) { return word == "-" || !word.starts_with('-'); }
@@ -90,13 +92,16 @@ std::vector<std::filesystem::path> made_folders(const std::vector<std::filesyste
   return made;
 }
 
-/// Unlike fmt::print this does not throw: a full disk is found at the end (see written_out), a full stderr is borne.
 /// What a terminal would obey, and names of files may hold, is shown as a question mark.
-void put(std::FILE* file, std::string text) {
+std::string printable(std::string_view text) {
+  std::string result(text);
   std::ranges::replace_if(
-      text, [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c == 0x7f; }, '?');
-  static_cast<void>(std::fwrite(text.data(), 1, text.size(), file));
+      result, [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c == 0x7f; }, '?');
+  return result;
 }
+
+/// Unlike fmt::print this does not throw: a full disk is found at the end (see run_program), a full stderr is borne.
+void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
 
 /// Findings of layers that know the file and the key, but no longer the line.
 Failure with_places(const Failure& failure) {
@@ -138,7 +143,7 @@ std::string annotations_of(const Failure& failure) {
 
 int fail(Session& session, const Failure& found) {
   const Failure failure = with_places(found);
-  put(stderr, std::string(failure.what()) + "\n" + annotations_of(failure));
+  put(stderr, printable(std::string(failure.what()) + "\n" + annotations_of(failure)));
   session.answer_failure(failure);
   return static_cast<int>(failure.code());
 }
@@ -166,6 +171,7 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
   CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
   app.set_version_flag("--version", fmt::format("heatsoak {}", program_version()));
   app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpText>(terminal_width(STDOUT_FILENO)));
   const std::vector<Command> commands = all_commands();
   const bool reads_logs = std::ranges::find(commands, "log", &Command::name) != commands.end();
   app.footer(fmt::format("{}{}", kFooter, reads_logs ? "" : kWithoutMeasured));
@@ -209,6 +215,24 @@ void Session::add_json_option(CLI::App& app) {
   app.add_option("--json", json_target_, "write the answer as JSON; - is stdout, the text then goes to stderr")
       ->type_name("FILE")
       ->check(names_a_file);
+}
+
+void Session::add_text_options(CLI::App& app) {
+  app.add_flag("--explain", explains_, "show every note, not only the three most important ones");
+  app.add_flag("--quiet", is_quiet_, "show the verdict alone");
+  app.add_option("--report", report_, "write the whole answer as a document, with every column and note")->type_name("FILE.md");
+}
+
+void Session::say(std::string_view text) { text_ += printable(text); }
+
+void Session::show(const present::Document& document) {
+  const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;
+  text_ += present::terminal_text(
+      document,
+      {.width = terminal_width(descriptor), .with_colors = takes_colors(descriptor), .explains = explains_, .is_quiet = is_quiet_});
+  if (!report_.empty()) {
+    write(report_, present::rendered_for(report_, document));
+  }
 }
 
 DataFolders Session::folders() const { return DataFolders::find(database_); }
@@ -288,7 +312,7 @@ void Session::answer_failure(const Failure& failure) {
     finish();
   } catch (const Failure& unwritable) {
     if (std::string_view(unwritable.what()) != failure.what()) {
-      put(stderr, std::string(unwritable.what()) + "\n");
+      put(stderr, printable(unwritable.what()) + "\n");
     }
   }
 }
@@ -301,31 +325,6 @@ std::vector<Command> all_commands() {
     all.back().name = name.ends_with("_command") ? name.substr(0, name.size() - std::string_view("_command").size()) : name;
   }
   return all;
-}
-
-Progress progress_bar(std::string what) {
-  if (isatty(STDERR_FILENO) == 0) {
-    return {};
-  }
-  using Clock = std::chrono::steady_clock;
-  // The clock starts with the first unit of work that is done: what came before is of another kind.
-  return [what = std::move(what), start = Clock::time_point(), before = std::size_t{0}, shown = Clock::now()](std::size_t done,
-                                                                                                              std::size_t total) mutable {
-    const Clock::time_point now = Clock::now();
-    if (start == Clock::time_point()) {
-      start = now;
-      before = done;
-    }
-    if (done == total) {
-      fmt::print(stderr, "\r{:60}\r", "");
-    } else if (done > before && now - shown > std::chrono::milliseconds(200)) {
-      shown = now;
-      const double elapsed_s = std::chrono::duration<double>(now - start).count();
-      const double left_s = elapsed_s * static_cast<double>(total - done) / static_cast<double>(done - before);
-      fmt::print(stderr, "\r{}: {:3.0f} %, {:.0f} s left  ", what, 100.0 * static_cast<double>(done) / static_cast<double>(total),
-                 std::ceil(left_s));
-    }
-  };
 }
 
 std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }

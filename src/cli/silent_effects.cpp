@@ -16,8 +16,8 @@ std::string columns_at_their_hottest(std::span<const Motor> motors) {
   for (const Motor& motor : motors) {
     for (const MotorEffect& effect : motor.effects) {
       if (!effect.column.empty()) {
-        text += fmt::format("{}: nothing is known of {}, which {} goes with: its hottest value is reckoned with\n", motor.id, effect.column,
-                            effect.name);
+        text +=
+            fmt::format("{}: {} depends on {}, which is unknown here: its hottest value is used\n", motor.id, effect.name, effect.column);
       }
     }
   }
@@ -28,7 +28,7 @@ std::string effects_under_conditions(std::span<const Motor> motors) {
   std::string text;
   for (const Motor& motor : motors) {
     for (const auto& [key, value] : motor.assumed) {
-      text += fmt::format("{}: all this only where {} is {}, as --condition says\n", motor.id, key, value);
+      text += fmt::format("{}: this answer holds only where {} is {}, as --condition says\n", motor.id, key, value);
     }
     for (const MotorEffect& effect : motor.effects) {
       if (effect.condition.empty()) {
@@ -38,8 +38,8 @@ std::string effects_under_conditions(std::span<const Motor> motors) {
       std::ranges::transform(effect.condition, std::back_inserter(where),
                              [](const auto& part) { return fmt::format("{}={}", part.first, part.second); });
       text += fmt::format("{}: {}, known where {}, {}\n", motor.id, effect.name, fmt::join(where, " "),
-                          acts_by_default(effect, effect.values()) ? "is reckoned with everywhere unless --condition says otherwise"
-                                                                   : "cools and is reckoned with only where --condition says so");
+                          acts_by_default(effect, effect.values()) ? "acts everywhere unless --condition says otherwise"
+                                                                   : "cools, and acts only where --condition says so");
     }
   }
   return text;
@@ -53,7 +53,7 @@ std::string silent_effects(std::span<const Motor> motors) {
       const auto needs = [&](Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
       const bool needs_neighbour = needs(Signal::neighbour_temperature);
       if (needs_neighbour || needs(Signal::age)) {
-        text += fmt::format("{}: {} is not reckoned with: a duty says nothing of {}\n", motor.id, effect.name,
+        text += fmt::format("{}: {} is left out, because a duty does not state {}\n", motor.id, effect.name,
                             needs_neighbour ? "the neighbour's temperature" : "the hours that the motor has run");
       }
     }

@@ -46,6 +46,12 @@ bool coincide(const TemperatureCurves& one, const std::vector<double>& one_C, co
   return 2 * alike > kLooks;
 }
 
+/// Areas of many motors would lie over each other: then only the robot's own motor and the best of the others have one.
+std::size_t bands_of(std::size_t motors) {
+  constexpr std::size_t kMostWithAreas = 4;
+  return motors > kMostWithAreas ? 2 : motors;
+}
+
 ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_winding) {
   ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
   std::map<double, std::vector<std::string>> limits_C;
@@ -62,7 +68,7 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
       return coincide(curves, values_of(curves), before->curves, values_of(before->curves));
     });
     result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden});
-    if (!curves.band_time_s.empty()) {
+    if (!curves.band_time_s.empty() && i < bands_of(shown.size())) {
       result.bands.push_back({"", in_minutes(curves.band_time_s), of_winding ? curves.winding_p05_C : curves.stator_p05_C,
                               of_winding ? curves.winding_p95_C : curves.stator_p95_C, color});
     }
@@ -81,19 +87,29 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
   return result;
 }
 
+std::string title_of(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
+  const auto good = std::ranges::count(results, Verdict::pass, &MotorEvaluation::verdict);
+  const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, to_string(results.front().verdict))
+                                                  : fmt::format("{} of {} motors pass", good, results.size());
+  return fmt::format("{}, {} on {}", verdict, robot.name, duty.id);
+}
+
 }  // namespace
 
 Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
   const std::vector<const MotorEvaluation*> shown = chosen(results, robot);
   const bool sampled = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
   const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
-  return {.title = fmt::format("{} on {}", robot.name, duty.id),
+  return {.title = title_of(results, robot, duty),
           .subtitle = fmt::format(
               "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
-              duty.summary, sampled ? "; lines: nominal, areas: 5\u00a0% to 95\u00a0% of samples at each moment" : "; nominal figures",
+              duty.summary,
+              sampled ? fmt::format("; lines: nominal, areas{}: 5\u00a0% to 95\u00a0% of samples at each moment",
+                                    bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
+                      : "; nominal values",
               estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
-          .panels = {panel(shown, false), panel(shown, true)}};
+          .panels = {panel(shown, true), panel(shown, false)}};
 }
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// The picture of a verdict: stator above, winding below, over time, with the limit.
+// The picture of a verdict: winding above, stator below, over time, with the limit.
 #pragma once
 
 #include <vector>

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
 
+#include "base/binomial_bound.h"
 #include "base/diagnostic.h"
+#include "derate/sensed/sensor_plan.h"
 #include "motor/datasheet_network.h"
 #include "robot/motor_drive.h"
 #include "thermal/ensemble.h"
@@ -17,7 +20,7 @@ namespace {
 
 constexpr double kLargestReserve = 16.0;
 constexpr double kReserveTolerance = 0.01;
-/// Streams of chance of the search and of each check, apart from each other.
+/// Streams of chance of the search and of the check, apart from each other.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
 /// Of a full battery; a robot that gives none has its nominal voltage always.
@@ -27,13 +30,29 @@ double full_V(const Robot& robot) {
 
 }  // namespace
 
+namespace {
+
+/// A limit that the file gives as a range is kept at its lower end: which of them holds is not known.
+double lowest_limit_C(const Motor& motor, std::string_view key, double nominal_C) {
+  const auto figure = motor.figures.find(key);
+  return figure != motor.figures.end() && figure->second.spread ? std::min(nominal_C, figure->second.spread->low) : nominal_C;
+}
+
+}  // namespace
+
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options) {
   const MotorValues& values = motor.nominal;
   const double loop_ohm = values.terminal_resistance_ohm + robot.series_resistance_ohm();
   BarrierRules rules;
-  rules.limits.winding_C = values.winding_limit_C;
+  rules.limits.winding_C = lowest_limit_C(motor, "winding_limit", values.winding_limit_C);
   if (!std::isnan(values.stator_limit_C)) {
-    rules.limits.stator_C = values.stator_limit_C;
+    rules.limits.stator_C = lowest_limit_C(motor, "stator_limit", values.stator_limit_C);
+  }
+  if (!(rules.limits.winding_C > options.hottest_ambient_C)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: the winding limit of {:.1f} °C is not above the hottest air of {:.1f} °C, expected room for heat; check "
+                              "winding_limit, or state cooler air with --ambient",
+                              motor.id, rules.limits.winding_C, options.hottest_ambient_C));
   }
   rules.approach_s = options.approach_s;
   // The stator must not come near its limit faster than a winding without current can let go of it.
@@ -73,12 +92,11 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   }
 }
 
-/// Without a single one over the limit, this many are needed to rule out more of them with 95 % (Hanley and Lippman-Hand 1983).
 void require_samples(const GuaranteeOptions& options) {
-  const auto least = static_cast<int>(std::ceil(3.0 / (1.0 - options.confidence) * (1.0 - 1e-9)));
-  if (options.samples < least) {
-    throw Failure(ExitCode::bad_input, fmt::format("{} samples cannot show a confidence of {:.4g}: expected --samples {} or more",
-                                                   options.samples, options.confidence, least));
+  if (const long least = least_samples(options); options.samples < least) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{} samples cannot show a confidence of {:.4g} with {:.0f} % certainty: expected --samples {} or more",
+                              options.samples, options.confidence, 100.0 * kCertainty_share, least));
   }
 }
 
@@ -135,27 +153,35 @@ class Search {
     return check(motor_, reachable_.limits, attempt.uses, options_.guarantee, first_stream);
   }
 
-  [[nodiscard]] bool keeps(const Guarantee& found) const { return found.over <= (1.0 - options_.guarantee.confidence) * found.samples; }
-
-  /// The smallest reserve with which enough of the search's motors keep their limits.
+  /// The smallest reserve with which the share of the search's motors that keep their limits is the confidence.
   double reserve() {
-    if (is_enough(1.0)) {
-      return 1.0;
-    }
-    double low = 1.0;
-    double high = 1.5;
-    while (!is_enough(high)) {
-      low = high;
-      high *= 1.5;
-      if (high > kLargestReserve) {
-        throw too_hot();
+    constexpr double kGrowth = 1.5;
+    return smallest(1.0, kGrowth, [this](double tried) {
+      const Guarantee found = checked(attempt_or_throw(tried), 0);
+      return found.over <= (1.0 - options_.guarantee.confidence) * found.samples;
+    });
+  }
+
+  struct Promise {
+    Attempt attempt;
+    Guarantee guarantee;
+  };
+  /// The smallest reserve from there on whose lower bound on fresh motors is the confidence. All tries see the same motors. A motor that
+  /// keeps its limits keeps them with a larger reserve, so the result is an order statistic of the motors' own reserves, and its certainty
+  /// is that of a single check (Wilks 1941).
+  Promise promise(double from) {
+    constexpr double kGrowth = 1.05;
+    std::optional<Promise> made;
+    smallest(from, kGrowth, [&](double tried) {
+      Attempt with = attempt_or_throw(tried);
+      const Guarantee found = checked(with, kStreamsApart);
+      const bool holds = found.least_kept_share >= options_.guarantee.confidence;
+      if (holds) {
+        made.emplace(Promise{std::move(with), found});
       }
-    }
-    while (high > low * (1.0 + kReserveTolerance)) {
-      const double middle = 0.5 * (low + high);
-      (is_enough(middle) ? high : low) = middle;
-    }
-    return high;
+      return holds;
+    });
+    return std::move(*made);
   }
 
   [[nodiscard]] Failure too_hot() const {
@@ -168,18 +194,43 @@ class Search {
 
  private:
   /// A reserve with which the motor passes its limits by itself is none.
-  bool is_enough(double reserve) {
-    const std::optional<Attempt> tried = attempt(reserve);
+  Attempt attempt_or_throw(double reserve) {
+    std::optional<Attempt> tried = attempt(reserve);
     if (progress_) {
-      progress_(std::min(++rounds_, kRounds), kRounds + 2);
+      ++rounds_;
+      progress_(rounds_, std::max(rounds_ + 1, kUsualRounds));
     }
     if (!tried) {
       throw too_hot();
     }
-    return keeps(checked(*tried, 0));
+    return std::move(*tried);
   }
 
-  static constexpr std::size_t kRounds = 10;
+  /// What motors of the database take, the fresh draw included.
+  static constexpr std::size_t kUsualRounds = 10;
+
+  /// To kReserveTolerance; the last reserve that was found to be enough is the result.
+  template <class IsEnough>
+  [[nodiscard]] double smallest(double from, double growth, const IsEnough& is_enough) const {
+    if (is_enough(from)) {
+      return from;
+    }
+    double low = from;
+    double high = from * growth;
+    while (!is_enough(high)) {
+      low = high;
+      high *= growth;
+      if (high > kLargestReserve) {
+        throw too_hot();
+      }
+    }
+    while (high > low * (1.0 + kReserveTolerance)) {
+      const double middle = 0.5 * (low + high);
+      (is_enough(middle) ? high : low) = middle;
+    }
+    return high;
+  }
+
 
   const Motor& motor_;
   const Robot& robot_;
@@ -191,6 +242,8 @@ class Search {
 };
 
 }  // namespace
+
+long least_samples(const GuaranteeOptions& options) { return fewest_draws(1.0 - options.confidence, kCertainty_share); }
 
 double limp_current_A(const Derating& derating) {
   double least_A = std::numeric_limits<double>::infinity();
@@ -206,46 +259,34 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
   require_samples(options.guarantee);
   const Motor motor = with_default_spreads(as_written);
   Search search(motor, robot, options, progress);
-  double reserve = search.reserve();
-  constexpr double kRaise = 1.005;
-  constexpr int kMostRaises = 20;
-  for (int number = 1; number <= kMostRaises; ++number, reserve *= kRaise) {
-    std::optional<Attempt> tried = search.attempt(reserve);
-    if (!tried) {
-      throw search.too_hot();
-    }
-    const Guarantee guarantee = search.checked(*tried, static_cast<std::uint64_t>(number) * kStreamsApart);
-    if (!search.keeps(guarantee)) {
-      continue;
-    }
-    Derating result{.motor_id = motor.id,
-                    .robot_id = robot.id,
-                    .data_quality = std::string(data_quality(motor)),
-                    .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
-                    .observer = std::move(tried->observer),
-                    .rules = tried->rules,
-                    .table = std::move(tried->table),
-                    .options = options,
-                    .assumed = motor.assumed,
-                    .effects = {},
-                    .guarantee = guarantee,
-                    .uses = std::move(tried->uses),
-                    .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
-                    .default_spreads = default_spreads(as_written),
-                    .is_brushless = motor.type != "brushed",
-                    .heating_current_ratio = heating_factor(robot),
-                    .nominal = motor.nominal,
-                    .provenance = {}};
-    for (const EffectInPlace& effect : search.network().effects()) {
-      const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
-      result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
-                                own == motor.effects.end() ? std::string() : own->column});
-    }
-    return result;
+  Search::Promise promise = search.promise(search.reserve());
+  Derating result{.motor_id = motor.id,
+                  .robot_id = robot.id,
+                  .data_quality = std::string(data_quality(motor)),
+                  .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
+                  .observer = std::move(promise.attempt.observer),
+                  .rules = promise.attempt.rules,
+                  .table = std::move(promise.attempt.table),
+                  .options = options,
+                  .assumed = motor.assumed,
+                  .effects = {},
+                  .guarantee = promise.guarantee,
+                  .uses = std::move(promise.attempt.uses),
+                  .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
+                  .default_spreads = default_spreads(as_written),
+                  .is_brushless = motor.type != "brushed",
+                  .heating_current_ratio = heating_factor(robot),
+                  .nominal = motor.nominal,
+                  .provenance = {}};
+  for (const EffectInPlace& effect : search.network().effects()) {
+    const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
+    result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
+                              own == motor.effects.end() ? std::string() : own->column});
   }
-  throw Failure(ExitCode::numerics_failed, fmt::format("{}: no reserve of heat up to {:.2f} held on motors that its search had not seen; "
-                                                       "take more --samples",
-                                                       motor.id, reserve));
+  if (options.sensor) {
+    result.sensor = plan_sensor(as_written, robot, result, *options.sensor, progress);
+  }
+  return result;
 }
 
 }  // namespace heatsoak

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "derate/guarantee.h"
 #include "derate/provenance.h"
+#include "derate/sensed/sensor.h"
 #include "motor/default_spread.h"
 
 namespace heatsoak {
@@ -18,11 +20,13 @@ struct DerateOptions {
   double approach_s = 0.5;         ///< over which the winding may come near its limit: shorter lets peaks through for longer
   TableGoal table;
   GuaranteeOptions guarantee;
+  std::optional<SensorOptions> sensor = {};
 };
 
-/// What follows from motor, robot and options alone: before any reserve. The highest speed is 1.1·U/(K_t): U of a full battery within the
-/// driver's limit of the command, and 10 % for a push and for magnets weaker than nominal. The current has fallen to none at 1.1 times
-/// that, and at the same of the full battery where the command is limited.
+/// What follows from motor, robot and options alone: before any reserve. A limit that the motor's file gives as a range counts at its lower
+/// end. Throws Failure (bad_input) where the winding's limit is not above the hottest air. The highest speed is 1.1·U/(K_t): U of a full
+/// battery within the driver's limit of the command, and 10 % for a push and for magnets weaker than nominal. The current has fallen to
+/// none at 1.1 times that, and at the same of the full battery where the command is limited.
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options);
 
 /// An effect that the observer reckons with.
@@ -50,9 +54,10 @@ struct Derating {
   /// Values of the motor's file without a tolerance, with what the drawn motors have in its place.
   std::vector<DefaultSpread> default_spreads = {};
   bool is_brushless = true;
-  double heating_current_ratio = 1.0;  ///< heating_factor() of the robot: current that heats per equivalent DC current
-  MotorValues nominal = {};            ///< of the motor's file
-  Provenance provenance = {};          ///< empty until the caller sets it: derate() reads no files
+  double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: current that heats per equivalent DC current
+  MotorValues nominal = {};               ///< of the motor's file
+  std::optional<SensorPlan> sensor = {};  ///< where one is declared
+  Provenance provenance = {};             ///< empty until the caller sets it: derate() reads no files
 };
 
 /// The current that the motor bears for good at every speed and in every hot case, in A ≥ 0: for a wheel whose speed nobody knows.
@@ -62,8 +67,12 @@ struct Derating {
 /// 0.98 of the rules' highest speed: above what a full battery drives, because that is 1.1 times as fast.
 double limp_current_A(const Derating& derating);
 
+/// Motors that must be drawn to show the confidence at all, none of them over a limit: 59 for 0.95.
+long least_samples(const GuaranteeOptions& options);
+
 /// Values without a spread get a default one first (with_default_spreads()). Finds the smallest reserve of heat with which the share of
-/// motors that is asked for keeps every limit in every use, and checks it on motors that the search has not seen. Throws Failure: bad_input
+/// drawn motors that keep every limit in every use is the confidence, and raises it until on motors that the search has not seen the lower
+/// bound of that share (kCertainty_share) is the confidence too. Throws Failure: bad_input
 /// where the period is too long for the motor or the samples are too few for the confidence, limit_exceeded where no reserve helps, because
 /// the motor passes a limit without current.
 Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress = {});

@@ -95,13 +95,43 @@ Json table_json(const CurrentTable& table) {
 Json guarantee_json(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return {{"confidence", derating.options.guarantee.confidence},
+          {"certainty", kCertainty_share},
+          {"least_kept_shareer_bound", std::floor(1e4 * checked.least_kept_share) / 1e4},
           {"samples", checked.samples},
+          {"least_samples", least_samples(derating.options.guarantee)},
           {"over", checked.over},
           {"over_share_ci95", {rounded(checked.over_share.low, 4), rounded(checked.over_share.high, 4)}},
           {"winding_peak_C",
            {{"p50", rounded(checked.winding_p50_C, 2)},
             {"p95", rounded(checked.winding_p95_C, 2)},
             {"most", rounded(checked.winding_most_C, 2)}}}};
+}
+
+Json sensor_json(const Derating& derating) {
+  if (!derating.sensor) {
+    return nullptr;
+  }
+  const SensorPlan& plan = *derating.sensor;
+  Json lasting = Json::array();
+  for (const LastingCurrent& each : plan.lasting) {
+    lasting.push_back({{"speed_rad_per_s", rounded(each.speed_rad_per_s, 2)},
+                       {"without_sensor_A", rounded(each.without_A, 3)},
+                       {"with_sensor_A", rounded(each.with_A, 3)}});
+  }
+  return {
+      {"kind", plan.options.kind == SensorKind::thermistor ? "thermistor" : "winding_resistance"},
+      {"node", plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)]},
+      {"accuracy_K", plan.options.accuracy_K},
+      {"lag_s", plan.options.lag_s},
+      {"heat_reserve_ratio", rounded(plan.observer.heat_reserve_ratio(), 4)},
+      {"winding_speed_ratio", rounded(plan.winding_speed_ratio, 4)},
+      {"samples", plan.samples},
+      {"over", plan.over},
+      {"winding_peak_C", {{"p95", rounded(plan.winding_p95_C, 2)}, {"most", rounded(plan.winding_most_C, 2)}}},
+      {"honest_dropped", plan.dropped},
+      {"lying",
+       {{"most_gain_A", rounded(plan.most_gain_A, 3)}, {"nominal_winding_C", rounded(plan.lying_nominal_C, 1)}, {"over", plan.lying_over}}},
+      {"lasting_current", lasting}};
 }
 
 }  // namespace
@@ -139,6 +169,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"effects", effects},
           {"observer", observer_json(derating)},
           {"guarantee", guarantee_json(derating)},
+          {"sensor", sensor_json(derating)},
           {"table", table_json(derating.table)}};
 }
 

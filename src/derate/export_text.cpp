@@ -29,19 +29,27 @@ std::string identifier(std::string_view id) {
   return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "motor_" + name : name;
 }
 
-std::string provenance_lines(const Derating& derating, std::string_view comment) {
+std::string confidence_text(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
+  return fmt::format(
+      "Confidence {:.6g}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep every limit in the {} "
+      "hardest "
+      "uses; {} of {} fresh draws exceeded one.",
+      derating.options.guarantee.confidence, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
+      derating.uses.size(), checked.over, checked.samples);
+}
+
+std::string provenance_lines(const Derating& derating, std::string_view comment) {
   std::string text = fmt::format(
       "{0} {1} in {2}, written by {3}; change the motor's file, not this one.\n"
       "{0} Inputs {4} {5}.\n"
       "{0} Winding limit {6:.6g} degC{7}, air up to {8:.6g} degC, thermal data: {9}.\n"
-      "{0} Confidence {10:.6g}: heat counts {11:.4g} times; of {12} motors drawn from the tolerances {13} exceeded a limit.\n"
+      "{0} Safety factor on heat {10:.4g}. {11}\n"
       "{0} Computed, not measured.\n",
       comment, in_one_line(derating.motor_id), in_one_line(derating.robot_id), in_one_line(derating.provenance.program_version), kInputHash,
       derating.provenance.input_hash, derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator limit {:.6g} degC", *derating.rules.limits.stator_C) : "",
-      derating.options.hottest_ambient_C, derating.data_quality, derating.options.guarantee.confidence,
-      derating.observer.heat_reserve_ratio(), checked.samples, checked.over);
+      derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(), confidence_text(derating));
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format("{} Valid only where {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));
   }

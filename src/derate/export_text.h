@@ -16,6 +16,9 @@ inline constexpr double kDcPerIq_ratio = std::numbers::sqrt3 * std::numbers::pi 
 /// Program, inputs, limit, confidence, conditions and assumed spreads as lines that begin with `comment`. No text of a user ends a line.
 std::string provenance_lines(const Derating& derating, std::string_view comment);
 
+/// What the confidence means and what showed it, as one sentence without a line break.
+std::string confidence_text(const Derating& derating);
+
 /// Prefix of the names in generated code: the id with every other character than letters and digits replaced by "_".
 std::string identifier(std::string_view id);
 

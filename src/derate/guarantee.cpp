@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/binomial_bound.h"
 #include "motor/datasheet_network.h"
 #include "robot/motor_drive.h"
 #include "select/spread.h"
@@ -13,52 +14,33 @@
 namespace heatsoak {
 namespace {
 
-/// What the network sees as one interval, with its rms current: as long as the current changes by little, and no longer than a second.
-struct Stretch {
-  double duration_s = 0.0;
-  double current2_A2_s = 0.0;
-  double first_A = 0.0;
-  double speed_rad_per_s = 0.0;
-
-  [[nodiscard]] bool is_over(double current_A, double at_rad_per_s) const {
-    constexpr double kLongest_s = 1.0;
-    constexpr double kLittle = 0.02;
-    return duration_s > 0.0 &&
-           (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A || at_rad_per_s != speed_rad_per_s);
-  }
-  void take(double current_A, double at_rad_per_s, double period_s) {
-    speed_rad_per_s = at_rad_per_s;
-    first_A = duration_s > 0.0 ? first_A : current_A;
-    duration_s += period_s;
-    current2_A2_s += current_A * current_A * period_s;
-  }
-};
 constexpr double kSettled = 4.0;  ///< slowest time constants
 constexpr double kShortest_s = 900.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
 
-double duration_s(const MotorValues& motor) { return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s); }
-
-struct SamplePeak {
-  double winding_C = 0.0;
-  bool is_over = false;
-};
-
-/// Eight drawn motors through every use.
-std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses,
-                                     std::uint64_t seed, std::uint64_t first_stream) {
+/// Drawn from the motor's tolerances, each from a stream of chance of its own.
+std::vector<Network> drawn_motors(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
   std::vector<Network> networks;
-  std::vector<Lanes> parameters;
   for (int lane = 0; lane < kLanes; ++lane) {
     Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
     networks.push_back(datasheet_network(motor, draw_sample(motor, random)));
-    const std::vector<double> values = networks.back().values();
+  }
+  return networks;
+}
+
+}  // namespace
+
+std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses) {
+  std::vector<Lanes> parameters;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::vector<double> values = motors[static_cast<std::size_t>(lane)].values();
     parameters.resize(values.size());
     for (std::size_t p = 0; p < values.size(); ++p) {
       parameters[p][lane] = values[p];
     }
   }
-  std::array<SamplePeak, kLanes> result;
+  const Network& network = motors.front();
+  std::array<MotorPeak, kLanes> result;
   for (const UsePlayed& each : uses) {
     const auto to_lanes = [](const OperatingPoint<double>& at) {
       OperatingPoint<Lanes> lanes;
@@ -66,14 +48,14 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
       return lanes;
     };
     const double ambient_C = each.intervals.front().at.ambient_C;
-    const std::vector<Lanes> start_C(static_cast<std::size_t>(networks.front().state_count()), Lanes::Constant(ambient_C));
-    EnsembleRun run(networks.front(), parameters, start_C);
-    const double step_s = longest_step_s(networks.front(), parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
+    const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(each.start_C.value_or(ambient_C)));
+    EnsembleRun run(network, parameters, start_C);
+    const double step_s = longest_step_s(network, parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
     for (const Interval& interval : each.intervals) {
       run.over(interval.duration_s, to_lanes(interval.at), step_s);
     }
     for (int lane = 0; lane < kLanes; ++lane) {
-      SamplePeak& peak = result[static_cast<std::size_t>(lane)];
+      MotorPeak& peak = result[static_cast<std::size_t>(lane)];
       const double winding_C = run.peak_C()[states::winding][lane];
       peak.winding_C = std::max(peak.winding_C, winding_C);
       peak.is_over =
@@ -83,7 +65,25 @@ std::array<SamplePeak, kLanes> peaks(const Motor& motor, const TemperatureLimits
   return result;
 }
 
-}  // namespace
+void PlayedIntervals::take(double time_s, double current_A, double speed_rad_per_s, double period_s) {
+  if (held_.is_over(current_A, speed_rad_per_s)) {
+    end(time_s);
+  }
+  held_.take(current_A, speed_rad_per_s, period_s);
+}
+
+void PlayedIntervals::end(double time_s) {
+  const double current_rms_A = held_.rms_A();
+  const Signals signals = played_.use.hot_case.signals(rules_, current_rms_A, held_.speed_rad_per_s);
+  played_.intervals.push_back({held_.duration_s, operating_point<double>(motor_.nominal, robot_, signals)});
+  played_.time_s.push_back(time_s);
+  played_.current_A.push_back(current_rms_A);
+  held_ = {};
+}
+
+double use_duration_s(const MotorValues& motor) {
+  return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s);
+}
 
 std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules) {
   static constexpr std::array<Use, 11> kPlain{{{0.0},
@@ -125,26 +125,15 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
   UsePlayed result;
   result.use = use;
   ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));
-  const auto periods = static_cast<std::int64_t>(duration_s(motor.nominal) / period_s);
-  Stretch stretch;
-  const auto end_stretch = [&](double time_s) {
-    const double current_rms_A = std::sqrt(stretch.current2_A2_s / stretch.duration_s);
-    const Signals signals = use.hot_case.signals(rules, current_rms_A, stretch.speed_rad_per_s);
-    result.intervals.push_back({stretch.duration_s, operating_point<double>(motor.nominal, robot, signals)});
-    result.time_s.push_back(time_s);
-    result.current_A.push_back(current_rms_A);
-    stretch = {};
-  };
+  const auto periods = static_cast<std::int64_t>(use_duration_s(motor.nominal) / period_s);
+  PlayedIntervals intervals(result, motor, robot, rules);
   for (std::int64_t i = 0; i < periods; ++i) {
     const double time_s = static_cast<double>(i) * period_s;
     const bool is_on = use.on_s <= 0.0 || std::fmod(time_s, use.on_s + use.off_s) < use.on_s;
     const double speed_rad_per_s = (is_on ? use.speed_share : use.off_speed_share) * rules.most_speed_rad_per_s;
     const float allowed_A =
         is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]) : 0.0F;
-    if (stretch.is_over(allowed_A, speed_rad_per_s)) {
-      end_stretch(time_s);
-    }
-    stretch.take(allowed_A, speed_rad_per_s, period_s);
+    intervals.take(time_s, allowed_A, speed_rad_per_s, period_s);
     std::array<float, firmware::kSignalCount> told{};
     std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), told.begin(),
                            [](double value) { return static_cast<float>(value); });
@@ -152,28 +141,29 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
     result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
     result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[states::stator]);
   }
-  end_stretch(static_cast<double>(periods) * period_s);
+  intervals.end(static_cast<double>(periods) * period_s);
   return result;
 }
 
 Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
                 std::uint64_t first_stream, const Progress& progress) {
   const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
-  std::vector<SamplePeak> all(blocks * kLanes);
+  std::vector<MotorPeak> all(blocks * kLanes);
   in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
-    const auto found = peaks(motor, limits, uses, options.seed, first_stream + block * kLanes);
+    const auto found = peaks(drawn_motors(motor, options.seed, first_stream + block * kLanes), limits, uses);
     std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
   });
   all.resize(static_cast<std::size_t>(options.samples));
   std::vector<double> winding_C;
   std::vector<char> is_over;
-  for (const SamplePeak& each : all) {
+  for (const MotorPeak& each : all) {
     winding_C.push_back(each.winding_C);
     is_over.push_back(each.is_over ? 1 : 0);
   }
   Guarantee result{.samples = options.samples,
                    .over = static_cast<int>(std::ranges::count(is_over, char{1})),
                    .over_share = sample_intervals(winding_C, is_over).probability};
+  result.least_kept_share = 1.0 - upper_bound_share(result.over, result.samples, kCertainty_share);
   std::ranges::sort(winding_C);
   result.winding_p50_C = quantile(winding_C, 0.5);
   result.winding_p95_C = quantile(winding_C, 0.95);

@@ -24,6 +24,12 @@ Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOpt
       "--samples {} --seed {}",
       options.period_s, options.hottest_ambient_C, options.coldest_ambient_C, options.approach_s, options.table.shortfall_ratio,
       options.table.most_bytes, options.guarantee.confidence, options.guarantee.samples, options.guarantee.seed);
+  if (options.sensor) {
+    const SensorOptions& sensor = *options.sensor;
+    text +=
+        fmt::format(" --{} {} {:.9g}K {:.9g}s {:.9g}V {:.9g}A", sensor.kind == SensorKind::thermistor ? "thermistor" : "winding-resistance",
+                    sensor.node, sensor.accuracy_K, sensor.lag_s, sensor.voltage_error_V, sensor.current_error_A);
+  }
   for (const auto& [key, value] : motor.assumed) {
     text += fmt::format(" --condition {}={}", key, value);
   }

@@ -12,7 +12,7 @@ RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, 
   for (std::size_t i = 0; i < needed.size(); ++i) {
     const Formula::Step& step = formula.steps()[i];
     if (needed[i] != 0 && step.operation != Operation::constant && step.operation != Operation::input) {
-      text_ += fmt::format("  const float t{} = {};\n", i, expression(formula, step));
+      text_ += fmt::format("  const {} t{} = {};\n", style_.number, i, expression(formula, step));
     }
   }
   for (std::size_t node = 0; node < observer.state_count(); ++node) {
@@ -58,9 +58,9 @@ std::string RateLines::expression(const Formula& formula, const Formula::Step& s
       calls_square_root_ = true;
       return fmt::format("{}({})", style_.square_root, left);
     case Operation::power:
-      return thermal_math("heatsoak_pow");
+      return thermal_math(style_.power);
     default:
-      return thermal_math("heatsoak_exp");
+      return thermal_math(style_.exponential);
   }
 }
 

@@ -11,9 +11,12 @@ namespace heatsoak {
 
 /// How the target language writes what the statements need.
 struct LineStyle {
-  std::string (*literal)(double value) = nullptr;            ///< in single precision; in parentheses where negative
+  std::string (*literal)(double value) = nullptr;            ///< in the precision of `number`; in parentheses where negative
   std::string (*signal)(firmware::Signal signal) = nullptr;  ///< an input
   std::string_view square_root;                              ///< function of one number
+  std::string_view number = "float";                         ///< type of the steps
+  std::string_view exponential = "heatsoak_exp";             ///< function of one number
+  std::string_view power = "heatsoak_pow";                   ///< of a base and an exponent; 0 for a base that is not positive
 };
 
 /// The steps that the rates need, a line each: "  const float t7 = …;", then "  rate_K_per_s[node] = …;". Temperatures are state_C[node].

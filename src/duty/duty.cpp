@@ -21,8 +21,50 @@ const std::vector<ShapeType>& all_shapes() {
   return kAll;
 }
 
+namespace {
+
+/// `own` over `base`: tables are merged key by key, but a figure is replaced as a whole.
+Value merged(Value base, const Value& own) {
+  for (const Member& member : own.members) {
+    const auto same = std::ranges::find(base.members, member.key, &Member::key);
+    if (same == base.members.end()) {
+      base.members.push_back(member);
+    } else if (same->value.kind == Value::Kind::table && member.value.kind == Value::Kind::table && !same->value.find("value")) {
+      same->value = merged(std::move(same->value), member.value);
+    } else {
+      same->value = member.value;
+    }
+  }
+  base.at = own.at;
+  return base;
+}
+
+/// The file over the one that its `base` names, which stands beside it.
+Value read_with_base(const std::filesystem::path& path, int depth = 0) {
+  constexpr int kDeepest = 4;
+  Value own = read_toml(path);
+  const Value* const base = own.find("base");
+  if (!base) {
+    return own;
+  }
+  if (base->kind != Value::Kind::text) {
+    throw bad_input(base->at, "base", fmt::format("is {}; expected the id of a duty in the same folder", to_string(base->kind)));
+  }
+  if (depth >= kDeepest) {
+    throw bad_input(base->at, "base", "follows on more than four others; does a file name itself?");
+  }
+  std::filesystem::path file = path.parent_path() / (base->text.ends_with(".toml") ? base->text : base->text + ".toml");
+  if (!std::filesystem::exists(file)) {
+    throw bad_input(base->at, "base", fmt::format("there is no {}; expected the id of a duty in the same folder", file.string()));
+  }
+  std::erase_if(own.members, [](const Member& member) { return member.key == "base"; });
+  return merged(read_with_base(file, depth + 1), own);
+}
+
+}  // namespace
+
 Duty read_duty(const std::filesystem::path& path) {
-  const Value root = read_toml(path);
+  const Value root = read_with_base(path);
   Diagnostics diagnostics;
   Reader top(root, "", diagnostics);
   Duty duty;

@@ -24,6 +24,8 @@ class DutyShape {
   virtual ~DutyShape() = default;
   /// One demand per wheel, or one for a duty that does not tell wheels apart. Same seed, same demand.
   [[nodiscard]] virtual std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const = 0;
+  /// Whether the demand follows from the robot's mass and wheels; if not, the duty states torque and speed of the wheel itself.
+  [[nodiscard]] virtual bool depends_on_robot() const { return false; }
   /// Whether the duty rests on figures with ranges of their own, beside ambient and load, that draw() samples.
   [[nodiscard]] virtual bool has_unknowns() const { return false; }
   /// The demand under draw number `draw` of these, and of what the robot's file leaves open. Same seed, same draws.

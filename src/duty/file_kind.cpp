@@ -19,7 +19,8 @@ std::string_view to_string(FileKind kind) {
 }
 
 std::optional<FileKind> evident_kind(const Value& root) {
-  if (root.find("shape") || std::ranges::any_of(all_shapes(), [&](const ShapeType& shape) { return root.find(shape.name) != nullptr; })) {
+  if (root.find("shape") || root.find("base") ||
+      std::ranges::any_of(all_shapes(), [&](const ShapeType& shape) { return root.find(shape.name) != nullptr; })) {
     return FileKind::duty;
   }
   if (root.find("wheels") || root.find("drive")) {

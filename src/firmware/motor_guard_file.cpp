@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "derate/export_text.h"
 #include "derate/rate_lines.h"
 #include "firmware/core_files.h"
 
@@ -85,16 +86,13 @@ std::string guarantee(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   std::string text = fmt::format(
       "// Winding at most {:.0f} degC{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
-      "// Heat counts {:.3g} times, so that motors worse than their nominal values are covered: of {} drawn from the declared tolerances "
-      "{}\n"
-      "// exceeded a limit in one of the {} hardest uses ({:.1f} %, with other draws {:.1f} to {:.1f} %); the hottest winding reached "
-      "{:.0f}\n"
-      "// degC. Computed, not measured.\n",
+      "// Safety factor on heat {:.3g}, which covers motors worse than their nominal values; the hottest winding reached {:.0f} degC.\n"
+      "// {}\n"
+      "// Computed, not measured.\n",
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(),
-      checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / std::max(1, checked.samples),
-      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_most_C);
+      checked.winding_most_C, confidence_text(derating));
   if (!derating.default_spreads.empty()) {
     text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors have defaults by origin:\n//   {}\n",
                         to_string(derating.default_spreads));

@@ -75,25 +75,21 @@ std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording,
   return columns;
 }
 
-std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::vector<MeasuredRun>& others, std::string_view of_model) {
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::string_view of_model) {
   std::map<std::string, std::size_t> counts;
-  for (const std::vector<MeasuredRun>* const all : {&runs, &others}) {
-    for (const MeasuredRun& run : *all) {
-      for (const auto& [key, values] : run.columns) {
-        counts[key] += values.array().isNaN().all() ? 0 : 1;
-      }
+  for (const MeasuredRun& run : runs) {
+    for (const auto& [key, values] : run.columns) {
+      counts[key] += values.array().isNaN().all() ? 0 : 1;
     }
   }
   std::vector<std::string> left_out;
   for (const auto& [key, count] : counts) {
-    if (count < runs.size() + others.size() && key != of_model) {
+    if (count < runs.size() && key != of_model) {
       left_out.push_back(key);
     }
   }
-  for (std::vector<MeasuredRun>* const all : {&runs, &others}) {
-    for (MeasuredRun& run : *all) {
-      std::erase_if(run.columns, [&](const auto& each) { return std::ranges::find(left_out, each.first) != left_out.end(); });
-    }
+  for (MeasuredRun& run : runs) {
+    std::erase_if(run.columns, [&](const auto& each) { return std::ranges::find(left_out, each.first) != left_out.end(); });
   }
   return left_out;
 }

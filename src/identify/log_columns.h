@@ -22,7 +22,7 @@ std::string column_lacking(const std::string& column, std::span<const Recording>
 
 /// What a run lacks cannot be told from what follows it: keeps of the columns those that all runs have, and the one that the model has a
 /// curve over already; names the others.
-std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::vector<MeasuredRun>& others, std::string_view of_model);
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::string_view of_model);
 
 /// Puts one of a run's columns into its operating points. Where it is not known for a while it is what it was
 /// or will be, whichever is nearer; where the run does not have it at all it is unknown. No key changes nothing.

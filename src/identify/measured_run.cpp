@@ -292,6 +292,13 @@ class Builder {
 
 bool MeasuredRun::has(Signal signal) const { return std::ranges::find(signals, signal) != signals.end(); }
 
+bool MeasuredRun::has(const std::map<std::string, std::string>& of_conditions) const {
+  return std::ranges::all_of(of_conditions, [&](const auto& each) {
+    const auto found = conditions.find(each.first);
+    return found != conditions.end() && found->second == each.second;
+  });
+}
+
 Eigen::Index MeasuredRun::sensor_at(std::string_view node) const {
   const auto found = std::ranges::find(sensors, node, &Sensor::node);
   return found == sensors.end() ? -1 : found - sensors.begin();

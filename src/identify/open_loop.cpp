@@ -73,7 +73,7 @@ MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
 
 }  // namespace
 
-Eigen::VectorXd decided_start_C(const Network& network, RunStart start, const MeasuredRun& run, const RunFrom& along) {
+DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
   // No model follows the first seconds better than this, and a node that is not sensed must not pay for it.
   constexpr double kLeastNoise_K = 0.3;
   const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
@@ -87,7 +87,12 @@ Eigen::VectorXd decided_start_C(const Network& network, RunStart start, const Me
       right += path.by_start.row(row).transpose() * path.residual_K[row] / (noise_K * noise_K);
     }
   }
-  return start.state_C + normal.ldlt().solve(right);
+  const Eigen::MatrixXd covariance_K2 = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  return {start.state_C + covariance_K2 * right, covariance_K2};
+}
+
+Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
+  return decided_start(network, start, run, along).state_C;
 }
 
 Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
@@ -97,30 +102,6 @@ Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> para
   };
   const Eigen::VectorXd start_C = decided_start_C(network, start_of(network, run), run, along);
   return along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run).shown_C;
-}
-
-std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs) {
-  std::vector<SignalError> errors;
-  for (const MeasuredRun& run : runs) {
-    const Eigen::MatrixXd off_K = run.measured_C - open_loop_C(network, parameters, run);
-    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
-      auto found = std::ranges::find(errors, run.sensors[sensor].signal, &SignalError::signal);
-      if (found == errors.end()) {
-        found = errors.insert(errors.end(), {run.sensors[sensor].signal});
-      }
-      for (const double each_K : off_K.col(static_cast<Eigen::Index>(sensor))) {
-        if (!std::isnan(each_K)) {
-          found->rmse_K += each_K * each_K;
-          found->max_abs_K = std::max(found->max_abs_K, std::abs(each_K));
-          ++found->samples;
-        }
-      }
-    }
-  }
-  for (SignalError& each : errors) {
-    each.rmse_K = each.samples > 0 ? std::sqrt(each.rmse_K / static_cast<double>(each.samples)) : 0.0;
-  }
-  return errors;
 }
 
 double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal) {

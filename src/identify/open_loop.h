@@ -24,9 +24,14 @@ RunStart start_of(const Network& network, const MeasuredRun& run);
 
 /// The model along a run from start temperatures.
 using RunFrom = std::function<LinearisedRun(std::span<const double> start_C, const MeasuredRun& run)>;
+struct DecidedStart {
+  Eigen::VectorXd state_C;
+  Eigen::MatrixXd covariance_K2;
+};
 /// The start that the first five samples decide, or the first minute (at most a tenth of the run) where a node has no sensor, around what
 /// `start` has for probable.
-Eigen::VectorXd decided_start_C(const Network& network, RunStart start, const MeasuredRun& run, const RunFrom& along);
+DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
+Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
 
 /// What the sensors would show (n × sensors) if the model ran free from the run's start. The start is decided by the first five samples
 /// only, or the first minute (at most a tenth of the run) where a node has no sensor: a model that lacks heat must not hide it there.
@@ -38,9 +43,6 @@ struct SignalError {
   double max_abs_K = 0.0;
   Eigen::Index samples = 0;
 };
-
-/// Errors of the free-running model over all runs, by signal.
-std::vector<SignalError> open_loop_error(const Network& network, std::span<const double> parameters, std::span<const MeasuredRun> runs);
 
 /// Of all that a sensor showed; how far a model that says nothing is off.
 double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal);

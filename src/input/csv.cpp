@@ -88,6 +88,9 @@ class Table {
     left_out_before_row_ = left_out_;
   }
 
+  /// A line that is no row.
+  void skip_line() { ++line_; }
+
   /// What the rest of the file holds no longer matters.
   [[noreturn]] void stop(std::string message) const { throw bad_input({file_, line_, 1}, "", std::move(message)); }
 
@@ -222,6 +225,18 @@ std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::pa
   return file;
 }
 
+/// Comments before the header, as exported tables have them.
+void skip_comments(std::FILE* file, Table& table) {
+  int c = std::fgetc(file);
+  for (; c == '#'; c = std::fgetc(file)) {
+    while (c != '\n' && c != EOF) {
+      c = std::fgetc(file);
+    }
+    table.skip_line();
+  }
+  std::ungetc(c, file);
+}
+
 /// libcsv is C: an exception must not pass through it.
 struct Guarded {
   Table& table;
@@ -268,6 +283,7 @@ void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose,
   const auto end_of_row = [](int terminator, void* data) { guarded(data, [terminator](Table& t) { t.end_of_row(terminator); }); };
   std::vector<char> chunk(1 << 18);
   bool at_start = true;
+  skip_comments(file.get(), table);
   while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), file.get())) {
     std::string_view bytes(chunk.data(), got);
     if (std::exchange(at_start, false) && bytes.starts_with(kByteOrderMark)) {

@@ -39,9 +39,9 @@ struct CsvColumns {
 /// Called once, with the header as it stands in the file.
 using ChooseCsvColumns = std::function<CsvColumns(std::span<const std::string> header)>;
 
-/// Reads a file with one header row and gives every row to `row`. `required` names must be in the header;
-/// `optional` ones give NaN where the header has none. Memory does not grow with the file. A UTF-8 byte order mark and CR LF are fine.
-/// Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
+/// Reads a file with one header row and gives every row to `row`. Lines before the header that begin with "#" are comments. `required`
+/// names must be in the header; `optional` ones give NaN where the header has none. Memory does not grow with the file. A UTF-8 byte order
+/// mark and CR LF are fine. Throws Failure (bad_input): missing columns (with "did you mean"), a cell that is no finite number, a row with
 /// another number of cells, no rows. At most 20 problems are listed, then how many more there are. Rows that are sound are
 /// given even where others are not, but none where the header is wrong.
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "motor/lint.h"
+#include "motor/read_motor.h"
 
 namespace heatsoak {
 namespace {
@@ -17,7 +18,8 @@ struct Ratios {
   double high = 1.0;
 };
 
-/// A row per key. `sheet` also serves measured values: a measurement without an interval is trusted as a data sheet is.
+/// A row per key. A value that is called measured but states no interval is trusted no more than an estimate: a measurement knows its
+/// uncertainty.
 struct DefaultRow {
   std::string_view key;
   Ratios sheet;
@@ -51,13 +53,13 @@ constexpr DefaultRow kEffectDefault{"", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}
 
 const Ratios& ratios(const DefaultRow& row, Origin origin) {
   switch (origin) {
-    case Origin::measured:
     case Origin::datasheet:
       return row.sheet;
     case Origin::third_party:
       return row.third_party;
     case Origin::derived:
       return row.derived;
+    case Origin::measured:
     case Origin::estimated:
       break;
   }
@@ -69,14 +71,51 @@ const DefaultRow* row_of(std::string_view key) {
   return found == kDefaults.end() ? nullptr : found;
 }
 
-bool lacks_spread(const Figure& figure) { return figure.value != 0.0 && (!figure.spread || is_exact(figure)); }
-
 /// Within what the declaration allows, so that no draw leaves it.
-Spread spread_of(const DefaultRow& row, const Figure& figure, const Range& range) {
-  const Ratios& by = ratios(row, figure.origin);
+Spread spread_by(const Ratios& by, const Figure& figure, const Range& range) {
   const double one = figure.value * by.low;
   const double other = figure.value * by.high;
   return {Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high), figure.value > 0.0};
+}
+
+/// The narrowest that a file may state, on each side. The honest files of motor_db state 27 % of their default or more. A measurement can
+/// be better than that, but no thermal one is better than its sensors.
+Ratios least_ratios(const DefaultRow& row, Origin origin) {
+  constexpr double kLeastShare = 0.25;
+  constexpr double kLeastMeasured = 0.01;
+  const Ratios& by = ratios(row, origin == Origin::measured ? Origin::datasheet : origin);
+  const double low = kLeastShare * (1.0 - by.low);
+  const double high = kLeastShare * (by.high - 1.0);
+  return origin == Origin::measured ? Ratios{1.0 - std::min(low, kLeastMeasured), 1.0 + std::min(high, kLeastMeasured)}
+                                    : Ratios{1.0 - low, 1.0 + high};
+}
+
+/// On a side where the declaration's range ends, a spread needs to go no further.
+bool is_narrow(const Figure& figure, const Spread& least, const Range& range) {
+  constexpr double kRounding = 1e-3;  // of a printed tolerance
+  const double slack = kRounding * std::abs(figure.value);
+  return figure.spread && ((figure.spread->low > least.low + slack && figure.spread->low > range.low) ||
+                           (figure.spread->high < least.high - slack && figure.spread->high < range.high));
+}
+
+/// What takes the place of the stated spread; nothing where that can be believed.
+std::optional<Spread> replacement(const DefaultRow& row, const Figure& figure, const Range& range) {
+  if (figure.value == 0.0) {
+    return std::nullopt;
+  }
+  const Spread usual = spread_by(ratios(row, figure.origin), figure, range);
+  if (!figure.spread || is_exact(figure)) {
+    return usual;
+  }
+  const Spread least = spread_by(least_ratios(row, figure.origin), figure, range);
+  if (!is_narrow(figure, least, range)) {
+    return std::nullopt;
+  }
+  if (figure.origin != Origin::measured) {
+    return usual;
+  }
+  return Spread{Spread::Kind::range, std::min(figure.spread->low, least.low), std::max(figure.spread->high, least.high),
+                figure.value > 0.0};
 }
 
 /// Places on a curve's axis and temperatures are chosen, not found: no factor applies to them.
@@ -85,22 +124,21 @@ bool takes_default(const EffectType& type, std::size_t place) {
   return spec.choices.empty() && spec.unit != "degC" && !spec.key.ends_with("_knot");
 }
 
-/// Calls `visit(key, figure, spread)` for every value without a spread.
+/// Calls `visit(key, figure, row, range)` for every value that temperatures depend on.
 template <class AnyMotor, class Visit>
-void for_each_missing(AnyMotor& motor, const Visit& visit) {
+void for_each_value(AnyMotor& motor, const Visit& visit) {
   for (const MotorFigureSpec& each : motor_figure_specs()) {
     const DefaultRow* const row = row_of(each.spec.key);
     const auto found = motor.figures.find(each.spec.key);
-    if (row && found != motor.figures.end() && lacks_spread(found->second)) {
-      visit(std::string(each.spec.key), found->second, spread_of(*row, found->second, each.spec.range));
+    if (row && found != motor.figures.end()) {
+      visit(std::string(each.spec.key), found->second, *row, each.spec.range);
     }
   }
   for (auto& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (takes_default(*effect.type, i) && lacks_spread(effect.parameters[i])) {
+      if (takes_default(*effect.type, i)) {
         const ParameterSpec& spec = effect.type->parameters[i];
-        visit(fmt::format("effects.{}.{}", effect.name, spec.key), effect.parameters[i],
-              spread_of(kEffectDefault, effect.parameters[i], spec.range));
+        visit(fmt::format("effects.{}.{}", effect.name, spec.key), effect.parameters[i], kEffectDefault, spec.range);
       }
     }
   }
@@ -114,14 +152,31 @@ bool needs_spread(std::string_view key) { return row_of(key) != nullptr; }
 
 std::vector<DefaultSpread> default_spreads(const Motor& motor) {
   std::vector<DefaultSpread> missing;
-  for_each_missing(motor, [&](const std::string& key, const Figure& figure, const Spread& spread) {
-    missing.push_back({key, figure.origin, figure.value, spread});
+  for_each_value(motor, [&](const std::string& key, const Figure& figure, const DefaultRow& row, const Range& range) {
+    if (const std::optional<Spread> spread = replacement(row, figure, range)) {
+      missing.push_back({key, figure.origin, figure.value, *spread});
+    }
   });
   return missing;
 }
 
+std::vector<NarrowSpread> narrow_spreads(const Motor& motor) {
+  std::vector<NarrowSpread> narrow;
+  for_each_value(motor, [&](const std::string& key, const Figure& figure, const DefaultRow& row, const Range& range) {
+    const Spread least = spread_by(least_ratios(row, figure.origin), figure, range);
+    if (figure.value != 0.0 && !is_exact(figure) && is_narrow(figure, least, range)) {
+      narrow.push_back({key, &figure, least});
+    }
+  });
+  return narrow;
+}
+
 Motor with_default_spreads(Motor motor) {
-  for_each_missing(motor, [](const std::string&, Figure& figure, const Spread& spread) { figure.spread = spread; });
+  for_each_value(motor, [](const std::string&, Figure& figure, const DefaultRow& row, const Range& range) {
+    if (const std::optional<Spread> spread = replacement(row, figure, range)) {
+      figure.spread = spread;
+    }
+  });
   return motor;
 }
 
@@ -132,7 +187,8 @@ std::optional<Spread> spread_or_default(const Motor& motor, std::string_view key
     return std::nullopt;
   }
   const DefaultRow* const row = row_of(key);
-  return row && lacks_spread(found->second) ? spread_of(*row, found->second, spec->spec.range) : found->second.spread;
+  const std::optional<Spread> other = row ? replacement(*row, found->second, spec->spec.range) : std::nullopt;
+  return other ? other : found->second.spread;
 }
 
 std::string to_string(std::span<const DefaultSpread> spreads) {
@@ -147,12 +203,16 @@ std::string to_string(std::span<const DefaultSpread> spreads) {
 
 void require_sound(const Motor& motor) {
   Diagnostics diagnostics;
-  for (const LintFinding& each : lint(motor)) {
-    if (each.level == LintFinding::Level::error && each.check != "spreads") {
-      diagnostics.add(each.at, each.check, each.message);
-    }
-  }
+  add_lint_errors(motor, diagnostics);
   diagnostics.throw_if_any();
+}
+
+Motor read_sound_motor(const std::filesystem::path& path) {
+  Diagnostics diagnostics;
+  Motor motor = read_motor(path, diagnostics);
+  add_lint_errors(motor, diagnostics);
+  diagnostics.throw_if_any();
+  return motor;
 }
 
 }  // namespace heatsoak

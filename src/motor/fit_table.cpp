@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/normal.hpp>
+#include <cmath>
 #include <sstream>
 
 #include "base/quantity.h"
@@ -54,6 +55,37 @@ Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
 
 }  // namespace
 
+namespace {
+
+constexpr double kMostShare = 10.0;
+
+std::optional<ForecastBand> read_band(Reader& table) {
+  const auto share = [&](const char* key, const char* meaning) {
+    return table.quantity({key, "", Range::between(0.0, kMostShare), meaning}, Need::optional);
+  };
+  const auto winding = share("forecast_unknown_heat_winding", "rms of slow unknown heat per rms heat of a run");
+  const auto stator = share("forecast_unknown_heat_stator", "rms of slow unknown heat per rms heat of a run");
+  const auto heat = share("forecast_heat_factor", "standard deviation of the logarithm of a factor on all heat of a run");
+  const auto time_s =
+      table.quantity({"forecast_time_scale", "s", Range::positive(), "over which the unknown heat forgets"}, Need::optional);
+  const auto width = table.quantity({"forecast_width", "", Range::between(0.01, 100.0), "factor on the band"}, Need::optional);
+  if (!winding || !stator || !heat || !time_s || !width) {
+    return std::nullopt;
+  }
+  return ForecastBand{{*winding, *stator}, *time_s, *heat, *width};
+}
+
+std::string band_text(const ForecastBand& band) {
+  return fmt::format(
+      "# of forecasts of other runs: rms of slow unknown heat per rms heat of the run, and a factor on all heat\n"
+      "forecast_unknown_heat_winding = \"{}\"\nforecast_unknown_heat_stator = \"{}\"\nforecast_time_scale = \"{} s\"\n"
+      "forecast_heat_factor = \"{}\"\nforecast_width = \"{}\"\n",
+      significant(band.unknown_heat_share[0], 2), significant(band.unknown_heat_share[1], 2), significant(band.time_scale_s, 2),
+      significant(band.heat_factor_sd, 2), significant(band.width_ratio, 2));
+}
+
+}  // namespace
+
 MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
   MotorFit fit;
   fit.motor = table.text("motor", Need::required).value_or("");
@@ -79,6 +111,7 @@ MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
   fit.free_run_error_K =
       table.quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "of the free runs that decided the figures"}, Need::optional)
           .value_or(0.0);
+  fit.band = read_band(table);
   table.finish();
   return fit;
 }
@@ -105,7 +138,14 @@ std::string to_toml(const MotorFit& fit) {
     text += fmt::format("latent_flux_{} = \"{} W\"\n", kHeatedNodes[i], significant(fit.latent_flux_W[i], 2));
   }
   text += fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
-  return text + (fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", significant(fit.free_run_error_K, 2)) : "");
+  text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", significant(fit.free_run_error_K, 2)) : "";
+  return text + (fit.band ? band_text(*fit.band) : "");
+}
+
+double drawn_heat_factor(const ForecastBand& band, double uniform) {
+  static const boost::math::normal kNormal;
+  const double sd = band.width_ratio * std::hypot(band.heat_factor_sd, band.unknown_heat_share[0]);
+  return std::exp(sd * boost::math::quantile(kNormal, uniform));
 }
 
 void correlate(const MotorFit& fit, std::span<double> uniforms) {

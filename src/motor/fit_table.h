@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,6 +12,14 @@
 #include "input/reader.h"
 
 namespace heatsoak {
+
+/// How far forecasts of other runs may be off beside what the uncertainty of the parameters explains.
+struct ForecastBand {
+  std::array<double, 2> unknown_heat_share{};  ///< rms of slow unknown heat at winding and stator, per rms heat of the run
+  double time_scale_s = 0.0;                   ///< over which that heat forgets
+  double heat_factor_sd = 0.0;                 ///< of the logarithm of a factor on all heat of a run
+  double width_ratio = 1.0;                    ///< the band as computed is widened by this
+};
 
 /// The [fit] table of a motor file that a calibration wrote.
 struct MotorFit {
@@ -23,11 +33,16 @@ struct MotorFit {
   /// Above 0: whole runs decided the figures, and the model that runs free follows them to this (rms); what follows the load at once
   /// asks for other figures, as in a motor of more parts than the model.
   double free_run_error_K = 0.0;
+  std::optional<ForecastBand> band = {};  ///< of left-out runs, where a calibration has found it
 };
 
 /// Reads the table; `figures` are the keys that the file has. Problems go to the reader's diagnostics.
 MotorFit read_fit(Reader& table, std::span<const std::string> figures);
 std::string to_toml(const MotorFit& fit);
+
+/// Factor on all heat of a run at `uniform` in (0, 1): the heat factor of the band, and the unknown heat at the winding as if it stayed the
+/// same throughout, which is the worst that slow heat can do.
+double drawn_heat_factor(const ForecastBand& band, double uniform);
 
 /// Independent numbers in (0, 1), one per figure of the fit, become dependent ones with the fit's correlation (Gaussian copula).
 void correlate(const MotorFit& fit, std::span<double> uniforms);

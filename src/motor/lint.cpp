@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
 
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
@@ -24,6 +26,11 @@ LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_l
     return figure != motor.figures.end() && figure->second.origin == Origin::estimated;
   });
   return rests_on_estimate ? LintFinding::Level::warning : LintFinding::Level::error;
+}
+
+bool is_complete(const MotorValues& values) {
+  return std::ranges::all_of(motor_figure_specs(),
+                             [&](const MotorFigureSpec& each) { return each.need == Need::optional || std::isfinite(values.*each.value); });
 }
 
 double resistance_ohm(const MotorValues& values, double temperature_C) {
@@ -77,6 +84,7 @@ constexpr std::array kChecks = {
     NamedCheck{"estimates", lint_checks::estimates, false},
     NamedCheck{"spreads", lint_checks::spreads, false},
     NamedCheck{"exact_values", lint_checks::exact_values, false},
+    NamedCheck{"narrow_values", lint_checks::narrow_values, false},
     NamedCheck{"heat_counted_twice", lint_checks::heat_counted_twice, false},
 };
 
@@ -106,6 +114,24 @@ std::vector<LintFinding> lint(const Motor& motor) {
     }
   }
   return list;
+}
+
+void add_lint_errors(const Motor& motor, Diagnostics& diagnostics) {
+  Motor checked = motor;
+  if (!diagnostics.empty()) {
+    checked.effects.clear();
+    checked.sensors.clear();
+  }
+  std::set<int> lines;
+  for (const Diagnostic& each : diagnostics.list()) {
+    lines.insert(each.at.line);
+  }
+  for (const LintFinding& each : lint(checked)) {
+    // What a line lacks that could not be read is no second problem.
+    if (each.level == LintFinding::Level::error && each.check != "spreads" && !lines.contains(each.at.line)) {
+      diagnostics.add(each.at, each.check, each.message);
+    }
+  }
 }
 
 }  // namespace heatsoak

@@ -27,6 +27,11 @@ std::string_view to_string(LintFinding::Level level);
 /// Every finding of every check whose figures the file gives. A motor that passes has no errors.
 std::vector<LintFinding> lint(const Motor& motor);
 
+/// Adds the errors of lint() to `diagnostics`. Where these hold problems already, the file was read in part only: then the effects, which
+/// may name nodes that are missing, are left out of the check. A missing spread does not count, because a default takes its place,
+/// nor does an error on a line that has a problem already.
+void add_lint_errors(const Motor& motor, Diagnostics& diagnostics);
+
 /// The nominal point seen by the thermal network.
 struct NominalPointHeat {
   double equivalent_current_A = 0.0;  ///< I_eq = (T_n + K_t·I_0)/K_t: makes the nominal torque and the drag

@@ -21,6 +21,7 @@ class Findings {
   void warning(std::string_view key, std::string message) { add(LintFinding::Level::warning, key, std::move(message)); }
   void note(std::string_view key, std::string message) { add(LintFinding::Level::note, key, std::move(message)); }
   void error_at(Location at, std::string message) { add_at(LintFinding::Level::error, std::move(at), std::move(message)); }
+  void note_at(Location at, std::string message) { add_at(LintFinding::Level::note, std::move(at), std::move(message)); }
   void warning_at(Location at, std::string message) { add_at(LintFinding::Level::warning, std::move(at), std::move(message)); }
   /// `key` is the figure that the finding is about; its place in the file is reported.
   void add(LintFinding::Level level, std::string_view key, std::string message);
@@ -47,6 +48,8 @@ struct Bounds {
 
 /// A contradiction is an error, but only a warning where one of the figures is somebody's estimate.
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys);
+/// Whether every value is there that a network needs: a file that was read in part may lack some.
+bool is_complete(const MotorValues& values);
 /// Of the copper at `temperature_C`.
 double resistance_ohm(const MotorValues& values, double temperature_C);
 
@@ -90,6 +93,7 @@ void confirmations(const Motor& motor, Findings& findings);
 void estimates(const Motor& motor, Findings& findings);
 void spreads(const Motor& motor, Findings& findings);
 void exact_values(const Motor& motor, Findings& findings);
+void narrow_values(const Motor& motor, Findings& findings);
 void heat_counted_twice(const Motor& motor, Findings& findings);
 
 }  // namespace heatsoak::lint_checks

@@ -233,7 +233,7 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
 /// The coarser sibling for sheets without nominal torque or speed: copper loss alone, at standstill.
 void copper_limit(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  if (std::isnan(v.nominal_current_A) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {
+  if (std::isnan(v.nominal_current_A) || !is_complete(v) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {
     return;
   }
   const double limit_A = limit_current_A(motor, 0.0);
@@ -254,7 +254,8 @@ namespace heatsoak {
 
 std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor) {
   const MotorValues& v = motor.nominal;
-  if (std::isnan(v.nominal_torque_Nm) || std::isnan(v.nominal_speed_rad_per_s) || v.winding_limit_C <= lint_checks::kSheetAmbient_C) {
+  if (std::isnan(v.nominal_torque_Nm) || std::isnan(v.nominal_speed_rad_per_s) || !lint_checks::is_complete(v) ||
+      v.winding_limit_C <= lint_checks::kSheetAmbient_C) {
     return std::nullopt;
   }
   return NominalPointHeat{(v.nominal_torque_Nm + drag_torque_Nm(v)) / v.torque_constant_Nm_per_A,

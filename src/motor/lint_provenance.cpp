@@ -88,7 +88,7 @@ void spreads(const Motor& motor, Findings& findings) {
   }
 }
 
-/// Nothing that is built is exact. Whoever means "hardly any" can state a small tolerance.
+/// Nothing that is built is exact.
 void exact_values(const Motor& motor, Findings& findings) {
   for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
     if (is_exact(figure) && !is_agreed(key)) {
@@ -98,6 +98,21 @@ void exact_values(const Motor& motor, Findings& findings) {
                                     key, figure.printed));
     }
   });
+}
+
+/// A tolerance of 0.001 % is as good as none. A fit may find one, so that of a measured value is widened and noted, not refused.
+void narrow_values(const Motor& motor, Findings& findings) {
+  for (const NarrowSpread& each : narrow_spreads(motor)) {
+    const Figure& figure = *each.figure;
+    const auto percent = [&](double bound) { return 100.0 * std::abs(bound / figure.value - 1.0); };
+    const bool is_measured = figure.origin == Origin::measured;
+    const std::string message = fmt::format(
+        "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % of a value of this origin; {}", each.key,
+        figure.printed, to_string(figure.origin), significant(percent(figure.spread->low), 2), significant(percent(figure.spread->high), 2),
+        significant(percent(each.least.low), 2), significant(percent(each.least.high), 2),
+        is_measured ? "that is assumed" : "state that, or leave tolerance and range out and a default by its origin is assumed");
+    is_measured ? findings.note_at(figure.at, message) : findings.error_at(figure.at, message);
+  }
 }
 
 void heat_counted_twice(const Motor& motor, Findings& findings) {

@@ -9,6 +9,7 @@
 
 #include "input/document.h"
 #include "motor/motor_effects.h"
+#include "motor/read_motor.h"
 #include "thermal/copper.h"
 
 namespace heatsoak {
@@ -239,8 +240,14 @@ std::span<const MotorFigureSpec> motor_figure_specs() { return kSpecs; }
 bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
 
 Motor read_motor(const std::filesystem::path& path) {
-  const Value root = read_toml(path);
   Diagnostics diagnostics;
+  Motor motor = read_motor(path, diagnostics);
+  diagnostics.throw_if_any();
+  return motor;
+}
+
+Motor read_motor(const std::filesystem::path& path, Diagnostics& diagnostics) {
+  const Value root = read_toml(path);
   Reader top(root, "", diagnostics);
   Motor motor;
   motor.id = path.stem().string();
@@ -274,7 +281,6 @@ Motor read_motor(const std::filesystem::path& path) {
   }
   top.finish();
   check_sources(motor, diagnostics);
-  diagnostics.throw_if_any();
   return motor;
 }
 
@@ -312,10 +318,41 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
       *all[i].second = all[i].first->quantile(uniforms[i]);
     }
   }
+  if (motor.fit && motor.fit->band) {
+    const double heat_ratio = drawn_heat_factor(*motor.fit->band, random.uniform());
+    sample.values.terminal_resistance_ohm *= heat_ratio;
+    sample.values.no_load_current_A *= heat_ratio;
+  }
   return sample;
 }
 
+namespace {
+
+/// Of a motor whose file a calibration wrote: what it fitted and the data told is measured. A limit and a tabulated constant of a sheet
+/// do not make it worse, a guess does.
+std::string_view quality_of_fit(const Motor& motor) {
+  bool is_measured = true;
+  for (const MotorEffect& effect : motor.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      is_measured = is_measured && (!effect.type->parameters[i].choices.empty() || effect.parameters[i].origin != Origin::estimated);
+    }
+  }
+  for (const MotorFigureSpec& each : kSpecs) {
+    const auto found = motor.figures.find(each.spec.key);
+    if (each.is_thermal && found != motor.figures.end()) {
+      const Origin origin = found->second.origin;
+      is_measured = is_measured && (each.spec.key.starts_with("thermal_") ? origin == Origin::measured : origin != Origin::estimated);
+    }
+  }
+  return is_measured ? "measured" : "mixed";
+}
+
+}  // namespace
+
 std::string_view data_quality(const Motor& motor) {
+  if (motor.fit) {
+    return quality_of_fit(motor);
+  }
   bool all_of_sheet = true;
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {

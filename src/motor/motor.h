@@ -122,7 +122,8 @@ void refresh_values(Motor& motor);
 /// What the file states for the sensor of a signal, "winding_C".
 std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal);
 
-/// One draw of every declared tolerance and range of what makes temperatures; figures of a fit hang together as the fit says.
+/// One draw of every declared tolerance and range of what makes temperatures; figures of a fit hang together as the fit says, and all heat
+/// of a motor with a forecast band has a factor of that band.
 struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order
@@ -130,9 +131,10 @@ struct MotorSample {
 MotorSample nominal_sample(const Motor& motor);
 MotorSample draw_sample(const Motor& motor, Random& random);
 
-/// What a verdict on this motor's temperature rests on: `datasheet` where every thermal figure is measured or
-/// from the manufacturer's sheet, `estimated` where one of the four thermal resistances and time
-/// constants, the winding limit or a figure of an added effect is an estimate, `mixed` otherwise.
+/// What a verdict on this motor's temperature rests on. Of a file that a calibration wrote: `measured` where it has all of the four thermal
+/// resistances and time constants from data and nothing is estimated, else `mixed`. Otherwise: `datasheet` where every thermal figure is
+/// measured or from the manufacturer's sheet, `estimated` where one of the four thermal resistances and time constants, the winding limit
+/// or a figure of an added effect is an estimate, `mixed` otherwise.
 std::string_view data_quality(const Motor& motor);
 
 }  // namespace heatsoak

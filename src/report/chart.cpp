@@ -44,14 +44,14 @@ fs::path find_plugin() {
 }
 
 /// Never closed: VTK's factories do not survive being unloaded. Opening again costs next to nothing.
-DrawSvg open_plugin() {
+void* plugin_function(const char* name) {
   const fs::path plugin = find_plugin();
   void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* function = library != nullptr ? dlsym(library, chart_plugin_function) : nullptr;
+  void* function = library != nullptr ? dlsym(library, name) : nullptr;
   if (function == nullptr) {
     throw Failure(ExitCode::bug, fmt::format("cannot open the drawing library: {}; is it of the same build as the program?", dlerror()));
   }
-  return reinterpret_cast<DrawSvg>(function);
+  return function;
 }
 
 void check_lengths(const Chart& chart) {
@@ -77,10 +77,22 @@ void check_lengths(const Chart& chart) {
 std::string draw_svg(const Chart& chart) {
   check_lengths(chart);
   std::string text;
-  if (!open_plugin()(&chart, &text, chart_layout)) {
+  if (!reinterpret_cast<DrawSvg>(plugin_function(chart_plugin_function))(&chart, &text, chart_layout)) {
     throw Failure(ExitCode::bug, "drawing failed: " + text);
   }
   return text;
+}
+
+std::string draw_picture(const Chart& chart, const std::string& file) {
+  std::string svg = draw_svg(chart);
+  if (!file.ends_with(".png")) {
+    return svg;
+  }
+  std::string png;
+  if (!reinterpret_cast<SvgToPng>(plugin_function(png_plugin_function))(&svg, &png)) {
+    throw Failure(ExitCode::bug, "drawing failed: " + png);
+  }
+  return png;
 }
 
 }  // namespace heatsoak

@@ -54,4 +54,7 @@ struct Chart {
 /// `chart` as SVG, drawn without a display. Throws Failure (bug) where the drawing library is not found.
 std::string draw_svg(const Chart& chart);
 
+/// The bytes of a picture file in the format of its ending: PNG for ".png", with two pixels for one of the chart, else SVG.
+std::string draw_picture(const Chart& chart, const std::string& file);
+
 }  // namespace heatsoak

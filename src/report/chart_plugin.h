@@ -19,4 +19,8 @@ inline constexpr std::size_t chart_layout =
 /// `layout` is the caller's chart_layout.
 using DrawSvg = bool (*)(const Chart* chart, std::string* text, std::size_t layout);
 
+inline constexpr const char* png_plugin_function = "heatsoak_svg_to_png";
+/// The same for an SVG that is turned into a PNG.
+using SvgToPng = bool (*)(const std::string* svg, std::string* png);
+
 }  // namespace heatsoak

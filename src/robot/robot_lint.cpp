@@ -3,11 +3,82 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "input/document.h"
 #include "robot/body.h"
 
 namespace heatsoak {
+namespace {
+
+std::string in_mm(double length_m) { return fmt::format("{:.0f} mm", 1e3 * length_m); }
+
+/// The smallest angle between the axles of two wheels.
+double closest_axles_rad(const Robot& robot) {
+  std::vector<double> sorted_rad;
+  for (const double each_rad : robot.wheel_axis_rad) {
+    sorted_rad.push_back(std::remainder(each_rad, 2.0 * std::numbers::pi));
+  }
+  std::ranges::sort(sorted_rad);
+  double closest_rad = sorted_rad.front() + 2.0 * std::numbers::pi - sorted_rad.back();
+  for (std::size_t i = 1; i < sorted_rad.size(); ++i) {
+    closest_rad = std::min(closest_rad, sorted_rad[i] - sorted_rad[i - 1]);
+  }
+  return closest_rad;
+}
+
+/// A wheel is a disc that touches the circle of the contact points; two of them meet where their planes do.
+void check_wheels(const Robot& robot, std::vector<LintFinding>& findings) {
+  const double room_m = robot.wheel_contact_radius_m * std::tan(0.5 * std::min(closest_axles_rad(robot), 0.9 * std::numbers::pi));
+  // Wheels of known robots have 0.35 to 0.42 of the contact radius.
+  constexpr double kLargestShare = 0.6;
+  const bool is_overlap = robot.wheel_radius_m > room_m;
+  if (is_overlap || robot.wheel_radius_m > kLargestShare * robot.wheel_contact_radius_m) {
+    findings.push_back(
+        {is_overlap ? LintFinding::Level::error : LintFinding::Level::warning, "wheels",
+         fmt::format("wheels.radius: wheels with a radius of {} {} on a circle of {}; expected at most {}. Is {} the diameter?",
+                     in_mm(robot.wheel_radius_m), is_overlap ? "overlap" : "are large", in_mm(robot.wheel_contact_radius_m),
+                     in_mm(std::min(room_m, kLargestShare * robot.wheel_contact_radius_m)), in_mm(robot.wheel_radius_m)),
+         place_of(robot.file, "wheels.radius")});
+  }
+}
+
+void check_battery(const Robot& robot, std::vector<LintFinding>& findings) {
+  const auto add = [&](const char* key, std::string message) {
+    findings.push_back({LintFinding::Level::error, "battery", fmt::format("{}: {}", key, message), place_of(robot.file, key)});
+  };
+  if (robot.battery_V > robot.battery_full_V) {
+    add("battery.nominal_voltage", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected a value between empty and full",
+                                               robot.battery_V, robot.battery_full_V));
+  }
+  if (robot.battery_V < robot.battery_empty_V) {
+    add("battery.nominal_voltage",
+        fmt::format("{:.4g} V is less than the empty battery's {:.4g} V; expected a value between empty and full", robot.battery_V,
+                    robot.battery_empty_V));
+  }
+  if (robot.battery_empty_V >= robot.battery_full_V) {
+    add("battery.empty_voltage",
+        fmt::format("{:.4g} V is not less than the full battery's {:.4g} V", robot.battery_empty_V, robot.battery_full_V));
+  }
+}
+
+/// A disc that reaches to the contact points has half of mass times radius squared; a ring that is twice as wide eight times as much.
+void check_inertia(const Robot& robot, std::vector<LintFinding>& findings) {
+  constexpr double kLeast = 0.15;
+  constexpr double kMost = 4.0;
+  const double share = robot.yaw_inertia_kg_m2 / (robot.mass_kg * robot.wheel_contact_radius_m * robot.wheel_contact_radius_m);
+  if (share < kLeast || share > kMost) {
+    findings.push_back(
+        {LintFinding::Level::warning, "inertia",
+         fmt::format("body.yaw_inertia: is {:.3g} times mass times contact radius squared; expected {} to {} times. Check the "
+                     "unit: 1 kg m2 is 10 000 000 g cm2",
+                     share, kLeast, kMost),
+         place_of(robot.file, "body.yaw_inertia")});
+  }
+}
+
+}  // namespace
 
 std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
   std::vector<LintFinding> findings;
@@ -17,6 +88,9 @@ std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> k
          fmt::format("drive.motor: there is no motor '{}'{}", robot.drive_motor, did_you_mean(robot.drive_motor, known_motors)),
          place_of(robot.file, "drive.motor")});
   }
+  check_wheels(robot, findings);
+  check_battery(robot, findings);
+  check_inertia(robot, findings);
   try {
     MotorValues any;
     any.rotor_inertia_kg_m2 = 0.0;

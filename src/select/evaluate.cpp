@@ -15,6 +15,7 @@
 #include "motor/datasheet_network.h"
 #include "motor/default_spread.h"
 #include "select/bearable_current.h"
+#include "select/decision.h"
 #include "select/drive_profile.h"
 #include "select/spread.h"
 #include "thermal/ensemble.h"
@@ -27,8 +28,6 @@ using states::winding;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
-/// Half a minute of work; beyond, the intervals say how coarse the percentiles are.
-constexpr int kMostDraws = 256;
 /// Apart from those of motors, so that every motor meets the same robots.
 constexpr std::uint64_t kRobotStreams = std::uint64_t{1} << 40U;
 
@@ -309,8 +308,8 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
     }
   };
   const std::vector<Lanes> peak_C = block.peaks(
-      options.with_curves ? cell_s : std::numeric_limits<double>::infinity(), [&](double time_s, const std::vector<Lanes>& state_C) {
-        if (!options.with_curves || time_s > work.duration_s * (1.0 + 1e-9)) {
+      options.with_bands ? cell_s : std::numeric_limits<double>::infinity(), [&](double time_s, const std::vector<Lanes>& state_C) {
+        if (!options.with_bands || time_s > work.duration_s * (1.0 + 1e-9)) {
           return;  // the picture ends with the nominal duty, a draw may go on
         }
         take(state_C);
@@ -366,9 +365,9 @@ LimitingFactor hotter_limit(const MotorEvaluation& result) {
 
 /// Where the duty itself is drawn, one game is no more than one game.
 void decide_by_majority(MotorEvaluation& result) {
-  result.verdict = result.short_probability > 0.5        ? Verdict::infeasible
-                   : result.probability_over_limit > 0.5 ? Verdict::fail
-                                                         : Verdict::pass;
+  result.verdict = result.short_probability > kMajority        ? Verdict::infeasible
+                   : result.probability_over_limit > kMajority ? Verdict::fail
+                                                               : Verdict::pass;
   result.limiting_factor = result.verdict == Verdict::infeasible ? result.short_limit
                            : result.verdict == Verdict::pass     ? LimitingFactor::none
                                                                  : hotter_limit(result);
@@ -376,6 +375,7 @@ void decide_by_majority(MotorEvaluation& result) {
 
 void conclude(Work& work, const EvaluateOptions& options) {
   MotorEvaluation& result = work.result;
+  result.samples = options.samples;
   result.winding_peak_C = spread(result.winding_peak_C.nominal, work.winding_peak_C);
   result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
   result.probability_over_limit =
@@ -386,15 +386,23 @@ void conclude(Work& work, const EvaluateOptions& options) {
   if (result.verdict != Verdict::infeasible) {
     result.short_limit = by_current > by_voltage ? LimitingFactor::current : LimitingFactor::voltage;
   }
+  Interval95 short_interval;
+  if (options.samples > 0) {
+    const auto intervals_of = [&](std::span<const double> peak_C, std::span<const char> flags) {
+      return options.draws.empty() ? sample_intervals(peak_C, flags)
+                                   : draw_intervals(peak_C, flags, {options.draws.size(), kLanes, options.seed});
+    };
+    const DrawIntervals intervals = intervals_of(work.winding_peak_C, work.over_limit);
+    result.winding_p95_interval_C = intervals.p95;
+    result.stator_p95_interval_C = intervals_of(work.stator_peak_C, work.over_limit).p95;
+    result.probability_interval = intervals.probability;
+    std::vector<char> is_short;
+    std::ranges::transform(work.short_of_demand, std::back_inserter(is_short),
+                           [](DriveLimit limit) { return limit == DriveLimit::none ? char{0} : char{1}; });
+    short_interval = intervals_of(work.winding_peak_C, is_short).probability;
+  }
   if (!options.draws.empty()) {
-    const DrawIntervals intervals = draw_intervals(work.winding_peak_C, work.over_limit, {options.draws.size(), kLanes, options.seed});
-    result.winding_p95_interval_C = intervals.p95;
-    result.probability_interval = intervals.probability;
     decide_by_majority(result);
-  } else if (options.samples > 0) {
-    const DrawIntervals intervals = sample_intervals(work.winding_peak_C, work.over_limit);
-    result.winding_p95_interval_C = intervals.p95;
-    result.probability_interval = intervals.probability;
   }
   // As many games as were drawn cannot rule more out than the interval says.
   const double over = options.draws.empty() ? result.probability_over_limit : result.probability_interval->high;
@@ -402,12 +410,17 @@ void conclude(Work& work, const EvaluateOptions& options) {
     result.verdict = Verdict::marginal;
     result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit : hotter_limit(result);
   }
-  if (options.with_curves && options.samples > 0) {
+  result.samples_needed = samples_needed(result, short_interval, !options.draws.empty());
+  if (options.with_bands && options.samples > 0) {
     finish_band(work, options.samples);
   }
 }
 
 }  // namespace
+
+void sort_by_verdict(std::vector<MotorEvaluation>& results) {
+  std::ranges::stable_sort(results, {}, [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); });
+}
 
 double nearest_margin_K(const MotorEvaluation& motor) { return std::min(motor.margin_K, motor.stator_margin_K.value_or(motor.margin_K)); }
 
@@ -427,10 +440,18 @@ int draw_count(const Duty& duty, int samples) {
 
 std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
                                       const Progress& progress) {
-  std::vector<WheelDemand> draws(static_cast<std::size_t>(count));
-  in_parallel(draws.size(), threads, 0, draws.size(), progress,
-              [&](std::size_t draw) { draws[draw] = hardest(duty.shape_data->draw(robot, seed, draw)); });
+  std::vector<WheelDemand> draws;
+  add_draws(draws, duty, robot, seed, count, threads, progress);
   return draws;
+}
+
+void add_draws(std::vector<WheelDemand>& draws, const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
+               const Progress& progress) {
+  const std::size_t first = draws.size();
+  draws.resize(std::max(first, static_cast<std::size_t>(count)));
+  const std::size_t more = draws.size() - first;
+  in_parallel(more, threads, 0, more, progress,
+              [&](std::size_t i) { draws[first + i] = hardest(duty.shape_data->draw(robot, seed, first + i)); });
 }
 
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
@@ -446,8 +467,8 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     works[i].stator_peak_C.resize(samples);
     works[i].over_limit.resize(samples);
     works[i].short_of_demand.resize(samples);
-    works[i].winding_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
-    works[i].stator_envelope_C.resize(options.with_curves ? samples * kBandCells : 0);
+    works[i].winding_envelope_C.resize(options.with_bands ? samples * kBandCells : 0);
+    works[i].stator_envelope_C.resize(options.with_bands ? samples * kBandCells : 0);
   }
   // The samples need to know the hottest wheel, so every motor's nominal run comes first. It takes another time than a block of samples,
   // so where there are any, they alone are the progress.
@@ -462,7 +483,7 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
     conclude(work, options);
     results.push_back(std::move(work.result));
   }
-  std::ranges::stable_sort(results, {}, [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); });
+  sort_by_verdict(results);
   return results;
 }
 

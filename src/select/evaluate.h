@@ -15,17 +15,16 @@
 
 namespace heatsoak {
 
-enum class Verdict {
-  pass,        ///< nominally within every limit, and at most kMarginalProbability to pass one
-  marginal,    ///< nominally within, but the declared uncertainty reaches over a limit more often
-  fail,        ///< nominally too hot
-  infeasible,  ///< voltage or current do not suffice for the demanded torque
-};
+/// What each one means stands in verdict_meanings() of present/verdict_topic.h, in words made from the constants below.
+enum class Verdict { pass, marginal, fail, infeasible };
 enum class LimitingFactor { none, winding_temperature, stator_temperature, voltage, current };
 std::string_view to_string(Verdict verdict);
 std::string_view to_string(LimitingFactor factor);
 
+/// A motor that would pass is marginal if samples exceed a limit, or miss the demand, with more than this probability.
 inline constexpr double kMarginalProbability = 0.05;
+/// On a duty with draws of its own a motor fails, or is infeasible, if more than this share of the samples says so.
+inline constexpr double kMajority = 0.5;
 /// A demand counts as met where it is missed for no larger part of the time: a lost centimetre, not a lost match.
 inline constexpr double kTolerableShortTime = 0.01;
 
@@ -33,7 +32,8 @@ struct EvaluateOptions {
   int samples = 500;  ///< 0: nominal only
   std::uint64_t seed = 1;
   int threads = 0;           ///< 0: all cores; the result does not depend on it
-  bool with_curves = false;  ///< keep what a picture needs
+  bool with_curves = false;  ///< keep the nominal temperatures over time
+  bool with_bands = false;   ///< keep the range of the samples over time too; asks for with_curves
   /// Demands of the hardest wheel under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all
   /// samples have the nominal demand.
   std::span<const WheelDemand> draws{};
@@ -72,10 +72,14 @@ struct MotorEvaluation {
   std::optional<double> stator_limit_C;
   Spread95 winding_peak_C;
   Spread95 stator_peak_C;
+  int samples = 0;  ///< that this answer rests on
+  /// Samples that would decide the verdict, as samples_needed() in select/decision.h; nothing where it is decided.
+  std::optional<int> samples_needed;
   double probability_over_limit = 0.0;  ///< of any temperature limit; NaN without samples
   /// Of the 95th percentile and of the probability: what other samples would give or, where a duty is drawn, other draws. Nothing
   /// without samples.
   std::optional<Interval95> winding_p95_interval_C;
+  std::optional<Interval95> stator_p95_interval_C;
   std::optional<Interval95> probability_interval;
   std::optional<double> time_to_limit_s;  ///< nominal, first of the limits
   double current_rms_A = 0.0;             ///< heating current over the whole duty
@@ -98,10 +102,19 @@ int draw_count(const Duty& duty, int samples);
 std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
                                       const Progress& progress = {});
 
+/// The same for draws draws.size() to count - 1, added at the end.
+void add_draws(std::vector<WheelDemand>& draws, const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
+               const Progress& progress = {});
+/// Each draw costs as much as playing a game, so samples share at most this many.
+inline constexpr int kMostDraws = 256;
+
 /// To the limit that is nearer.
 double nearest_margin_K(const MotorEvaluation& motor);
 
-/// Best first: pass, marginal, fail, infeasible; within them by margin. Without draws the nominal figures decide fail and
+/// Best first: pass, marginal, fail, infeasible; within them by margin.
+void sort_by_verdict(std::vector<MotorEvaluation>& results);
+
+/// Sorted by sort_by_verdict(). Without draws the nominal figures decide fail and
 /// infeasible; with draws, where the nominal run is one of many games, more than half of the samples do. `wheels` is the duty's demand;
 /// every figure is of the wheel whose winding gets hottest. Values of a motor without a spread are drawn from a default one
 /// (motor/default_spread.h), never as exact. `progress` is called from one thread at a time.

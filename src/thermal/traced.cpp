@@ -4,8 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "robot_core/thermal_math.h"
+#include "thermal/scalar.h"
 
 namespace heatsoak {
 namespace {
@@ -16,9 +18,37 @@ float exponential_of(float x) { return heatsoak_exp(x); }
 double power_of(double base, double exponent) { return base > 0.0 ? std::pow(base, exponent) : 0.0; }
 float power_of(float base, float exponent) { return heatsoak_pow(base, exponent); }
 
+// Lane by lane where Eigen's own functions differ in the last digit.
+Lanes exponential_of(const Lanes& x) { return exponential(x); }
+Lanes power_of(const Lanes& base, const Lanes& exponent) { return power(base, exponent); }
+
 template <class Number>
-Number worked_out(Operation operation, Number a, Number b) {
-  constexpr Number kNone{0};
+Number magnitude_of(Number x) {
+  return std::abs(x);
+}
+Lanes magnitude_of(const Lanes& x) { return x.abs(); }
+template <class Number>
+Number positive_part_of(Number x) {
+  return x > Number{0} ? x : Number{0};
+}
+Lanes positive_part_of(const Lanes& x) { return x.max(0.0); }
+template <class Number>
+Number square_root_of(Number x) {
+  return std::sqrt(x);
+}
+Lanes square_root_of(const Lanes& x) { return x.sqrt(); }
+
+template <class Number>
+Number constant_of(double value) {
+  if constexpr (std::is_same_v<Number, Lanes>) {
+    return Lanes::Constant(value);
+  } else {
+    return static_cast<Number>(value);
+  }
+}
+
+template <class Number>
+Number worked_out(Operation operation, const Number& a, const Number& b) {
   switch (operation) {
     case Operation::add:
       return a + b;
@@ -29,11 +59,11 @@ Number worked_out(Operation operation, Number a, Number b) {
     case Operation::divide:
       return a / b;
     case Operation::magnitude:
-      return std::abs(a);
+      return magnitude_of(a);
     case Operation::positive_part:
-      return a > kNone ? a : kNone;
+      return positive_part_of(a);
     case Operation::square_root:
-      return std::sqrt(a);
+      return square_root_of(a);
     case Operation::power:
       return power_of(a, b);
     case Operation::exponential:
@@ -92,7 +122,7 @@ FormulaRun<Number>::FormulaRun(const Formula& formula, std::span<const int> resu
       place[i] = step.left;
     } else if (step.operation == Operation::constant && needed[i] != 0) {
       place[i] = static_cast<int>(values_.size());
-      values_.push_back(static_cast<Number>(step.value));
+      values_.push_back(constant_of<Number>(step.value));
     }
   }
   first_step_ = values_.size();
@@ -104,7 +134,7 @@ FormulaRun<Number>::FormulaRun(const Formula& formula, std::span<const int> resu
     step.left = place[static_cast<std::size_t>(step.left)];
     step.right = step.right < 0 ? step.left : place[static_cast<std::size_t>(step.right)];
     place[i] = static_cast<int>(values_.size());
-    values_.push_back(Number{0});
+    values_.push_back(constant_of<Number>(0.0));
     steps_.push_back(step);
   }
   for (const int result : results) {
@@ -127,6 +157,7 @@ void FormulaRun<Number>::run(std::span<const Number> inputs, std::span<Number> r
 
 template class FormulaRun<float>;
 template class FormulaRun<double>;
+template class FormulaRun<Lanes>;
 
 Traced Traced::joined(Operation operation, const Traced& a, const Traced& b) {
   if (a.is_constant() && b.is_constant()) {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "attribution/advisor.h"
 #include "drive_rows.h"
-#include "identify/attribution/advisor.h"
 #include "scoring.h"
 
 namespace heatsoak::truth {
@@ -29,44 +29,6 @@ ExtendedModel known_to(double sd_share, const DiagnosisInput& input) {
   return known;
 }
 
-TEST(Diagnosis, fails_where_the_models_own_figures_follow_the_runs_held_out_better) {
-  Diagnosis told;
-  told.before_holdout["winding_C"].rmse_K = 0.90;
-  told.refitted_holdout["winding_C"].rmse_K = 0.33;
-  told.after_holdout["winding_C"].rmse_K = 0.53;
-  EXPECT_FALSE(fails_on_holdout(told)) << "nothing was added";
-  told.effects.emplace_back().gain_nats = 30.0;
-  EXPECT_TRUE(fails_on_holdout(told));
-  told.refitted_train["winding_C"].rmse_K = 1.60, told.after_train["winding_C"].rmse_K = 0.30;
-  EXPECT_FALSE(fails_on_holdout(told)) << "little beside what the training runs gain";
-  told.refitted_train.clear(), told.after_train.clear();
-  told.after_holdout["winding_C"].rmse_K = 0.40;
-  EXPECT_FALSE(fails_on_holdout(told)) << "less than matters";
-  told.effects.front().gain_nats = 6.0;
-  EXPECT_TRUE(fails_on_holdout(told)) << "an effect that is hardly sure";
-  told.after_holdout["winding_C"].rmse_K = 0.34;
-  EXPECT_FALSE(fails_on_holdout(told)) << "by chance";
-  told.before_holdout["winding_C"].rmse_K = 0.10;
-  told.effects.front().gain_nats = 30.0;
-  EXPECT_TRUE(fails_on_holdout(told)) << "the model as it was follows them better";
-}
-
-/// Heat that the runs held out do not have.
-TEST(Examination, WhatFailsOnUnseenRunsIsToldAndNotAdded) {
-  Case one = sealed(subject("iron_loss_eddy").make(1.5), 12);
-  DiagnosisInput input = question(one, record(one));
-  one.missing = {};
-  input.holdout = question(one, record(one)).holdout;
-  const Diagnosis told = diagnose(input, {});
-  EXPECT_EQ(told.verdict, DiagnosisVerdict::unexplained) << told.description;
-  EXPECT_THAT(told.effects, testing::IsEmpty()) << told.description;
-  EXPECT_THAT(told.unexplained, testing::Not(testing::IsEmpty())) << told.description;
-  EXPECT_FALSE(is_plainly_worse(rms_K(told.after_holdout), rms_K(told.before_holdout))) << told.description;
-  EXPECT_THAT(told.description, testing::HasSubstr("does not hold on the runs never seen"));
-  EXPECT_THAT(told.description,
-              testing::ContainsRegex("iron_loss_\\w+: [0-9]+ nats, but what was found takes the error of the training runs from"));
-}
-
 /// Either alone makes whole runs worse: heat that is always there, and air that is there at a low supply and takes as much away.
 TEST(Examination, CurveAndLawThatBalanceEachOtherAreBothFound) {
   Missing missing;
@@ -77,7 +39,6 @@ TEST(Examination, CurveAndLawThatBalanceEachOtherAreBothFound) {
   Case one = sealed(missing, 12);
   one.is_calibrated = true;
   const Answer answer = examine(one);
-  EXPECT_TRUE(answer.diagnosis.selection.waits_for_others) << account(answer);
   EXPECT_THAT(answer.named, testing::UnorderedElementsAre("constant_heat", "stator~bus_voltage")) << account(answer);
   EXPECT_LT(answer.after_K, 0.3 * answer.before_K) << account(answer);
 }
@@ -93,7 +54,7 @@ TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
   EXPECT_EQ(told.selection.after.model.column, "current_A");
   ASSERT_FALSE(told.unexplained.empty());
   EXPECT_TRUE(told.unexplained.front().is_in_model);
-  EXPECT_LT(rms_K(told.after_holdout), 0.3 * rms_K(told.refitted_holdout)) << account(answer);
+  EXPECT_LT(rms_K(answer.score.after), 0.3 * rms_K(answer.score.refitted)) << account(answer);
 }
 
 TEST(Examination, ConstantHeatInTheWindingOfAllRunsIsOneEffect) {
@@ -213,7 +174,8 @@ TEST(Examination, HeatThatNothingLoggedFollowsIsToldInWattsAndGetsNoName) {
 // A motor that was known to 2 % and then screwed to something else: 1.4 times the resistance to the air in its file.
 TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
   const Case one = sealed({}, 5);
-  DiagnosisInput input = question(one, record(one));
+  const Runs runs = record(one);
+  DiagnosisInput input = question(one, runs);
   input.model = known_to(0.02, input);
   Model& known = input.model.model;
   EXPECT_THAT(diagnose(input, {}).changed, testing::IsEmpty());
@@ -234,7 +196,8 @@ TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
   EXPECT_NEAR(found.changed.front().value, true_K_per_W, 0.05 * true_K_per_W);
   EXPECT_LT(found.changed.front().low, true_K_per_W);
   EXPECT_GT(found.changed.front().high, true_K_per_W);
-  EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) / 3.0);
+  const HoldoutScore score = score_holdout(input, found, holdout(runs));
+  EXPECT_LT(rms_K(score.after), rms_K(score.before) / 3.0);
   EXPECT_THAT(found.description, testing::HasSubstr("Does not hold here: stator_ambient.thermal_resistance"));
 }
 
@@ -242,17 +205,17 @@ TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
 /// not: the law goes through nothing at 25 °C, the file's figure is right at 45 °C.
 TEST(Examination, LawIsFoundThoughTheFileIsSureOfAFigureThatMovesWithIt) {
   Case one = sealed({}, 63);
-  DiagnosisInput input = question(one, record(one));
+  const Runs runs_before = record(one);
+  DiagnosisInput input = question(one, runs_before);
   input.model = known_to(0.01, input);
-  const double nothing_missing_K = rms_K(diagnose(input, {}).after_holdout);
+  const double nothing_missing_K = rms_K(score_holdout(input, diagnose(input, {}), holdout(runs_before)).after);
   one.missing.heat.push_back([](const Moment& now, PerPart& heat_W) {
     const double more_W = 0.14 / 1.6 * (0.5 * (now.copper_C + now.iron_C) - 45.0) / 30.0 * (now.copper_C - now.iron_C);
     heat_W[slot] -= more_W;
     heat_W[tooth] += more_W;
   });
   const Runs runs = record(one);
-  const DiagnosisInput changed = question(one, runs);
-  input.train = changed.train, input.holdout = changed.holdout;
+  input.train = question(one, runs).train;
   const Diagnosis found = diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << found.description;
   EXPECT_EQ(found.effects.front().id, "contact_temperature_dependence") << found.description;
@@ -260,7 +223,7 @@ TEST(Examination, LawIsFoundThoughTheFileIsSureOfAFigureThatMovesWithIt) {
   ASSERT_EQ(found.changed.size(), 1U) << found.description;
   EXPECT_EQ(found.changed.front().name, "winding_stator.thermal_resistance");
   EXPECT_GT(found.changed.front().value, 1.02 * found.changed.front().before) << "at 25 °C it is more than at 45";
-  EXPECT_LT(rms_K(found.after_holdout), 1.1 * nothing_missing_K) << found.description;
+  EXPECT_LT(rms_K(score_holdout(input, found, holdout(runs)).after), 1.1 * nothing_missing_K) << found.description;
 }
 
 /// A cover in one of four runs keeps three tenths of the heat in that the air took away: the resistance is 1 / 0.7 of what it was. Unseen
@@ -272,14 +235,16 @@ TEST(Examination, WorseCoolingInOneRunIsToldAsThatAndStaysThere) {
     heat_W[yoke] += 0.3 * (now.iron_C - now.in.ambient_C) / air_K_per_W;
   });
   runs.training[1] = record(one).training[1];
-  const Diagnosis found = diagnose(question(one, runs), {});
+  const DiagnosisInput input = question(one, runs);
+  const Diagnosis found = diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << found.description;
   const FoundEffect& effect = found.effects.front();
   EXPECT_EQ(effect.id, "hindered_cooling") << found.description;
   EXPECT_EQ(effect.condition, (Condition{{"run", "run2"}}));
   EXPECT_NEAR(effect.parameters.front().value, 1.0 / 0.7 - 1.0, 0.06) << found.description;
   EXPECT_LT(rms_K(found.after_train), 0.5 * rms_K(found.before_train)) << found.description;
-  EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) + 0.02) << found.description;
+  const HoldoutScore score = score_holdout(input, found, holdout(runs));
+  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << found.description;
 }
 
 /// A winding that has come loose in one run: a fifth less crosses to the iron, so that the contact has 1 / 0.8 of its resistance.
@@ -292,12 +257,14 @@ TEST(Examination, LooseWindingInOneRunIsAnotherContactThere) {
     heat_W[tooth] -= kept_back_W;
   });
   runs.training[1] = record(one).training[1];
-  const Diagnosis found = diagnose(question(one, runs), {});
+  const DiagnosisInput input = question(one, runs);
+  const Diagnosis found = diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << found.description;
   EXPECT_EQ(found.effects.front().id, "changed_contact") << found.description;
   EXPECT_EQ(found.effects.front().condition, (Condition{{"run", "run2"}}));
   EXPECT_NEAR(found.effects.front().parameters.front().value, 0.25, 0.05) << found.description;
-  EXPECT_LT(rms_K(found.after_holdout), rms_K(found.before_holdout) + 0.02) << found.description;
+  const HoldoutScore score = score_holdout(input, found, holdout(runs));
+  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << found.description;
 }
 
 /// Half as wide as a seventh of what the stator does: knots over all of that would not see where the fan begins.
@@ -310,36 +277,6 @@ TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
   EXPECT_GT(heat.knots.back(), 45.0);
   EXPECT_LT(heat.knots.front(), 46.0);
   EXPECT_LT(answer.after_K, 0.25 * answer.before_K) << account(answer);
-}
-
-/// What few candidates say of the runs does not hang on who was asked beside them.
-TEST(Examination, TableOfAFewSaysWhatTheTableOfAllDoes) {
-  const Case one = sealed(subject("iron_loss_eddy").make(0.8), 12);
-  const DiagnosisInput input = question(one, record(one));
-  const std::vector<Candidate> candidates = candidates_for(input.model, input.train).candidates;
-  std::vector<LinearisedRun> fitted;
-  std::vector<Columns> columns;
-  for (const MeasuredRun& run : input.train) {
-    fitted.push_back(linearise(input.model, measured_start_C(input.model.model.network, run), run));
-    columns.push_back(candidate_columns(candidates, input.model, fitted.back(), run));
-  }
-  const auto table = [&] {
-    return EvidenceTable(design(input.model.model.network, fitted, input.train, {}, {}, columns), flux_grid(4.0, 900.0),
-                         prior_here(input.model), std::vector<CandidateColumn>(candidates.size(), {true, 2.0}));
-  };
-  EvidenceTable all = table();
-  const FluxGrid::Place start{4, 4, 2};
-  const std::vector<int> few{static_cast<int>(candidates.size()) - 1, 3, 0};
-  EvidenceTable visited = table();
-  (void)visited.score(few, start);
-  for (EvidenceTable& narrow : std::array{table().only(few), std::move(visited).only(few)}) {
-    for (int j = 0; j < 3; ++j) {
-      const SetScore alone = all.best(std::array{few[static_cast<std::size_t>(j)]}, start), same = narrow.best(std::array{j}, start);
-      EXPECT_EQ(alone.place, same.place);
-      EXPECT_NEAR(alone.evidence_nats, same.evidence_nats, 1e-9 * std::abs(alone.evidence_nats));
-      EXPECT_NEAR(alone.coefficient.tail(1)[0], same.coefficient.tail(1)[0], 1e-6);
-    }
-  }
 }
 
 TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
@@ -374,20 +311,6 @@ TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
   EXPECT_LE(unnamed, 1);
 }
 
-TEST(Examination, FinerGridKeepsItsPlaces) {
-  const FluxGrid grid = flux_grid(4.0, 900.0);
-  const FluxGrid finer = grid.finer();
-  for (const FluxGrid::Place& place : {FluxGrid::Place{0, 3, 2}, FluxGrid::Place{1, 0, 0}, FluxGrid::Place{5, 6, 4}}) {
-    const LatentFlux flux = grid.at(place), same = finer.at(FluxGrid::in_finer(place));
-    EXPECT_EQ(flux.rms_W, same.rms_W);
-    EXPECT_EQ(flux.time_scale_s, same.time_scale_s);
-  }
-  EXPECT_EQ(finer.rms_W.size(), 2 * grid.rms_W.size() - 2);
-  EXPECT_TRUE(std::ranges::is_sorted(finer.rms_W));
-  EXPECT_EQ(finer.time_scale_s.size(), 2 * grid.time_scale_s.size() - 1);
-  EXPECT_TRUE(std::ranges::is_sorted(finer.time_scale_s));
-}
-
 /// A peak of one row is no level for minutes: ten minutes of it would melt the motor.
 TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
   const Case one = sealed(subject("windage").make(0.8), 41);
@@ -406,12 +329,10 @@ TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
   for (const std::string_view name : {"connection_resistance", "saturation", "load_friction"}) {
     const Case one = sealed(subject(name).make(1.2), 60106);
     DiagnosisInput input = question(one, record(one));
-    for (std::vector<MeasuredRun>* const runs : {&input.train, &input.holdout}) {
-      for (MeasuredRun& run : *runs) {
-        run.columns.clear();
-        for (OperatingPoint<double>& at : run.at) {
-          at.current_rms_A /= kTurns_ratio;
-        }
+    for (MeasuredRun& run : input.train) {
+      run.columns.clear();
+      for (OperatingPoint<double>& at : run.at) {
+        at.current_rms_A /= kTurns_ratio;
       }
     }
     Model& model = input.model.model;
@@ -442,12 +363,13 @@ TEST(Examination, OrderOfRunsChangesNothing) {
   const Runs runs = record(one);
   SelectionInput forwards, backwards;
   forwards.model = backwards.model = model_before(runs.make, one.seed);
-  forwards.scans_drivers = backwards.scans_drivers = false;
+  SelectionRules rules;
+  rules.scans_drivers = false;
   for (const TrueRun& run : runs.training) {
     forwards.runs.push_back(measured(run));
     backwards.runs.insert(backwards.runs.begin(), measured(run));
   }
-  const Selection a = select_effects(forwards, {}), b = select_effects(backwards, {});
+  const Selection a = select_effects(forwards, rules), b = select_effects(backwards, rules);
   ASSERT_EQ(a.terms.size(), b.terms.size());
   EXPECT_NEAR(a.after.evidence_nats, b.after.evidence_nats, 1e-3 * std::abs(a.after.evidence_nats));
   EXPECT_EQ(a.terms.front().candidate->id, b.terms.front().candidate->id);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "base/unknown.h"
 #include "drive_rows.h"
@@ -97,7 +98,8 @@ Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vect
   all.fit = fit(all.model.model, rows, {});
   all.model.set_theta(all.fit.theta);
   all.model.model.prior = {all.fit.theta, all.fit.covariance.inverse()};
-  all.model.free_run_error_K = all.fit.free_run_error_K;
+  all.model.usual_error_K = all.fit.free_run_error_K;
+  all.model.usual_flux_W = std::ranges::max(all.fit.flux.rms_W);
   return all;
 }
 
@@ -159,10 +161,13 @@ DiagnosisInput question(const Case& sealed, const Runs& runs) {
   for (const TrueRun& run : runs.training) {
     input.train.push_back(measured(run));
   }
-  for (const TrueRun& run : runs.unseen) {
-    input.holdout.push_back(measured(run));
-  }
   return input;
+}
+
+std::vector<MeasuredRun> holdout(const Runs& runs) {
+  std::vector<MeasuredRun> all;
+  std::ranges::transform(runs.unseen, std::back_inserter(all), measured);
+  return all;
 }
 
 Answer examine(const Case& sealed) {
@@ -173,6 +178,7 @@ Answer examine(const Case& sealed) {
   settle_turning_rows(input);
   answer.diagnosis = diagnose(input, {});
   answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  answer.score = score_holdout(input, answer.diagnosis, holdout(runs));
   const Selection& selection = answer.diagnosis.selection;
   for (const AcceptedTerm& term : selection.terms) {
     const std::string curve =
@@ -191,9 +197,9 @@ double floor_K(Case sealed) {
   SelectionInput input;
   input.model = std::move(given.model);
   input.runs = std::move(given.train);
-  input.scans_drivers = false;
   SelectionRules rules;
-  rules.most_terms = 0;
+  rules.scans_drivers = false;
+  rules.most_effects = 0;
   return rms_error_K(select_effects(input, rules).before.model, runs.unseen);
 }
 

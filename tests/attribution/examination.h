@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/attribution/diagnosis.h"
+#include "attribution/diagnosis.h"
 #include "identify/fit.h"
 #include "missing_effects.h"
 #include "truth_motor.h"
@@ -49,9 +49,12 @@ MeasuredRun measured(const TrueRun& run);
 
 /// What the analyser is given: nothing in it says what was left out.
 DiagnosisInput question(const Case& sealed, const Runs& runs);
+/// The runs that only score.
+std::vector<MeasuredRun> holdout(const Runs& runs);
 
 struct Answer {
   Diagnosis diagnosis;
+  HoldoutScore score;
   std::vector<std::string> named;  ///< ids of effects of the catalogue, curves as "node~driver"
   double seconds_s = 0.0;
   double before_K = 0.0;  ///< rms error on unseen runs against true temperatures, winding and stator together

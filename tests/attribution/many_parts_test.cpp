@@ -64,7 +64,7 @@ TEST(ManyParts, AreNoMissingEffect) {
     const Runs runs = record(one);
     Calibrated found = calibrated(one, runs.training);
     DiagnosisInput input = question(one, runs);
-    std::swap(input.train, input.holdout);
+    input.train = holdout(runs);
     input.model = found.model;
     const Diagnosis diagnosis = diagnose(input, {});
     EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;

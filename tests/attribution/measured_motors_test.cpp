@@ -4,9 +4,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "../support/measured_data.h"
-#include "identify/attribution/model_file.h"
+#include "attribution/model_file.h"
 #include "identify/calibration/calibrate.h"
 #include "identify/measurement/mapping.h"
 #include "identify/measurement/read_recording.h"
@@ -22,23 +23,32 @@ Recording read(const std::filesystem::path& log, const std::filesystem::path& ma
   return read_recording(log, mapping_for(log.string(), map.string()), report);
 }
 
-DiagnosisInput input_of(const ModelOfLogs& model, const std::vector<Recording>& train, const std::vector<Recording>& holdout,
-                        double ambient_C = MeasuredRunOptions::kNotStated_C) {
-  DiagnosisInput input;
-  input.model = model.model;
+std::vector<MeasuredRun> runs_of(const ModelOfLogs& model, const std::vector<Recording>& recordings,
+                                 double ambient_C = MeasuredRunOptions::kNotStated_C) {
+  std::vector<MeasuredRun> all;
   MeasuredRunOptions how = model.how;
   how.ambient_C = ambient_C;
-  for (const Recording& recording : train) {
-    for (MeasuredRun& run : measured_runs(recording, how).runs) {
-      input.train.push_back(std::move(run));
-    }
+  for (const Recording& recording : recordings) {
+    std::ranges::move(measured_runs(recording, how).runs, std::back_inserter(all));
   }
-  for (const Recording& recording : holdout) {
-    for (MeasuredRun& run : measured_runs(recording, how).runs) {
-      input.holdout.push_back(std::move(run));
-    }
-  }
-  return input;
+  return all;
+}
+
+/// A diagnosis of some recordings, and its score on others.
+struct Diagnosed {
+  ModelOfLogs model;
+  DiagnosisInput input;
+  Diagnosis diagnosis;
+  HoldoutScore score;
+};
+
+Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& train, const std::vector<Recording>& holdout,
+                    double ambient_C = MeasuredRunOptions::kNotStated_C) {
+  Diagnosed out{model_of_logs(motor, train), {}, {}, {}};
+  out.input = {out.model.model, runs_of(out.model, train, ambient_C)};
+  out.diagnosis = diagnose(out.input, {});
+  out.score = score_holdout(out.input, out.diagnosis, runs_of(out.model, holdout, ambient_C));
+  return out;
 }
 
 /// Of a signal over all samples of the runs, free-running.
@@ -85,28 +95,19 @@ Drone drone(const std::filesystem::path& folder, const std::map<std::string, dou
   return all;
 }
 
-struct DroneCase {
-  ModelOfLogs model;
-  DiagnosisInput input;
-  Diagnosis diagnosis;
-};
-
 /// Of run 4 the first part is among the training runs.
-DroneCase diagnosed(Drone& all, double cut) {
-  const std::vector<Recording> train{all.run["run1"], all.run["run3"], all.run["run5"], part_of(all.run["run4"], 0.0, cut)};
-  DroneCase out{model_of_logs(all.motor, train), {}, {}};
-  out.input = input_of(out.model, train, {part_of(all.run["run4"], cut, 1.0), all.run["run2"]});
-  out.diagnosis = diagnose(out.input, {});
-  return out;
+Diagnosed diagnosed(Drone& all, double cut) {
+  return diagnosed(all.motor, {all.run["run1"], all.run["run3"], all.run["run5"], part_of(all.run["run4"], 0.0, cut)},
+                   {part_of(all.run["run4"], cut, 1.0), all.run["run2"]});
 }
 
 TEST(MeasuredMotors, a_fan_that_nobody_told_of_is_found_in_the_run_that_had_it) {
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
   SKIP_WITHOUT(folder);
   Drone all = drone(*folder);
-  const DroneCase found = diagnosed(all, 0.6);
-  const std::vector<MeasuredRun> run4 = input_of(found.model, {all.run["run4"]}, {}).train;
-  const std::vector<MeasuredRun> run2 = input_of(found.model, {all.run["run2"]}, {}).train;
+  const Diagnosed found = diagnosed(all, 0.6);
+  const std::vector<MeasuredRun> run4 = runs_of(found.model, {all.run["run4"]});
+  const std::vector<MeasuredRun> run2 = runs_of(found.model, {all.run["run2"]});
   const ExtendedModel& after = found.diagnosis.selection.after.model;
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_GT(rms_K(found.input.model, run4, signal), 40.0) << signal;
@@ -122,8 +123,8 @@ TEST(MeasuredMotors, a_fan_is_found_from_another_start_too) {
                               {"thermal_resistance_stator_ambient", 1.5},
                               {"thermal_time_constant_winding", 1.6},
                               {"thermal_time_constant_stator", 0.7}});
-  const DroneCase found = diagnosed(all, 0.6);
-  const std::vector<MeasuredRun> run4 = input_of(found.model, {all.run["run4"]}, {}).train;
+  const Diagnosed found = diagnosed(all, 0.6);
+  const std::vector<MeasuredRun> run4 = runs_of(found.model, {all.run["run4"]});
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_LE(rms_K(found.diagnosis.selection.after.model, run4, signal), 3.0) << signal << found.diagnosis.description;
   }
@@ -134,10 +135,10 @@ TEST(MeasuredMotors, what_hangs_on_a_hardly_visible_law_is_kept_where_no_figure_
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
   SKIP_WITHOUT(folder);
   Drone all = drone(*folder);
-  const DroneCase found = diagnosed(all, 0.65);
+  const Diagnosed found = diagnosed(all, 0.65);
   for (const char* const signal : {"winding_C", "stator_C"}) {
-    EXPECT_GT(found.diagnosis.before_holdout.at(signal).rmse_K, 50.0) << signal;
-    EXPECT_LE(found.diagnosis.after_holdout.at(signal).rmse_K, 6.0) << signal << found.diagnosis.description;
+    EXPECT_GT(found.score.before.at(signal).rmse_K, 50.0) << signal;
+    EXPECT_LE(found.score.after.at(signal).rmse_K, 6.0) << signal << found.diagnosis.description;
   }
 }
 
@@ -147,7 +148,7 @@ TEST_P(DroneWithFan, is_named_wherever_its_run_is_cut) {
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
   SKIP_WITHOUT(folder);
   Drone all = drone(*folder);
-  const DroneCase found = diagnosed(all, GetParam() / 100.0);
+  const Diagnosed found = diagnosed(all, GetParam() / 100.0);
   EXPECT_EQ(found.diagnosis.verdict, DiagnosisVerdict::effect_found) << found.diagnosis.description;
   const FoundEffect* const fan = effect_of(found.diagnosis, "airflow");
   ASSERT_TRUE(fan) << found.diagnosis.description;
@@ -178,16 +179,14 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
-  const ModelOfLogs model = model_of_logs(start, {january});
-  const DiagnosisInput input = input_of(model, {january}, {march});
-  const Diagnosis diagnosis = diagnose(input, {});
+  const auto [model, input, diagnosis, score] = diagnosed(start, {january}, {march});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
   const FoundEffect* const propeller = effect_of(diagnosis, "speed_dependent_convection");
   ASSERT_TRUE(propeller) << diagnosis.description;
   EXPECT_EQ(propeller->node, "stator");
   EXPECT_GT(propeller->parameters.front().low, 0.0);
-  EXPECT_LE(diagnosis.after_holdout.at("stator_C").rmse_K, 1.0);
-  const MeasuredRun& run = input.holdout.front();
+  EXPECT_LE(score.after.at("stator_C").rmse_K, 1.0);
+  const MeasuredRun& run = score.runs.front();
   const auto turns = [](const OperatingPoint<double>& at) { return at.speed_mean_rad_per_s > 10.0; };
   const Eigen::MatrixXd foretold_C = open_loop_C(diagnosis.selection.after.model, run, {});
   const Eigen::Index stopped = std::ranges::find_if(run.at.rbegin(), run.at.rend(), turns).base() - run.at.begin();
@@ -202,12 +201,12 @@ TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_because_an
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
-  const ModelOfLogs model = model_of_logs(calibrated_motor(start, calibrate(start, std::vector{january}, {}, {})), {january});
-  const Diagnosis diagnosis = diagnose(input_of(model, {january}, {march}), {});
+  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{january}, {}, {}));
+  const auto [model, input, diagnosis, score] = diagnosed(motor, {january}, {march});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
   ASSERT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
-  EXPECT_LT(diagnosis.after_holdout.at("stator_C").rmse_K, 0.5 * diagnosis.before_holdout.at("stator_C").rmse_K);
-  EXPECT_LT(diagnosis.after_holdout.at("stator_C").rmse_K, 0.5 * diagnosis.refitted_holdout.at("stator_C").rmse_K);
+  EXPECT_LT(score.after.at("stator_C").rmse_K, 0.5 * score.before.at("stator_C").rmse_K);
+  EXPECT_LT(score.after.at("stator_C").rmse_K, 0.5 * score.refitted.at("stator_C").rmse_K);
 }
 
 /// From the guess no step along the whitened errors leads anywhere: the way goes past the figures that follow the runs as they are.
@@ -216,8 +215,7 @@ TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anyth
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
   const std::vector<Recording> both{january, march};
-  const ModelOfLogs model = model_of_logs(start, both);
-  const Diagnosis diagnosis = diagnose(input_of(model, both, {}), {});
+  const Diagnosis diagnosis = diagnosed(start, both, {}).diagnosis;
   EXPECT_GT(diagnosis.before_train.at("stator_C").rmse_K, 40.0);
   EXPECT_LT(diagnosis.refitted_train.at("stator_C").rmse_K, 3.0);
   EXPECT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
@@ -233,14 +231,12 @@ TEST(MeasuredMotors, where_no_law_stays_its_own_figures_are_what_they_were_witho
                                                 {"thermal_resistance_stator_ambient", 1.70},
                                                 {"thermal_time_constant_winding", 1.91},
                                                 {"thermal_time_constant_stator", 2.64}});
-  const std::vector<Recording> train{january, part_of(march, 0.0, 0.6)};
-  const ModelOfLogs model = model_of_logs(guess, train);
-  const Diagnosis diagnosis = diagnose(input_of(model, train, {part_of(march, 0.6, 1.0)}), {});
+  const auto [model, input, diagnosis, score] = diagnosed(guess, {january, part_of(march, 0.0, 0.6)}, {part_of(march, 0.6, 1.0)});
   EXPECT_THAT(diagnosis.selection.refused, testing::Not(testing::IsEmpty()));
   if (diagnosis.effects.empty()) {
     EXPECT_NEAR(diagnosis.after_train.at("stator_C").rmse_K, diagnosis.refitted_train.at("stator_C").rmse_K, 0.01);
   } else {
-    EXPECT_LT(diagnosis.after_holdout.at("stator_C").rmse_K, diagnosis.refitted_holdout.at("stator_C").rmse_K);
+    EXPECT_LT(score.after.at("stator_C").rmse_K, score.refitted.at("stator_C").rmse_K);
   }
 }
 
@@ -249,12 +245,11 @@ TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propelle
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const Recording all = of_bench(*folder, "P80-1700_2020-02-11_162559");
-  const std::vector<Recording> train{part_of(all, 0.0, 0.7)};
-  const ModelOfLogs model = model_of_logs(read_motor(kReports / "propeller_bench/start.toml"), train);
-  const Diagnosis diagnosis = diagnose(input_of(model, train, {part_of(all, 0.7, 1.0)}), {});
+  const Motor start = read_motor(kReports / "propeller_bench/start.toml");
+  const auto [model, input, diagnosis, score] = diagnosed(start, {part_of(all, 0.0, 0.7)}, {part_of(all, 0.7, 1.0)});
   ASSERT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
   EXPECT_LE(diagnosis.after_train.at("stator_C").rmse_K, 0.5);
-  EXPECT_LE(diagnosis.after_holdout.at("stator_C").rmse_K, 0.5);
+  EXPECT_LE(score.after.at("stator_C").rmse_K, 0.5);
 }
 
 TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_model) {
@@ -266,31 +261,27 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
   const Motor start = read_motor(kReports / "../calibration/ri50.toml");
   constexpr double kAmbient_C = 22.0;
   const Motor motor = calibrated_motor(start, calibrate(start, std::vector{stall}, {}, {{}, kAmbient_C}));
-  const std::vector<Recording> train{stall, part_of(no_load, 0.0, 0.6)};
-  const ModelOfLogs model = model_of_logs(motor, train);
-  const DiagnosisInput input = input_of(model, train, {part_of(no_load, 0.6, 1.0)}, kAmbient_C);
-  const Diagnosis diagnosis = diagnose(input, {});
-  EXPECT_LE(diagnosis.after_holdout.at("winding_C").rmse_K, 0.4) << diagnosis.description;
-  EXPECT_LE(diagnosis.after_holdout.at("stator_C").rmse_K, 0.2) << diagnosis.description;
+  const auto [model, input, diagnosis, score] =
+      diagnosed(motor, {stall, part_of(no_load, 0.0, 0.6)}, {part_of(no_load, 0.6, 1.0)}, kAmbient_C);
+  EXPECT_LE(score.after.at("winding_C").rmse_K, 0.4) << diagnosis.description;
+  EXPECT_LE(score.after.at("stator_C").rmse_K, 0.2) << diagnosis.description;
   EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.5 * diagnosis.before_train.at("winding_C").rmse_K);
   // Of 37 samples at steps of 1 K.
   EXPECT_THAT(diagnosis.effects, testing::Each(testing::Field(&FoundEffect::p_value, testing::Gt(1e-60))));
 }
 
-Diagnosis of_traction_motor(const std::filesystem::path& folder, double cut) {
+Diagnosed of_traction_motor(const std::filesystem::path& folder, double cut) {
   const Recording all = read(folder / "profile24_2.5s.csv", kReports / "traction_motor/recording.map.toml");
-  const std::vector<Recording> train{part_of(all, 0.0, cut)};
-  const ModelOfLogs model = model_of_logs(read_motor(kReports / "traction_motor/start.toml"), train);
-  return diagnose(input_of(model, train, {part_of(all, cut, 1.0)}), {});
+  return diagnosed(read_motor(kReports / "traction_motor/start.toml"), {part_of(all, 0.0, cut)}, {part_of(all, cut, 1.0)});
 }
 
 TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_foretold_once_two_loads_were_seen) {
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
   SKIP_WITHOUT(folder);
-  const Diagnosis diagnosis = of_traction_motor(*folder, 0.65);
+  const auto [model, input, diagnosis, score] = of_traction_motor(*folder, 0.65);
   for (const char* const signal : {"winding_C", "stator_C"}) {
-    EXPECT_GT(diagnosis.before_holdout.at(signal).rmse_K, 10.0) << signal;
-    EXPECT_LE(diagnosis.after_holdout.at(signal).rmse_K, 3.0) << signal << diagnosis.description;
+    EXPECT_GT(score.before.at(signal).rmse_K, 10.0) << signal;
+    EXPECT_LE(score.after.at(signal).rmse_K, 3.0) << signal << diagnosis.description;
   }
   EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing);
 }
@@ -299,12 +290,12 @@ TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_gets_a_loss_
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
   SKIP_WITHOUT(folder);
   for (const double cut : {0.7, 0.75}) {
-    const Diagnosis diagnosis = of_traction_motor(*folder, cut);
+    const auto [model, input, diagnosis, score] = of_traction_motor(*folder, cut);
     const auto found = std::ranges::find(diagnosis.effects, "load_friction", &FoundEffect::id);
     ASSERT_NE(found, diagnosis.effects.end()) << diagnosis.description;
     EXPECT_THAT(found->confusable_with, testing::Contains("armature_iron_loss@winding"));
     for (const char* const signal : {"winding_C", "stator_C"}) {
-      EXPECT_LE(diagnosis.after_holdout.at(signal).rmse_K, 3.0) << signal << diagnosis.description;
+      EXPECT_LE(score.after.at(signal).rmse_K, 3.0) << signal << diagnosis.description;
     }
   }
 }
@@ -312,11 +303,11 @@ TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_gets_a_loss_
 TEST(MeasuredMotors, half_a_log_at_one_load_does_not_claim_to_know_another_load) {
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
   SKIP_WITHOUT(folder);
-  const Diagnosis diagnosis = of_traction_motor(*folder, 0.5);
+  const auto [model, input, diagnosis, score] = of_traction_motor(*folder, 0.5);
   for (const char* const signal : {"winding_C", "stator_C"}) {
-    EXPECT_LT(diagnosis.after_holdout.at(signal).rmse_K, diagnosis.before_holdout.at(signal).rmse_K) << signal;
+    EXPECT_LT(score.after.at(signal).rmse_K, score.before.at(signal).rmse_K) << signal;
   }
-  EXPECT_THAT(diagnosis.beyond_training, testing::ElementsAre(testing::HasSubstr("the current")));
+  EXPECT_THAT(score.beyond_training, testing::ElementsAre(testing::HasSubstr("the current")));
 }
 
 }  // namespace

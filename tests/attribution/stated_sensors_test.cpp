@@ -8,9 +8,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "attribution/model_file.h"
+#include "attribution/terms.h"
 #include "examination.h"
-#include "identify/attribution/model_file.h"
-#include "identify/attribution/terms.h"
 #include "motor/write_motor.h"
 
 namespace heatsoak::truth {
@@ -37,14 +37,17 @@ TEST(StatedSensors, AreNotMissing) {
   const Diagnosis found = diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << found.description;
   EXPECT_EQ(found.effects.front().id, "sensor_lag_stator");
-  for (std::vector<MeasuredRun>* const some : {&input.train, &input.holdout}) {
+  std::vector<MeasuredRun> unseen = holdout(runs);
+  const HoldoutScore found_score = score_holdout(input, found, unseen);
+  for (std::vector<MeasuredRun>* const some : {&input.train, &unseen}) {
     state(*some, {{find_sensor_effect("sensor_lag_stator"), kLag_s}});
   }
   const Diagnosis stated = diagnose(input, {});
   EXPECT_EQ(stated.verdict, DiagnosisVerdict::nothing_missing) << stated.description;
   EXPECT_THAT(stated.effects, testing::IsEmpty()) << stated.description;
-  for (const auto& [signal, error] : found.after_holdout) {
-    EXPECT_NEAR(stated.after_holdout.at(signal).rmse_K, error.rmse_K, 0.05) << signal;
+  const HoldoutScore score = score_holdout(input, stated, unseen);
+  for (const auto& [signal, error] : found_score.after) {
+    EXPECT_NEAR(score.after.at(signal).rmse_K, error.rmse_K, 0.05) << signal;
   }
 }
 
@@ -52,9 +55,7 @@ TEST(StatedSensors, AreNotMissing) {
 TEST(StatedSensors, LeaveRoomForWhatTheyDoNotTell) {
   const Case one = with_late_stator();
   DiagnosisInput input = question(one, record(one));
-  for (std::vector<MeasuredRun>* const some : {&input.train, &input.holdout}) {
-    state(*some, {{find_sensor_effect("sensor_offset_stator"), 3.0}});
-  }
+  state(input.train, {{find_sensor_effect("sensor_offset_stator"), 3.0}});
   const Diagnosis found = diagnose(input, {});
   const auto effect = [&](std::string_view id) { return std::ranges::find(found.effects, id, &FoundEffect::id); };
   ASSERT_NE(effect("sensor_lag_stator"), found.effects.end()) << found.description;

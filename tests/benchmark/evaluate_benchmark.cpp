@@ -24,7 +24,9 @@ void evaluate_database(benchmark::State& state, int samples, bool with_curves) {
   const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   const std::vector<Motor> motors = all_motors();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(evaluate(robot, duty, duty.demand(robot, 1), motors, {.samples = samples, .with_curves = with_curves}).data());
+    benchmark::DoNotOptimize(
+        evaluate(robot, duty, duty.demand(robot, 1), motors, {.samples = samples, .with_curves = with_curves, .with_bands = with_curves})
+            .data());
   }
   state.counters["motors"] = static_cast<double>(motors.size());
 }
@@ -43,7 +45,9 @@ void evaluate_long_recording(benchmark::State& state, bool with_curves) {
     wheel.bins.push_back(constant_bin(0.1, 0.01 * (i % 20), 5.0 * (i % 17), 0.0));
   }
   for (auto _ : state) {
-    benchmark::DoNotOptimize(evaluate(robot, duty, std::span(&wheel, 1), motors, {.samples = 500, .with_curves = with_curves}).data());
+    benchmark::DoNotOptimize(
+        evaluate(robot, duty, std::span(&wheel, 1), motors, {.samples = 500, .with_curves = with_curves, .with_bands = with_curves})
+            .data());
   }
 }
 BENCHMARK_CAPTURE(evaluate_long_recording, figures, false)->Unit(benchmark::kMillisecond)->UseRealTime();

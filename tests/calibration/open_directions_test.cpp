@@ -230,8 +230,8 @@ TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
   };
   const Calibration without_speed = calibrated(still, silent);
   const Calibration stands = calibrated(still, said_to_stand);
-  EXPECT_THAT(without_speed.notes, Contains(HasSubstr("a log held out has a current but no speed")));
-  EXPECT_THAT(stands.notes, Not(Contains(HasSubstr("held out"))));
+  EXPECT_THAT(without_speed.notes, Contains(HasSubstr("held_out has a current but no speed")));
+  EXPECT_THAT(stands.notes, Not(Contains(HasSubstr("has a current but no speed"))));
   EXPECT_LT(stator_K(without_speed), 0.6 * stator_K(stands));
   EXPECT_EQ(figure(without_speed, "stator_heat_capacity").value, figure(stands, "stator_heat_capacity").value);
   EXPECT_GT(stator_K(calibrated(silent, still)), 0.0);

@@ -78,6 +78,50 @@ TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
   }
 }
 
+// What no machine of this world can have is a slip of the pen, and no limit.
+TEST_F(CheckFiles, SenselessLimitsAreRefusedAtTheirPlace) {
+  const std::string said = message_of(kHead +
+                                      "[check.limits]\n"                               // 6
+                                      "winding_peak_p95 = \"at most 70 K\"\n"          // 7
+                                      "stator_peak_p95 = \"at most -400 degC\"\n"      // 8
+                                      "rank = \"at most 1.5\"\n"                       // 9
+                                      "current_margin = \"at least 1e30 A\"\n"         // 10
+                                      "lint_problems = \"at most 0.5\"\n"              // 11
+                                      "time_above = \"at most 1e30 s\"\n"              // 12
+                                      "derating_excess = \"at most 1e30 A\"\n"         // 13
+                                      "core_size = \"at most 1e30 byte\"\n"            // 14
+                                      "guard_missing_charge = \"at most 1e30 A s\"\n"  // 15
+                                      "winding_peak_p95_ = \"at most 1\"\n");
+  const int first = 1 + static_cast<int>(std::ranges::count(kHead, '\n'));
+  const std::vector<std::string> expected{"winding_peak_p95: \"at most 70 K\" is out of range; expected -60",
+                                          "stator_peak_p95: \"at most -400 degC\" is out",
+                                          "rank: \"at most 1.5\" is no whole number",
+                                          "current_margin: \"at least 1e30 A\" is out of range",
+                                          "lint_problems: \"at most 0.5\" is no whole number",
+                                          "time_above: \"at most 1e30 s\" is out",
+                                          "derating_excess: \"at most 1e30 A\" is out",
+                                          "core_size: \"at most 1e30 byte\" is out",
+                                          "guard_missing_charge: \"at most 1e30 A s\" is out"};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_THAT(said, testing::ContainsRegex(fmt::format("a.check.toml:{}:[0-9]+: error: ", first + 1 + static_cast<int>(i))));
+    EXPECT_THAT(said, HasSubstr(expected[i]));
+  }
+}
+
+// The percentile itself is under its true value in every other file; its bound is in 2.5 % of them.
+TEST_F(CheckFiles, APercentileIsComparedByItsBound) {
+  const auto found = [&](int samples) {
+    return outcomes(kHead + fmt::format("samples = \"{}\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n", samples)).front();
+  };
+  const Outcome few = found(71);
+  EXPECT_FALSE(few.passed);
+  EXPECT_THAT(few.reason, HasSubstr("72 samples or more"));
+  const Outcome some = found(80);
+  const Outcome many = found(2000);
+  EXPECT_GT(some.measured.value, many.measured.value);
+  EXPECT_THAT(many.measured.detail, HasSubstr("97.5 % confidence"));
+}
+
 TEST_F(CheckFiles, SettingThatNoLimitUsesIsAProblem) {
   EXPECT_THAT(message_of(kHead + "temperature = \"90 degC\"\n[check.limits]\nrank = \"at most 1\"\n"),
               testing::AllOf(HasSubstr("check[0].temperature: is used by none"), HasSubstr("needs 'against'")));
@@ -85,7 +129,11 @@ TEST_F(CheckFiles, SettingThatNoLimitUsesIsAProblem) {
 
 TEST_F(CheckFiles, WithoutChecksAreRefused) {
   EXPECT_THAT(message_of("# nothing\n"), HasSubstr("has no [[check]] table"));
-  EXPECT_THAT(message_of(kHead + "[check.limits]\n"), HasSubstr("limits: is empty"));
+  const std::string empty = message_of(kHead + "[check.limits]\n");
+  EXPECT_THAT(empty, HasSubstr("limits: is empty"));
+  for (const ThresholdType& type : all_thresholds()) {
+    EXPECT_THAT(empty, HasSubstr(std::string(type.name)));
+  }
   EXPECT_THAT(message_of("[[check]\n"), HasSubstr("a.check.toml:1:"));
 }
 
@@ -117,7 +165,7 @@ TEST_F(CheckFiles, BrokenMotorFileIsReportedOnceAtItsOwnLine) {
 
 TEST_F(CheckFiles, WhatCannotBeEvaluatedFailsAndTheRestIsEvaluated) {
   const std::vector<Outcome> found = outcomes(kHead +
-                                              "samples = \"24\"\ntable = \"missing.h\"\n[check.limits]\n"
+                                              "samples = \"80\"\ntable = \"missing.h\"\n[check.limits]\n"
                                               "derating_excess = \"at most 0 A\"\n"
                                               "guard_active_share = \"at most 0 %\"\n"
                                               "winding_peak_p95 = \"at most 120 degC\"\n");
@@ -172,7 +220,7 @@ TEST_F(CheckFiles, GuardMadeForHotAirEngages) {
 }
 
 TEST_F(CheckFiles, LintFindsWhatAFileOfAnyKindHolds) {
-  const std::string data = (kSource / "tests/data").string();
+  const std::string data = (kSource / "tests/data/lint_motors").string();
   const std::vector<Outcome> found =
       outcomes("[[check]]\nname = \"x\"\nfiles = [\"" + data + "/lint_df45l_wiki.toml\", \"" +
                (kSource / "robot_core/robots/tigers_v2020.toml").string() + "\", \"" +
@@ -185,7 +233,7 @@ TEST_F(CheckFiles, LintFindsWhatAFileOfAnyKindHolds) {
 TEST_F(CheckFiles, MotorThatCannotDeliverFailsWithTheReason) {
   const std::vector<Outcome> found = outcomes(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_dcx19s_24v\"\n"
-      "samples = \"24\"\n[check.limits]\nwinding_peak_p95 = \"at most 900 degC\"\nlint_problems = \"at most 0\"\n");
+      "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 900 degC\"\nlint_problems = \"at most 0\"\n");
   EXPECT_FALSE(found[0].passed);
   EXPECT_THAT(found[0].reason, HasSubstr("cannot deliver what the duty demands"));
   EXPECT_TRUE(found[1].passed);
@@ -223,8 +271,8 @@ TEST_F(CheckFiles, RankCountsThoseBeforeTheMotor) {
 }
 
 TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
-  const std::string text = kHead + "samples = \"40\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n" +
-                           "[[check]]\nname = \"b\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nsamples = \"40\"\n"
+  const std::string text = kHead + "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n" +
+                           "[[check]]\nname = \"b\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nsamples = \"80\"\n"
                            "[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n";
   const CheckFile file = read(text);
   const std::vector<Outcome> one = run_checks(file, 1);
@@ -237,7 +285,7 @@ TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
 // Comments, blanks, quotes, line ends and what cannot be evaluated stay.
 TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
   std::string text = "# été\r\n" + kHead +
-                     "samples = \"40\"\r\n[check.limits] # limits\r\n"
+                     "samples = \"80\"\r\n[check.limits] # limits\r\n"
                      "  probability_over_limit   =   'at most 90 %' # ° generous\r\n"
                      "winding_peak_p95=\"at most 30 degC\"# too tight\r\n"
                      "guard_active_share = \"at most 1 %\"\r\n";
@@ -262,7 +310,7 @@ TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
 }
 
 TEST_F(CheckFiles, LimitWithAnEscapeIsNotRewritten) {
-  std::vector<Outcome> found = outcomes(kHead + "samples = \"40\"\n[check.limits]\nwinding_peak_p95 = \"at most 30\\u0020degC\"\n");
+  std::vector<Outcome> found = outcomes(kHead + "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 30\\u0020degC\"\n");
   EXPECT_THROW(with_new_limits(read_file(folder_ / "a.check.toml", 100000), found, 0.05), Failure);
 }
 

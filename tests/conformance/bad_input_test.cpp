@@ -1,4 +1,4 @@
-// One wrong file is one test: tests/data/bad_<kind>_*.toml. Its first lines say what is expected,
+// One wrong file is one test: tests/data/bad_<kind>s/bad_<kind>_*.toml. Its first lines say what is expected,
 //   # expect: 7:23: error: figures.torque_constant.value: 'N m' is a unit of something else
 //   # expect: bad_csv_short_row.csv:3:1: error: has 2 cells
 // place and beginning of the message; a file that cannot hold a comment has them in <file>.expect.
@@ -28,21 +28,27 @@ using testing::UnorderedElementsAre;
 
 const fs::path kData = kSource / "tests" / "data";
 
+/// The folder of a file's kind.
+fs::path folder_of(const std::string& file) {
+  return kData / (file.starts_with("bad_motor_") ? "bad_motors" : file.starts_with("bad_robot_") ? "bad_robots" : "bad_duties");
+}
+fs::path path_of(const std::string& file) { return folder_of(file) / file; }
+
 /// Whole lines of stderr that are expected to begin so.
 std::vector<std::string> expectations(const std::string& file) {
-  const fs::path aside = kData / (file + ".expect");
-  std::istringstream lines(content_of(fs::exists(aside) ? aside : kData / file));
+  const fs::path aside = path_of(file + ".expect");
+  std::istringstream lines(content_of(fs::exists(aside) ? aside : path_of(file)));
   std::vector<std::string> result;
   const std::string mark = "# expect: ";
   for (std::string line; std::getline(lines, line) && line.starts_with(mark);) {
     const std::string rest = line.substr(mark.size());
     const bool names_a_file = rest.starts_with("bad_");
-    result.push_back(names_a_file ? (kData / rest).string() : (kData / file).string() + (rest.starts_with("error") ? ": " : ":") + rest);
+    result.push_back(names_a_file ? path_of(rest).string() : path_of(file).string() + (rest.starts_with("error") ? ": " : ":") + rest);
   }
   // A path inside a message is written relative to the data folder.
   for (std::string& line : result) {
     if (const std::size_t at = line.find(": ./"); at != std::string::npos) {
-      line.replace(at + 2, 1, kData.string());
+      line.replace(at + 2, 1, folder_of(file).string());
     }
   }
   return result;
@@ -90,7 +96,7 @@ std::vector<std::string> roles(const std::string& verb, const std::string& file)
   std::string motor = "maxon_ec45_flat_70w_24v";
   std::string robot = "roboteam_twente_v2024";
   std::string duty = "paper_intermittent";
-  (file.starts_with("bad_motor") ? motor : file.starts_with("bad_robot") ? robot : duty) = (kData / file).string();
+  (file.starts_with("bad_motor") ? motor : file.starts_with("bad_robot") ? robot : duty) = path_of(file).string();
   return {verb, verb == "evaluate" ? "--motors" : "--motor", motor, "--robot", robot, "--duty", duty};
 }
 
@@ -106,7 +112,7 @@ TEST_P(BadFile, is_refused_with_place_and_reason) {
 }
 
 TEST_P(BadFile, is_refused_by_lint_in_the_same_words) {
-  const ProgramRun result = run({"lint", (kData / GetParam()).string(), "--json", "-"});
+  const ProgramRun result = run({"lint", path_of(GetParam()).string(), "--json", "-"});
   EXPECT_EQ(result.exit_code, 2);
   expect_error_object(result.json());
   if (GetParam() != "bad_robot_empty.toml" && GetParam() != "bad_duty_empty.toml") {  // these do not say what they are
@@ -140,7 +146,7 @@ TEST_P(BadFile, leaves_no_output) {
 std::vector<std::string> bad_files() {
   std::vector<std::string> all;
   for (const char* kind : {"bad_motor_", "bad_robot_", "bad_duty_"}) {
-    const std::vector<std::string> some = files_of(kData, kind, ".toml");
+    const std::vector<std::string> some = files_of(folder_of(kind), kind, ".toml");
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <sstream>
 
 #include "program_run.h"
@@ -87,6 +88,52 @@ std::string changed_log(const TemporaryFolder& folder, const std::string& name,
   return file.string();
 }
 constexpr std::size_t kCurrent = 4;  // of time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s
+
+/// match_3 with temperature rises that are `ratio` times the measured ones.
+std::string with_rises(const TemporaryFolder& folder, double ratio) {
+  std::map<std::size_t, double> first_C;
+  return changed_log(folder, "match_3.csv", [&](int line, std::vector<std::string>& cells) {
+    for (const std::size_t column : {1, 2}) {
+      if (line > 0 && !cells[column].empty()) {
+        const double value_C = std::stod(cells[column]);
+        const double start_C = first_C.emplace(column, value_C).first->second;
+        cells[column] = fmt::format("{:.6f}", start_C + ratio * (value_C - start_C));
+      }
+    }
+  });
+}
+
+/// Whatever a hold-out run shows, here rises that are too small or too large, decides nothing.
+TEST(Diagnose, HoldoutRunsOnlyScore) {
+  std::string model, calibrated;
+  nlohmann::json decided;
+  std::map<double, double> error_K;
+  for (const double ratio : {1.0, 0.5, 1.3, 1.5}) {
+    const TemporaryFolder folder;
+    const std::string holdout = with_rises(folder, ratio);
+    const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), log("bench.csv"),
+                                 "--holdout", holdout, "--out", "found", "--as-is", "--json", "-"},
+                                in(folder));
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const nlohmann::json answer = done.json();
+    error_K[ratio] = answer["after"]["holdout"]["winding_C"]["rmse_K"].get<double>();
+    const nlohmann::json now{answer["verdict"], answer["effects"], answer["after"]["train"], answer["refused"], answer["ladder"]};
+    const ProgramRun fitted =
+        run({"calibrate", "--motor", kMotor, "--out", "model.toml", log("match_1.csv"), log("bench.csv"), "--as-is", "--holdout", holdout},
+            in(folder));
+    ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+    if (ratio == 1.0) {
+      decided = now;
+      model = content_of(folder.path() / fmt::format("found/{}.toml", kMotor));
+      calibrated = content_of(folder.path() / "model.toml");
+      continue;
+    }
+    EXPECT_EQ(now, decided) << ratio;
+    EXPECT_EQ(content_of(folder.path() / fmt::format("found/{}.toml", kMotor)), model) << ratio;
+    EXPECT_EQ(content_of(folder.path() / "model.toml"), calibrated) << ratio;
+    EXPECT_GT(error_K[ratio], 3.0 * error_K[1.0]) << ratio;
+  }
+}
 
 // A motor that warms by 60 K on a current of 0 A lacks no effect.
 TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {

@@ -80,7 +80,7 @@ TEST(CurveLines, act_in_an_evaluation_and_it_says_nothing_else) {
                 "--json", "-"});
   };
   const ProgramRun with = evaluated(motor.string());
-  EXPECT_EQ((with.out + with.err).find("not reckoned with"), std::string::npos) << with.err;
+  EXPECT_EQ((with.out + with.err).find("left out, because"), std::string::npos) << with.err;
   const auto peak_C = [](const ProgramRun& run) { return run.json().at("motors").at(0).at("stator_peak_C").at("nominal").get<double>(); };
   EXPECT_GT(peak_C(with), peak_C(evaluated(kMotor)) + 0.1) << "its heat is there";
 }

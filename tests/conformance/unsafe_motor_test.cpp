@@ -41,7 +41,7 @@ std::string without_spreads(const std::string& text) {
 TEST(UnsafeMotor, IsRefusedByEveryVerbWithPlaceAndAdvice) {
   for (const Words& verb : verbs()) {
     const TemporaryFolder folder;
-    write(folder.path() / "motor.toml", content_of(kSource / "tests/data/lint_df45l_phase_resistance.toml"));
+    write(folder.path() / "motor.toml", content_of(kSource / "tests/data/lint_motors/lint_df45l_phase_resistance.toml"));
     RunOptions here;
     here.folder = folder.path();
     const ProgramRun done = run(verb, here);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/diagnostic.h"
 #include "derate/derating.h"
 #include "guarded_motor.h"
 #include "input/data_folders.h"
@@ -86,6 +87,38 @@ TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
   const Derating other = derate(missing, twente(), few_samples());
   EXPECT_EQ(one.table.square_A2, other.table.square_A2);
   EXPECT_GT(one.observer.heat_reserve_ratio(), 1.5);
+}
+
+TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
+  Motor tiny = ecx_32();
+  Motor missing = ecx_32();
+  for (auto& [key, figure] : tiny.figures) {
+    if (needs_spread(key)) {
+      figure.spread = Spread{Spread::Kind::tolerance, figure.value * (1.0 - 1e-5), figure.value * (1.0 + 1e-5), true};
+      missing.figures.at(key).spread.reset();
+    }
+  }
+  EXPECT_EQ(derate(tiny, twente(), few_samples()).table.square_A2, derate(missing, twente(), few_samples()).table.square_A2);
+}
+
+TEST(Derate, KeepsALimitThatIsARangeAtItsLowerEnd) {
+  Motor wide = ecx_32();
+  Figure& limit = wide.figures.at("winding_limit");
+  limit.spread = Spread{Spread::Kind::range, 135.0, 165.0, false};
+  EXPECT_EQ(barrier_rules(wide, twente(), {}).limits.winding_C, 135.0);
+  EXPECT_EQ(barrier_rules(ecx_32(), twente(), {}).limits.winding_C, 155.0);
+}
+
+TEST(Derate, RefusesALimitBelowTheAir) {
+  DerateOptions hot;
+  hot.hottest_ambient_C = 155.0;
+  try {
+    static_cast<void>(derate(ecx_32(), twente(), hot));
+    ADD_FAILURE() << "was accepted";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_THAT(failure.what(), testing::HasSubstr("the winding limit of 155.0 °C is not above the hottest air of 155.0 °C"));
+  }
 }
 
 TEST(DerateWithoutSpreads, CountsAnEffectWithoutOneToo) {

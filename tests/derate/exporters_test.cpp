@@ -17,6 +17,7 @@
 #include "exported_motor.h"
 #include "small_lisp.h"
 #include "thermal/transient.h"
+#include "unpacked.h"
 
 namespace heatsoak {
 namespace {
@@ -51,8 +52,8 @@ std::map<std::string, std::string> lines_of(const std::string& text, const std::
 class EveryExporter : public testing::TestWithParam<const char*> {};
 
 TEST_P(EveryExporter, SaysWhereItComesFromAndHowSureItIs) {
-  const std::string text = exported(GetParam());
-  EXPECT_EQ(text, exported(GetParam()));
+  const std::string text = readable(exported(GetParam()));
+  EXPECT_EQ(exported(GetParam()), exported(GetParam()));
   EXPECT_THAT(text, HasSubstr(fmt::format("heatsoak {}", program_version())));
   EXPECT_THAT(text, HasSubstr(ecx_derating().provenance.input_hash));
   EXPECT_THAT(text, HasSubstr("155"));
@@ -66,7 +67,27 @@ TEST_P(EveryExporter, RefusesWhatIsNoNumber) {
   EXPECT_THAT(refusal(GetParam(), broken), HasSubstr("is not a number"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryExporter, testing::Values("c_header", "c_header_q15", "json", "moteus", "odrive", "vesc", "simplefoc", "mujoco"));
+INSTANTIATE_TEST_SUITE_P(All, EveryExporter,
+                         testing::Values("c_header", "c_header_q15", "json", "csv", "moteus", "odrive", "vesc", "simplefoc", "mujoco",
+                                         "fmi2_motor", "fmi2_guard", "fmi3_motor", "fmi3_guard"));
+
+TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
+  const Guarantee& checked = ecx_derating().guarantee;
+  EXPECT_GE(checked.least_kept_share, 0.95);
+  // By definition: were the share lower, so few over the limit would have a chance of less than 5 %.
+  const double p = 1.0 - checked.least_kept_share;
+  double chance = 0.0;
+  for (int k = 0; k <= checked.over; ++k) {
+    chance += std::exp(std::lgamma(checked.samples + 1.0) - std::lgamma(k + 1.0) - std::lgamma(checked.samples - k + 1.0) +
+                       k * std::log(p) + (checked.samples - k) * std::log1p(-p));
+  }
+  EXPECT_NEAR(chance, 1.0 - kCertainty_share, 1e-6);
+  const nlohmann::json guarantee = nlohmann::json::parse(exported("json"))["guarantee"];
+  EXPECT_EQ(guarantee["certainty"], kCertainty_share);
+  EXPECT_EQ(guarantee["least_samples"], 59);
+  EXPECT_NEAR(guarantee["least_kept_shareer_bound"].get<double>(), checked.least_kept_share, 1e-4);
+  EXPECT_THAT(exported("csv"), HasSubstr("# Safety factor on heat"));
+}
 
 TEST(Exporters, InputHashFollowsTheOptions) {
   DerateOptions other;

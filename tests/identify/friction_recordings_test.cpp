@@ -25,7 +25,7 @@ FrictionLog log_of(const std::filesystem::path& file, const std::string& mapping
 }
 
 const Robot& robotino() {
-  static const Robot robot = read_robot(kSource / "tests/data/festo_robotino.toml");
+  static const Robot robot = read_robot(kSource / "tests/data/robots/festo_robotino.toml");
   return robot;
 }
 

@@ -168,9 +168,9 @@ TEST(Mapping, IsFoundBesideTheLog) {
   EXPECT_EQ(mapping_for(file.path(), "").file, map);
 }
 
-/// The example of the README is read as it stands there.
+/// The example of the documentation is read as it stands there.
 TEST(Mapping, ExampleOfTheReadme) {
-  std::ifstream file(kSource / "README.md");
+  std::ifstream file(kSource / "docs/file_formats.md");
   const std::string readme{std::istreambuf_iterator<char>(file), {}};
   const std::size_t begin = readme.find("motor = \"ri50\"");
   ASSERT_NE(begin, std::string::npos);

@@ -20,6 +20,7 @@ struct TwoNodeTruth {
   double stator_ambient_K_per_W = 5.5;
   double resistance_25C_ohm = 0.447;
   double temperature_coefficient_per_K = 0.0039;
+  double contact_change_per_K = 0.0;  ///< of the conductance between winding and stator, by the mean temperature above 60 °C
 };
 
 /// How the truth becomes a log.
@@ -110,7 +111,8 @@ inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& makin
     const double square_A2 = current_A[static_cast<std::size_t>(row)] * current_A[static_cast<std::size_t>(row)];
     const auto slope = [&](double w_C, double s_C) {
       const double ohm = truth.resistance_25C_ohm + truth.resistance_25C_ohm * truth.temperature_coefficient_per_K * (w_C - 25.0);
-      const double across_W = (w_C - s_C) / truth.winding_stator_K_per_W;
+      const double contact_ratio = 1.0 + truth.contact_change_per_K * (0.5 * (w_C + s_C) - 60.0);
+      const double across_W = contact_ratio * (w_C - s_C) / truth.winding_stator_K_per_W;
       const double out_W = (s_C - ambient_C.back()) / truth.stator_ambient_K_per_W;
       return std::pair((square_A2 * ohm - across_W + winding_flux_W) / truth.winding_J_per_K,
                        (across_W - out_W + stator_flux_W) / truth.stator_J_per_K);

@@ -39,6 +39,7 @@ const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "share",
                                                       "uniform",
                                                       "kMarginalProbability",
+                                                      "kMajority",
                                                       "kTolerableShortage",
                                                       "kTolerableShortTime",
                                                       "aggressiveness",
@@ -81,6 +82,8 @@ const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or to
                                                      "root",
                                                      // of a channel of a log: its quantity has the unit
                                                      "columns", "noise", "saturates_high", "saturates_low", "step", "usual",
+                                                     // types of a standard, no variables
+                                                     "fmi2Real", "fmi3Float32", "fmi3Float64",
                                                      // VTK's own signature
                                                      "point",
                                                      // of a vector of two lengths and an angle, and of a guard's signal: its comment

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
 
 #include "base/files.h"
 #include "input/data_folders.h"
@@ -85,7 +86,8 @@ TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
     figure.spread.reset();
   }
   std::vector<DefaultSpread> before;
-  for (const Origin origin : {Origin::measured, Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated}) {
+  // A value called measured without an interval is no measurement.
+  for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated, Origin::measured}) {
     for (auto& [key, figure] : motor.figures) {
       figure.origin = origin;
     }
@@ -118,6 +120,46 @@ TEST(DefaultSpread, AZeroToleranceCountsAsMissingAndIsRefused) {
   }
 }
 
+Spread of_percent(const Figure& figure, double below_percent, double above_percent) {
+  return {Spread::Kind::range, figure.value * (1.0 - 0.01 * below_percent), figure.value * (1.0 + 0.01 * above_percent), true};
+}
+
+// A file says 0.001 % to get rid of its doubt, on both sides or on the one that makes motors hot.
+TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
+  for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
+    for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated}) {
+      Motor missing = ecx_32();
+      missing.figures.at(key).origin = origin;
+      missing.figures.at(key).spread.reset();
+      const Spread usual = *with_default_spreads(missing).figures.at(key).spread;
+      for (const auto& [below_percent, above_percent] : {std::pair(1e-3, 1e-3), std::pair(40.0, 0.01), std::pair(0.5, 100.0)}) {
+        Motor motor = missing;
+        Figure& figure = motor.figures.at(key);
+        figure.spread = of_percent(figure, below_percent, above_percent);
+        EXPECT_THAT(message_of_refusal(motor),
+                    AllOf(HasSubstr(".toml:"), HasSubstr("narrow_values"), HasSubstr(key), HasSubstr("state that")))
+            << to_string(origin) << " " << below_percent;
+        EXPECT_EQ(with_default_spreads(motor).figures.at(key).spread->low, usual.low);
+        EXPECT_EQ(with_default_spreads(motor).figures.at(key).spread->high, usual.high);
+      }
+    }
+  }
+}
+
+TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
+  Motor motor = ecx_32();
+  Figure& figure = motor.figures.at("thermal_resistance_stator_ambient");
+  figure.origin = Origin::measured;
+  figure.spread = of_percent(figure, 0.02, 3.0);
+  EXPECT_EQ(message_of_refusal(motor), "");
+  const std::vector<DefaultSpread> found = default_spreads(motor);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_NEAR(found[0].spread.low, 0.99 * figure.value, 1e-9 * figure.value);
+  EXPECT_NEAR(found[0].spread.high, 1.03 * figure.value, 1e-9 * figure.value);
+  figure.spread = of_percent(figure, 1.5, 1.5);
+  EXPECT_THAT(default_spreads(motor), IsEmpty());
+}
+
 TEST(DefaultSpread, MissingOnesAreNoReasonToRefuse) {
   Motor motor = ecx_32();
   for (auto& [key, figure] : motor.figures) {
@@ -128,7 +170,7 @@ TEST(DefaultSpread, MissingOnesAreNoReasonToRefuse) {
 }
 
 TEST(DefaultSpread, ContradictionsAreRefusedWithTheirPlace) {
-  const std::string message = message_of_refusal(read_motor(kSource / "tests/data/lint_df45l_phase_resistance.toml"));
+  const std::string message = message_of_refusal(read_motor(kSource / "tests/data/lint_motors/lint_df45l_phase_resistance.toml"));
   EXPECT_THAT(message, AllOf(HasSubstr("lint_df45l_phase_resistance.toml:"), HasSubstr(": error: nominal_speed: "), HasSubstr("expected")));
 }
 

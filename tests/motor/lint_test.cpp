@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 Motor motor_of_database(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
-Motor wrong_motor(const std::string& name) { return read_motor(kSource / "tests" / "data" / ("lint_" + name + ".toml")); }
+Motor wrong_motor(const std::string& name) { return read_motor(kSource / "tests/data/lint_motors" / ("lint_" + name + ".toml")); }
 
 std::set<std::string> checks_with(LintFinding::Level level, const Motor& motor) {
   std::set<std::string> checks;

@@ -34,7 +34,7 @@ TEST(Kinematics, roboteam_twente_by_hand) {
 
 // The recordings command (−34.641, 0, 34.641) rad/s at the motors (gear 16) for 0.1 m/s ahead, (20, −40, 20) to the left.
 TEST(Kinematics, robotino_as_its_own_commands) {
-  const Kinematics kinematics = make_kinematics(read_robot(kSource / "tests/data/festo_robotino.toml"));
+  const Kinematics kinematics = make_kinematics(read_robot(kSource / "tests/data/robots/festo_robotino.toml"));
   const PerWheel ahead = wheel_speeds_rad_per_s(kinematics, {0.1, 0.0, 0.0});
   const PerWheel left = wheel_speeds_rad_per_s(kinematics, {0.0, 0.1, 0.0});
   const PerWheel ahead_rad_per_s{-34.641, 0.0, 34.641, 0.0};

@@ -38,7 +38,7 @@ class Robotino : public testing::Test {
       GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
     }
     folder_ = *found;
-    body_ = make_body(read_robot(kSource / "tests/data/festo_robotino.toml"), robotino_motor());
+    body_ = make_body(read_robot(kSource / "tests/data/robots/festo_robotino.toml"), robotino_motor());
   }
 
   std::filesystem::path folder_;

@@ -317,6 +317,22 @@ TEST(FaultTable, wheel_speed_unknown) {
   }
 }
 
+TEST(FaultTable, wheel_speeds_dead) {
+  const auto all_zero = [](Input& input, State&, int) { std::fill_n(input.wheel_speed_rad_per_s, 4, 0.0F); };
+  const Case test{
+      .code = Reason::wheel_speeds_dead, .are_currents_fitted = false, .periods = 3000, .spoil = all_zero, .until = 4000, .from = 0};
+  const Record record = run(test, false);
+  EXPECT_GE(record.first_period, 300);
+  EXPECT_LE(record.first_period, 400);
+  EXPECT_LE(record.last_period, 3000 + 16);
+  // A motor that runs away under the limp current's voltage is as fast as its back-EMF; rolling wheels are at most as fast as the robot.
+  const Config config = make_config(4);
+  const float limp_rad_per_s = config.limp_current_A * config.lowest_resistance_ohm / config.derived.geared_constant_V_s_per_rad;
+  EXPECT_LE(record.speed_at_end_m_per_s, 1.5 * static_cast<double>(limp_rad_per_s * config.wheel_radius_m));
+  // A robot that was at rest, then held: 0.3 s of pushing, then the limp current.
+  EXPECT_LT(record.peak_of_wheel_A, 12.0);
+}
+
 TEST(FaultTable, current_missing) {
   for (const float sample : {kNone, kInfinity, -500.0F}) {
     check({.code = Reason::current_missing, .spoil = [=](Input& input, State&, int) { input.motor_current_A[kWheel] = sample; }}, 0, 0);

@@ -285,7 +285,7 @@ TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
   shorten(duty, 60);
   const std::vector<Motor> motors{motor_of_file("maxon_ecx_flat_32l_48v"), motor_of_file("maxon_ecx_flat_42m_24v"),
                                   motor_of_file("nanotec_df45l024048_a2")};
-  EvaluateOptions options{.samples = 61, .seed = 7, .threads = 1, .with_curves = true};
+  EvaluateOptions options{.samples = 61, .seed = 7, .threads = 1, .with_curves = true, .with_bands = true};
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
   const std::vector<MotorEvaluation> one = evaluate(robot, duty, duty.demand(robot, options.seed), motors, options);
   for (const int threads : {1, 2, 3, 8}) {
@@ -459,7 +459,7 @@ TEST(Progress, counts_up_to_all_of_the_work) {
 TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
   const Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
   const MotorEvaluation result = evaluate_one(motor, robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"),
-                                              {.samples = 100, .seed = 1, .with_curves = true});
+                                              {.samples = 100, .seed = 1, .with_curves = true, .with_bands = true});
   EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_C), result.winding_peak_C.nominal, 1e-3);
   EXPECT_TRUE(std::ranges::is_sorted(result.curves.time_s));
   for (std::size_t i = 0; i < result.curves.band_time_s.size(); ++i) {
@@ -578,7 +578,7 @@ TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
     draws.push_back(steady_wheels(torque_Nm, 400.0).back());
   }
   const std::vector<WheelDemand> nominal = steady_wheels(0.03, 600.0);
-  EvaluateOptions options{.samples = 4 * 8 * 3, .with_curves = true};
+  EvaluateOptions options{.samples = 4 * 8 * 3, .with_curves = true, .with_bands = true};
   options.draws = draws;
   const MotorEvaluation result = evaluate(robot, duty, nominal, std::span(&motor, 1), options).front();
   EXPECT_NEAR(result.winding_peak_C.nominal, rest_C(kResistance_ohm, 1.0), 0.01);

@@ -24,7 +24,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType core_size() {
   return {.name = {},
           .unit = "byte",
-          .range = Range::non_negative(),
+          .range = Range::between(0.0, 1e9),
           .meaning =
               "size of the drive core that `generate core` writes for robot and motor: all its source files together, before any "
               "compiler",

@@ -19,6 +19,7 @@ ThresholdType current_margin() {
   return {.name = {},
           .unit = "A",
           .direction = Bound::at_least,
+          .range = Range::between(-1e3, 1e3),
           .meaning =
               "how much more rms current the nominal motor bears at the same speeds until winding or stator is at its limit, as far as "
               "voltage and driver let it through; negative where the limit is exceeded",

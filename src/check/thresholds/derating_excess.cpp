@@ -24,7 +24,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType derating_excess() {
   return {.name = {},
           .unit = "A",
-          .range = Range::non_negative(),
+          .range = Range::between(0.0, 1e3),
           .meaning =
               "how much more current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
               "speed and temperatures where that is most. A C header fails, too, where its observer differs from a fresh one",

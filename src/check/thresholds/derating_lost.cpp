@@ -5,7 +5,7 @@ namespace heatsoak::thresholds {
 ThresholdType derating_lost() {
   return {.name = {},
           .unit = "A",
-          .range = Range::non_negative(),
+          .range = Range::between(0.0, 1e3),
           .meaning =
               "how much less current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
               "speed and temperatures where that is most: safe, but given away",

@@ -16,7 +16,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType guard_missing_charge() {
   return {.name = {},
           .unit = "A s",
-          .range = Range::non_negative(),
+          .range = Range::between(0.0, 1e6),
           .meaning =
               "current over time that the thermal guard would take away in a match, all wheels together; the same drive as of "
               "guard_active_share",

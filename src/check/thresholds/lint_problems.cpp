@@ -56,7 +56,8 @@ Measured measure(const Check& check, Computations& /*computations*/) {
 ThresholdType lint_problems() {
   return {.name = {},
           .unit = "",
-          .range = Range::non_negative(),
+          .is_whole = true,
+          .range = Range::between(0.0, 1e4),
           .room = Room::none,
           .meaning = "errors and warnings of `lint`, notes apart: of 'files', or of the check's own motor, robot and duty",
           .example = "at most 0",

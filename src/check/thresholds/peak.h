@@ -3,20 +3,32 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "check/computations.h"
 
 namespace heatsoak::thresholds {
 
-/// The 95th percentile of a peak, with the air as the origin of its rise. Throws Failure where the samples are too few for it.
-inline Measured measured_peak(const Check& check, Computations& computations, Spread95 MotorEvaluation::*peak) {
-  constexpr int kFewest = 20;
-  if (check.samples < kFewest) {
-    throw Failure(ExitCode::bad_input, fmt::format("a 95th percentile needs {} samples or more; the check has {}", kFewest, check.samples));
-  }
+/// No winding of this world is outside; 70 K, meant as a rise, is.
+inline constexpr Range kPlausible_C = Range::between(-60.0, 1000.0);
+
+/// The upper end of the 95 % interval of a peak's 95th percentile, with the air as the origin of its rise. Throws Failure where the samples
+/// are too few to have one.
+inline Measured measured_peak(const Check& check, Computations& computations, Spread95 MotorEvaluation::*peak,
+                              std::optional<Interval95> MotorEvaluation::*interval) {
   const MotorEvaluation& result = computations.feasible_evaluation(check);
   const Spread95& peak_C = result.*peak;
-  return {peak_C.p95, check.duty->ambient_C.value,
-          fmt::format("nominal {:.1f} °C, median {:.1f} °C, {} samples, {}", peak_C.nominal, peak_C.p50, check.samples, result.wheel)};
+  const std::optional<Interval95>& bounds_C = result.*interval;
+  if (!bounds_C || !std::isfinite(bounds_C->high)) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 where the duty is drawn; "
+                              "the check has {}",
+                              check.samples));
+  }
+  return {
+      bounds_C->high, check.duty->ambient_C.value,
+      fmt::format("percentile {:.1f} °C, its bound with 97.5 % confidence {:.1f} °C; nominal {:.1f} °C, median {:.1f} °C, {} samples, {}",
+                  peak_C.p95, bounds_C->high, peak_C.nominal, peak_C.p50, check.samples, result.wheel)};
 }
 
 }  // namespace heatsoak::thresholds

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/binomial_bound.h"
 #include "base/quantity.h"
-#include "check/binomial_bound.h"
 #include "check/computations.h"
 
 namespace heatsoak::thresholds {

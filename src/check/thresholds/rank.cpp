@@ -29,6 +29,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType rank() {
   return {.name = {},
           .unit = "",
+          .is_whole = true,
           .range = Range::between(1.0, 1e4),
           .room = Room::none,
           .meaning =

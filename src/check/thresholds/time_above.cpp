@@ -42,7 +42,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType time_above() {
   return {.name = {},
           .unit = "s",
-          .range = Range::non_negative(),
+          .range = Range::between(0.0, 1e7),
           .meaning = "time in which the winding of the hottest wheel is above 'temperature', of the nominal motor over the whole duty",
           .example = "at most 60 s",
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::temperature},

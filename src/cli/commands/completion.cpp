@@ -2,26 +2,35 @@
 #include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/help_page.h"
 
 namespace heatsoak::commands {
 namespace {
 
-/// Verbs and their options come from the parser itself; ids are asked of the program when a key is pressed.
-std::string bash_script(const CLI::App& program) {
+/// What the value of an option may be: ids are asked of the program when a key is pressed.
+std::string_view kind_of(const std::string& option) {
+  return option == "--motor" || option == "--motors" ? "motors" : option == "--robot" ? "robots" : option == "--duty" ? "duties" : "";
+}
+
+std::string bash_script(const std::vector<HelpPage>& pages) {
   std::vector<std::string> verbs;
   std::string cases;
-  for (const CLI::App* verb : program.get_subcommands({})) {
-    verbs.push_back(verb->get_name());
+  std::string values;
+  for (const HelpPage& page : pages) {
+    verbs.push_back(page.verb);
     std::vector<std::string> words;
-    for (const CLI::Option* option : verb->get_options()) {
-      for (const std::string& name : option->get_lnames()) {
-        words.push_back("--" + name);
+    for (const HelpOption& option : page.options) {
+      words.push_back(option.names.back());
+      if (!option.choices.empty() && option.names.back().starts_with("--")) {
+        values += fmt::format("    {}:{}) words='{}' ;;\n", page.verb, option.names.back(), fmt::join(option.choices, " "));
       }
     }
-    cases += fmt::format("    {}) words='{}' ;;\n", verb->get_name(), fmt::join(words, " "));
+    std::erase_if(words, [](const std::string& word) { return !word.starts_with("--"); });
+    cases += fmt::format("    {}) words='{}' ;;\n", page.verb, fmt::join(words, " "));
   }
   return fmt::format(R"bash(# bash completion of heatsoak: source <(heatsoak completion)
 _heatsoak() {{
@@ -29,30 +38,109 @@ _heatsoak() {{
   case ${{COMP_WORDS[1]}} in
 {1}  esac
   if [ "$COMP_CWORD" -eq 1 ]; then words='{0}'; fi
-  case $previous in
-    --motor|--motors) words="$(heatsoak list motors 2>/dev/null | cut -d' ' -f1)" ;;
-    --robot) words="$(heatsoak list robots 2>/dev/null | cut -d' ' -f1)" ;;
-    --duty) words="$(heatsoak list duties 2>/dev/null | cut -d' ' -f1)" ;;
-    list) words='motors robots duties effects formats' ;;
-    describe) words="$(for kind in motors robots duties effects; do heatsoak list $kind 2>/dev/null; done | cut -d' ' -f1)" ;;
+  case ${{COMP_WORDS[1]}}:$previous in
+{2}    *:--motor|*:--motors) words="$(heatsoak list motors 2>/dev/null | cut -d' ' -f1)" ;;
+    *:--robot) words="$(heatsoak list robots 2>/dev/null | cut -d' ' -f1)" ;;
+    *:--duty) words="$(heatsoak list duties 2>/dev/null | cut -d' ' -f1)" ;;
+    list:list) words='motors robots duties effects formats thresholds' ;;
+    describe:describe) words="$(for kind in motors robots duties effects; do heatsoak list $kind 2>/dev/null; done | cut -d' ' -f1)" ;;
   esac
   COMPREPLY=($(compgen -W "$words" -- "$current"))
   if [ ${{#COMPREPLY[@]}} -eq 0 ]; then COMPREPLY=($(compgen -f -- "$current")); fi
 }}
 complete -F _heatsoak heatsoak
 )bash",
-                     fmt::join(verbs, " "), cases);
+                     fmt::join(verbs, " "), cases, values);
+}
+
+/// For single quotes, and without what zsh's _arguments takes for its own.
+std::string zsh_quoted(std::string text) {
+  for (const auto& [from, to] : {std::pair("'", "'\\''"), {"[", "("}, {"]", ")"}, {":", ","}}) {
+    text = CLI::detail::find_and_replace(text, from, to);
+  }
+  return text;
+}
+
+std::string zsh_value(const HelpOption& option) {
+  if (!option.takes_value) {
+    return "";
+  }
+  const std::string_view kind = kind_of(option.names.back());
+  const std::string action = !option.choices.empty() ? fmt::format("({})", fmt::join(option.choices, " "))
+                             : kind.empty()          ? "_files"
+                                                     : fmt::format("{{_values id $(heatsoak list {} | cut -d\" \" -f1)}}", kind);
+  return fmt::format(":value:{}", action);
+}
+
+std::string zsh_script(const std::vector<HelpPage>& pages) {
+  std::string verbs;
+  std::string cases;
+  for (const HelpPage& page : pages) {
+    verbs += fmt::format("    '{}:{}'\n", page.verb, zsh_quoted(page.summary));
+    cases += fmt::format("    {}) _arguments", page.verb);
+    for (const HelpOption& option : page.options) {
+      if (option.names.back().starts_with("--")) {
+        cases += fmt::format(" \\\n      '{}[{}]{}'", option.names.back(), zsh_quoted(option.meaning), zsh_value(option));
+      }
+    }
+    cases += " \\\n      '*:file:_files' ;;\n";
+  }
+  return fmt::format(R"zsh(#compdef heatsoak
+# zsh completion of heatsoak: heatsoak completion zsh > ~/.zfunc/_heatsoak
+_heatsoak() {{
+  local -a verbs
+  verbs=(
+{}  )
+  if (( CURRENT == 2 )); then
+    _describe verb verbs
+    return
+  fi
+  local verb=$words[2]
+  shift words
+  (( CURRENT-- ))
+  case $verb in
+{}  esac
+}}
+if [ "$funcstack[1]" = _heatsoak ]; then _heatsoak "$@"; else compdef _heatsoak heatsoak; fi
+)zsh",
+                     verbs, cases);
+}
+
+std::string fish_quoted(const std::string& text) {
+  return CLI::detail::find_and_replace(CLI::detail::find_and_replace(text, "\\", "\\\\"), "'", "\\'");
+}
+
+std::string fish_script(const std::vector<HelpPage>& pages) {
+  std::string text = "# fish completion of heatsoak: heatsoak completion fish > ~/.config/fish/completions/heatsoak.fish\n";
+  for (const HelpPage& page : pages) {
+    text += fmt::format("complete -c heatsoak -n __fish_use_subcommand -f -a {} -d '{}'\n", page.verb, fish_quoted(page.summary));
+    for (const HelpOption& option : page.options) {
+      if (!option.names.back().starts_with("--")) {
+        continue;
+      }
+      const std::string_view kind = kind_of(option.names.back());
+      const std::string values = !option.choices.empty() ? fmt::format(" -f -a '{}'", fmt::join(option.choices, " "))
+                                 : kind.empty()          ? ""
+                                                         : fmt::format(" -f -a '(heatsoak list {} | string split -f1 \" \")'", kind);
+      text += fmt::format("complete -c heatsoak -n '__fish_seen_subcommand_from {}' -l {} -d '{}'{}{}\n", page.verb,
+                          option.names.back().substr(2), fish_quoted(option.meaning), option.takes_value ? " -r" : "", values);
+    }
+  }
+  return text;
 }
 
 }  // namespace
 
 Command completion() {
   return {.name = {},
-          .summary = "Prints a completion script for bash (and for zsh after `autoload bashcompinit; bashcompinit`)",
-          .example = "source <(heatsoak completion)",
+          .summary = "Prints a completion script for bash, zsh or fish",
+          .example = "source <(heatsoak completion bash)",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
-            return [&app, &session] {
-              session.say(bash_script(*app.get_parent()));
+            const auto shell = std::make_shared<std::string>("bash");
+            app.add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}));
+            return [shell, &app, &session] {
+              const std::vector<HelpPage> pages = help_pages(*app.get_parent());
+              session.say(*shell == "zsh" ? zsh_script(pages) : *shell == "fish" ? fish_script(pages) : bash_script(pages));
               return ExitCode::done;
             };
           }};

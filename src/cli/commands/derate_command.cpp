@@ -14,12 +14,14 @@
 #include "cli/guard_options.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "cli/sensor_options.h"
 #include "cli/silent_effects.h"
-#include "cli/verdict_words.h"
 #include "derate/committed_table.h"
 #include "derate/derating_json.h"
+#include "derate/export_text.h"
 #include "derate/exporter.h"
 #include "motor/datasheet_network.h"
+#include "present/verdict_words.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -32,6 +34,8 @@ struct Options {
   std::string to = "c_header";
   std::string out;
   std::string committed;  ///< table of --check
+  std::string compiler;   ///< of a form with a binary; empty: sources only
+  SensorFlags sensor;
 };
 
 const ExporterType& exporter_named(const std::string& name) {
@@ -90,14 +94,10 @@ std::string report(const Derating& derating) {
   }
   text += own.empty() ? "" : fmt::format("effects of the file that act: {}\n", own);
   text += fmt::format(
-      "safety factor on heat {:.2f}: of {} motors drawn from the declared tolerances {} exceeded a limit in one of the {} hardest uses "
-      "({:.1f} "
-      "%; "
-      "other draws: {:.1f} to {:.1f} %)\ntheir windings reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the "
-      "hottest)\n\n",
-      derating.observer.heat_reserve_ratio(), checked.samples, checked.over, derating.uses.size(), 100.0 * checked.over / checked.samples,
-      100.0 * checked.over_share.low, 100.0 * checked.over_share.high, checked.winding_p50_C, checked.winding_p95_C,
-      checked.winding_most_C);
+      "safety factor on heat {:.2f}. {} ({} draws are the fewest for it)\n"
+      "the windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the hottest)\n\n",
+      derating.observer.heat_reserve_ratio(), confidence_text(derating), least_samples(derating.options.guarantee), checked.samples,
+      checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C);
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
     text += fmt::format(
@@ -163,11 +163,22 @@ ExitCode tell_comparison(const CommittedTable& committed, const Derating& derati
 
 ExitCode run(const Options& options, Session& session) {
   const ExporterType& exporter = exporter_named(options.to);
+  DerateOptions derate_options = options.guard.derate;
+  derate_options.sensor = sensor_options(options.sensor);
+  if (derate_options.sensor && exporter.name != "c_header" && exporter.name != "json") {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--to {} has no place for a sensor: expected --to c_header or json, or no sensor", exporter.name));
+  }
   if (options.out.empty() && options.committed.empty()) {
     throw Failure(ExitCode::bad_input, "expected --out FILE to write, or --check FILE to compare with");
   }
   if (options.out == "-") {
     throw Failure(ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
+  }
+  if (!options.compiler.empty() && exporter.write_compiled == nullptr) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("--compiler: {} has no binary; expected --to fmi2_motor, fmi2_guard, fmi3_motor or fmi3_guard", exporter.name));
   }
   check_derate_options(options.guard.derate);
   NamedFiles named(session.folders());
@@ -176,12 +187,12 @@ ExitCode run(const Options& options, Session& session) {
   // Before the work: a file that is no table needs none.
   const std::optional<CommittedTable> committed =
       options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
-  Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
-  derating.provenance = provenance_of(motor, *robot, options.guard.derate);
-  session.say(report(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
+  Derating derating = derate(motor, *robot, derate_options, progress_bar("looking for the reserve"));
+  derating.provenance = provenance_of(motor, *robot, derate_options);
+  session.say(report(derating) + sensor_text(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
               effects_under_conditions({&motor, 1}));
   if (!options.out.empty()) {
-    session.write(options.out, exporter.write(derating));
+    session.write(options.out, options.compiler.empty() ? exporter.write(derating) : exporter.write_compiled(derating, options.compiler));
     session.say(fmt::format("\n{}: {}\n", exporter.name, options.out));
   }
   Json answer = derating_json(derating);
@@ -203,6 +214,9 @@ Command derate_command() {
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--to", options->to, "form (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
         app.add_option("--out", options->out, "file to write")->type_name("FILE");
+        app.add_option("--compiler", options->compiler,
+                       "C compiler, such as cc: adds a binary for this machine to an FMU, which else has its sources only")
+            ->type_name("CC");
         app.add_option(
                "--check", options->committed,
                "a C header or CSV table that was written earlier, with the same options: exit 1 where it allows more than a fresh one")
@@ -210,6 +224,7 @@ Command derate_command() {
         add_quantity(app, "--period", options->guard.derate.period_s,
                      {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
         add_derate_options(app, options->guard.derate);
+        add_sensor_options(app, options->sensor);
         session.add_data_option(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };

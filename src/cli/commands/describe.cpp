@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/effect_topic.h"
 #include "cli/threshold_topic.h"
+#include "cli/verdict_topic.h"
 #include "duty/duty.h"
 #include "duty/file_kind.h"
 #include "duty/match/match_duty.h"
@@ -410,7 +411,7 @@ Description describe(const std::string& name, const DataFolders& folders) {
   for (const ShapeType& shape : all_shapes()) {
     known.emplace_back(shape.name);
   }
-  for (const std::vector<Topic>& topics : {all_topics(), threshold_topics()}) {
+  for (const std::vector<Topic>& topics : {all_topics(), threshold_topics(), {verdict_topic()}}) {
     for (const Topic& topic : topics) {
       if (topic.id == name) {
         return {topic.text, topic.json()};
@@ -438,15 +439,15 @@ Description describe(const std::string& name, const DataFolders& folders) {
   if (name == "motors" || name == "robots" || name == "duties" || name == "effects") {
     throw Failure(ExitCode::bad_input, fmt::format("'{0}' are many: `heatsoak list {0}` shows them, `heatsoak describe NAME` one", name));
   }
-  throw Failure(ExitCode::bad_input, fmt::format("there is no '{}' among motors, robots, duties, shapes, effects and thresholds{}", name,
-                                                 did_you_mean(name, known)));
+  throw Failure(ExitCode::bad_input, fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds and verdict{}",
+                                                 name, did_you_mean(name, known)));
 }
 
 }  // namespace
 
 Command describe() {
   return {.name = {},
-          .summary = "Says what a motor, robot, duty, duty shape, effect or threshold is: figures with origin, equations, sources",
+          .summary = "Says what a motor, robot, duty, duty shape, effect, threshold or verdict is: figures with origin, equations, sources",
           .example = "heatsoak describe maxon_ecx_flat_32l_48v",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto name = std::make_shared<std::string>();

@@ -16,12 +16,12 @@
 #include "cli/match_roles.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "cli/verdict_words.h"
 #include "duty/duty.h"
 #include "duty/duty_rows.h"
 #include "duty/game_to_demand.h"
 #include "duty/match/match_duty.h"
 #include "motor/motor.h"
+#include "present/verdict_words.h"
 
 namespace heatsoak::commands {
 namespace {

@@ -18,13 +18,15 @@
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
-#include "cli/verdict_words.h"
 #include "duty/duty.h"
 #include "duty/match/match_duty.h"
 #include "motor/conditions.h"
 #include "motor/motor.h"
+#include "present/evaluation.h"
 #include "report/chart.h"
+#include "robot/assumed_friction.h"
 #include "robot/robot.h"
+#include "select/decision.h"
 #include "select/evaluate.h"
 
 namespace heatsoak::commands {
@@ -32,6 +34,8 @@ namespace {
 
 /// From the verdict that is named on, exit 1: those behind it are worse. In the order of Verdict, without pass.
 const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
+
+constexpr int kFirstSamples = 500;
 
 struct Options {
   std::string robot;
@@ -41,6 +45,8 @@ struct Options {
   std::string plot;
   std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
+  bool suggests = false;
+  std::optional<int> samples;  ///< nothing: kFirstSamples, and more until the verdicts are decided
   bool is_closed_loop = false;
   int games = 3;
   std::string guard = "shadow";
@@ -93,89 +99,6 @@ std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
   return motors;
 }
 
-std::string peak_text(const Spread95& peak) {
-  return std::isfinite(peak.p05) ? fmt::format("{:4.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
-                                 : fmt::format("{:4.0f}", peak.nominal);
-}
-
-std::string row(std::size_t rank, const MotorEvaluation& each) {
-  const std::string probability =
-      std::isfinite(each.probability_over_limit) ? fmt::format("{:.0f} %", 100.0 * each.probability_over_limit) : "–";
-  return fmt::format("{:3}  {:32} {:10}  {:20} {:16} {:5.0f}  {:6.0f} {:>5}  {:>6}  {:>8} {:+6.0f} {:>6}  {:5.2f}  {}\n", rank,
-                     each.motor_id, to_string(each.verdict),
-                     each.limiting_factor == LimitingFactor::none ? "–" : to_string(each.limiting_factor), peak_text(each.winding_peak_C),
-                     each.winding_limit_C, each.stator_peak_C.nominal,
-                     each.stator_limit_C ? fmt::format("{:.0f}", *each.stator_limit_C) : "–", probability,
-                     each.time_to_limit_s ? duration_text(*each.time_to_limit_s) : "–", nearest_margin_K(each),
-                     each.margin_A && each.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *each.margin_A) : "–",
-                     each.current_rms_A, each.data_quality);
-}
-
-/// How far the number of samples alone can be trusted.
-std::string sampling_error(const std::vector<MotorEvaluation>& results) {
-  double probability_ratio = 0.0;
-  double p95_K = 0.0;
-  for (const MotorEvaluation& each : results) {
-    probability_ratio = std::max(probability_ratio, 0.5 * (each.probability_interval->high - each.probability_interval->low));
-    p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
-  }
-  return fmt::format(
-      "other samples would give P over within ±{:.0f} points and the upper end of the peak {} (95 %)\n",
-      std::ceil(100.0 * probability_ratio),
-      std::isfinite(p95_K) ? fmt::format("within ±{:.0f} K at most", std::ceil(p95_K)) : "anywhere above: take more samples");
-}
-
-std::string remarks(const std::vector<MotorEvaluation>& results, const Robot& robot, const EvaluateOptions& options) {
-  std::string text = options.samples > 0 && options.draws.empty() && !results.empty() ? sampling_error(results) : "";
-  bool estimated = false;
-  for (const MotorEvaluation& each : results) {
-    estimated = estimated || each.data_quality == "estimated";
-    text += why_infeasible(each, robot);
-    if (each.verdict != Verdict::infeasible && each.short_probability > kMarginalProbability) {
-      text += fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})\n", each.motor_id,
-                          100.0 * each.short_probability, to_string(each.short_limit));
-    }
-    if (!options.draws.empty() && each.verdict != Verdict::infeasible) {
-      const Interval95& p95_C = *each.winding_p95_interval_C;
-      text += fmt::format("{}: other draws of the duty would give P over {:.0f} to {:.0f} % and a 95th percentile of {:.0f} {} (95 %)\n",
-                          each.motor_id, 100.0 * each.probability_interval->low, 100.0 * each.probability_interval->high, p95_C.low,
-                          std::isfinite(p95_C.high) ? fmt::format("to {:.0f} °C", p95_C.high) : "°C or more: take more samples");
-    }
-    if (each.destroyed) {
-      text += fmt::format("{}: thermal runaway, the calculation ended at 1000 °C\n", each.motor_id);
-    }
-  }
-  if (estimated) {
-    text +=
-        "data \"estimated\": thermal figures that nobody publishes are estimates from similar motors; the verdict rests on them\n"
-        "(`heatsoak describe MOTOR` shows how each was found). Calibrate on a bench before you rely on it.\n";
-  }
-  return text;
-}
-
-std::string report(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty, double duration_s,
-                   const Options& options) {
-  std::string text =
-      fmt::format("{} on {}: {}, ambient {:.0f} °C, {}\nload: {}\n", robot.id, duty.id, duration_text(duration_s), duty.ambient_C.value,
-                  options.evaluate.samples > 0 ? fmt::format("{} sample{} of all declared tolerances, seed {}", options.evaluate.samples,
-                                                             options.evaluate.samples == 1 ? "" : "s", options.evaluate.seed)
-                                               : "nominal figures only",
-                  duty.origin);
-  if (!options.evaluate.draws.empty()) {
-    text += fmt::format(
-        "spread of the duty is included: {} draw{} of its inputs and of the robot's figures, shared by the samples; P over and verdict are "
-        "of all of them\nthe first peak, reached, K left, A left and A rms are of one game, that of the seed\n",
-        options.evaluate.draws.size(), options.evaluate.draws.size() == 1 ? "" : "s");
-  }
-  text +=
-      fmt::format("\n{:3}  {:32} {:10}  {:20} {:16} {:>5}  {:>6} {:>5}  {:>6}  {:>8} {:>6} {:>6}  {:>5}  {}\n", "", "motor", "verdict",
-                  "limited by", "winding peak °C", "limit", "stator", "limit", "P over", "reached", "K left", "A left", "A rms", "data");
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    text += row(i + 1, results[i]);
-  }
-  return text + "\n" + remarks(results, robot, options.evaluate);
-}
-
 nlohmann::ordered_json json(const Spread95& peak) {
   return {
       {"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
@@ -192,6 +115,8 @@ nlohmann::ordered_json json(const MotorEvaluation& each) {
           {"winding_limit_C", rounded(each.winding_limit_C, 2)},
           {"winding_peak_C", json(each.winding_peak_C)},
           {"stator_peak_C", json(each.stator_peak_C)},
+          {"samples", each.samples},
+          {"samples_needed", each.samples_needed ? nlohmann::ordered_json(*each.samples_needed) : nlohmann::ordered_json()},
           {"probability_over_limit", rounded(each.probability_over_limit, 4)},
           {"probability_ci95", interval(each.probability_interval, 4)},
           {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
@@ -218,12 +143,12 @@ ExitCode run(Options& options, Session& session) {
   const std::optional<Duty> duty_read = named.duty(options.duty);
   const std::vector<Motor> motors = read_motors(options, named);
   named.throw_if_any();
-  const Robot& robot = *robot_read;
   const Duty& duty = *duty_read;
   if (motors.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", named.folders().motors.string()));
   }
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
+  const Robot robot = match ? with_assumed_friction(*robot_read) : *robot_read;
   if (options.is_closed_loop && !match) {
     throw Failure(ExitCode::bad_input, fmt::format("--closed-loop drives matches; {} is {}. Expected a duty of the shape match, or no "
                                                    "--closed-loop",
@@ -232,12 +157,14 @@ ExitCode run(Options& options, Session& session) {
   if (!options.is_closed_loop && options.guard != Options{}.guard) {
     throw Failure(ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
-  options.evaluate.with_curves = !options.plot.empty();
+  options.evaluate.with_curves = true;
+  options.evaluate.with_bands = !options.plot.empty();
+  options.evaluate.samples = options.samples.value_or(kFirstSamples);
+  const int most = options.samples.value_or(most_samples(duty));
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
-  const std::vector<WheelDemand> draws = draw_demands(duty, robot, options.evaluate.seed, draw_count(duty, options.evaluate.samples),
-                                                      options.evaluate.threads, progress_bar(fmt::format("playing draws of {}", duty.id)));
-  options.evaluate.draws = draws;
-  std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, motors, options.evaluate, progress_bar("evaluating"));
+  std::vector<WheelDemand> draws;
+  std::vector<MotorEvaluation> results = evaluate_until_decided(robot, duty, wheels, motors, options.evaluate, most, draws,
+                                                                [](const char* what) { return progress_bar(what); });
   std::vector<ClosedLoopRank> ranks;
   if (options.is_closed_loop) {
     const GameDriveOptions drive{
@@ -245,15 +172,26 @@ ExitCode run(Options& options, Session& session) {
         false,         options.evaluate.threads};
     ranks = rank_closed_loop(drive_games(robot, match->inputs(), motors, drive, progress_bar("driving games")), results);
   }
-  if (!options.plot.empty()) {
-    session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
+  present::Document document =
+      present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.samples, options.evaluate.seed, draws.size()});
+  present::add_lines(document.notes, silent_effects(motors), present::Severity::note);
+  present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
+  std::vector<ChangeEffect> changes;
+  if (options.suggests) {
+    // The motor that the robot is built with where it is among them, else the best one.
+    const auto own = std::ranges::find(results, robot.drive_motor, &MotorEvaluation::motor_id);
+    const std::string id = own == results.end() ? results.front().motor_id : own->motor_id;
+    changes = effects_of_changes(robot, duty, *std::ranges::find(motors, id, &Motor::id), options.evaluate.seed, options.evaluate.threads,
+                                 progress_bar("trying changes"));
+    present::add_changes(document, changes, id);
   }
-  session.say(report(results, robot, duty, wheels.front().duration_s(), options) + slip_text(wheels.front()) + silent_effects(motors) +
-              default_spreads_text(motors));
+  present::add_lines(document.notes, assumed_friction_text(robot), present::Severity::warning);
   if (options.is_closed_loop) {
-    session.say(closed_loop_text(ranks, options.games, options.evaluate.seed));
+    add_closed_loop(document, ranks, options.games, options.evaluate.seed);
   }
+  session.show(document);
   if (!options.plot.empty()) {
+    session.write(options.plot, draw_picture(verdict_chart(results, robot, duty), options.plot));
     session.say(fmt::format("picture: {}\n", options.plot));
   }
   nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"},     {"robot", robot.id},
@@ -261,6 +199,19 @@ ExitCode run(Options& options, Session& session) {
                                 {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
                                 {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
   answer["default_spreads"] = default_spreads_json(motors);
+  if (options.suggests) {
+    answer["changes"] = nlohmann::ordered_json::array();
+    for (const ChangeEffect& each : changes) {
+      answer["changes"].push_back({{"quantity", name_of(each.quantity)},
+                                   {"unit", unit_of(each.quantity)},
+                                   {"from", rounded(each.before, 6)},
+                                   {"to", rounded(each.before * each.factor, 6)},
+                                   {"saved_K", rounded(each.saved_K, 2)},
+                                   {"standard_error_K", rounded(each.standard_error_K, 2)},
+                                   {"deliverable", each.is_deliverable}});
+    }
+  }
+  answer["is_friction_assumed"] = robot.is_friction_assumed;
   const Verdict least_bad = static_cast<Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();
@@ -284,8 +235,8 @@ Command evaluate_command() {
       .name = {},
       .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
       .example =
-          "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors "
-          "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
+          "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors "
+          "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v --samples 80 --plot verdict.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
@@ -295,9 +246,11 @@ Command evaluate_command() {
                        "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
             ->type_name("FILE.toml");
         add_conditions(app, options->conditions);
-        app.add_option("--samples", options->evaluate.samples, "draws of every declared tolerance and range; 0: nominal only")
+        app.add_option(
+               "--samples", options->samples,
+               "draws of every declared tolerance and range; 0: nominal only; without it 500, and more until the verdicts are decided")
             ->check(whole_number(1'000'000))
-            ->capture_default_str();
+            ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,
                      "on a match: the drive core drives games with each motor, with slip, battery sag and real sensing; ranks by them, and "
                      "exit 1 follows them");
@@ -310,6 +263,8 @@ Command evaluate_command() {
         app.add_option("--games", options->games, "of --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
             ->capture_default_str();
+        app.add_flag("--suggest", options->suggests,
+                     "lists the changes of the robot that cool its motor most: acceleration, jerk, speed, mass, wheels, gear");
         app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: marginal, fail, infeasible")
             ->check(CLI::IsMember(kFailOn))
             ->type_name("VERDICT")
@@ -320,6 +275,7 @@ Command evaluate_command() {
             ->capture_default_str();
         add_picture(app, options->plot, "picture of stator and winding temperature over time");
         session.add_data_option(app);
+        session.add_text_options(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
       }};

@@ -11,6 +11,7 @@
 #include "cli/guard_options.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "derate/export_text.h"
 #include "firmware/core_files.h"
 #include "firmware/staged_folder.h"
 
@@ -37,18 +38,17 @@ std::size_t bytes_of(const CoreFolder& folder) {
 }
 
 std::string report(const CoreFolder& folder, const Derating& derating, const Options& options) {
-  const Guarantee& checked = derating.guarantee;
   std::string text = fmt::format(
       "drive core for {} with {}: {}, {} kB in {}\n"
       "inputs {} {}, configuration check sum {:08x}\n"
       "control period {:.6g} ms, guard period {:.6g} ms\n"
-      "winding below {:.0f} °C in air up to {:.0f} °C, {} thermal data; heat counts {:.2f} times: of {} motors drawn from the declared "
-      "tolerances\n{} exceeded a limit in one of the {} hardest uses\n"
+      "winding below {:.0f} °C in air up to {:.0f} °C, {} thermal data\n"
+      "safety factor on heat {:.2f}. {}\n"
       "a wheel whose speed is unknown gets at most {:.2f} A; {:.1f} K are kept free for one full stop\n",
       derating.robot_id, derating.motor_id, counted(folder.files.size(), "file"), bytes_of(folder) / 1024, options.out, kInputHash,
       folder.hash, folder.config_check_sum, 1e3 * options.core.period_s, 1e3 * derating.options.period_s, derating.rules.limits.winding_C,
-      derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(), checked.samples, checked.over,
-      derating.uses.size(), folder.limp_current_A, folder.braking_reserve_K);
+      derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(), confidence_text(derating),
+      folder.limp_current_A, folder.braking_reserve_K);
   for (const std::string& note : folder.notes) {
     text += fmt::format("note: {}\n", note);
   }

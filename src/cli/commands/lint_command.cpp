@@ -11,6 +11,7 @@
 #include "input/document.h"
 #include "motor/lint.h"
 #include "motor/motor.h"
+#include "motor/read_motor.h"
 #include "robot/robot.h"
 #include "robot/robot_lint.h"
 
@@ -28,7 +29,14 @@ std::vector<LintFinding> look_into(const std::filesystem::path& file, const Data
     case FileKind::motor:
       break;
   }
-  return lint(read_motor(file));
+  Diagnostics problems;
+  const Motor motor = read_motor(file, problems);
+  if (problems.empty()) {
+    return lint(motor);
+  }
+  add_lint_errors(motor, problems);
+  problems.throw_if_any();
+  return {};
 }
 
 /// A file, every file of a folder, or the file of an id.

@@ -12,6 +12,7 @@
 #include "duty/duty.h"
 #include "duty/log_type.h"
 #include "motor/motor.h"
+#include "present/renderer.h"
 #include "robot/robot.h"
 #include "thermal/effect.h"
 
@@ -72,6 +73,12 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
       result.push_back({std::string(exporter.name), fmt::format("derating: {}; derate --to {}", exporter.summary, exporter.name)});
     }
     result.push_back({"svg", "picture: --plot FILE.svg"});
+    result.push_back({"png", "picture: --plot FILE.png"});
+    for (const present::Renderer& renderer : present::all_renderers()) {
+      result.push_back({std::string(renderer.name),
+                        fmt::format("answer: {}{}", renderer.summary,
+                                    renderer.file_ending.empty() ? "" : fmt::format("; --report FILE{}", renderer.file_ending))});
+    }
     result.push_back({"json", "answer: --json FILE"});
     result.push_back({"csv", "trace: simulate --out FILE.csv"});
   }

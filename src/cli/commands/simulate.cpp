@@ -16,9 +16,10 @@
 #include "cli/quantity_option.h"
 #include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
-#include "cli/verdict_words.h"
 #include "motor/conditions.h"
+#include "present/verdict_words.h"
 #include "report/chart.h"
+#include "robot/assumed_friction.h"
 #include "select/trace.h"
 
 namespace heatsoak::commands {
@@ -85,7 +86,7 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
     session.write(options.out, to_csv(trace));
   }
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
+    session.write(options.plot, draw_picture(verdict_chart(results, robot, duty), options.plot));
   }
   session.say(
       fmt::format("{} on {}, {} ({}, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms "
@@ -129,7 +130,8 @@ ExitCode run(const Options& options, Session& session) {
   const std::optional<Motor> motor_read = named.motor(options.model.empty() ? options.motor : options.model);
   const std::optional<Duty> duty_read = options.jerk_sweep ? std::nullopt : named.duty(options.duty);
   named.throw_if_any();
-  const Robot& robot = *robot_read;
+  const bool is_driven = options.jerk_sweep || std::dynamic_pointer_cast<const MatchDuty>(duty_read->shape_data) != nullptr;
+  const Robot robot = is_driven ? with_assumed_friction(*robot_read) : *robot_read;
   const Motor motor = under(*motor_read, options.conditions);
   const auto needs_a_plant = [&motor] {
     if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {

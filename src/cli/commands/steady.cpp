@@ -1,3 +1,5 @@
+#include "present/steady.h"
+
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
@@ -15,8 +17,8 @@
 #include "cli/silent_effects.h"
 #include "motor/conditions.h"
 #include "motor/datasheet_network.h"
-#include "motor/default_spread.h"
 #include "motor/motor.h"
+#include "present/evaluation.h"
 #include "thermal/periodic_state.h"
 #include "thermal/steady_state.h"
 
@@ -61,33 +63,11 @@ OnOffSteadyState rest_under_rms(const MotorValues& values, const Network& networ
   return state;
 }
 
-std::string in_words(const MotorValues& values, const OnOffSteadyState& rms, bool is_bare, const PeriodicState& periodic, bool over) {
-  if (periodic.destroyed_s) {
-    return fmt::format(
-        "thermal runaway within a single cycle: {:.3g} s after the current comes on at ambient temperature, {:.0f} °C are passed and the "
-        "motor is destroyed\n",
-        *periodic.destroyed_s, kDestroyed_C);
-  }
-  if (periodic.runaway) {
-    return fmt::format("thermal runaway: there is no steady state, it gets hotter from cycle to cycle until {:.0f} °C are passed\n",
-                       kDestroyed_C);
-  }
-  std::string text = fmt::format(
-      "winding {:.1f} °C on average, {:.1f} °C at its highest in each cycle (limit {:.0f} °C, {})\nstator  {:.1f} °C on average\n",
-      periodic.mean_C[states::winding], periodic.peak_C[states::winding], values.winding_limit_C, over ? "exceeded" : "kept",
-      periodic.mean_C[states::stator]);
-  if (!rms.runaway) {
-    text += fmt::format("{}, where a cycle is short against the winding's {:.3g} s: winding {:.1f} °C, stator {:.1f} °C\n",
-                        is_bare ? "equations (8) to (12)" : "under the rms current, held", values.thermal_time_constant_winding_s,
-                        rms.winding_C, rms.stator_C);
-  }
-  return text;
-}
-
 ExitCode run(const Options& options, Session& session) {
-  const Motor as_written = motor_named(session.folders(), options.motor);
-  require_sound(as_written);
-  const Motor motor = under(as_written, options.conditions);
+  NamedFiles named(session.folders());
+  const std::optional<Motor> read = named.motor(options.motor);
+  named.throw_if_any();
+  const Motor motor = under(*read, options.conditions);
   const MotorValues& values = motor.nominal;
   const Network network = datasheet_network(motor, nominal_sample(motor));
   const bool is_bare = network.effects().size() == kDatasheetEffects.size();
@@ -96,9 +76,9 @@ ExitCode run(const Options& options, Session& session) {
   periodic.runaway = periodic.runaway || (is_bare && rms.runaway);
   const bool runaway = periodic.runaway;
   const bool over = runaway || !(periodic.peak_C[states::winding] <= values.winding_limit_C);
-  session.say(fmt::format("{} ({} thermal data), rms current {:.2f} A, ambient {:.0f} °C\n", motor.id, data_quality(motor),
-                          rms.current_rms_A, options.current.ambient_C) +
-              in_words(values, rms, is_bare, periodic, over) + silent_effects({&motor, 1}));
+  present::Document document = present::steady_document({motor, periodic, rms, is_bare, options.current.ambient_C, over});
+  present::add_lines(document.notes, silent_effects({&motor, 1}), present::Severity::note);
+  session.show(document);
   using Json = nlohmann::ordered_json;
   const auto rest = [&](double value_C) { return runaway || rms.runaway ? Json() : Json(value_C); };
   const auto of_winding = [&](const std::vector<double>& value_C) { return runaway ? Json() : Json(value_C[states::winding]); };
@@ -142,6 +122,7 @@ Command steady() {
             add_quantity(app, "--ambient", options->current.ambient_C,
                          {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
             session.add_data_option(app);
+            session.add_text_options(app);
             session.add_json_option(app);
             return [options, &session] { return run(*options, session); };
           }};

@@ -16,26 +16,23 @@ struct Traces {
 };
 
 /// All runs one after the other, with a break between. `shown_as`: fitted, or foretold where the fit never saw the run.
-void append(const Calibration& calibration, const MeasuredRun& run, Curve shown_as, double offset_s, std::vector<Traces>& traces) {
-  const MotorModel& motor = calibration.motor_model;
-  const Eigen::MatrixXd before = open_loop_C(motor.model.network, motor.model.values, run);
-  const Eigen::MatrixXd after = open_loop_C(motor.model.network, motor.model.values_at(calibration.fit.theta), run);
+void append(const PredictedRun& before, const PredictedRun& after, Curve shown_as, double offset_s, std::vector<Traces>& traces) {
   for (Traces& each : traces) {
-    const auto found = std::ranges::find(run.sensors, each.signal, &Sensor::signal);
-    if (found == run.sensors.end()) {
+    const auto found = std::ranges::find(after.signals, each.signal, &PredictedSignal::signal);
+    const auto of_file_too = std::ranges::find(before.signals, each.signal, &PredictedSignal::signal);
+    if (found == after.signals.end() || of_file_too == before.signals.end()) {
       continue;
     }
-    const Eigen::Index sensor = found - run.sensors.begin();
     const auto add = [&](Curve curve, double time_s, double shown_C) {
       each.panel.curves[curve].x.push_back((offset_s + time_s) / 60.0);
       each.panel.curves[curve].y.push_back(shown_C);
     };
     double time_s = 0.0;
-    for (Eigen::Index k = 0; k < run.samples(); ++k) {
-      time_s = run.time_s[static_cast<std::size_t>(k)] - run.time_s.front();
-      add(measured, time_s, run.measured_C(k, sensor));
-      add(shown_as, time_s, after(k, sensor));
-      add(of_file, time_s, before(k, sensor));
+    for (std::size_t k = 0; k < after.time_s.size(); ++k) {
+      time_s = after.time_s[k] - after.time_s.front();
+      add(measured, time_s, found->measured_C[k]);
+      add(shown_as, time_s, found->predicted_C[k]);
+      add(of_file, time_s, of_file_too->predicted_C[k]);
     }
     for (const Curve curve : {measured, shown_as, of_file}) {
       add(curve, time_s, std::numeric_limits<double>::quiet_NaN());
@@ -65,24 +62,25 @@ Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
     trace.signal = each.signal;
     trace.panel.curves = {{.name = "measured", .color_index = 0},
                           {.name = "fit", .color_index = 1},
-                          {.name = calibration.holdout.empty() ? "" : "held out", .color_index = 3},
+                          {.name = calibration.holdout_after.empty() ? "" : "held out", .color_index = 3},
                           {.name = "file", .color_index = 2, .dashed = true}};
     traces.push_back(std::move(trace));
   }
   double offset_s = 0.0;
   constexpr double kBetween_s = 60.0;
-  const auto append_all = [&](const std::vector<MeasuredRun>& runs, Curve shown_as) {
-    for (const MeasuredRun& run : runs) {
-      append(calibration, run, shown_as, offset_s, traces);
-      offset_s += run.time_s.back() - run.time_s.front() + kBetween_s;
+  const auto append_all = [&](const std::vector<PredictedRun>& before, const std::vector<PredictedRun>& after, Curve shown_as) {
+    for (std::size_t r = 0; r < after.size(); ++r) {
+      append(before[r], after[r], shown_as, offset_s, traces);
+      offset_s += after[r].time_s.back() - after[r].time_s.front() + kBetween_s;
     }
   };
-  append_all(calibration.runs, fitted);
-  append_all(calibration.holdout, foretold);
+  append_all(calibration.fitted_before, calibration.fitted_after, fitted);
+  append_all(calibration.holdout_before, calibration.holdout_after, foretold);
   Chart chart{.title = fmt::format("{}: calibration", motor.name), .subtitle = {}, .x_label = "time, runs one after the other / min"};
-  chart.subtitle = fmt::format("{} fitted{}; the model runs free from the start of each",
-                               calibration.runs.size() == 1 ? "1 run" : fmt::format("{} runs", calibration.runs.size()),
-                               calibration.holdout.empty() ? "" : fmt::format(", then {} held out", calibration.holdout.size()));
+  chart.subtitle =
+      fmt::format("{} fitted{}; the model runs free from the start of each",
+                  calibration.runs.size() == 1 ? "1 run" : fmt::format("{} runs", calibration.runs.size()),
+                  calibration.holdout_after.empty() ? "" : fmt::format(", then {} held out", calibration.holdout_after.size()));
   for (Traces& each : traces) {
     chart.panels.push_back(std::move(each.panel));
   }

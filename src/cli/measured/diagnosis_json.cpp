@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/measured/diagnosis_answer.h"
+#include "cli/measured/prediction_answer.h"
 
 namespace heatsoak {
 namespace {
@@ -116,7 +117,7 @@ Json ladder_json(const Selection& selection) {
                             {"variant", each.candidate.variant},
                             {"nats", rounded(each.gain_nats, 2)},
                             {"visibility", rounded(each.visibility_ratio, 4)},
-                            {"left_out_nats", rounded(each.left_out_gain_nats, 2)}});
+                            {"probability", rounded(each.probability, 4)}});
     }
     Json curves = Json::array();
     for (const ScanResult& each : round.scan) {
@@ -133,15 +134,15 @@ Json ladder_json(const Selection& selection) {
 
 }  // namespace
 
-Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
+Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
   Json json{{"schema", "heatsoak.diagnosis/1"}, {"verdict", to_string(diagnosis.verdict)}, {"effects", Json::array()}};
   for (const FoundEffect& effect : diagnosis.effects) {
     json["effects"].push_back(effect_json(effect));
   }
-  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(diagnosis.before_holdout)}};
-  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(diagnosis.after_holdout)}};
-  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(diagnosis.refitted_holdout)}};
-  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(diagnosis.file_holdout)}};
+  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(score.before)}};
+  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(score.after)}};
+  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(score.refitted)}};
+  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(score.file)}};
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = diagnosis.description;
   json["figures_contradicted"] = Json::array();
@@ -160,16 +161,12 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input) {
       json["unexplained_all"].push_back(unexplained_json(heat));
     }
   }
-  json["runs"] = {{"train", Json::array()}, {"holdout", Json::array()}};
+  json["runs"] = {{"train", Json::array()}, {"holdout", Json::object()}};
   for (const MeasuredRun& run : input.train) {
     json["runs"]["train"].push_back(
         {{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
   }
-  for (const MeasuredRun& run : input.holdout) {
-    json["runs"]["holdout"].push_back({{"name", run.name},
-                                       {"before", errors_json(open_loop_errors(input.model, {run}, input.train))},
-                                       {"after", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, input.train))}});
-  }
+  json["runs"]["holdout"] = {{"before", runs_json(score.runs_before)}, {"after", runs_json(score.runs_after)}};
   json["ladder"] = ladder_json(diagnosis.selection);
   json["refused"] = words_of(diagnosis.selection.refused);
   json["would_not_show"] = diagnosis.selection.unseen;

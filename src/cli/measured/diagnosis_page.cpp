@@ -35,7 +35,7 @@ std::string row(const std::vector<std::string>& cells, std::string_view tag = "t
   return text + "</tr>\n";
 }
 
-std::string error_table(const Diagnosis& diagnosis) {
+std::string error_table(const Diagnosis& diagnosis, const HoldoutScore& score) {
   std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "own figures refitted: rms / K", "after: rms / K",
                                       "before: worst / K", "after: worst / K"},
                                      "th");
@@ -50,7 +50,7 @@ std::string error_table(const Diagnosis& diagnosis) {
     }
   };
   add(diagnosis.before_train, diagnosis.refitted_train, diagnosis.after_train, "training");
-  add(diagnosis.before_holdout, diagnosis.refitted_holdout, diagnosis.after_holdout, "never seen");
+  add(score.before, score.refitted, score.after, "never seen");
   return text + "</table>\n";
 }
 
@@ -118,10 +118,10 @@ std::string ladder_table(const Diagnosis& diagnosis) {
   int number = 1;
   for (const Round& round : diagnosis.selection.rounds) {
     text += fmt::format("<h3>Round {}</h3><table>", number++) +
-            row({"candidate", "evidence / nats", "size in typical sizes", "visibility", "gain on runs left out / nats"}, "th");
+            row({"candidate", "evidence / nats", "size in typical sizes", "visibility", "probability"}, "th");
     for (const JudgedCandidate& each : best_of_each(round.ladder)) {
       text += row({each.candidate.id, fmt::format("{:.1f}", each.gain_nats), fmt::format("{:.2f}", each.size_share),
-                   fmt::format("{:.3f}", each.visibility_ratio), fmt::format("{:.1f}", each.left_out_gain_nats)});
+                   fmt::format("{:.3f}", each.visibility_ratio), fmt::format("{:.0f} %", 100.0 * each.probability)});
     }
     text += round.ladder.empty() ? row({"no effect of the catalogue makes the runs more probable", "", "", "", ""}) : "";
     for (const ScanResult& each : round.scan) {
@@ -242,7 +242,7 @@ constexpr std::string_view kStyle =
 
 }  // namespace
 
-std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input,
+std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score,
                            const std::vector<std::pair<std::string, std::string>>& svg) {
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
@@ -251,11 +251,12 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     text += fmt::format("<p>{}</p>\n", escaped(each));
   }
   text += "</div>\n";
-  const std::vector<std::string> train = names_of(input.train, input.holdout);
-  const std::vector<std::string> holdout = names_of(input.holdout, input.train);
+  const std::vector<std::string> train = names_of(input.train, score.runs);
+  const std::vector<std::string> holdout = names_of(score.runs, input.train);
   text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", escaped(fmt::format("{}", fmt::join(train, ", "))),
                       holdout.empty() ? "none" : escaped(fmt::format("{}", fmt::join(holdout, ", "))));
-  text += "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis);
+  text +=
+      "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis, score);
   if (!diagnosis.effects.empty()) {
     text += "<h2>Effects added</h2>" + effect_table(diagnosis);
   }
@@ -265,11 +266,11 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     text += fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
   text += fmt::format(
-              "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown "
-              "heat; {:.0f} nats are asked for (the table of effects above has what the finished model loses without each). Visibility is "
-              "the share of an effect that no change of the model's own figures could pass for; of what has less than {} nothing is named "
-              "but what the runs cannot be followed without.</p>",
-              SelectionRules{}.least_gain_nats, SelectionRules{}.least_visibility_ratio) +
+              "<h2>Evidence ladder</h2><p>Each candidate alone: its gain in evidence over the model without any, the mean taken over "
+              "what is probable of the unknown heat. Its probability is that of all sets of effects that contain it; a name needs {:.0f} % "
+              "for all effects of one kind together. Visibility is the share of an effect that no change of the model's own figures could "
+              "pass for.</p>",
+              100.0 * SelectionRules{}.named_probability) +
           ladder_table(diagnosis);
   text += "<h2>Power balance</h2>" + balance_table(diagnosis);
   text += "<h2>Residual tests</h2>" + test_table(diagnosis);

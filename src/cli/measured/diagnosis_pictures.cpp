@@ -58,7 +58,7 @@ ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before
   return panel;
 }
 
-DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& input) {
+DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
   Chart chart{"Residual in K before and after",
               "runs one behind the other; the model runs freely from the first measured temperatures",
               "time / min",
@@ -66,9 +66,9 @@ DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& inp
   for (const auto& [signal, error] : diagnosis.before_train) {
     const std::string name = signal.substr(0, signal.rfind('_'));
     chart.panels.push_back(residual_panel(signal, input.model, diagnosis.selection.after.model, input.train, {}, name + ", training runs"));
-    if (!input.holdout.empty()) {
+    if (!score.runs.empty()) {
       chart.panels.push_back(
-          residual_panel(signal, input.model, diagnosis.selection.after.model, input.holdout, input.train, name + ", runs never seen"));
+          residual_panel(signal, input.model, diagnosis.selection.after.model, score.runs, input.train, name + ", runs never seen"));
     }
   }
   chart.panel_height_px = 260;
@@ -114,8 +114,8 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, const DiagnosisInput& input) {
-  std::vector<DiagnosisPicture> pictures{residuals(diagnosis, input), unknown_heat(diagnosis)};
+std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
+  std::vector<DiagnosisPicture> pictures{residuals(diagnosis, input, score), unknown_heat(diagnosis)};
   for (const Unexplained& heat : diagnosis.unexplained) {
     if (heat.knots.size() < 2) {
       continue;

@@ -42,5 +42,9 @@ Rates rates(const Source& source);
 std::string candidates(const Source& source);
 /// start and step with their helpers.
 std::string step_functions(const Source& source);
+/// The step with a sensor; empty without one.
+Rates sensor_functions(const Source& source);
+/// save and restore over power-off. `signature`: of this motor's guard, so that a buffer of another one is refused.
+std::string memory_functions(const Source& source, unsigned signature);
 
 }  // namespace heatsoak::c_header

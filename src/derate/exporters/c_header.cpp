@@ -14,13 +14,13 @@
 namespace heatsoak::exporters {
 namespace {
 
-/// Of two headers that would define the same names each is read, so that the compiler reports it.
-std::string include_guard(const Derating& derating, const std::string& capital) {
+/// Differs between guards. In the include guard it lets the compiler report two headers that define the same names.
+unsigned signature_of(const Derating& derating) {
   const std::string all =
       fmt::format("{}|{}|{}|{}", derating.motor_id, derating.robot_id, derating.options.period_s, derating.observer.heat_reserve_ratio());
   boost::crc_32_type sum;
   sum.process_bytes(all.data(), all.size());
-  return fmt::format("HEATSOAK_{}_{:08X}_H", capital, sum.checksum());
+  return sum.checksum();
 }
 
 std::string shared_text(std::string_view file) {
@@ -32,14 +32,18 @@ std::string write(const Derating& derating) {
   require_finite(derating);
   const std::string prefix = identifier(derating.motor_id);
   const c_header::Source source{derating, prefix, c_header::in_capitals(prefix), c_header::used_signals(derating.observer)};
+  const unsigned signature = signature_of(derating);
   const c_header::Rates rates = c_header::rates(source);
-  return c_header::head_comment(source) + fmt::format("#ifndef {0}\n#define {0}\n\n", include_guard(derating, source.capital)) +
-         "#include <stdbool.h>\n#include <stdint.h>\n\n" +
+  const c_header::Rates sensor = c_header::sensor_functions(source);
+  return c_header::head_comment(source) +
+         fmt::format("#ifndef {0}\n#define {0}\n\n", fmt::format("HEATSOAK_{}_{:08X}_H", source.capital, signature)) +
+         "#include <stdbool.h>\n#include <stdint.h>\n#include <string.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"without -ffast-math: it takes away what tells a number from none, and the rounding that is "
          "carried\"\n#endif\n\n" +
          (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +
          c_header::constants(source) + c_header::foc_conversion(source) + c_header::structures(source) + c_header::tables(source) +
-         rates.text + c_header::candidates(source) + c_header::allowed_function(source) + c_header::step_functions(source) + "\n#endif\n";
+         rates.text + c_header::candidates(source) + c_header::allowed_function(source) + c_header::step_functions(source) +
+         c_header::memory_functions(source, signature) + sensor.text + "#endif\n";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "derate/export_text.h"
 #include "derate/exporter.h"
 
 namespace heatsoak::exporters {
@@ -21,13 +22,14 @@ std::vector<double> sampled(const std::vector<double>& axis, int parts) {
 std::string write(const Derating& derating) {
   constexpr int kParts = 4;
   const CurrentTable& table = derating.table;
+  require_finite(derating);
   std::vector<double> speeds = sampled(table.speed_rad_per_s, 1);
   for (const double last_rad_per_s : {table.most_speed_rad_per_s, table.no_current_speed_rad_per_s}) {
     if (last_rad_per_s > speeds.back()) {
       speeds.push_back(last_rad_per_s);
     }
   }
-  std::string text = "speed_rad_per_s,stator_C,winding_C,allowed_current_A\n";
+  std::string text = provenance_lines(derating, "#") + "speed_rad_per_s,stator_C,winding_C,allowed_current_A\n";
   for (const double speed_rad_per_s : speeds) {
     for (const double stator_C : sampled(table.stator_C, kParts)) {
       for (const double winding_C : sampled(table.winding_C, kParts)) {
@@ -42,7 +44,9 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType csv() {
-  return {.name = {}, .summary = "the allowed current alone, one place a row, for pictures and other tools", .write = write};
+  return {.name = {},
+          .summary = "the table, one place a row, for pictures and other tools; its origin in lines that begin with #",
+          .write = write};
 }
 
 }  // namespace heatsoak::exporters

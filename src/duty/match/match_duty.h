@@ -16,6 +16,7 @@ class MatchDuty final : public DutyShape {
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const override {
     return play_match(inputs_, inputs_.nominal(), robot, seed, Planner::jerk_limited).wheels;
   }
+  [[nodiscard]] bool depends_on_robot() const override { return true; }
   [[nodiscard]] bool has_unknowns() const override { return true; }
   /// Another game with other inputs by a robot with other figures.
   [[nodiscard]] std::vector<WheelDemand> draw(const Robot& robot, std::uint64_t seed, std::uint64_t draw) const override {

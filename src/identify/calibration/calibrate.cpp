@@ -13,6 +13,7 @@
 #include "identify/calibration/identifiability.h"
 #include "identify/calibration/profile.h"
 #include "identify/calibration/unlogged_speed.h"
+#include "identify/calibration/written_forecast.h"
 #include "identify/interval.h"
 #include "identify/log_columns.h"
 #include "identify/measurement/fingerprint.h"
@@ -51,26 +52,15 @@ std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const Me
   return all;
 }
 
-std::vector<ErrorBeforeAfter> errors(const MotorModel& motor, const Eigen::VectorXd& theta, std::span<const MeasuredRun> runs) {
-  std::vector<ErrorBeforeAfter> all;
-  if (runs.empty()) {
-    return all;
-  }
-  const std::vector<SignalError> before = open_loop_error(motor.model.network, motor.model.values, runs);
-  const std::vector<SignalError> after = open_loop_error(motor.model.network, motor.model.values_at(theta), runs);
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    all.push_back({after[i].signal, before[i], after[i]});
-  }
-  return all;
-}
-
 class Calibrating {
  public:
   Calibrating(std::span<const Recording> recordings, std::span<const Recording> holdout, const CalibrationOptions& options)
       : recordings_(recordings), holdout_(holdout), options_(options) {}
 
   Calibration run(const Motor& motor) {
-    all_.motor_model = motor_model(motor, heat_input_for(recordings_), std::ranges::all_of(recordings_, has_speed));
+    setup_ = forecast_setup(motor, recordings_);
+    all_.effects = setup_.motor.effects;
+    all_.motor_model = motor_model(setup_.motor, setup_.heat, setup_.has_speed);
     const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.notes));
@@ -81,10 +71,10 @@ class Calibrating {
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;
     all_.runs = runs_of(recordings_, how, all_.notes);
-    all_.holdout = runs_of(holdout_, how, all_.notes);
     std::ranges::transform(recordings_, std::back_inserter(all_.fitted), name_and_fingerprint);
     if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
       open_loss_at_speed(all_.motor_model, motor);
+      setup_.opens_loss_at_speed = true;
       all_.notes.push_back(
           fmt::format("where a log has a current but no speed, the loss at speed is taken as unknown, from none to the {} W at no-load "
                       "speed; a motor that "
@@ -93,41 +83,79 @@ class Calibrating {
     }
     all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
     settle_turning_rows();
-    all_.fit_error = errors(all_.motor_model, all_.fit.theta, all_.runs);
-    refuse_where_nothing_is_explained();
     warn();
     widen_by_rows();
     figures();
     all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.figures);
-    all_.holdout_error = errors_of_holdout(motor);
     all_.next_experiment = next_experiment(all_.open);
+    forecast();
+    all_.fit_error = errors();
+    refuse_where_nothing_is_explained();
+    tell_declared_ranges(motor);
     tell_common_factor();
     tell_terminal_resistance(motor);
     tell_what_got_worse("the runs that were fitted", all_.fit_error);
-    tell_what_got_worse("the runs held out", all_.holdout_error);
     refuse_where_nothing_was_learned();
     tell_what_is_far_off();
+    score_holdout(motor);
     return std::move(all_);
   }
 
  private:
-  /// Where the fitted runs all have a speed, nothing tells the loss of held-out ones that have none: it is what is expected before any run.
-  std::vector<ErrorBeforeAfter> errors_of_holdout(const Motor& motor) {
-    const double most_loss_W = most_loss_at_speed_W(motor);
-    if (all_.motor_model.heat != HeatInput::current || most_loss_W == 0.0 || !all_.motor_model.nuisances.empty() ||
-        std::ranges::none_of(all_.holdout, turns_unseen)) {
-      return errors(all_.motor_model, all_.fit.theta, all_.holdout);
+  /// Of the whole runs, and what of it is written.
+  void forecast() {
+    const ForecastModel base = setup_.model();
+    all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
+    // Without unknown heat the innovations fit is asked for as a comparison.
+    if (options_.fit.with_flux && is_rejected_by_whole_runs(*all_.forecast, all_.runs, all_.fit.theta, options_.fit.threads)) {
+      write_forecast(all_);
+      all_.effects = all_.forecast->setup.motor.effects;
+      widen_by_rows();
+      all_.figures.clear();
+      figures();
     }
-    all_.notes.push_back(
-        fmt::format("a log held out has a current but no speed: its error is taken with a loss at speed of {} W, {} W while current flows "
-                    "(at no-load speed it is {} W); a motor that stood still is told by speed_rad_per_s = 0",
-                    significant(expected_loss_at_speed_W(motor, false), 2), significant(expected_loss_at_speed_W(motor, true), 2),
-                    significant(most_loss_W, 2)));
-    MotorModel opened = all_.motor_model;
-    open_loss_at_speed(opened, motor);
-    Eigen::VectorXd theta = opened.model.theta();
-    theta.head(all_.fit.theta.size()) = all_.fit.theta;
-    return errors(opened, theta, all_.holdout);
+    std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
+  }
+
+  /// Of the file and of what is written, over the fitted runs.
+  std::vector<ErrorBeforeAfter> errors() {
+    const ForecastModel base = setup_.model();
+    const ForecastModel model = all_.is_forecast_written ? all_.forecast->model() : base;
+    const Eigen::VectorXd& theta = all_.is_forecast_written ? all_.forecast->fit.theta : all_.fit.theta;
+    for (const MeasuredRun& run : all_.runs) {
+      all_.fitted_before.push_back(
+          predict(base, base.start(), Eigen::MatrixXd::Zero(base.count(), base.count()), all_.forecast->band, run));
+      all_.fitted_after.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), all_.forecast->band, run));
+    }
+    return errors_over_runs(all_.fitted_before, all_.fitted_after);
+  }
+
+  /// Nothing of the calibration depends on it.
+  void score_holdout(const Motor& motor) {
+    if (holdout_.empty()) {
+      return;
+    }
+    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, rows_turn_}).runs;
+    Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_});
+    std::ranges::move(after.notes, std::back_inserter(all_.notes));
+    all_.holdout_after = std::move(after.runs);
+    all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
+    tell_what_got_worse("the runs held out", all_.holdout_error);
+  }
+
+  /// A value outside of what the file declares is reported: verbs that need a sound motor may refuse the new file.
+  void tell_declared_ranges(const Motor& motor) {
+    Motor declared = motor;
+    for (const CalibratedFigure& each : all_.figures) {
+      const Figure* const figure = each.is_of_file ? find_figure(declared, each.name) : nullptr;
+      if (figure && figure->spread && (each.value < figure->spread->low || each.value > figure->spread->high)) {
+        all_.notes.push_back(
+            fmt::format("{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether "
+                        "the range still holds for this motor and its mounting",
+                        each.name, significant(each.value, 3), unit_for_display(each.unit), significant(figure->spread->low, 3),
+                        significant(figure->spread->high, 3), unit_for_display(each.unit)));
+      }
+    }
   }
 
   /// Where the motor may have turned round within rows: once more from there with the speed that it then had.
@@ -147,7 +175,7 @@ class Calibrating {
     }
     all_.fit = std::move(other);
     all_.runs = std::move(turning);
-    std::ranges::transform(all_.holdout, all_.holdout.begin(), turning_within_rows);
+    rows_turn_ = true;
     all_.notes.emplace_back(kTurningRowsTold);
   }
 
@@ -288,7 +316,7 @@ class Calibrating {
             "{} of {} is foretold worse than with the figures of the file, {} K rms instead of {} K: do not forecast such runs with this "
             "model; {}two temperatures with constant figures do not describe this motor (`heatsoak diagnose` looks for what is missing)",
             each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3),
-            &errors == &all_.holdout_error ? "they hold something that the fitted ones do not tell, or " : ""));
+            &errors == &all_.holdout_error ? "they show something that the fitted ones do not, or " : ""));
       }
     }
   }
@@ -341,7 +369,8 @@ class Calibrating {
   }
 
   void refuse_where_nothing_was_learned() const {
-    if (std::ranges::any_of(all_.figures, &CalibratedFigure::is_identifiable)) {
+    const bool is_file_kept = all_.is_forecast_written && all_.forecast->source == ForecastSource::file;
+    if (is_file_kept || std::ranges::any_of(all_.figures, &CalibratedFigure::is_identifiable)) {
       return;
     }
     std::string why = "nothing can be learned about this motor from these logs";
@@ -396,6 +425,8 @@ class Calibrating {
   std::span<const Recording> recordings_;
   std::span<const Recording> holdout_;
   const CalibrationOptions& options_;
+  ForecastSetup setup_;
+  bool rows_turn_ = false;
   Calibration all_;
 };
 
@@ -420,6 +451,7 @@ Calibration calibrate(const Motor& motor, std::span<const Recording> recordings,
 Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   constexpr const char* kSource = "calibration";
   Motor result = motor;
+  add_extensions(calibration, kSource, result);
   MotorFit& fit = result.fit.emplace();
   fit.motor = motor.id;
   // What the file knew before, this one knows too.
@@ -444,7 +476,8 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
       figure->derivation +=
           fmt::format("{}fit to measured temperatures, which do not tell it alone", figure->derivation.empty() ? "" : "; ");
     }
-    figure->spread = Spread{Spread::Kind::range, each.low, each.high, true};
+    const Range declared = declared_range(result, each.name);
+    figure->spread = Spread{Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
   }
   fit.correlation = calibration.correlation;
   fit.latent_flux_W = calibration.fit.flux.rms_W;
@@ -456,6 +489,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
     const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node))].noise_K * calibration.fit.noise_ratio[i];
     fit.noise_K.emplace_back(node, noise_K);
   }
+  fit.band = calibration.forecast->band;
   refresh_values(result);
   return result;
 }

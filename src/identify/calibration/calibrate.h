@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "identify/calibration/error_before_after.h"
 #include "identify/calibration/motor_model.h"
 #include "identify/fit.h"
+#include "identify/forecast/forecast.h"
+#include "identify/forecast/prediction.h"
 #include "identify/measurement/recording.h"
 #include "motor/motor.h"
 
@@ -40,26 +43,25 @@ struct OpenDirection {
   double left_sd = 0.0;         ///< how open: of the logarithms together
 };
 
-struct ErrorBeforeAfter {
-  std::string signal;
-  SignalError before;
-  SignalError after;
-};
-
 struct Calibration {
   Fit fit;
   MotorModel motor_model;
   std::vector<MeasuredRun> runs;
-  std::vector<MeasuredRun> holdout;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
   std::vector<CalibratedFigure> figures;
   Eigen::MatrixXd correlation;  ///< of the logarithms of the figures of the file, in their order
   std::vector<OpenDirection> open;
   std::string next_experiment;  ///< empty where nothing is open
   std::vector<ErrorBeforeAfter> fit_error;
-  std::vector<ErrorBeforeAfter> holdout_error;
-  std::vector<std::string> worse;  ///< signals that the fit foretells worse than the file it began with, in sentences
-  std::vector<std::string> notes;  ///< what was taken for granted or left out, in sentences
+  std::optional<Forecast> forecast;                       ///< fit to whole runs, its rivals and its band
+  bool is_forecast_written = false;                       ///< its parameters are those above; else the innovations fit's
+  std::vector<MotorEffect> effects;                       ///< of the written file
+  std::vector<PredictedRun> fitted_before, fitted_after;  ///< the fitted runs by the file and by what is written; their bands count nothing
+  /// Predictions of the hold-out runs by the file and by what is written, made after everything is decided.
+  std::vector<PredictedRun> holdout_before, holdout_after;
+  std::vector<ErrorBeforeAfter> holdout_error;  ///< per signal, of the hold-out run that it is worst in after the fit
+  std::vector<std::string> worse;               ///< signals that the fit foretells worse than the file it began with, in sentences
+  std::vector<std::string> notes;               ///< what was taken for granted or left out, in sentences
 };
 
 /// Of logs that admit() (identify/admission.h) let pass. Throws Failure: bad_input where the logs lack what is needed, cannot_answer where

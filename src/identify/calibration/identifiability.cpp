@@ -242,13 +242,13 @@ bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
   };
   const double across_K_per_W = value("winding_stator.thermal_resistance") + value("stator_ambient.thermal_resistance");
   const double slowest_s = across_K_per_W * value("winding.heat_capacity");
-  const double by_current_ohm = motor.heat == HeatInput::current ? value("copper_loss.terminal_resistance") : 0.0;
+  const double by_current_ohm = motor.heat != HeatInput::input_power ? value("copper_loss.terminal_resistance") : 0.0;
   // The winding by itself, all the way to the air: it warms by no more than that.
   return std::ranges::any_of(runs, [&](const MeasuredRun& run) {
     double rise_K = 0.0;
     for (std::size_t k = 0; k < run.at.size() && rise_K < kNothing_K; ++k) {
       const OperatingPoint<double>& at = run.at[k];
-      const double heat_W = motor.heat == HeatInput::current ? at.current_rms_A * at.current_rms_A * by_current_ohm : at.input_power_W;
+      const double heat_W = motor.heat != HeatInput::input_power ? at.current_rms_A * at.current_rms_A * by_current_ohm : at.input_power_W;
       const double stays_share = std::exp(-(run.time_s[k + 1] - run.time_s[k]) / slowest_s);
       rise_K = stays_share * rise_K + (1.0 - stays_share) * heat_W * across_K_per_W;
     }

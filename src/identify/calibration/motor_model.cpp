@@ -39,6 +39,22 @@ int place_of(const Network& network, std::string_view parameter) {
   return found == all.end() ? -1 : static_cast<int>(found - all.begin());
 }
 
+/// Of the input power, into the winding: what the effects of the file leave of it.
+double implicit_power_share(const Motor& motor) {
+  double share = 1.0;
+  for (const MotorEffect& effect : motor.effects) {
+    share -= effect.type->name == std::string_view("input_power_loss") ? effect.parameters.front().value : 0.0;
+  }
+  return std::max(0.0, share);
+}
+
+bool all_have(std::span<const Recording> recordings, Signal signal, const ShaftTorque& torque = {}) {
+  return std::ranges::all_of(recordings, [&](const Recording& each) {
+    const std::vector<Signal> signals = signals_of(each, torque);
+    return std::ranges::find(signals, signal) != signals.end();
+  });
+}
+
 class ModelBuilder {
  public:
   ModelBuilder(const Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
@@ -46,8 +62,8 @@ class ModelBuilder {
     all_.model.network = datasheet_network(motor, nominal_sample(motor));
     if (heat == HeatInput::input_power) {
       // Beside it the copper loss is 0, for no log has a current, and the no-load loss is asked to stay silent.
-      all_.model.network.add_effect("input_power_loss", *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
-                                    std::vector<double>{1.0});
+      all_.model.network.add_effect(std::string(kImplicitPowerLoss), *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
+                                    std::vector<double>{implicit_power_share(motor)});
       // A guessed no-load current tells of no loss.
       if (with_speed && motor.nominal.no_load_current_A > 0.0 &&
           motor.figures.find("no_load_current")->second.origin != Origin::estimated) {
@@ -55,11 +71,14 @@ class ModelBuilder {
       }
     }
     all_.model.values = all_.model.network.values();
-    if (heat == HeatInput::input_power) {
+    if (heat != HeatInput::current) {
       all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
     }
     all_.model.flux_nodes = {all_.model.network.find_node("winding"), all_.model.network.find_node("stator")};
-    all_.needed = {heat == HeatInput::current ? Signal::current : Signal::input_power};
+    all_.needed = {heat == HeatInput::input_power ? Signal::input_power : Signal::current};
+    if (heat == HeatInput::power_balance) {
+      all_.needed.insert(all_.needed.end(), {Signal::input_power, Signal::shaft_power, Signal::speed});
+    }
   }
 
   MotorModel build() {
@@ -71,10 +90,10 @@ class ModelBuilder {
     figure("thermal_resistance_stator_ambient", {{out, 1.0}});
     figure("thermal_time_constant_winding", {{winding, 1.0}, {across, 1.0}});
     figure("thermal_time_constant_stator", {{stator, 1.0}, {out, 1.0}});
-    if (all_.heat == HeatInput::current) {
-      heat_of_current();
-    } else {
+    if (all_.heat == HeatInput::input_power) {
       heat_of_power();
+    } else {
+      heat_of_current();
     }
     effects();
     const auto file_figures = all_.figures.size();
@@ -122,7 +141,9 @@ class ModelBuilder {
     } else {
       all_.held.emplace_back("terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
     }
-    if (!with_speed_) {
+    if (all_.heat == HeatInput::power_balance) {
+      all_.held.emplace_back("no_load_current does not enter: the loss beside the copper loss is the measured power balance");
+    } else if (!with_speed_) {
       all_.held.emplace_back("no_load_current is held: not every log has the speed that the loss it stands for goes with");
     } else if (motor_.nominal.no_load_current_A > 0.0) {
       all_.needed.push_back(Signal::speed);
@@ -158,6 +179,9 @@ class ModelBuilder {
           continue;
         }
         add("effects." + name, std::string(unit_of(effect.type->parameters, i, values)), effect.parameters[i], {{free(name), 1.0}});
+        FreeParameter& bounded = all_.model.free.back();
+        bounded.low = std::max(bounded.low, spec.range.low);
+        bounded.high = std::min(bounded.high, spec.range.high);
       }
       if (!held.empty()) {
         all_.held.push_back(fmt::format("effects.{}: {} {} held: the file states no spread", effect.name, fmt::join(held, ", "),
@@ -271,7 +295,8 @@ MeasuredRunOptions how_to_read(const Motor& motor) {
   const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
   MeasuredRunOptions how;
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
-  how.torque = {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
+  how.torque = {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal)),
+                known(motor.nominal.terminal_resistance_ohm)};
   how.least_current_A = least_driving_current_A(motor);
   for (const MotorSensor& sensor : motor.sensors) {
     how.faults.push_back({sensor.type, sensor.size.value});
@@ -282,18 +307,15 @@ MeasuredRunOptions how_to_read(const Motor& motor) {
   return how;
 }
 
-HeatInput heat_input_for(std::span<const Recording> recordings) {
-  const auto all_have = [&](Signal signal) {
-    return std::ranges::all_of(recordings, [&](const Recording& each) {
-      const std::vector<Signal> signals = signals_of(each);
-      return std::ranges::find(signals, signal) != signals.end();
-    });
-  };
-  if (all_have(Signal::current)) {
+HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque) {
+  if (all_have(recordings, Signal::current)) {
     return HeatInput::current;
   }
-  if (all_have(Signal::input_power)) {
+  if (all_have(recordings, Signal::input_power)) {
     return HeatInput::input_power;
+  }
+  if (all_have(recordings, Signal::current, torque)) {
+    return HeatInput::current;
   }
   std::vector<Diagnostic> lacking;
   for (const Recording& each : recordings) {
@@ -306,6 +328,20 @@ HeatInput heat_input_for(std::span<const Recording> recordings) {
     }
   }
   throw Failure(ExitCode::bad_input, "the logs do not tell how much heat goes in", std::move(lacking));
+}
+
+bool has_remaining_loss(const Motor& motor) {
+  return std::ranges::any_of(motor.effects, [](const MotorEffect& each) { return each.type->name == std::string_view("remaining_loss"); });
+}
+
+HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss) {
+  const bool has_no_losses = motor.effects.empty() && !motor.fit;
+  const bool is_balanced = std::ranges::all_of(std::array{Signal::current, Signal::input_power, Signal::shaft_power, Signal::speed},
+                                               [&](Signal signal) { return all_have(recordings, signal); });
+  if (is_balanced && (has_remaining_loss(motor) || (may_add_remaining_loss && has_no_losses))) {
+    return HeatInput::power_balance;
+  }
+  return heat_input_for(recordings, how_to_read(motor).torque);
 }
 
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings) {

@@ -16,11 +16,15 @@ namespace heatsoak {
 /// Effect with the loss at a speed that no log tells, where it is open.
 inline constexpr std::string_view kLossAtUnloggedSpeed = "loss_at_unlogged_speed";
 
+/// Effect that takes the input power of a log into the winding, as far as no effect of the file does.
+inline constexpr std::string_view kImplicitPowerLoss = "input_power_loss";
+
 /// How well a data sheet's bare figure is known: standard deviation of its logarithm.
 inline constexpr double kSheet_sd = 0.4;
 
-/// What the heat of a model is computed from.
-enum class HeatInput { current, input_power };
+/// What the heat of a model is computed from. `power_balance`: copper loss by current and resistance, all other loss as input power less
+/// shaft power less copper loss, by the motor's effect remaining_loss; its no-load loss is then 0.
+enum class HeatInput { current, input_power, power_balance };
 
 /// A figure of the file, or a heat capacity made of two of them: its logarithm is linear in θ.
 struct FittedFigure {
@@ -53,9 +57,16 @@ MeasuredRunOptions how_to_read(const Motor& motor);
 /// What is said of the file's faults of sensors, in sentences: they are taken as stated.
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);
 
-/// What all of the recordings can drive: the copper loss where each has a current, else the input power. Throws Failure
-/// (bad_input) where they have neither.
-HeatInput heat_input_for(std::span<const Recording> recordings);
+/// What all of the recordings can drive: the copper loss where each has a current, else the input power, else the copper loss of the
+/// current that `torque` makes of their torque. Throws Failure (bad_input) where they have none of these.
+HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque = {});
+
+/// Whether the file takes its losses from a measured power balance: it has a remaining_loss.
+bool has_remaining_loss(const Motor& motor);
+
+/// As heat_input_for(), but the power balance where all recordings have current, input power, torque and speed, and the motor either has
+/// a remaining_loss or, where `may_add_remaining_loss`, no effects and no fit that stand for its losses already.
+HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss);
 
 /// `with_speed`: all logs have a speed, so that the no-load loss can be told.
 MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);

@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/measured/calibration_chart.h"
 #include "cli/measured/logs_option.h"
+#include "cli/measured/prediction_answer.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "identify/admission.h"
@@ -48,7 +50,7 @@ std::string figure_row(const CalibratedFigure& each) {
 std::string error_rows(const std::string& what, const std::vector<ErrorBeforeAfter>& errors) {
   std::string text;
   for (const ErrorBeforeAfter& each : errors) {
-    text += fmt::format("  {:9} {:12} rms {:6.2f} K → {:5.2f} K   largest {:6.2f} K → {:5.2f} K   ({} samples)\n", what, each.signal,
+    text += fmt::format("  {:14} {:12} rms {:6.2f} K → {:5.2f} K   largest {:6.2f} K → {:5.2f} K   ({} samples)\n", what, each.signal,
                         each.before.rmse_K, each.after.rmse_K, each.before.max_abs_K, each.after.max_abs_K, each.after.samples);
   }
   return text;
@@ -61,7 +63,7 @@ std::string text_of(const Motor& motor, const Calibration& result) {
     text += figure_row(each);
   }
   text += "\nerror of the free-running model, file → fit\n" + error_rows("fit", result.fit_error) +
-          error_rows("hold-out", result.holdout_error);
+          error_rows(result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   for (const std::string& worse : result.worse) {
     text += fmt::format("warning: {}\n", worse);
   }
@@ -96,6 +98,30 @@ nlohmann::ordered_json error_json(const std::vector<ErrorBeforeAfter>& errors, b
 /// Six significant digits: enough for any use, and the same on every machine.
 nlohmann::ordered_json number(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
+nlohmann::ordered_json forecast_json(const Forecast& forecast) {
+  constexpr std::array kSources{"file", "least_squares", "forecast_fit"};
+  nlohmann::ordered_json left_out = nlohmann::ordered_json::object();
+  for (const RivalScore& rival : forecast.rivals) {
+    for (const auto& [signal, rmse_K] : rival.rmse_K) {
+      left_out[kSources[static_cast<std::size_t>(rival.source)]][signal] = {{"rmse_K", rounded(rmse_K, 4)}};
+    }
+  }
+  nlohmann::ordered_json extensions = nlohmann::ordered_json::array();
+  for (const AcceptedExtension& each : forecast.accepted) {
+    extensions.push_back({{"id", each.name}, {"nats", rounded(each.gain_nats, 3)}});
+  }
+  return {{"best", kSources[static_cast<std::size_t>(forecast.source)]},
+          {"left_out_pieces", forecast.pieces},
+          {"left_out_error", left_out},
+          {"extensions", extensions},
+          {"band",
+           {{"unknown_heat_winding_share", number(forecast.band.unknown_heat_share[0])},
+            {"unknown_heat_stator_share", number(forecast.band.unknown_heat_share[1])},
+            {"time_scale_s", number(forecast.band.time_scale_s)},
+            {"heat_factor_sd", number(forecast.band.heat_factor_sd)},
+            {"width_ratio", number(forecast.band.width_ratio)}}}};
+}
+
 nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, const std::string& out) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
   for (const CalibratedFigure& each : result.figures) {
@@ -128,6 +154,8 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
           {"error_before", error_json(result.fit_error, false)},
           {"holdout_error", error_json(result.holdout_error, true)},
           {"holdout_error_before", error_json(result.holdout_error, false)},
+          {"holdout", {{"before", runs_json(result.holdout_before)}, {"after", runs_json(result.holdout_after)}}},
+          {"forecast", forecast_json(*result.forecast)},
           {"latent_flux",
            {{"winding_W", number(result.fit.flux.rms_W[0])},
             {"stator_W", number(result.fit.flux.rms_W[1])},
@@ -164,7 +192,7 @@ ExitCode run(const Options& options, Session& session) {
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_svg(calibration_chart(motor, result)));
+    session.write(options.plot, draw_picture(calibration_chart(motor, result), options.plot));
   }
   session.say(text_of(motor, result));
   session.say(fmt::format("written: {}\n", options.out));

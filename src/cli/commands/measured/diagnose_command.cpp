@@ -14,7 +14,7 @@
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "identify/admission.h"
-#include "identify/attribution/model_file.h"
+#include "attribution/model_file.h"
 #include "identify/log_columns.h"
 #include "identify/open_loop.h"
 #include "motor/write_motor.h"
@@ -57,17 +57,18 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
   }
 }
 
-void hand_out(const Options& options, const Motor& extended, const Diagnosis& diagnosis, const DiagnosisInput& input, Session& session) {
+void hand_out(const Options& options, const Motor& extended, const Diagnosis& diagnosis, const DiagnosisInput& input,
+              const HoldoutScore& score, Session& session) {
   const std::filesystem::path folder(options.out);
   session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
-  for (const DiagnosisPicture& picture : diagnosis_pictures(diagnosis, input)) {
+  for (const DiagnosisPicture& picture : diagnosis_pictures(diagnosis, input, score)) {
     svg.emplace_back(picture.name, draw_svg(picture.chart));
     session.write(folder / (picture.name + ".svg"), svg.back().second);
   }
   session.write(folder / (extended.id + ".toml"), to_toml(extended));
-  session.write(folder / "diagnosis.json", diagnosis_json(diagnosis, input).dump(2) + "\n");
-  session.write(folder / "diagnosis.html", diagnosis_page(diagnosis, input, svg));
+  session.write(folder / "diagnosis.json", diagnosis_json(diagnosis, input, score).dump(2) + "\n");
+  session.write(folder / "diagnosis.html", diagnosis_page(diagnosis, input, score, svg));
 }
 
 ExitCode run(const Options& options, Session& session) {
@@ -80,36 +81,40 @@ ExitCode run(const Options& options, Session& session) {
                     std::back_inserter(notes));
   ModelOfLogs model = model_of_logs(motor, train);
   notes.insert(notes.end(), model.notes.begin(), model.notes.end());
-  if (std::string lacking = column_lacking(model.how.column, holdout);
-      !lacking.empty() && std::ranges::find(notes, lacking) == notes.end()) {
-    notes.push_back(std::move(lacking));
-  }
   MeasuredRunOptions how = model.how;
   how.ambient_C = options.logs.ambient_C;
   DiagnosisInput input;
   input.model = model.model;
   input.train = runs_of(train, how, notes);
-  input.holdout = runs_of(holdout, how, notes);
   if (std::string told = settle_turning_rows(input); !told.empty()) {
     notes.push_back(std::move(told));
   }
-  if (const std::vector<std::string> rare = keep_common_columns(input.train, input.holdout, input.model.column); !rare.empty()) {
+  if (const std::vector<std::string> rare = keep_common_columns(input.train, input.model.column); !rare.empty()) {
     notes.push_back(fmt::format("not every log has {}: no heat is looked for that follows {}, unless the logs without are left out",
                                 fmt::join(rare, ", "), rare.size() == 1 ? "it" : "them"));
   }
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
-  set_column(input, diagnosis.selection);
+  set_column(input.train, diagnosis.selection.after.model.column);
   refuse_where_nothing_follows(diagnosis, input);
+  const Motor extended = extended_motor(motor, model, diagnosis);
+  HoldoutScore score = score_holdout(input, diagnosis, runs_of(holdout, how, notes));
+  score_files(motor, extended, holdout, {options.logs.ambient_C, input.turns_within_rows}, score);
+  diagnosis.words = describe(diagnosis, score);
+  diagnosis.description = fmt::format("{}", fmt::join(diagnosis.words, " "));
+  if (std::string lacking = column_lacking(diagnosis.selection.after.model.column, holdout);
+      !lacking.empty() && std::ranges::find(notes, lacking) == notes.end()) {
+    notes.push_back(std::move(lacking));
+  }
   diagnosis.notes = notes;
   session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), fmt::join(diagnosis.words, "\n")));
   for (const std::string& note : notes) {
     session.say(fmt::format("note: {}\n", note));
   }
   if (!options.out.empty()) {
-    hand_out(options, extended_motor(motor, model, diagnosis), diagnosis, input, session);
+    hand_out(options, extended, diagnosis, input, score, session);
     session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
   }
-  session.answer(diagnosis_json(diagnosis, input));
+  session.answer(diagnosis_json(diagnosis, input, score));
   return diagnosis.verdict == DiagnosisVerdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
 }
 

@@ -284,15 +284,15 @@ void draw(const Options& options, const Input& input, const SteadyParts& steady,
           Session& session) {
   const std::string of_headings = fmt::format("{} legs on {} headings", steady.parts.size(), fit.headings);
   std::filesystem::path voltage = options.plot;
-  voltage.replace_filename(voltage.stem().string() + "_voltage.svg");
+  voltage.replace_filename(voltage.stem().string() + "_voltage" + voltage.extension().string());
   const Chart chart = friction_chart(fit, input.robot.name, of_headings);
   if (!chart.panels.empty()) {
-    session.write(options.plot, draw_svg(chart));
+    session.write(options.plot, draw_picture(chart, options.plot));
     session.say(fmt::format("written: {}\n", options.plot));
   }
-  session.write(chart.panels.empty() ? std::filesystem::path(options.plot) : voltage,
-                draw_svg(voltage_chart(steady, fit, make_kinematics(input.robot), input.robot.name, settings)));
-  session.say(fmt::format("written: {}\n", (chart.panels.empty() ? std::filesystem::path(options.plot) : voltage).string()));
+  const std::string second = chart.panels.empty() ? options.plot : voltage.string();
+  session.write(second, draw_picture(voltage_chart(steady, fit, make_kinematics(input.robot), input.robot.name, settings), second));
+  session.say(fmt::format("written: {}\n", second));
 }
 
 void answer(const Input& input, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error, const std::string& from,

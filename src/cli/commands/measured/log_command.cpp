@@ -57,7 +57,7 @@ ExitCode inspect(const Options& options, Session& session) {
       code = ExitCode::cannot_answer;
     }
     if (!options.plot.empty()) {
-      session.write(options.plot, draw_svg(log_chart(assessment.condensed(), quality, report)));
+      session.write(options.plot, draw_picture(log_chart(assessment.condensed(), quality, report), options.plot));
       session.say(fmt::format("written: {}\n", options.plot));
     }
   }

@@ -1,0 +1,121 @@
+#include "robot_core/guard_memory.h"
+
+namespace robot_core {
+namespace {
+
+constexpr float kStep_share = 0.05F;
+// An Euler step of a twentieth of a time constant cools as 1/20 + 1/800 of it would.
+constexpr float kCounted_share = 0.97F;
+constexpr float kVeryLong_s = 1e9F;
+
+/// Without current, speed and wind; what nobody knows is as hot as it may be.
+void signals_without_power(const GuardModel& model, float* signal) {
+  for (int i = 0; i < kGuardSignals; ++i) {
+    signal[i] = 0.0F;
+  }
+  signal[guard_ambient_C] = model.hottest_ambient_C;
+  signal[guard_neighbour_C] = model.winding_limit_C;
+  const GuardBelief& age = model.belief[guard_age_h];
+  for (int i = 0; age.is_used && i < age.possible_count; ++i) {
+    signal[guard_age_h] = larger(signal[guard_age_h], age.possible[i]);
+  }
+}
+
+/// A twentieth of the shortest time constant: no rate is above the largest sum of a row of derivatives (Gershgorin).
+float cooling_step_s(const GuardModel& model, const float* signal, const float* state_C) {
+  float moved_C[kMostGuardNodes];
+  float rate_K_per_s[kMostGuardNodes];
+  float moved_K_per_s[kMostGuardNodes];
+  float sum_per_s[kMostGuardNodes] = {};
+  model.rates(model.context, signal, state_C, rate_K_per_s);
+  for (int node = 0; node < model.node_count; ++node) {
+    moved_C[node] = state_C[node];
+  }
+  for (int from = 0; from < model.node_count; ++from) {
+    moved_C[from] += 1.0F;
+    model.rates(model.context, signal, moved_C, moved_K_per_s);
+    moved_C[from] -= 1.0F;
+    for (int node = 0; node < model.node_count; ++node) {
+      sum_per_s[node] += absolute(moved_K_per_s[node] - rate_K_per_s[node]);
+    }
+  }
+  float fastest_per_s = 0.0F;
+  for (int node = 0; node < model.node_count; ++node) {
+    fastest_per_s = larger(fastest_per_s, sum_per_s[node]);
+  }
+  return fastest_per_s > 0.0F ? kStep_share / fastest_per_s : model.period_s;
+}
+
+/// `peak_C`: hottest of each node on the way. Time beyond the largest number of steps does not count.
+void cool(const GuardModel& model, float elapsed_s, float* state_C, float* peak_C) {
+  float signal[kGuardSignals];
+  signals_without_power(model, signal);
+  const float step_s = cooling_step_s(model, signal, state_C);
+  float carry_K[kMostGuardNodes] = {};
+  for (int node = 0; node < model.node_count; ++node) {
+    peak_C[node] = state_C[node];
+  }
+  float left_s = kCounted_share * elapsed_s;
+  for (int step = 0; step < kMostCoolingSteps && left_s > 0.0F; ++step) {
+    const float this_s = smaller(left_s, step_s);
+    float rate_K_per_s[kMostGuardNodes];
+    model.rates(model.context, signal, state_C, rate_K_per_s);
+    for (int node = 0; node < model.node_count; ++node) {
+      const float change_K = this_s * rate_K_per_s[node] - carry_K[node];
+      const float next_C = state_C[node] + change_K;
+      carry_K[node] = (next_C - state_C[node]) - change_K;
+      state_C[node] = next_C;
+      peak_C[node] = larger(peak_C[node], next_C);
+    }
+    left_s -= this_s;
+  }
+}
+
+}  // namespace
+
+Restored restore_guard(const GuardModel& model, GuardState& state, const GuardState& saved, float elapsed_s, float board_C) {
+  if (!is_started(model, saved)) {
+    start_guard(model, state, model.winding_limit_C);
+    return Restored::nothing;
+  }
+  const bool is_known = elapsed_s >= 0.0F;
+  const bool has_board = board_C >= model.coldest_ambient_C - 1.0F && board_C <= 1000.0F;
+  const float least_C = has_board ? board_C : model.hottest_ambient_C;
+  float now_C[kMostGuardNodes] = {};
+  float peak_C[kMostGuardNodes] = {};
+  for (int node = 0; node < model.node_count; ++node) {
+    now_C[node] = saved.state_C[node];
+  }
+  cool(model, is_known ? elapsed_s : kVeryLong_s, now_C, peak_C);
+  start_guard(model, state, model.winding_limit_C);
+  for (int node = 0; node < model.node_count; ++node) {
+    state.state_C[node] = larger(is_known ? now_C[node] : peak_C[node], least_C);
+  }
+  seal(state);
+  return is_known ? Restored::cooled : Restored::time_unknown;
+}
+
+bool restore_guards(const Config& config, State& state, const GuardState* saved, float elapsed_s, float board_C) {
+  // The State's check sum is a sum of words: it follows their change, and one that is wrong stays wrong.
+  constexpr unsigned kEnd = __builtin_offsetof(State, comparison) / sizeof(std::uint64_t);
+  const std::uint64_t before = sum_of_words<1, kEnd>(&state);
+  bool are_all = config.guard != nullptr;
+  for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
+    GuardState& guard = state.guard[i];
+    if (restore_guard(*config.guard, guard, saved[i], elapsed_s, board_C) == Restored::nothing) {
+      are_all = false;
+      continue;
+    }
+    WheelState& wheel = state.wheel[i];
+    wheel.guard_fault = 0;
+    float body_C = guard.state_C[1];
+    for (int node = 2; node < config.guard->node_count; ++node) {
+      body_C = larger(body_C, guard.state_C[node]);
+    }
+    wheel.allowed_A = wheel.allowed_braking_A = allowed_current_A(*config.guard, 0.0F, body_C, guard.state_C[0] + config.braking_reserve_K);
+  }
+  state.check_sum += sum_of_words<1, kEnd>(&state) - before;
+  return are_all;
+}
+
+}  // namespace robot_core

@@ -1,0 +1,91 @@
+// Which effects the runs ask for: the exact evidence of sets of a few of them, from least squares that θ is eliminated from.
+//
+// With priors N(0, s²) on the sizes, half of it where a size has a sign, the evidence of a set S under one supposition about the unknown
+// heat is ln p0 + ½ vᵀp − ½ ln|K| + ½ ln|Λ| + Σ ln 2Φ(p_j/sd_j), K = M_SS + Λ, p = K⁻¹ v_S. Sums over suppositions follow.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "attribution/design.h"
+#include "attribution/rules.h"
+
+namespace heatsoak {
+
+/// What the search has to know of a candidate.
+struct CandidateRule {
+  bool has_sign = true;              ///< its size cannot be negative
+  double prior_nats = -4.5;          ///< ln prior odds
+  std::string id;                    ///< variants of one effect share it; a set has at most one of them
+  std::string family;                ///< what stands in for each other
+  std::vector<int> companions = {};  ///< columns that come with it, each with a size of its own that may be negative
+  double companion_sd = 1.0;
+};
+
+struct EffectSet {
+  std::vector<int> members;           ///< ascending
+  double log_probability_nats = 0.0;  ///< not normalised
+  double probability = 0.0;
+};
+
+/// Linear evidence under several suppositions about the unknown heat.
+class SetSearch {
+ public:
+  SetSearch(std::vector<Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
+
+  /// All sets that were looked at, best first.
+  [[nodiscard]] const std::vector<EffectSet>& sets() const { return sets_; }
+  /// Of at least as many members of its family as `set` has that are as sure as its member `place` or surer.
+  [[nodiscard]] double family_probability(const EffectSet& set, std::size_t place) const;
+  /// What ln P loses with fewer of them.
+  [[nodiscard]] double loss_without_nats(const EffectSet& set, std::size_t place) const;
+  /// Of a set of one: ln evidence above that of the empty set, prior not counted.
+  [[nodiscard]] double single_gain_nats(int candidate) const;
+  /// Candidates of the family of `set`'s member that could stand in its place within `within_nats`.
+  [[nodiscard]] std::vector<int> stand_ins(const EffectSet& set, std::size_t place, double within_nats) const;
+
+  /// Under the supposition at which it is most probable.
+  struct AtBest {
+    std::size_t point = 0;
+    Eigen::VectorXd sizes;  ///< of the members, in typical sizes
+    Eigen::VectorXd theta;  ///< step
+  };
+  [[nodiscard]] AtBest at_best(const std::vector<int>& members) const;
+  /// Share of a candidate's column that θ does not absorb.
+  [[nodiscard]] double visibility_ratio(int candidate) const;
+  /// Expected gain at its typical size, where it is seen least of the suppositions that matter.
+  [[nodiscard]] double typical_gain_nats(int candidate) const;
+
+ private:
+  void search();
+  double score(std::vector<int> members);
+  [[nodiscard]] bool is_allowed(const std::vector<int>& members) const;
+  [[nodiscard]] double log_evidence(const std::vector<int>& members) const;
+  [[nodiscard]] std::vector<std::vector<int>> best_of_size(std::size_t size, std::size_t most) const;
+  [[nodiscard]] int count_of(const EffectSet& set, const std::string& family) const;
+  /// 1 for the surest member of its family, 2 for the next.
+  [[nodiscard]] int rank_in_family(const EffectSet& set, std::size_t place) const;
+
+  std::vector<Reduced> points_;
+  std::vector<CandidateRule> candidates_;
+  const SelectionRules& rules_;
+  std::vector<EffectSet> sets_;
+};
+
+/// Columns of some candidates and of what comes with them, with their prior.
+struct SetColumns {
+  std::vector<Eigen::Index> columns;  ///< the candidates' own first
+  std::vector<bool> has_sign;
+  Eigen::VectorXd precision;
+};
+SetColumns columns_of(const std::vector<int>& members, const std::vector<CandidateRule>& candidates, double size_sd);
+
+/// ½ vᵀp − ½ ln|K| + ½ ln|Λ| + Σ ln 2Φ for those that have a sign; `precision` is Λ.
+double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
+                     const std::vector<bool>& has_sign, Eigen::VectorXd* sizes = nullptr);
+/// Of the set in what the runs say at one supposition.
+double set_gain_nats(const Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes = nullptr);
+/// ln Σ exp.
+double log_sum_nats(const std::vector<double>& nats);
+
+}  // namespace heatsoak

@@ -1,0 +1,39 @@
+// The help of a verb as data: for man pages, the reference in Markdown and completion scripts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace heatsoak {
+
+struct HelpOption {
+  std::vector<std::string> names;  ///< "-h", "--help"; one word without dashes for a positional
+  std::string value;               ///< "FILE.toml", with "=" and the default where there is one; empty for a flag
+  std::string meaning;
+  bool is_required = false;
+  bool takes_value = false;
+  std::vector<std::string> choices;  ///< where the value is one of a set
+};
+
+struct HelpPage {
+  std::string verb;
+  std::string summary;
+  std::vector<HelpOption> options;  ///< positionals first
+  std::vector<std::string> examples;
+};
+
+/// Of every verb of the program, sorted by name.
+std::vector<HelpPage> help_pages(const CLI::App& program);
+
+std::string markdown_of(const HelpPage& page);
+/// The list of all pages, with links.
+std::string markdown_index(const std::vector<HelpPage>& pages);
+/// For man(1), section 1.
+std::string man_page_of(const HelpPage& page);
+std::string man_page_index(const std::vector<HelpPage>& pages);
+
+}  // namespace heatsoak

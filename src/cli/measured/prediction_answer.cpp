@@ -1,0 +1,74 @@
+#include "cli/measured/prediction_answer.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/quantity.h"
+#include "cli/command.h"
+
+namespace heatsoak {
+namespace {
+
+std::string what_of(const PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
+
+}  // namespace
+
+std::string prediction_text(const Motor& motor, const Prediction& prediction) {
+  std::string text = fmt::format("{}: predicted from the first temperatures and the measured inputs of each run\n\n", motor.id);
+  text +=
+      fmt::format("  {:24} {:10} {:>10} {:>12} {:>18} {:>9}\n", "run", "signal", "rms error", "max. error", "within 90 % band", "samples");
+  for (const PredictedRun& run : prediction.runs) {
+    for (const PredictedSignal& each : run.signals) {
+      text += fmt::format("  {:24} {:10} {:>8.2f} K {:>10.2f} K {:>16.0f} % {:>9}\n", run.name, what_of(each), each.rmse_K, each.max_abs_K,
+                          100.0 * each.coverage_share, each.samples);
+    }
+  }
+  for (const std::string& note : prediction.notes) {
+    text += fmt::format("note: {}\n", note);
+  }
+  return text;
+}
+
+nlohmann::ordered_json runs_json(const std::vector<PredictedRun>& runs) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const PredictedRun& run : runs) {
+    nlohmann::ordered_json error = nlohmann::ordered_json::object();
+    nlohmann::ordered_json coverage = nlohmann::ordered_json::object();
+    for (const PredictedSignal& each : run.signals) {
+      error[each.signal] = {{"rmse_K", rounded(each.rmse_K, 4)}, {"max_abs_K", rounded(each.max_abs_K, 4)}, {"samples", each.samples}};
+      coverage[each.signal] = rounded(each.coverage_share, 4);
+    }
+    all.push_back({{"name", run.name}, {"error", error}, {"coverage_90", coverage}});
+  }
+  return all;
+}
+
+nlohmann::ordered_json prediction_json(const Motor& motor, const Prediction& prediction) {
+  return {{"schema", "heatsoak.prediction/1"}, {"motor", motor.id}, {"runs", runs_json(prediction.runs)}, {"notes", prediction.notes}};
+}
+
+Chart prediction_chart(const Motor& motor, const Prediction& prediction) {
+  Chart chart{.title = fmt::format("{}: prediction", motor.name),
+              .subtitle = "from the first temperatures and the measured inputs of each run; 90 % of the samples are expected in the band",
+              .x_label = "time / min"};
+  for (const PredictedRun& run : prediction.runs) {
+    std::vector<double> time_min;
+    for (const double time_s : run.time_s) {
+      time_min.push_back((time_s - run.time_s.front()) / 60.0);
+    }
+    for (const PredictedSignal& each : run.signals) {
+      ChartPanel panel;
+      panel.title = fmt::format("{}, {}: {} K rms, {:.0f} % within the band", run.name, what_of(each), significant(each.rmse_K, 2),
+                                100.0 * each.coverage_share);
+      panel.y_label = what_of(each) + " temperature / °C";
+      panel.bands = {{.name = "90 % band", .x = time_min, .low = each.low_C, .high = each.high_C, .color_index = 1}};
+      panel.curves = {{.name = "measured", .x = time_min, .y = each.measured_C, .color_index = 0},
+                      {.name = "predicted", .x = time_min, .y = each.predicted_C, .color_index = 1}};
+      chart.panels.push_back(std::move(panel));
+    }
+  }
+  return chart;
+}
+
+}  // namespace heatsoak

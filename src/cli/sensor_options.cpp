@@ -1,0 +1,75 @@
+#include "cli/sensor_options.h"
+
+#include <fmt/format.h>
+
+#include "base/diagnostic.h"
+#include "cli/quantity_option.h"
+
+namespace heatsoak {
+
+void add_sensor_options(CLI::App& app, SensorFlags& flags) {
+  app.add_option("--thermistor", flags.thermistor, "the guard reads a thermistor at the stator or at the winding")
+      ->check(CLI::IsMember({"stator", "winding"}))
+      ->type_name("NODE");
+  add_quantity(app, "--thermistor-accuracy", flags.thermistor_accuracy_K,
+               {"thermistor_accuracy", "K", Range::between(0.05, 50.0), "its largest error, mounting included; 2 K unless given"});
+  add_quantity(app, "--thermistor-lag", flags.thermistor_lag_s,
+               {"thermistor_lag", "s", Range::between(0.0, 600.0), "its time constant; 0 s unless given"});
+  app.add_flag("--winding-resistance", flags.reads_resistance,
+               "the guard reads the winding's temperature from its resistance: voltage and current at the terminals");
+  add_quantity(app, "--resistance-accuracy", flags.resistance_accuracy_K,
+               {"resistance_accuracy", "K", Range::between(0.5, 50.0),
+                "readings are used where current and speed permit this accuracy; 10 K unless given"});
+  add_quantity(app, "--voltage-error", flags.voltage_error_V,
+               {"voltage_error", "V", Range::between(0.0, 10.0), "offset of the terminal voltage; 20 mV unless given"});
+  add_quantity(app, "--current-error", flags.current_error_A,
+               {"current_error", "A", Range::between(0.0, 10.0), "offset of the current; 10 mA unless given"});
+}
+
+std::optional<SensorOptions> sensor_options(const SensorFlags& flags) {
+  if (flags.reads_resistance && !flags.thermistor.empty()) {
+    throw Failure(ExitCode::bad_input, "--thermistor and --winding-resistance: expected one sensor; leave out the less accurate one");
+  }
+  if (flags.reads_resistance) {
+    return SensorOptions{.kind = SensorKind::winding_resistance,
+                         .node = states::winding,
+                         .accuracy_K = flags.resistance_accuracy_K,
+                         .voltage_error_V = flags.voltage_error_V,
+                         .current_error_A = flags.current_error_A};
+  }
+  if (flags.thermistor.empty()) {
+    return std::nullopt;
+  }
+  return SensorOptions{.node = flags.thermistor == "winding" ? states::winding : states::stator,
+                       .accuracy_K = flags.thermistor_accuracy_K,
+                       .lag_s = flags.thermistor_lag_s};
+}
+
+std::string sensor_text(const Derating& derating) {
+  if (!derating.sensor) {
+    return {};
+  }
+  const SensorPlan& plan = *derating.sensor;
+  std::string text = fmt::format(
+      "\nwith {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}); of {} drawn motors with drawn sensor "
+      "errors {} exceeded a limit, their windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest); the cross-check drops the "
+      "correct sensor of {}\n"
+      "a lying sensor allows at most {:.2f} A more than without one: the nominal motor then reaches {:.0f} °C, and {} of {} drawn motors "
+      "exceed a limit\n",
+      plan.resistance ? "the resistance from voltage and current" : "a thermistor",
+      plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
+      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_reserve_ratio(),
+      derating.observer.heat_reserve_ratio(), plan.samples, plan.over, plan.winding_p95_C, plan.winding_most_C, plan.dropped,
+      plan.most_gain_A, plan.lying_nominal_C, plan.lying_over, derating.options.guarantee.samples);
+  if (plan.resistance) {
+    text += fmt::format("readings need {:.2f} A at rest and {:.3f} A more per rad/s\n", plan.resistance->least_current_A,
+                        plan.resistance->current_per_speed_A_s_per_rad);
+  }
+  text += "lasting current of the nominal motor, A:\n  speed rad/s   without      with\n";
+  for (const LastingCurrent& each : plan.lasting) {
+    text += fmt::format("  {:11.0f} {:9.2f} {:9.2f}\n", each.speed_rad_per_s, each.without_A, each.with_A);
+  }
+  return text;
+}
+
+}  // namespace heatsoak

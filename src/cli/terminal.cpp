@@ -1,0 +1,119 @@
+#include "cli/terminal.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string_view>
+
+namespace heatsoak {
+namespace {
+
+std::string_view environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value ? value : "";
+}
+
+/// Remaining time of a job from what is done so far.
+class Remaining {
+ public:
+  /// The time from the first finished unit on counts: what came before it, such as reading files, is of another kind.
+  void start(std::size_t done) {
+    if (begin_ == Clock::time_point()) {
+      begin_ = Clock::now();
+      before_ = done;
+    }
+  }
+  /// "12 s left"; empty until enough is done to say it within a factor of two.
+  [[nodiscard]] std::string text(std::size_t done, std::size_t total) const {
+    constexpr double kLeastElapsed_s = 1.0;
+    constexpr double kLeastShare = 0.02;
+    const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
+    const auto finished = static_cast<double>(done - before_);
+    if (elapsed_s < kLeastElapsed_s || finished < 2.0 || finished < kLeastShare * static_cast<double>(total - before_)) {
+      return "";
+    }
+    return fmt::format(", {:.0f} s left", std::ceil(elapsed_s * static_cast<double>(total - done) / finished));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_;
+  std::size_t before_ = 0;
+};
+
+}  // namespace
+
+std::size_t terminal_width(int descriptor) {
+  constexpr std::size_t kUsual = 80;
+  constexpr std::size_t kLeast = 20;
+  constexpr std::size_t kMost = 1000;
+  const std::string_view columns = environment("COLUMNS");
+  std::size_t wanted = 0;
+  const auto [end, problem] = std::from_chars(columns.data(), columns.data() + columns.size(), wanted);
+  if (problem == std::errc() && end == columns.data() + columns.size() && wanted >= kLeast && wanted <= kMost) {
+    return wanted;
+  }
+  winsize size{};
+  if (ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col >= kLeast) {
+    return size.ws_col;
+  }
+  return kUsual;
+}
+
+bool takes_colors(int descriptor) { return isatty(descriptor) == 1 && environment("NO_COLOR").empty() && environment("TERM") != "dumb"; }
+
+namespace {
+
+/// A line on stderr that is written over and gone at the end, also where the work ends early.
+class Bar {
+ public:
+  explicit Bar(std::string what) : what_(std::move(what)) {}
+  Bar(const Bar&) = delete;
+  Bar& operator=(const Bar&) = delete;
+  ~Bar() { clear(); }
+
+  void show(std::size_t done, std::size_t total) {
+    constexpr std::chrono::milliseconds kBetween(200);
+    remaining_.start(done);
+    if (done == total) {
+      clear();
+    } else if (const Clock::time_point now = Clock::now(); now - shown_ > kBetween) {
+      shown_ = now;
+      is_visible_ = true;
+      fmt::print(stderr, "\r\x1b[K{}: {:.0f} %{}", what_, 100.0 * static_cast<double>(done) / static_cast<double>(total),
+                 remaining_.text(done, total));
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void clear() {
+    if (is_visible_) {
+      // A full stderr is borne: what is computed matters more.
+      static_cast<void>(std::fputs("\r\x1b[K", stderr));
+      is_visible_ = false;
+    }
+  }
+  std::string what_;
+  Remaining remaining_;
+  Clock::time_point shown_ = Clock::now();
+  bool is_visible_ = false;
+};
+
+}  // namespace
+
+Progress progress_bar(std::string what) {
+  if (isatty(STDERR_FILENO) == 0) {
+    return {};
+  }
+  return [bar = std::make_shared<Bar>(std::move(what))](std::size_t done, std::size_t total) { bar->show(done, total); };
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "derate/belief.h"
+#include "derate/c_header/c_text.h"
+#include "derate/c_header/parts.h"
+
+namespace heatsoak::c_header {
+namespace {
+
+constexpr std::string_view kPacked =
+    R"(/* What is kept over power-off: motor and guard (@CAP@_SIGNATURE), temperatures, CRC-32 (IEEE 802.3); little-endian. */
+#define @CAP@_SAVED_SIZE @SIZE@
+typedef enum {
+  @_restored,        /* cooled for the time that has passed */
+  @_time_unknown,    /* as hot as it may be after any time */
+  @_nothing_restored /* not saved, damaged or of another guard: as hot as the limit */
+} @_restored_from;
+
+static inline uint32_t @_crc_32(const uint8_t *bytes, int count) {
+  uint32_t crc = 0xffffffffu;
+  int i, bit;
+  for (i = 0; i < count; ++i) {
+    crc ^= bytes[i];
+    for (bit = 0; bit < 8; ++bit) {
+      crc = crc & 1u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
+    }
+  }
+  return ~crc;
+}
+
+static inline void @_pack(uint8_t *to, uint32_t word) {
+  to[0] = (uint8_t)(word & 0xffu);
+  to[1] = (uint8_t)(word >> 8 & 0xffu);
+  to[2] = (uint8_t)(word >> 16 & 0xffu);
+  to[3] = (uint8_t)(word >> 24 & 0xffu);
+}
+
+static inline uint32_t @_unpack(const uint8_t *from) {
+  return (uint32_t)from[0] | (uint32_t)from[1] << 8 | (uint32_t)from[2] << 16 | (uint32_t)from[3] << 24;
+}
+
+/* buffer: @CAP@_SAVED_SIZE bytes. Call it now and then, and before power goes. */
+static inline void @_save(const @_state *state, uint8_t *buffer) {
+  uint32_t word;
+  int node;
+  @_pack(buffer, state->started == @CAP@_STARTED ? @CAP@_SIGNATURE : 0u);
+  for (node = 0; node < @NODES@; ++node) {
+    memcpy(&word, &state->state_C[node], sizeof word);
+    @_pack(buffer + 4 + 4 * node, word);
+    memcpy(&word, &state->nominal_C[node], sizeof word);
+    @_pack(buffer + 4 + 4 * (@NODES@ + node), word);
+  }
+  @_pack(buffer + @CAP@_SAVED_SIZE - 4, @_crc_32(buffer, @CAP@_SAVED_SIZE - 4));
+}
+
+)";
+
+constexpr std::string_view kCool = R"(typedef void (*@_law)(const @_input *, const float *, float *);
+
+/* Longest Euler step at these temperatures: 1/20 of the shortest time constant, whose rate is at most the largest sum of a row's
+   derivatives (Gershgorin). */
+static inline float @_cooling_step_s(@_law law, const @_input *off, const float *state_C) {
+  float moved_C[@NODES@], rate_K_per_s[@NODES@], moved_K_per_s[@NODES@], sum_per_s[@NODES@], fastest_per_s = 0.0f;
+  int from, node;
+  law(off, state_C, rate_K_per_s);
+  for (node = 0; node < @NODES@; ++node) {
+    moved_C[node] = state_C[node];
+    sum_per_s[node] = 0.0f;
+  }
+  for (from = 0; from < @NODES@; ++from) {
+    moved_C[from] += 1.0f;
+    law(off, moved_C, moved_K_per_s);
+    moved_C[from] -= 1.0f;
+    for (node = 0; node < @NODES@; ++node) {
+      const float change_per_s = moved_K_per_s[node] - rate_K_per_s[node];
+      sum_per_s[node] += change_per_s < 0.0f ? -change_per_s : change_per_s;
+    }
+  }
+  for (node = 0; node < @NODES@; ++node) {
+    fastest_per_s = sum_per_s[node] > fastest_per_s ? sum_per_s[node] : fastest_per_s;
+  }
+  return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : @CAP@_PERIOD_S;
+}
+
+/* Without current in the hottest air; no more than @CAP@_MOST_COOLING_STEPS steps, what is left of the time counts as no time. An Euler
+   step of 1/20 of a time constant cools as 1/20 + 1/800 of it would, so 3 % of the time are left out. peak_C: hottest on the way. */
+static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *peak_C) {
+  @_input off;
+  float rate_K_per_s[@NODES@], carry_K[@NODES@], step_s, left_s = 0.97f * elapsed_s;
+  int node, step;
+  memset(&off, 0, sizeof off);
+  off.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
+@OFF@  step_s = @_cooling_step_s(law, &off, state_C);
+  for (node = 0; node < @NODES@; ++node) {
+    peak_C[node] = state_C[node];
+    carry_K[node] = 0.0f;
+  }
+  for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
+    const float this_s = left_s < step_s ? left_s : step_s;
+    law(&off, state_C, rate_K_per_s);
+    for (node = 0; node < @NODES@; ++node) {
+      const float change_K = this_s * rate_K_per_s[node] - carry_K[node];
+      const float next_C = state_C[node] + change_K;
+      carry_K[node] = (next_C - state_C[node]) - change_K;
+      state_C[node] = next_C;
+      peak_C[node] = next_C > peak_C[node] ? next_C : peak_C[node];
+    }
+    left_s -= this_s;
+  }
+}
+
+)";
+
+/// With a save at regular intervals the motor has been driven since: as hard as the guard can have allowed.
+constexpr std::string_view kUnsaved = R"(/* All that the driver can give at the highest speed, up to the limit that the guard has kept. */
+static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
+  @_input on;
+  float drive_K_per_s[@NODES@], brake_K_per_s[@NODES@], left_s = unsaved_s;
+  int node, step;
+  memset(&on, 0, sizeof on);
+  on.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
+  on.speed_rad_per_s = @CAP@_MOST_SPEED_RAD_PER_S;
+@ON@  for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
+    on.current_A = @CAP@_MOST_CURRENT_A;
+    law(&on, state_C, drive_K_per_s);
+    on.current_A = -@CAP@_MOST_CURRENT_A;
+    law(&on, state_C, brake_K_per_s);
+    for (node = 0; node < @NODES@; ++node) {
+      const float most_K_per_s = drive_K_per_s[node] > brake_K_per_s[node] ? drive_K_per_s[node] : brake_K_per_s[node];
+      const float next_C = state_C[node] + @CAP@_PERIOD_S * (most_K_per_s > 0.0f ? most_K_per_s : 0.0f);
+      state_C[node] = next_C < @CAP@_WINDING_LIMIT_C ? next_C : @CAP@_WINDING_LIMIT_C;
+    }
+    left_s -= @CAP@_PERIOD_S;
+  }
+  for (node = 0; node < @NODES@ && left_s > 0.0f; ++node) {
+    state_C[node] = @CAP@_WINDING_LIMIT_C;
+  }
+}
+
+)";
+
+constexpr std::string_view kRestore =
+    R"(/* elapsed_s: without power, by a clock that ran meanwhile; below 0 or no number: unknown. After an unknown time every node is as hot as
+   it was saved or may have become since from the heat of the others: power can have been back at once. unsaved_s: longest time from the
+   last save to the loss of power, 0 where the falling supply starts the save; no number counts as very long. board_C: no node is colder,
+   for the motor stood in the same warmth; what is no temperature counts as the hottest air. */
+static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
+  float peak_C[@NODES@], nominal_peak_C[@NODES@];
+  uint32_t word;
+  const float least_C = @_is_temperature(board_C) ? board_C : @CAP@_HOTTEST_AMBIENT_C;
+  const int is_known = elapsed_s >= 0.0f;
+  int node, is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
+                       @_unpack(buffer + @CAP@_SAVED_SIZE - 4) == @_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
+  for (node = 0; node < @NODES@; ++node) {
+    word = @_unpack(buffer + 4 + 4 * node);
+    memcpy(&state->state_C[node], &word, sizeof word);
+    word = @_unpack(buffer + 4 + 4 * (@NODES@ + node));
+    memcpy(&state->nominal_C[node], &word, sizeof word);
+    is_whole = is_whole && @_is_temperature(state->state_C[node]) && @_is_temperature(state->nominal_C[node]);
+  }
+  if (!is_whole) {
+    @_start(state, @CAP@_WINDING_LIMIT_C);
+    return @_nothing_restored;
+  }
+  if (!(unsaved_s <= 0.0f)) {
+    @_heat(@_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
+    @_heat(@_nominal_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
+  }
+  @_cool(@_rates, is_known ? elapsed_s : 1e9f, state->state_C, peak_C);
+  @_cool(@_nominal_rates, is_known ? elapsed_s : 1e9f, state->nominal_C, nominal_peak_C);
+  for (node = 0; node < @NODES@; ++node) {
+    const float guarded_C = is_known ? state->state_C[node] : peak_C[node];
+    const float nominal_C = is_known ? state->nominal_C[node] : nominal_peak_C[node];
+    state->state_C[node] = guarded_C > least_C ? guarded_C : least_C;
+    state->nominal_C[node] = nominal_C > least_C ? nominal_C : least_C;
+    state->carry_K[node] = state->nominal_carry_K[node] = 0.0f;
+  }
+  state->started = @CAP@_STARTED;
+  return is_known ? @_restored : @_time_unknown;
+}
+
+)";
+
+/// What a motor may meet that nobody watches: a neighbour at its limit, a contact as old as it may get.
+std::string unwatched_signals(const Source& source, std::string_view input) {
+  std::string text;
+  for (const firmware::Signal signal : source.signals) {
+    if (signal == firmware::neighbour) {
+      text += fmt::format("  {}.{} = {}_WINDING_LIMIT_C;\n", input, name_of(signal), source.capital);
+    } else if (signal == firmware::age) {
+      text += fmt::format("  {}.{} = {};\n", input, name_of(signal), literal(std::ranges::max(belief(source.derating, signal).values)));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string memory_functions(const Source& source, unsigned signature) {
+  const std::size_t nodes = source.derating.observer.state_count();
+  constexpr int kMostCoolingSteps = 4096;
+  const Words words{{"@OFF@", unwatched_signals(source, "off")},
+                    {"@ON@", unwatched_signals(source, "on")},
+                    {"@SIZE@", std::to_string(4 * (2 + 2 * nodes))},
+                    {"@CAP@", source.capital},
+                    {"@NODES@", std::to_string(nodes)},
+                    {"@", source.prefix}};
+  return fmt::format("\n#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_MOST_COOLING_STEPS {2}\n", source.capital, signature,
+                     kMostCoolingSteps) +
+         replaced(kPacked, words) + replaced(kCool, words) + replaced(kUnsaved, words) + replaced(kRestore, words);
+}
+
+}  // namespace heatsoak::c_header

@@ -1,0 +1,355 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "derate/c_header/c_text.h"
+#include "derate/c_header/parts.h"
+
+namespace heatsoak::c_header {
+namespace {
+
+constexpr std::string_view kStructures = R"(typedef enum {
+  @_sensor_used,       /* the reading corrects the observer */
+  @_sensor_silent,     /* no reading, or none that can be a temperature: after @CAP@_SENSOR_HOLD_S as without a sensor */
+  @_sensor_jumped,     /* changed faster than the motor can; dropped for good after @CAP@_SENSOR_CONTRADICTION_S of that */
+  @_sensor_too_cold,   /* dropped for good: colder than the coldest motor under this load */
+  @_sensor_frozen      /* dropped for good: did not change while the motor must have */
+} @_sensor_status;
+
+typedef struct {
+  uint32_t started;
+  @_state model;                /* the guard without the sensor, of the current that flowed */
+  float state_C[@NODES@];             /* corrected by the sensor: counts heat @RESERVE@ times while it is used */
+  float carry_K[@NODES@];
+  float capped_C[@NODES@];            /* the guard without the sensor, of the current that it would have allowed */
+  float capped_carry_K[@NODES@];
+  float capped_A;
+  float lag_C;                  /* temperature of the sensor itself */
+  float last_C, unread_s, gap_s; /* last plausible reading, time since it was used, time since it came */
+  float jumped_s, cold_s;       /* how long the reading has contradicted the motor */
+  float frozen_C, frozen_nominal_C;
+  uint32_t rejected;            /* readings that were not used */
+  @_sensor_status dropped;      /* why the sensor is not used any more; @_sensor_used: it is */
+} @_sensed_state;
+
+typedef struct {
+  @_output guard;
+  float model_only_A;     /* A, what the guard without the sensor would allow; |guard.allowed_current_A| is at most this plus
+                             @CAP@_SENSOR_MOST_GAIN_A */
+  @_sensor_status sensor;
+} @_sensed_output;
+
+/* As @_start. The sensor gets another chance. */
+static inline void @_sensed_start(@_sensed_state *state, float body_C) {
+  int node;
+  @_start(&state->model, body_C);
+  for (node = 0; node < @NODES@; ++node) {
+    state->state_C[node] = state->capped_C[node] = state->model.state_C[node];
+    state->carry_K[node] = state->capped_carry_K[node] = 0.0f;
+  }
+  state->capped_A = 0.0f;
+  state->lag_C = state->last_C = state->frozen_C = state->frozen_nominal_C = state->model.state_C[0];
+  state->unread_s = @CAP@_SENSOR_HOLD_S;
+  state->gap_s = 1e6f;
+  state->jumped_s = state->cold_s = 0.0f;
+  state->rejected = 0u;
+  state->dropped = @_sensor_used;
+  state->started = @CAP@_STARTED;
+}
+
+)";
+
+constexpr std::string_view kCheck =
+    R"(/* Cross-check of a reading against what the motor can do. The hottest air stands for one that is not measured: it may be the coldest. */
+static inline @_sensor_status @_check_reading(@_sensed_state *state, float reading_C, float ambient_C) {
+  const float air_C = ambient_C < @CAP@_HOTTEST_AMBIENT_C ? ambient_C : @CAP@_COLDEST_AMBIENT_C;
+  const float nominal_C = state->model.nominal_C[@SENSOR_NODE@];
+  float change_K, swing_K;
+  state->gap_s += @CAP@_PERIOD_S;
+  if (!@_is_between(@CAP@_COLDEST_AMBIENT_C - @CAP@_SENSOR_ACCURACY_K, reading_C, @CAP@_SENSOR_MOST_C)) {
+    return @_sensor_silent;
+  }
+  change_K = reading_C < state->last_C ? state->last_C - reading_C : reading_C - state->last_C;
+  if (change_K > @CAP@_SENSOR_MOST_JUMP_K + @CAP@_SENSOR_MOST_RATE_K_PER_S * state->gap_s) {
+    state->jumped_s += @CAP@_PERIOD_S;
+    state->dropped = state->jumped_s > @CAP@_SENSOR_CONTRADICTION_S ? @_sensor_jumped : state->dropped;
+    return @_sensor_jumped;
+  }
+  if (reading_C + @CAP@_SENSOR_ACCURACY_K + @CAP@_SENSOR_COLD_MARGIN_K - air_C < @CAP@_SENSOR_COLD_RATIO * (nominal_C - ambient_C)) {
+    state->cold_s += @CAP@_PERIOD_S;
+    state->dropped = state->cold_s >= @CAP@_SENSOR_CONTRADICTION_S ? @_sensor_too_cold : state->dropped;
+  } else {
+    state->cold_s = state->cold_s > 0.25f * @CAP@_PERIOD_S ? state->cold_s - 0.25f * @CAP@_PERIOD_S : 0.0f;
+  }
+  change_K = reading_C < state->frozen_C ? state->frozen_C - reading_C : reading_C - state->frozen_C;
+  swing_K = nominal_C < state->frozen_nominal_C ? state->frozen_nominal_C - nominal_C : nominal_C - state->frozen_nominal_C;
+  if (change_K > @CAP@_SENSOR_FROZEN_BAND_K || state->gap_s > @CAP@_SENSOR_HOLD_S) {
+    state->frozen_C = reading_C;
+    state->frozen_nominal_C = nominal_C;
+  } else if (swing_K > @CAP@_SENSOR_FROZEN_K + (ambient_C - air_C)) {
+    state->dropped = @_sensor_frozen;
+  }
+  state->last_C = reading_C;
+  state->gap_s = state->jumped_s = 0.0f;
+  return state->dropped;
+}
+
+static inline float @_hottest_body_C(const float *state_C) {
+  int node;
+  float hottest_C = state_C[1];
+  for (node = 2; node < @NODES@; ++node) {
+    hottest_C = state_C[node] > hottest_C ? state_C[node] : hottest_C;
+  }
+  return hottest_C;
+}
+
+/* The reading counts as high as it may be. */
+static inline void @_correct(@_sensed_state *state, float reading_C) {
+  const float gain[@NODES@] = {@GAINS@};
+  const float innovation_K = reading_C + @CAP@_SENSOR_ACCURACY_K - @PREDICTED@;
+  int node;
+  for (node = 0; node < @NODES@; ++node) {
+    const float next_C = state->state_C[node] + gain[node] * innovation_K;
+    state->state_C[node] = next_C > @CAP@_COLDEST_AMBIENT_C ? next_C : @CAP@_COLDEST_AMBIENT_C;
+  }
+@CORRECT_LAG@}
+
+)";
+
+constexpr std::string_view kStep =
+    R"(/* As without the sensor: after a restart, with an input that is not known, and once the sensor is dropped. */
+static inline void @_forget_sensor(@_sensed_state *state, float allowed_A) {
+  int node;
+  for (node = 0; node < @NODES@; ++node) {
+    state->state_C[node] = state->capped_C[node] = state->model.state_C[node];
+    state->carry_K[node] = state->capped_carry_K[node] = 0.0f;
+  }
+  state->capped_A = allowed_A;
+  state->lag_C = state->model.state_C[@SENSOR_NODE@];
+  state->unread_s = @CAP@_SENSOR_HOLD_S;
+}
+
+static inline int @_is_sensed_started(const @_sensed_state *state) {
+  int node, is_started = state->started == @CAP@_STARTED && @_is_temperature(state->lag_C) &&
+                         @_is_between(0.0f, state->capped_A, @CAP@_MOST_CURRENT_A) &&
+                         @_is_between(0.0f, state->unread_s, 2.0f * @CAP@_SENSOR_HOLD_S) && @_is_between(0.0f, state->gap_s, 2e6f) &&
+                         @_is_between(0.0f, state->jumped_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S) &&
+                         @_is_between(0.0f, state->cold_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S);
+  for (node = 0; node < @NODES@; ++node) {
+    is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_temperature(state->capped_C[node]) &&
+                 @_is_between(-1.0f, state->carry_K[node], 1.0f) && @_is_between(-1.0f, state->capped_carry_K[node], 1.0f);
+  }
+  return is_started;
+}
+
+/* The guard without the sensor, of the current that flowed. With a correct sensor the winding keeps its limit, so its own is taken for no
+   hotter than that limit, or than it was. */
+static inline @_output @_step_model(@_sensed_state *state, const @_input *measured) {
+  @_output out;
+  float most_C[@NODES@];
+  int node;
+  for (node = 0; node < @NODES@; ++node) {
+    most_C[node] = state->model.state_C[node] > @CAP@_WINDING_LIMIT_C ? state->model.state_C[node] : @CAP@_WINDING_LIMIT_C;
+  }
+  out = @_step(&state->model, measured);
+  for (node = 0; node < @NODES@; ++node) {
+    if (out.reason != @_not_started && state->model.state_C[node] > most_C[node]) {
+      state->model.state_C[node] = most_C[node];
+      state->model.carry_K[node] = 0.0f;
+    }
+  }
+  return out;
+}
+
+/* One period of both observers; the capped one sees no more than it would have allowed. */
+static inline void @_advance_sensed(@_sensed_state *state, const @_input *measured) {
+  @_input capped = *measured;
+  float rate_K_per_s[@NODES@];
+  if (capped.current_A > state->capped_A) {
+    capped.current_A = state->capped_A;
+  } else if (capped.current_A < -state->capped_A) {
+    capped.current_A = -state->capped_A;
+  }
+  @_rates(&capped, state->capped_C, rate_K_per_s);
+  @_advance(state->capped_C, state->capped_carry_K, rate_K_per_s);
+  if (state->unread_s < @CAP@_SENSOR_HOLD_S) {
+    @_sensed_rates(measured, state->state_C, rate_K_per_s);
+  } else {
+    @_rates(measured, state->state_C, rate_K_per_s);
+  }
+  @_advance(state->state_C, state->carry_K, rate_K_per_s);
+@ADVANCE_LAG@}
+
+/* reading_C: of the sensor; NAN where there is none in this period. In place of @_step. */
+static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
+  @_sensed_output out;
+  float speed_rad_per_s, sensed_A, most_A;
+  const int was_started = @_is_sensed_started(state);
+  if (!was_started) {
+    @_sensed_start(state, @CAP@_WINDING_LIMIT_C);
+  }
+  out.guard = @_step_model(state, measured);
+  out.model_only_A = out.guard.allowed_current_A;
+  out.sensor = state->dropped;
+  if (!was_started || state->dropped != @_sensor_used || out.guard.reason == @_input_unknown || out.guard.reason == @_not_started) {
+    @_forget_sensor(state, out.guard.allowed_current_A);
+    out.guard.reason = was_started ? out.guard.reason : @_not_started;
+    return out;
+  }
+  @_advance_sensed(state, measured);
+  out.sensor = @_check_reading(state, reading_C, measured->ambient_C);
+  if (out.sensor == @_sensor_used) {
+    @_correct(state, reading_C);
+    state->unread_s = 0.0f;
+  } else {
+    state->unread_s = state->unread_s < @CAP@_SENSOR_HOLD_S ? state->unread_s + @CAP@_PERIOD_S : @CAP@_SENSOR_HOLD_S;
+    state->rejected += @REJECTED@;
+  }
+  speed_rad_per_s = measured->speed_rad_per_s < 0.0f ? -measured->speed_rad_per_s : measured->speed_rad_per_s;
+  state->capped_A = @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->capped_C), state->capped_C[0]);
+  sensed_A = state->unread_s < @CAP@_SENSOR_HOLD_S
+                 ? @_sensed_allowed_A(speed_rad_per_s, @_hottest_body_C(state->state_C), state->state_C[0])
+                 : @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->state_C), state->state_C[0]);
+  most_A = state->capped_A + @CAP@_SENSOR_MOST_GAIN_A * (1.0f - state->cold_s / @CAP@_SENSOR_CONTRADICTION_S);
+  sensed_A = sensed_A < most_A ? sensed_A : most_A;
+  sensed_A = sensed_A < @CAP@_MOST_CURRENT_A ? sensed_A : @CAP@_MOST_CURRENT_A;
+  out.model_only_A = state->capped_A;
+  if (state->dropped != @_sensor_used) {
+    return out;
+  }
+  out.guard.allowed_current_A = sensed_A > 0.0f ? sensed_A : 0.0f;
+  out.guard.guarded_winding_C = state->state_C[0];
+  out.guard.reason = sensed_A >= @CAP@_MOST_CURRENT_A ? @_full : sensed_A > 0.0f ? @_derated : @_no_current;
+  return out;
+}
+
+)";
+
+constexpr std::string_view kResistance = R"(/* The winding's temperature from its resistance, for @_step_with_sensor. */
+typedef struct {
+  float resistance_25C_ohm; /* 0: not calibrated yet */
+  float rest_C;             /* of the whole motor, when the calibration began */
+  float last_A;
+} @_resistance;
+
+/* After a rest at body_C; the first usable reading before the winding has warmed by 1 K calibrates. */
+static inline void @_resistance_start(@_resistance *sensor, float body_C) {
+  sensor->resistance_25C_ohm = 0.0f;
+  sensor->rest_C = body_C;
+  sensor->last_A = 0.0f;
+}
+
+/* voltage_V: equivalent DC voltage at the terminals, mean over the period, > 0 where a current > 0 is driven. NAN where the current is too
+   small, the motor too fast or the current changes too fast for the accuracy. */
+static inline float @_resistance_reading_C(@_resistance *sensor, const @_sensed_state *state, const @_input *measured, float voltage_V) {
+  const float nothing = (float)NAN;
+  const float current_A = measured->current_A, speed_rad_per_s = measured->speed_rad_per_s;
+  const float size_A = current_A < 0.0f ? -current_A : current_A;
+  const float size_rad_per_s = speed_rad_per_s < 0.0f ? -speed_rad_per_s : speed_rad_per_s;
+  const float nominal_C = state->model.nominal_C[0];
+  const float change_A = current_A < sensor->last_A ? sensor->last_A - current_A : current_A - sensor->last_A;
+  float resistance_ohm;
+  sensor->last_A = current_A;
+  if (!(size_A >= @CAP@_RESISTANCE_LEAST_CURRENT_A + @CAP@_RESISTANCE_CURRENT_PER_SPEED_A_S_PER_RAD * size_rad_per_s) ||
+      !(change_A <= @CAP@_RESISTANCE_MOST_CURRENT_CHANGE_A)) {
+    return nothing;
+  }
+  resistance_ohm = (voltage_V - @CAP@_TORQUE_CONSTANT_NM_PER_A * speed_rad_per_s) / current_A;
+  if (!(sensor->resistance_25C_ohm > 0.0f) && nominal_C - sensor->rest_C < 1.0f && sensor->rest_C - nominal_C < 1.0f) {
+    sensor->resistance_25C_ohm = resistance_ohm / (1.0f + @CAP@_RESISTANCE_ALPHA_PER_K * (nominal_C - 25.0f));
+  }
+  return sensor->resistance_25C_ohm > 0.0f
+             ? 25.0f + (resistance_ohm / sensor->resistance_25C_ohm - 1.0f) / @CAP@_RESISTANCE_ALPHA_PER_K
+             : nothing;
+}
+
+)";
+
+std::string constants(const Source& source, const SensorPlan& plan) {
+  const auto define = [&](std::string_view name, double value) {
+    return fmt::format("#define {}_{} {}\n", source.capital, name, literal(value));
+  };
+  std::string text = define("SENSOR_ACCURACY_K", plan.options.accuracy_K) + define("SENSOR_MOST_GAIN_A", plan.most_gain_A) +
+                     define("SENSOR_MOST_C", plan.check.most_C) + define("SENSOR_MOST_JUMP_K", plan.check.most_jump_K) +
+                     define("SENSOR_MOST_RATE_K_PER_S", plan.check.most_rate_K_per_s) + define("SENSOR_COLD_RATIO", plan.check.cold_share) +
+                     define("SENSOR_COLD_MARGIN_K", plan.check.cold_margin_K) + define("SENSOR_FROZEN_BAND_K", plan.check.frozen_band_K) +
+                     define("SENSOR_FROZEN_K", plan.check.frozen_K) + define("SENSOR_CONTRADICTION_S", plan.check.contradiction_s) +
+                     define("SENSOR_HOLD_S", plan.check.hold_s);
+  if (plan.resistance) {
+    text += define("RESISTANCE_ALPHA_PER_K", plan.resistance->temperature_coefficient_per_K) +
+            define("RESISTANCE_LEAST_CURRENT_A", plan.resistance->least_current_A) +
+            define("RESISTANCE_CURRENT_PER_SPEED_A_S_PER_RAD", plan.resistance->current_per_speed_A_s_per_rad) +
+            define("RESISTANCE_MOST_CURRENT_CHANGE_A", std::min(plan.resistance->most_current_change_A, 1e9));
+  }
+  return text + "\n";
+}
+
+std::string comment(const SensorPlan& plan) {
+  return fmt::format(
+      "\n/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} in place of the above while it is used. Of {} "
+      "drawn\n"
+      " * motors, each with a drawn sensor error, {} exceeded a limit; the cross-check drops the correct sensor of {}. A sensor that lies\n"
+      " * allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} degC, and {} of the drawn motors\n"
+      " * exceed a limit. */\n",
+      plan.resistance ? "the resistance from voltage and current" : "a thermistor",
+      plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
+      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_reserve_ratio(), plan.samples,
+      plan.over, plan.dropped, plan.lying_nominal_C, plan.lying_over);
+}
+
+/// The table for the lower safety factor, under the same rules.
+std::string sensed_table(const Source& source, const SensorPlan& plan) {
+  const CurrentTable& table = plan.table;
+  const std::string name = source.prefix + "_sensed";
+  return array(name + "_speed_rad_per_s", table.speed_rad_per_s) + array(name + "_stator_C", table.stator_C) +
+         array(name + "_winding_C", table.winding_C) + array(name + "_square_A2", table.square_A2) +
+         fmt::format(
+             "static const heatsoak_current_table {0}_table = {{\n    {{{0}_speed_rad_per_s, {1}}},\n    {{{0}_stator_C, {2}}},\n"
+             "    {{{0}_winding_C, {3}}},\n    {0}_square_A2,\n    {4},\n    {5},\n    {6},\n    {7},\n    {8}}};\n\n",
+             name, table.speed_rad_per_s.size(), table.stator_C.size(), table.winding_C.size(), literal(table.most_current_A),
+             literal(table.straight_below_A), literal(table.most_speed_rad_per_s), literal(table.no_current_speed_rad_per_s),
+             literal(table.winding_per_stator_K)) +
+         fmt::format(
+             "static inline float {0}_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) {{\n"
+             "  const heatsoak_row row = heatsoak_find_row(&{0}_table, speed_rad_per_s, stator_C);\n"
+             "  return heatsoak_allowed_A(&{0}_table, &row, winding_C);\n}}\n\n",
+             name);
+}
+
+}  // namespace
+
+Rates sensor_functions(const Source& source) {
+  if (!source.derating.sensor) {
+    return {};
+  }
+  const SensorPlan& plan = *source.derating.sensor;
+  const RateLines lines(plan.observer, plan.observer.rate_steps(), line_style());
+  const bool lags = plan.options.lag_s > 0.0;
+  const std::string node = fmt::format("state->state_C[{}]", plan.options.node);
+  std::string gains;
+  for (const double gain : plan.gain) {
+    gains += (gains.empty() ? "" : ", ") + literal(gain);
+  }
+  const Words words{{"@PREDICTED@", lags ? "state->lag_C" : node},
+                    {"@CORRECT_LAG@", lags ? fmt::format("  state->lag_C += {} * innovation_K;\n", literal(plan.lag_gain_ratio)) : ""},
+                    {"@ADVANCE_LAG@", lags ? fmt::format("  state->lag_C += {} * ({} - state->lag_C);\n",
+                                                         literal(source.derating.options.period_s / plan.options.lag_s), node)
+                                           : ""},
+                    // A resistance has no reading most of the time: only what was read and not used counts.
+                    {"@REJECTED@", plan.resistance ? "out.sensor == @_sensor_silent ? 0u : 1u" : "1u"},
+                    {"@GAINS@", gains},
+                    {"@RESERVE@", fmt::format("{:.3g}", plan.observer.heat_reserve_ratio())},
+                    {"@SENSOR_NODE@", std::to_string(plan.options.node)},
+                    {"@CAP@", source.capital},
+                    {"@NODES@", std::to_string(plan.observer.state_count())},
+                    {"@", source.prefix}};
+  return {.text = comment(plan) + constants(source, plan) + replaced(kStructures, words) +
+                  fmt::format("/* dT/dt of every node while the sensor is used */\nstatic inline void {0}_sensed_rates(const {0}_input "
+                              "*input, const float *state_C, float *rate_K_per_s) {{\n{1}}}\n\n",
+                              source.prefix, lines.text()) +
+                  sensed_table(source, plan) + replaced(kCheck, words) + replaced(kStep, words) +
+                  (plan.resistance ? replaced(kResistance, words) : ""),
+          .calls_thermal_math = lines.calls_thermal_math()};
+}
+
+}  // namespace heatsoak::c_header

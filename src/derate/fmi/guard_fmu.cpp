@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "derate/export_text.h"
+#include "derate/exporter.h"
+#include "derate/fmi/fmu.h"
+
+namespace heatsoak {
+namespace {
+
+/// Reasons of the C header, in its order.
+constexpr FmuItem kReasons[] = {{"full", "all that the driver can give"},
+                                {"derated", "less, for the winding or the stator is hot"},
+                                {"no_current", "at its limit, or faster than the table goes"},
+                                {"input_unknown", "an input was no number, or none that can be: its hottest case was taken"},
+                                {"not_started", "the state was no state: taken for as hot as its limit"}};
+
+std::vector<FmuVariable> variables(const Derating& derating) {
+  std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
+  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
+      const std::string name(firmware::signals()[i].name);
+      // Whoever connects nothing gets the case that the guard is built for.
+      const double start = i == firmware::ambient     ? derating.rules.hottest_ambient_C
+                           : i == firmware::neighbour ? derating.rules.limits.winding_C
+                                                      : 0.0;
+      all.push_back({name, fmu_unit(name), FmuCausality::input, FmuType::real, start, std::string(firmware::signals()[i].meaning)});
+    }
+  }
+  all.push_back({"start_C", "degC", FmuCausality::parameter, FmuType::real, derating.rules.hottest_ambient_C,
+                 "temperature of the whole motor at the start: of the board, after a long rest"});
+  const auto output = [&all](std::string name, FmuType type, std::string description) {
+    all.push_back({std::move(name), "", FmuCausality::output, type, 0.0, std::move(description), true});
+    all.back().unit = type == FmuType::real ? fmu_unit(all.back().name) : std::string_view();
+  };
+  output("allowed_current_A", FmuType::real, "equivalent DC current, magnitude, until the next call");
+  output("guarded_winding_C", FmuType::real, "pessimistic: decides what is allowed");
+  output("nominal_winding_C", FmuType::real, "of a motor of nominal values; to show, decides nothing");
+  output("reason", FmuType::enumeration, "why no more is allowed");
+  all.push_back({"limp_current_A", "A", FmuCausality::constant, FmuType::real, limp_current_A(derating),
+                 "borne for good at every speed, for a wheel whose speed nobody knows"});
+  return all;
+}
+
+std::string bindings(const Derating& derating) {
+  const std::string prefix = identifier(derating.motor_id);
+  std::string text = fmt::format(
+      "#include \"motor_guard.h\"\n\n#define MODEL_TAKES_UNKNOWN 1 /* an input that is no number is taken at its hottest */\n"
+      "#define GUARD_PERIOD_S {1}\n#define guard_start {0}_start\n#define guard_step {0}_step\n\n"
+      "typedef {0}_state guard_state;\ntypedef {0}_input guard_input;\ntypedef {0}_output guard_output;\n\n"
+      "typedef struct {{\n  guard_state guard;\n  double calls;\n  double start_s;\n}} model_part;\n\n"
+      "static inline void guard_read(const double *value, guard_input *input) {{\n",
+      prefix, fmu_number(derating.options.period_s));
+  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
+      text += fmt::format("  input->{0} = (float)value[at_{0}];\n", firmware::signals()[i].name);
+    }
+  }
+  return text + "}\n";
+}
+
+}  // namespace
+
+FmuModel guard_fmu(const Derating& derating, std::string_view /*exporter*/) {
+  require_finite(derating);
+  FmuModel model;
+  model.identifier = identifier(derating.motor_id) + "_guard";
+  model.description = fmt::format("Thermal guard of the firmware for {} in {}", derating.motor_id, derating.robot_id);
+  model.token = fmt::format("{}-guard-{}", derating.provenance.input_hash, derating.provenance.program_version);
+  model.provenance = provenance_lines(derating, "");
+  model.variables = variables(derating);
+  model.items.assign(std::begin(kReasons), std::end(kReasons));
+  model.step_s = derating.options.period_s;
+  model.fixed_step_s = derating.options.period_s;
+  model.sources = fmu_tables(model, bindings(derating));
+  const std::vector<ExporterType>& exporters = all_exporters();
+  model.sources.push_back({"motor_guard.h", std::ranges::find(exporters, "c_header", &ExporterType::name)->write(derating)});
+  return model;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,9 @@
+#ifndef FMI3_COMPONENT_H
+#define FMI3_COMPONENT_H
+
+#include "fmi3.h"
+
+/* Logs the problem of an instance, if there is one, and says what to return. */
+fmi3Status fmi3_told(fmi3Instance of, const char *problem);
+
+#endif

@@ -1,0 +1,119 @@
+#include "instance.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void instance_reset(instance_state *state) {
+  int i;
+  /* the gaps between the members too: equal states have equal bytes */
+  memset(state, 0, sizeof *state);
+  strcpy(state->token, MODEL_TOKEN);
+  for (i = 0; i < MODEL_VARIABLES; ++i) {
+    state->model.value[i] = model_variables[i].value;
+  }
+}
+
+const char *instance_begin(instance_state *state, double start_s) {
+  if (state->mode != mode_made) {
+    return "initialization mode is entered once, after instantiation or reset";
+  }
+  if (!isfinite(start_s)) {
+    return "the start time is no number";
+  }
+  state->mode = mode_initialization;
+  state->model.value[at_time_s] = start_s;
+  return model_begin(&state->model);
+}
+
+const char *instance_end_initialization(instance_state *state) {
+  if (state->mode != mode_initialization) {
+    return "initialization mode was not entered";
+  }
+  state->mode = mode_stepping;
+  return model_begin(&state->model);
+}
+
+const char *instance_terminate(instance_state *state) {
+  if (state->mode != mode_stepping) {
+    return "only a simulation that runs can be terminated";
+  }
+  state->mode = mode_terminated;
+  return 0;
+}
+
+const char *instance_step(instance_state *state, double current_s, double step_s) {
+  const double now_s = state->model.value[at_time_s];
+  instance_state *next;
+  const char *problem;
+  if (state->mode != mode_stepping) {
+    return "a step needs a simulation that runs: after initialization, before termination, and without an error before";
+  }
+  if (!(fabs(current_s - now_s) <= 1e-9 * (1.0 + fabs(now_s)))) {
+    return "the step does not begin where the last one ended; expected that, or a state that was set before";
+  }
+  if (!(step_s > 0.0) || !isfinite(step_s)) {
+    return "the step is not longer than 0 s";
+  }
+  next = instance_copy(state);
+  if (!next) {
+    return "out of memory";
+  }
+  problem = model_step(&next->model, current_s + step_s);
+  if (problem) {
+    state->mode = mode_failed;
+  } else {
+    memcpy(state, next, sizeof *state);
+  }
+  free(next);
+  return problem;
+}
+
+const char *instance_set(instance_state *state, unsigned reference, model_type type, double value) {
+  if (reference >= MODEL_VARIABLES || model_variables[reference].type != type) {
+    return "there is no variable of this type and value reference";
+  }
+  if (state->mode == mode_terminated || state->mode == mode_failed) {
+    return "the simulation has ended";
+  }
+  if (model_variables[reference].kind != kind_input && model_variables[reference].kind != kind_parameter) {
+    return "only inputs and parameters can be set";
+  }
+  if (model_variables[reference].kind == kind_parameter && state->mode == mode_stepping) {
+    return "a parameter is fixed once the simulation runs";
+  }
+  if (!isfinite(value) && !(MODEL_TAKES_UNKNOWN && model_variables[reference].kind == kind_input)) {
+    return "the value is no finite number";
+  }
+  state->model.value[reference] = value;
+  return 0;
+}
+
+const char *instance_get(instance_state *state, unsigned reference, model_type type, double *value) {
+  const char *problem = 0;
+  if (reference >= MODEL_VARIABLES || model_variables[reference].type != type) {
+    return "there is no variable of this type and value reference";
+  }
+  if (state->mode == mode_initialization && model_variables[reference].kind == kind_output) {
+    /* parameters may have been set since */
+    problem = model_begin(&state->model);
+  }
+  *value = state->model.value[reference];
+  return problem;
+}
+
+instance_state *instance_copy(const instance_state *state) {
+  instance_state *const copy = malloc(sizeof *copy);
+  if (copy) {
+    memcpy(copy, state, sizeof *copy);
+  }
+  return copy;
+}
+
+const char *instance_restore(instance_state *state, const void *bytes, size_t size) {
+  if (size != sizeof *state || memcmp(bytes, MODEL_TOKEN, sizeof MODEL_TOKEN) != 0) {
+    return "the bytes are no state of this FMU";
+  }
+  memcpy(state, bytes, size);
+  return 0;
+}

@@ -1,0 +1,30 @@
+/* What the FMI functions know of a model. Every variable has one number for both versions of FMI, and one double for its value: a Boolean
+   is 0 or 1, an enumeration its item. */
+#ifndef MODEL_H
+#define MODEL_H
+
+#include "model_data.h"
+
+typedef enum { kind_independent, kind_input, kind_parameter, kind_output, kind_constant } model_kind;
+typedef enum { type_real, type_boolean, type_enumeration } model_type;
+
+typedef struct {
+  model_kind kind;
+  model_type type;
+  double value; /* at the start */
+} model_variable;
+
+typedef struct {
+  double value[MODEL_VARIABLES];
+  model_part part;
+} model_state;
+
+/* In the order of their numbers. */
+extern const model_variable model_variables[MODEL_VARIABLES];
+
+/* Outputs from start values and inputs at the first moment. Returns 0, or what is wrong. */
+const char *model_begin(model_state *state);
+/* From value[at_time_s] to `until_s` with held inputs; sets the time. Returns 0, or what is wrong. */
+const char *model_step(model_state *state, double until_s);
+
+#endif

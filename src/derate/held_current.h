@@ -1,0 +1,31 @@
+// Periods of the firmware as intervals of a motor's network.
+#pragma once
+
+#include <cmath>
+
+namespace heatsoak {
+
+/// One interval with its rms current: as long as the current changes by little, and no longer than a second.
+struct HeldCurrent {
+  double duration_s = 0.0;
+  double heat_A2_s = 0.0;
+  double first_A = 0.0;
+  double speed_rad_per_s = 0.0;
+
+  /// Whether the next period, of magnitude `current_A`, belongs to another interval.
+  [[nodiscard]] bool is_over(double current_A, double at_rad_per_s) const {
+    constexpr double kLongest_s = 1.0;
+    constexpr double kLittle = 0.02;
+    return duration_s > 0.0 &&
+           (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A || at_rad_per_s != speed_rad_per_s);
+  }
+  void take(double current_A, double at_rad_per_s, double period_s) {
+    speed_rad_per_s = at_rad_per_s;
+    first_A = duration_s > 0.0 ? first_A : current_A;
+    duration_s += period_s;
+    heat_A2_s += current_A * current_A * period_s;
+  }
+  [[nodiscard]] double rms_A() const { return std::sqrt(heat_A2_s / duration_s); }
+};
+
+}  // namespace heatsoak

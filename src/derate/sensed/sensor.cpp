@@ -1,0 +1,50 @@
+#include "derate/sensed/sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motor/default_spread.h"
+
+namespace heatsoak {
+namespace {
+
+/// Largest relative distance of a spread's ends from the value.
+double half_width_ratio(const Motor& motor, std::string_view key, double value) {
+  const std::optional<Spread> spread = spread_or_default(motor, key);
+  if (!spread) {
+    return 0.0;
+  }
+  return std::max(spread->high - value, value - spread->low) / value;
+}
+
+}  // namespace
+
+bool ResistanceReading::is_usable(double current_A, double speed_rad_per_s) const {
+  return std::abs(current_A) >= least_current_A + current_per_speed_A_s_per_rad * std::abs(speed_rad_per_s);
+}
+
+ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& options, double period_s) {
+  const MotorValues& values = motor.nominal;
+  const double resistance_ohm = values.terminal_resistance_ohm;
+  const double alpha_per_K = values.temperature_coefficient_per_K;
+  constexpr double kReference_C = 25.0;
+  const double hot_ratio = 1.0 + alpha_per_K * (values.winding_limit_C - kReference_C);
+  // Magnets of NdFeB lose up to 0.12 %/K, and a rotor gets up to 80 K warmer than at the calibration.
+  constexpr double kWeakening = 0.1;
+  const double torque_constant_error_Nm_per_A =
+      (half_width_ratio(motor, "torque_constant", values.torque_constant_Nm_per_A) + kWeakening) * values.torque_constant_Nm_per_A;
+  // A winding of less resistance than nominal drops less voltage, so that the same error weighs more.
+  const double least_ohm = resistance_ohm * (1.0 - std::min(0.5, half_width_ratio(motor, "terminal_resistance", resistance_ohm)));
+  const double inductance_H = std::isnan(values.terminal_inductance_H) ? 0.0 : values.terminal_inductance_H;
+  const double most_change_A = inductance_H > 0.0 ? options.voltage_error_V * period_s / inductance_H : std::numeric_limits<double>::max();
+  const double K_per_share = 2.0 * hot_ratio / (alpha_per_K * options.accuracy_K);
+  return {.resistance_25C_ohm = resistance_ohm,
+          .temperature_coefficient_per_K = alpha_per_K,
+          .torque_constant_Nm_per_A = values.torque_constant_Nm_per_A,
+          .least_current_A = K_per_share * (options.voltage_error_V / least_ohm + options.current_error_A),
+          .current_per_speed_A_s_per_rad = K_per_share * torque_constant_error_Nm_per_A / least_ohm,
+          .most_current_change_A = most_change_A};
+}
+
+}  // namespace heatsoak

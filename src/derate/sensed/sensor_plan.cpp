@@ -1,0 +1,212 @@
+#include "derate/sensed/sensor_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/diagnostic.h"
+#include "derate/sensed/closed_loop.h"
+#include "derate/sensed/kalman_design.h"
+#include "derate/sensed/lying_sensor.h"
+#include "select/spread.h"
+
+namespace heatsoak {
+namespace {
+
+/// Of the search's loop: a tenth of the time in which the winding may come near its limit.
+constexpr double kStepsPerApproach = 10.0;
+/// The motors of the guard without a sensor: those of its search first, then those of each check.
+constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
+/// A pulse from cold heats a winding by safety factor times winding_speed_ratio. With an exponent of 1 that product is the one without a
+/// sensor and pulses decide the safety factor; with 2 the winding is so fast that the steady state gains no more (found on the motors of
+/// the search).
+constexpr double kPulseExponent = 1.5;
+
+/// The nominal motor with a winding that stores less heat.
+Network faster_network(const Motor& motor, double winding_speed_ratio) {
+  MotorSample sample = nominal_sample(motor);
+  sample.values.thermal_time_constant_winding_s /= winding_speed_ratio;
+  return datasheet_network(motor, sample);
+}
+
+ReadingCheck first_check(const Derating& model_only, const SensorOptions& options) {
+  constexpr double kColdMargin_K = 5.0;  // an air sensor has an error too
+  constexpr double kFrozenBand = 0.25;
+  return {.least_C = model_only.options.coldest_ambient_C,
+          .most_C = 300.0,
+          .cold_share = 0.0,
+          .cold_margin_K = kColdMargin_K,
+          .frozen_band_K = kFrozenBand * options.accuracy_K};
+}
+
+class PlanSearch {
+ public:
+  PlanSearch(const Motor& motor, const Robot& robot, const Derating& model_only, const SensorOptions& options, const Progress& progress)
+      : motor_(motor),
+        robot_(robot),
+        model_only_(model_only),
+        options_(options),
+        progress_(progress),
+        uses_(hardest_uses(model_only.observer, model_only.rules)) {
+    const SensorGain gain = sensor_gain(motor, robot, model_only.rules, options, model_only.options.period_s, limp_current_A(model_only),
+                                        model_only.options.guarantee.samples, model_only.options.guarantee.seed);
+    gain_ = gain.gain;
+    lag_gain_ratio_ = gain.lag_gain_ratio;
+  }
+
+  [[nodiscard]] SensorPlan plan_with(double reserve) const {
+    const double winding_speed_ratio = std::pow(std::max(1.0, model_only_.observer.heat_reserve_ratio() / reserve), kPulseExponent);
+    Observer observer(faster_network(motor_, winding_speed_ratio), motor_.nominal, robot_, reserve);
+    CurrentTable table = current_table(observer, model_only_.rules, model_only_.options.table);
+    SensorPlan plan{.options = options_,
+                    .observer = std::move(observer),
+                    .winding_speed_ratio = winding_speed_ratio,
+                    .table = std::move(table),
+                    .gain = gain_,
+                    .lag_gain_ratio = lag_gain_ratio_,
+                    .check = first_check(model_only_, options_)};
+    if (options_.kind == SensorKind::winding_resistance) {
+      plan.resistance = resistance_reading(motor_, options_, model_only_.options.period_s);
+    }
+    return plan;
+  }
+
+  [[nodiscard]] SensedLoop loop(const SensorPlan& plan, double step_s) const {
+    return {motor_, robot_, model_only_.rules, model_only_.observer, model_only_.table, plan, model_only_.options.period_s, step_s};
+  }
+
+  [[nodiscard]] std::vector<SensedPeak> peaks(const SensorPlan& plan, double step_s, std::uint64_t first_stream) const {
+    const GuaranteeOptions& options = model_only_.options.guarantee;
+    const SensedLoop sensed = loop(plan, step_s);
+    const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
+    std::vector<SensedPeak> all(blocks * kLanes);
+    in_parallel(blocks, options.threads, [&](std::size_t block) {
+      const auto found = sensed_peaks(sensed, uses_, options.seed, first_stream + block * kLanes);
+      std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
+    });
+    all.resize(static_cast<std::size_t>(options.samples));
+    return all;
+  }
+
+  [[nodiscard]] bool keeps(std::span<const SensedPeak> peaks) const {
+    const auto over = std::ranges::count_if(peaks, &SensedPeak::is_over);
+    return static_cast<double>(over) <= (1.0 - model_only_.options.guarantee.confidence) * static_cast<double>(peaks.size());
+  }
+
+  /// Between 1 and the safety factor without a sensor.
+  [[nodiscard]] double reserve() {
+    constexpr double kTolerance = 0.01;
+    const double coarse_s = std::max(model_only_.options.period_s, model_only_.options.approach_s / kStepsPerApproach);
+    double low = 1.0;
+    double high = model_only_.observer.heat_reserve_ratio();
+    while (high > low * (1.0 + kTolerance)) {
+      const double middle = std::sqrt(low * high);
+      (keeps(peaks(plan_with(middle), coarse_s, 0)) ? high : low) = middle;
+      if (progress_) {
+        progress_(std::min(++rounds_, kRounds), kRounds + 2);
+      }
+    }
+    return high;
+  }
+
+  [[nodiscard]] const std::vector<Use>& uses() const { return uses_; }
+
+ private:
+  static constexpr std::size_t kRounds = 8;
+  const Motor& motor_;
+  const Robot& robot_;
+  const Derating& model_only_;
+  const SensorOptions& options_;
+  const Progress& progress_;
+  std::vector<Use> uses_;
+  std::vector<double> gain_;
+  double lag_gain_ratio_ = 0.0;
+  std::size_t rounds_ = 0;
+};
+
+/// Bounds that at most 1 % of the honest sensors violate.
+void set_check(SensorPlan& plan, std::span<const SensedPeak> peaks) {
+  constexpr double kFalse = 0.01;
+  constexpr double kFrozenMargin = 1.5;
+  constexpr double kRateMargin = 1.5;
+  std::vector<double> cold;
+  std::vector<double> frozen;
+  double rate_K_per_s = 0.0;
+  for (const SensedPeak& each : peaks) {
+    cold.push_back(each.cold_share);
+    frozen.push_back(each.frozen_K);
+    rate_K_per_s = std::max(rate_K_per_s, each.rate_K_per_s);
+  }
+  std::ranges::sort(cold);
+  std::ranges::sort(frozen);
+  ReadingCheck& check = plan.check;
+  check.cold_share = quantile(cold, kFalse);
+  check.frozen_K = kFrozenMargin * quantile(frozen, 1.0 - kFalse);
+  check.most_rate_K_per_s = kRateMargin * rate_K_per_s;
+  check.most_jump_K = 2.0 * plan.options.accuracy_K;
+  plan.dropped = static_cast<int>(std::ranges::count_if(
+      peaks, [&](const SensedPeak& each) { return each.cold_share < check.cold_share || each.frozen_K > check.frozen_K; }));
+}
+
+void set_guarantee(SensorPlan& plan, std::span<const SensedPeak> peaks) {
+  std::vector<double> winding_C;
+  for (const SensedPeak& each : peaks) {
+    winding_C.push_back(each.winding_C);
+  }
+  std::ranges::sort(winding_C);
+  plan.samples = static_cast<int>(peaks.size());
+  plan.over = static_cast<int>(std::ranges::count_if(peaks, &SensedPeak::is_over));
+  plan.winding_p95_C = quantile(winding_C, 0.95);
+  plan.winding_most_C = winding_C.back();
+}
+
+/// Of the held uses in the plain case, which come first.
+void set_lasting(SensorPlan& plan, const SensedLoop& loop, const Derating& model_only) {
+  for (const UsePlayed& each : model_only.uses) {
+    if (each.use.on_s > 0.0) {
+      break;
+    }
+    const double without_A = each.current_A.back();
+    plan.lasting.push_back({each.use.speed_share * model_only.rules.most_speed_rad_per_s, without_A,
+                            std::min(nominal_lasting_current_A(loop, each.use), without_A + plan.most_gain_A)});
+  }
+}
+
+void require_sensible(const Observer& observer, const SensorOptions& options) {
+  if (!(options.accuracy_K > 0.0)) {
+    throw Failure(ExitCode::bad_input, fmt::format("a sensor accuracy of {:.3g} K: expected more than 0 K", options.accuracy_K));
+  }
+  if (options.node < 0 || static_cast<std::size_t>(options.node) >= observer.state_count()) {
+    throw Failure(ExitCode::bad_input, fmt::format("sensor at node {}: the motor has {}", options.node, observer.state_count()));
+  }
+}
+
+}  // namespace
+
+SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derating& model_only, const SensorOptions& options,
+                       const Progress& progress) {
+  require_sensible(model_only.observer, options);
+  const Motor motor = with_default_spreads(as_written);
+  PlanSearch search(motor, robot, model_only, options, progress);
+  double reserve = search.reserve();
+  constexpr double kRaise = 1.005;
+  constexpr int kMostRaises = 20;
+  const double fine_s = 2.0 * model_only.options.period_s;
+  for (int number = 1; number <= kMostRaises && reserve < model_only.observer.heat_reserve_ratio(); ++number, reserve *= kRaise) {
+    SensorPlan plan = search.plan_with(reserve);
+    const std::vector<SensedPeak> peaks = search.peaks(plan, fine_s, static_cast<std::uint64_t>(number) * kStreamsApart);
+    if (search.keeps(peaks)) {
+      set_check(plan, peaks);
+      set_guarantee(plan, peaks);
+      set_lying_sensor(plan, motor, robot, model_only, search.uses());
+      set_lasting(plan, search.loop(plan, fine_s), model_only);
+      return plan;
+    }
+  }
+  throw Failure(ExitCode::cannot_answer, fmt::format("{}: a sensor of {:.3g} K lowers no safety factor on heat; leave it out or use a "
+                                                     "more accurate one",
+                                                     motor.id, options.accuracy_K));
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,135 @@
+#include "identify/calibration/written_forecast.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "base/quantity.h"
+#include "identify/interval.h"
+#include "motor/motor.h"
+
+namespace heatsoak {
+namespace {
+
+std::string_view name_of(ForecastSource source) {
+  switch (source) {
+    case ForecastSource::file:
+      return "file";
+    case ForecastSource::ordinary:
+      return "least squares of free runs";
+    case ForecastSource::tempered:
+      return "forecast fit";
+  }
+  return "?";
+}
+
+std::string errors_in_words(const RivalScore& rival) {
+  std::vector<std::string> each;
+  for (const auto& [signal, rmse_K] : rival.rmse_K) {
+    each.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(rmse_K, 2)));
+  }
+  return fmt::format("{}: {}", name_of(rival.source), fmt::join(each, ", "));
+}
+
+}  // namespace
+
+Range declared_range(const Motor& motor, std::string_view key) {
+  for (const MotorEffect& effect : motor.effects) {
+    for (const ParameterSpec& spec : effect.type->parameters) {
+      if (key == fmt::format("effects.{}.{}", effect.name, spec.key)) {
+        return spec.range;
+      }
+    }
+  }
+  const auto specs = motor_figure_specs();
+  const auto found = std::ranges::find(specs, key, [](const MotorFigureSpec& each) { return each.spec.key; });
+  return found == specs.end() ? Range::positive() : found->spec.range;
+}
+
+bool is_rejected_by_whole_runs(const Forecast& forecast, std::span<const MeasuredRun> runs, const Eigen::VectorXd& theta, int threads) {
+  if (!forecast.accepted.empty() || forecast.source == ForecastSource::file) {
+    return true;
+  }
+  constexpr double kSure = 0.95;
+  const boost::math::chi_squared chance(static_cast<double>(theta.size()));
+  const double there_nats = cost_at(forecast.model(), runs, {}, forecast.fit, theta, threads);
+  return there_nats - forecast.fit.cost_nats > 0.5 * boost::math::quantile(chance, kSure);
+}
+
+void write_forecast(Calibration& calibration) {
+  const Forecast& forecast = *calibration.forecast;
+  const ForecastModel model = forecast.model();
+  calibration.motor_model = model.motor();
+  const Eigen::Index inner = model.motor().model.free_count();
+  calibration.fit.theta = forecast.fit.theta.head(inner);
+  calibration.fit.covariance = forecast.fit.covariance.topLeftCorner(inner, inner);
+  constexpr double kLeast_K = 1e-3;
+  constexpr double kMost_K = 20.0;
+  calibration.fit.free_run_error_K = std::clamp(forecast.fit.error_K, kLeast_K, kMost_K);
+  calibration.is_forecast_written = true;
+}
+
+std::vector<std::string> forecast_in_words(const Calibration& calibration) {
+  const Forecast& forecast = *calibration.forecast;
+  std::vector<std::string> words;
+  if (forecast.rivals.empty()) {
+    words.push_back(
+        fmt::format("{} of these runs can be left out with heat of their own, at least {} are needed: the network stays as it is, and the "
+                    "90 % band of forecasts is wide because it rests on so few",
+                    forecast.pieces, kLeastPieces));
+  } else {
+    std::vector<std::string> each;
+    std::ranges::transform(forecast.rivals, std::back_inserter(each), errors_in_words);
+    words.push_back(fmt::format("left-out pieces ({}) are predicted to, rms: {}", forecast.pieces, fmt::join(each, "; ")));
+  }
+  if (forecast.source == ForecastSource::file) {
+    words.emplace_back("no fit predicts left-out pieces better than the file: its values are written as they are");
+  } else if (forecast.source == ForecastSource::ordinary) {
+    words.emplace_back("ordinary least squares of free runs predicts left-out pieces best: its parameters are written");
+  } else if (!forecast.accepted.empty()) {
+    std::vector<std::string> names;
+    std::ranges::transform(forecast.accepted, std::back_inserter(names), &AcceptedExtension::name);
+    words.push_back(fmt::format(
+        "for better forecasts the network has {} now; this is no diagnosis: another effect may be the cause (`heatsoak diagnose`)",
+        fmt::join(names, ", ")));
+  } else if (calibration.is_forecast_written) {
+    words.emplace_back("whole runs contradict the parameters that follow the load at once: those of the whole runs are written");
+  }
+  return words;
+}
+
+void add_extensions(const Calibration& calibration, const std::string& source, Motor& motor) {
+  for (const MotorEffect& effect : calibration.effects) {
+    if (std::ranges::find(motor.effects, effect.name, &MotorEffect::name) != motor.effects.end()) {
+      continue;
+    }
+    motor.effects.push_back(effect);
+    for (Figure& each : motor.effects.back().parameters) {
+      each.source = source;
+      each.origin = each.spread ? each.origin : Origin::derived;
+    }
+  }
+  if (!calibration.is_forecast_written) {
+    return;
+  }
+  const ForecastModel model = calibration.forecast->model();
+  const ForecastFit& fit = calibration.forecast->fit;
+  for (std::size_t i = 0; i < model.faults().size(); ++i) {
+    const FreeFault& fault = model.faults()[i];
+    const Eigen::Index own = model.motor().model.free_count() + static_cast<Eigen::Index>(i);
+    const double reach = kInterval_sd * std::sqrt(fit.covariance(own, own));
+    MotorSensor sensor{std::string(fault.type->name), fault.type, {}};
+    sensor.size.value = std::exp(fit.theta[own]);
+    sensor.size.origin = Origin::measured;
+    sensor.size.source = source;
+    sensor.size.derivation = "fit to measured temperatures, for forecasts";
+    sensor.size.spread = Spread{Spread::Kind::range, std::max(fault.type->size.range.low, sensor.size.value * std::exp(-reach)),
+                                std::min(fault.type->size.range.high, sensor.size.value * std::exp(reach)), true};
+    motor.sensors.push_back(std::move(sensor));
+  }
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,12 @@
+#include "present/document.h"
+
+namespace heatsoak::present {
+
+void Document::add_note(Severity severity, std::string_view words) {
+  Note note;
+  note.severity = severity;
+  note.words = words;
+  notes.push_back(std::move(note));
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,308 @@
+#include "present/evaluation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/lanes.h"
+#include "present/verdict_words.h"
+#include "select/decision.h"
+
+namespace heatsoak::present {
+namespace {
+
+std::string peak_text(const Spread95& peak) {
+  return std::isfinite(peak.p05) ? fmt::format("{:.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
+                                 : fmt::format("{:.0f}", peak.nominal);
+}
+
+std::string percent_range(const Interval95& range) {
+  return fmt::format("{:.0f}…{:.0f}", std::floor(100.0 * range.low), std::ceil(100.0 * range.high));
+}
+
+/// "undecided" only stands where more samples could tell: the JSON keeps the cautious one of both verdicts.
+Text verdict_cell(const MotorEvaluation& motor) {
+  return motor.samples_needed ? Text{"undecided", Tone::doubtful} : Text{std::string(to_string(motor.verdict)), tone_of(motor.verdict)};
+}
+
+std::string_view factor_text(const MotorEvaluation& motor) {
+  switch (motor.limiting_factor) {
+    case LimitingFactor::none:
+      return "–";
+    case LimitingFactor::winding_temperature:
+      return "winding";
+    case LimitingFactor::stator_temperature:
+      return "stator";
+    default:
+      return to_string(motor.limiting_factor);
+  }
+}
+
+std::vector<Column> columns() {
+  constexpr auto kLeft = Alignment::left;
+  return {{"", "", 0},
+          {"motor", "", 0, kLeft},
+          {"verdict", "", 0, kLeft},
+          {"peak", "°C", 0},
+          {"limit", "°C", 0},
+          {"margin", "K", 0},
+          {"winding", "", 1, kLeft},
+          {"P over", "%", 2},
+          {"reached", "", 3},
+          {"limited by", "", 4, kLeft},
+          {"A rms", "", 5},
+          {"more A", "", 6},
+          {"stator", "°C", 7},
+          {"limit", "°C", 8},
+          {"data", "", 9, kLeft},
+          {"P interval", "%", 10},
+          {"p95 interval", "°C", 11}};
+}
+
+std::string p95_text(const MotorEvaluation& motor) {
+  if (!motor.winding_p95_interval_C) {
+    return "–";
+  }
+  const Interval95& range_C = *motor.winding_p95_interval_C;
+  return std::isfinite(range_C.high) ? fmt::format("{:.0f}…{:.0f}", range_C.low, range_C.high) : fmt::format("≥ {:.0f}", range_C.low);
+}
+
+std::vector<Text> row(std::size_t rank, const MotorEvaluation& motor, double ambient_C) {
+  const Tone tone = tone_of(motor.verdict);
+  return {{fmt::format("{}", rank)},
+          {motor.motor_id},
+          verdict_cell(motor),
+          {peak_text(motor.winding_peak_C)},
+          {fmt::format("{:.0f}", motor.winding_limit_C)},
+          {fmt::format("{:+.0f}", nearest_margin_K(motor))},
+          {sparkline(motor, ambient_C), tone},
+          {std::isfinite(motor.probability_over_limit) ? fmt::format("{:.0f}", 100.0 * motor.probability_over_limit) : "–"},
+          {motor.time_to_limit_s ? duration_text(*motor.time_to_limit_s) : "–"},
+          {std::string(factor_text(motor))},
+          {fmt::format("{:.2f}", motor.current_rms_A)},
+          {motor.margin_A && motor.verdict != Verdict::infeasible ? fmt::format("{:+.1f}", *motor.margin_A) : "–"},
+          {fmt::format("{:.0f}", motor.stator_peak_C.nominal)},
+          {motor.stator_limit_C ? fmt::format("{:.0f}", *motor.stator_limit_C) : "–"},
+          {motor.data_quality},
+          {motor.probability_interval ? percent_range(*motor.probability_interval) : "–"},
+          {p95_text(motor)}};
+}
+
+/// "fails: the winding reaches 162 °C, its limit is 155 °C, exceeded after 5 min".
+std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
+  if (motor.verdict == Verdict::infeasible) {
+    return fmt::format("cannot drive this duty: {} does not suffice", to_string(motor.limiting_factor));
+  }
+  if (motor.samples_needed) {
+    return fmt::format("is undecided: it exceeds a limit with a probability of {} %", percent_range(*motor.probability_interval));
+  }
+  const bool is_stator = motor.limiting_factor == LimitingFactor::stator_temperature;
+  const std::string when = motor.verdict == Verdict::fail && motor.time_to_limit_s
+                               ? fmt::format(", exceeded after {}", duration_text(*motor.time_to_limit_s))
+                               : "";
+  const std::string reaches = fmt::format("the {} reaches {:.0f} °C (limit {:.0f} °C{})", is_stator ? "stator" : "winding",
+                                          is_stator ? motor.stator_peak_C.nominal : motor.winding_peak_C.nominal,
+                                          is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C, when);
+  const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * motor.probability_over_limit);
+  switch (motor.verdict) {
+    case Verdict::fail:
+      return "fails: " + (is_drawn ? over : reaches);
+    case Verdict::marginal:
+      return fmt::format("is marginal: {}",
+                         motor.short_probability > std::max(motor.probability_over_limit, kMarginalProbability)
+                             ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * motor.short_probability)
+                             : over);
+    default:
+      return fmt::format("passes: {}", reaches);
+  }
+}
+
+/// With the remark that the robot's mass and wheels play no part where the duty states torque and speed itself.
+std::string load_words(const Duty& duty) {
+  return duty.shape_data->depends_on_robot()
+             ? duty.id
+             : fmt::format("{} (a fixed wheel load: mass and wheel size of the robot do not matter)", duty.id);
+}
+
+std::vector<Text> headline(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
+  const auto sentence = [&](const MotorEvaluation& motor, std::string_view prefix) {
+    const Tone tone = motor.samples_needed ? Tone::doubtful : tone_of(motor.verdict);
+    return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor, context.draws > 0)), tone};
+  };
+  const auto good =
+      std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.verdict == Verdict::pass && !each.samples_needed; });
+  const auto undecided = std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.samples_needed.has_value(); });
+  std::vector<Text> sentences{
+      {fmt::format("{} of {} motor{} pass{} {}{}.", good, results.size(), results.size() == 1 ? "" : "s", good == 1 ? "es" : "",
+                   load_words(context.duty), undecided > 0 ? fmt::format("; {} undecided", undecided) : ""),
+       good == 0 ? Tone::bad : Tone::good}};
+  sentences.push_back(sentence(results.front(), results.size() > 1 ? "Best: " : ""));
+  const auto own = std::ranges::find(results, context.robot.drive_motor, &MotorEvaluation::motor_id);
+  if (own != results.end() && own != results.begin()) {
+    sentences.push_back(sentence(*own, "The robot's own "));
+  }
+  return sentences;
+}
+
+/// How far the number of samples alone can be trusted.
+std::string sampling_error(std::span<const MotorEvaluation> results) {
+  double probability_ratio = 0.0;
+  double p95_K = 0.0;
+  for (const MotorEvaluation& each : results) {
+    probability_ratio = std::max(probability_ratio, 0.5 * (each.probability_interval->high - each.probability_interval->low));
+    p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
+  }
+  return fmt::format(
+      "Other samples would give P over within ±{:.0f} points and the upper end of the peak {} (95 %).",
+      std::ceil(100.0 * probability_ratio),
+      std::isfinite(p95_K) ? fmt::format("within ±{:.0f} K at most", std::ceil(p95_K)) : "anywhere above: take more samples");
+}
+
+std::string undecided_note(const MotorEvaluation& motor, bool is_drawn) {
+  const bool is_short = motor.short_probability > motor.probability_over_limit;
+  const auto games = [&](double samples) { return is_drawn ? std::ceil(samples / kLanes) : std::ceil(samples); };
+  const std::string_view unit = is_drawn ? "games" : "samples";
+  return fmt::format(
+      "{} is undecided after {:.0f} {}: the share of samples that {} may lie on either side of a threshold. {}{:.0f} more {} needed "
+      "(--samples {}); until then count it as {}.",
+      motor.motor_id, games(motor.samples), unit,
+      is_short ? "miss the demand" : fmt::format("exceed a limit ({} %)", percent_range(*motor.probability_interval)),
+      *motor.samples_needed >= kMostNeeded ? "More than " : "", games(*motor.samples_needed - motor.samples), unit, *motor.samples_needed,
+      to_string(motor.verdict));
+}
+
+void add_notes(Document& document, const MotorEvaluation& motor, const EvaluationContext& context) {
+  add_lines(document.notes, why_infeasible(motor, context.robot), Severity::warning);
+  if (motor.samples_needed) {
+    document.add_note(Severity::warning, undecided_note(motor, context.draws > 0));
+  }
+  if (motor.destroyed) {
+    document.add_note(Severity::warning, fmt::format("{}: thermal runaway, the calculation ended at 1000 °C", motor.motor_id));
+  }
+  if (motor.verdict != Verdict::infeasible && motor.short_probability > kMarginalProbability) {
+    document.add_note(Severity::note, fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})", motor.motor_id,
+                                                  100.0 * motor.short_probability, to_string(motor.short_limit)));
+  }
+}
+
+std::vector<std::string> paragraphs(const EvaluationContext& context) {
+  const std::string samples = context.samples > 0 ? fmt::format("{} sample{} of all declared tolerances, seed {}", context.samples,
+                                                                context.samples == 1 ? "" : "s", context.seed)
+                                                  : "nominal values only";
+  std::string first = fmt::format("{} on {}: {}, ambient {:.0f} °C, {}.", context.robot.id, context.duty.id,
+                                  duration_text(context.demand.duration_s()), context.duty.ambient_C.value, samples);
+  if (context.draws > 0) {
+    first += fmt::format(" {} game{} with other inputs and robot parameters; verdict, range and P over are of all of them.", context.draws,
+                         context.draws == 1 ? "" : "s");
+  }
+  return {first};
+}
+
+}  // namespace
+
+void add_changes(Document& document, std::span<const ChangeEffect> effects, const std::string& motor_id) {
+  constexpr std::size_t kMost = 3;
+  Table table{.title = fmt::format("Changes of the robot that cool {} most", motor_id),
+              .columns = {{"change", "", 0, Alignment::left}, {"from", "", 0}, {"to", "", 0}, {"saves", "K", 0}, {"±", "K", 1}},
+              .rows = {}};
+  const auto shown = [](double value, std::string_view unit) {
+    return unit.empty() ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
+  };
+  for (const ChangeEffect& each : effects) {
+    const double error_K = std::isfinite(each.standard_error_K) ? each.standard_error_K : 0.0;
+    // A change that its own scatter could make is none.
+    if (table.rows.size() < kMost && each.is_deliverable && each.saved_K > std::max(0.5, 2.0 * error_K)) {
+      table.rows.push_back({{std::string(name_of(each.quantity))},
+                            {shown(each.before, unit_of(each.quantity))},
+                            {shown(each.before * each.factor, unit_of(each.quantity))},
+                            {fmt::format("{:.0f}", each.saved_K)},
+                            {std::isfinite(each.standard_error_K) ? fmt::format("{:.0f}", std::ceil(2.0 * each.standard_error_K)) : "–"}});
+    }
+  }
+  if (table.rows.empty()) {
+    document.add_note(Severity::note,
+                      "No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game.");
+    return;
+  }
+  document.tables.push_back(std::move(table));
+  document.add_note(
+      Severity::background,
+      fmt::format("Changes: mean of {} games with nominal values, each driven with and without the change; ± is two standard errors.",
+                  kChangeGames));
+}
+
+Tone tone_of(Verdict verdict) { return verdict == Verdict::pass ? Tone::good : verdict == Verdict::marginal ? Tone::doubtful : Tone::bad; }
+
+void add_lines(std::vector<Note>& notes, std::string_view text, Severity severity) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    if (end > 0) {
+      notes.push_back({severity, std::string(text.substr(0, end))});
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
+std::string sparkline(const MotorEvaluation& motor, double ambient_C) {
+  constexpr std::array<std::string_view, 8> kBlocks{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  constexpr std::size_t kCells = 8;
+  const TemperatureCurves& curves = motor.curves;
+  if (curves.time_s.empty() || motor.winding_limit_C <= ambient_C) {
+    return "";
+  }
+  std::array<double, kCells> highest_C;
+  highest_C.fill(ambient_C);
+  for (std::size_t i = 0; i < curves.time_s.size(); ++i) {
+    const double place = static_cast<double>(kCells) * curves.time_s[i] / std::max(curves.time_s.back(), 1e-9);
+    double& cell_C = highest_C.at(std::min(kCells - 1, static_cast<std::size_t>(place)));
+    cell_C = std::max(cell_C, curves.winding_C[i]);
+  }
+  std::string line;
+  for (const double each_C : highest_C) {
+    const double level = (each_C - ambient_C) / (motor.winding_limit_C - ambient_C);
+    line += kBlocks.at(static_cast<std::size_t>(std::clamp(std::floor(level * kBlocks.size()), 0.0, kBlocks.size() - 1.0)));
+  }
+  return line;
+}
+
+Document evaluation_document(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
+  Document document{.headline = headline(results, context), .paragraphs = paragraphs(context)};
+  Table table{.columns = columns()};
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    table.rows.push_back(row(i + 1, results[i], context.duty.ambient_C.value));
+  }
+  document.tables.push_back(std::move(table));
+  for (const MotorEvaluation& each : results) {
+    add_notes(document, each, context);
+  }
+  if (std::ranges::any_of(results, [](const MotorEvaluation& each) { return each.data_quality == "estimated"; })) {
+    document.add_note(Severity::note,
+                      "The verdicts rest on estimated thermal values where data is \"estimated\": no maker publishes them "
+                      "(`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
+  }
+  add_lines(document.notes, slip_text(context.demand), Severity::note);
+  if (context.duty.shape_data->depends_on_robot()) {
+    document.add_note(
+        Severity::background,
+        "`heatsoak simulate` gives other temperatures: it adds slip, noisy sensors and the sag of the battery, while here the plan "
+        "is followed exactly at the nominal voltage. --closed-loop ranks motors with all that.");
+  }
+  document.add_note(Severity::background, fmt::format("Load: {}.", context.duty.origin));
+  if (context.draws > 0) {
+    document.add_note(Severity::background, "The nominal peak, margin, reached, A rms and more A are of one game, that of the seed.");
+  } else if (context.samples > 0) {
+    document.add_note(Severity::background, sampling_error(results));
+  }
+  document.add_note(
+      Severity::background,
+      "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from ambient to limit; "
+      "P over, share of samples over a limit; reached, time until the first limit; more A, rms current that is left; P interval and p95 "
+      "interval, what other samples "
+      "would give (95 %). `heatsoak describe "
+      "verdict` defines the verdicts.");
+  return document;
+}
+
+}  // namespace heatsoak::present

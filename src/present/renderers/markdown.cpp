@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include "present/renderer.h"
+
+namespace heatsoak::renderers {
+namespace {
+
+using present::Alignment;
+using present::Document;
+using present::Note;
+using present::RenderOptions;
+using present::Severity;
+using present::Table;
+using present::Text;
+
+/// What Markdown would take for its own in a cell or a paragraph, and control characters.
+std::string escaped(std::string_view text) {
+  constexpr std::string_view kSpecial = "\\`*_[]<>|#";
+  std::string result;
+  for (const char c : text) {
+    if (kSpecial.find(c) != std::string_view::npos) {
+      result += '\\';
+    }
+    result += (static_cast<unsigned char>(c) < ' ' || c == 0x7f) ? '?' : c;
+  }
+  return result;
+}
+
+std::string text_of(const Table& table) {
+  std::string text = table.title.empty() ? "" : fmt::format("### {}\n\n", escaped(table.title));
+  std::string rule = "|";
+  text += "|";
+  for (const present::Column& column : table.columns) {
+    text += fmt::format(" {}{} |", escaped(column.name), column.unit.empty() ? "" : " / " + escaped(column.unit));
+    rule += column.alignment == Alignment::right ? "---:|" : "---|";
+  }
+  text += "\n" + rule + "\n";
+  for (const std::vector<Text>& row : table.rows) {
+    text += "|";
+    for (const Text& cell : row) {
+      text += fmt::format(" {} |", escaped(cell.words));
+    }
+    text += "\n";
+  }
+  return text + "\n";
+}
+
+std::string render(const Document& document, const RenderOptions& /*options*/) {
+  std::string text;
+  for (const Text& sentence : document.headline) {
+    text += fmt::format("**{}**\n\n", escaped(sentence.words));
+  }
+  for (const std::string& paragraph : document.paragraphs) {
+    text += escaped(paragraph) + "\n\n";
+  }
+  for (const Table& table : document.tables) {
+    text += text_of(table);
+  }
+  for (const Note& note : present::by_urgency(document.notes)) {
+    text += fmt::format("- {}{}\n", note.severity == Severity::warning ? "warning: " : "", escaped(note.words));
+  }
+  return text;
+}
+
+}  // namespace
+
+present::Renderer markdown() {
+  return {.name = {}, .file_ending = ".md", .summary = "Markdown with every column and every note", .render = render};
+}
+
+}  // namespace heatsoak::renderers

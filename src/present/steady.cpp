@@ -1,0 +1,57 @@
+#include "present/steady.h"
+
+#include <fmt/format.h>
+
+#include "motor/datasheet_network.h"
+#include "thermal/transient.h"
+
+namespace heatsoak::present {
+namespace {
+
+Text headline(const SteadyAnswer& answer) {
+  const PeriodicState& periodic = answer.periodic;
+  const std::string& id = answer.motor.id;
+  if (periodic.destroyed_s) {
+    return {fmt::format("{} is destroyed: thermal runaway within one cycle, {:.0f} °C are passed {:.3g} s after the current comes on.", id,
+                        kDestroyed_C, *periodic.destroyed_s),
+            Tone::bad};
+  }
+  if (periodic.runaway) {
+    return {fmt::format("{} has no steady state: thermal runaway, it gets hotter from cycle to cycle.", id), Tone::bad};
+  }
+  return {fmt::format("{} settles at {:.1f} °C at the highest (winding limit {:.0f} °C, {}).", id, periodic.peak_C[states::winding],
+                      answer.motor.nominal.winding_limit_C, answer.is_over_limit ? "exceeded" : "kept"),
+          answer.is_over_limit ? Tone::bad : Tone::good};
+}
+
+}  // namespace
+
+Document steady_document(const SteadyAnswer& answer) {
+  Document document{.headline = {headline(answer)},
+                    .paragraphs = {fmt::format("{} thermal data, rms current {:.2f} A, ambient {:.0f} °C.", data_quality(answer.motor),
+                                               answer.under_rms.current_rms_A, answer.ambient_C)}};
+  const PeriodicState& periodic = answer.periodic;
+  if (periodic.runaway || periodic.destroyed_s) {
+    return document;
+  }
+  const auto shown = [](double value_C) { return Text{fmt::format("{:.1f}", value_C)}; };
+  Table table{.columns = {{"", "", 0, Alignment::left}, {"mean", "°C", 0}, {"highest", "°C", 0}}};
+  table.rows.push_back({{"winding"}, shown(periodic.mean_C[states::winding]), shown(periodic.peak_C[states::winding])});
+  table.rows.push_back({{"stator"}, shown(periodic.mean_C[states::stator]), shown(periodic.peak_C[states::stator])});
+  if (!answer.under_rms.runaway) {
+    table.rows.push_back({{answer.is_of_the_equations ? "winding, equations (8) to (12)" : "winding, rms current held"},
+                          shown(answer.under_rms.winding_C),
+                          {"–"}});
+    table.rows.push_back({{answer.is_of_the_equations ? "stator, equations (8) to (12)" : "stator, rms current held"},
+                          shown(answer.under_rms.stator_C),
+                          {"–"}});
+    document.add_note(Severity::background,
+                      fmt::format("{} are exact for cycles that are short against the winding's time constant of {:.3g} s.",
+                                  answer.is_of_the_equations ? "Equations (8) to (12)" : "The values under the rms current",
+                                  answer.motor.nominal.thermal_time_constant_winding_s));
+  }
+  document.tables.push_back(std::move(table));
+  return document;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,36 @@
+#include "present/verdict_topic.h"
+
+#include <fmt/format.h>
+
+namespace heatsoak::present {
+
+std::vector<VerdictMeaning> verdict_meanings() {
+  const double rare_percent = 100.0 * kMarginalProbability;
+  const double most_percent = 100.0 * kMajority;
+  const double short_percent = 100.0 * kTolerableShortTime;
+  return {
+      {Verdict::pass,
+       fmt::format("With nominal values the motor stays within every temperature limit and delivers the demand. At most {:.0f} % of the "
+                   "samples exceed a limit, and at most {:.0f} % miss the demand. On a duty that is drawn, such as a match, most samples "
+                   "stay within, and the upper end of the 95 % interval of the share over a limit is at most {:.0f} %.",
+                   rare_percent, rare_percent, rare_percent)},
+      {Verdict::marginal,
+       fmt::format("As pass, but more samples exceed a limit or miss the demand than the {:.0f} % allowed there.", rare_percent)},
+      {Verdict::fail, fmt::format("With nominal values the winding or the stator exceeds its limit. On a duty that is drawn: more than "
+                                  "{:.0f} % of the samples do.",
+                                  most_percent)},
+      {Verdict::infeasible,
+       fmt::format("Voltage or current do not suffice for the demanded torque for more than {:.0f} % of the time, the winding being hot. "
+                   "On a duty that is drawn: in more than {:.0f} % of the samples.",
+                   short_percent, most_percent)}};
+}
+
+std::string undecided_meaning() {
+  return fmt::format(
+      "The 95 % interval of the share of samples covers the threshold between two verdicts ({:.0f} %, and {:.0f} % on a "
+      "duty that is drawn). More samples decide it; without --samples the program draws them, within bounds. Exit code and "
+      "JSON then use the verdict of the samples so far.",
+      100.0 * kMarginalProbability, 100.0 * kMajority);
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,40 @@
+#include "present/wrap.h"
+
+#include <algorithm>
+
+namespace heatsoak::present {
+
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string_view leading(std::string_view text, std::size_t count) {
+  std::size_t end = 0;
+  while (end < text.size() && (width_of(text.substr(0, end)) < count || (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)) {
+    ++end;
+  }
+  return text.substr(0, end);
+}
+
+std::string wrapped(std::string_view text, std::string_view first, std::size_t width) {
+  const std::string indent(width_of(first), ' ');
+  std::string result;
+  std::string line(first);
+  bool is_begin = true;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!is_begin && width_of(line) + 1 + width_of(word) > width) {
+      result += line + "\n";
+      line = indent;
+      is_begin = true;
+    }
+    line += is_begin ? "" : " ";
+    line += word;
+    is_begin = false;
+  }
+  return result + line;
+}
+
+}  // namespace heatsoak::present

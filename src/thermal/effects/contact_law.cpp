@@ -1,0 +1,50 @@
+#include "thermal/effect.h"
+#include "thermal/scalar.h"
+
+namespace heatsoak::effects {
+namespace {
+
+enum Node { hot, cold };
+enum Parameter { conductance, mean_ratio, difference_ratio };
+
+struct ContactLaw {
+  template <class S>
+  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+    constexpr double kMean_C = 60.0;
+    constexpr double kDifference_K = 30.0;
+    constexpr double kPer_K = 100.0;
+    const S difference_K = x.temperature_C(hot) - x.temperature_C(cold);
+    const S mean_C = 0.5 * (x.temperature_C(hot) + x.temperature_C(cold));
+    const S ratio = power(x.parameter(mean_ratio), (mean_C - kMean_C) / kPer_K) *
+                    power(x.parameter(difference_ratio), (difference_K - kDifference_K) / kPer_K);
+    heat.flow(hot, cold, x.parameter(conductance) * ratio * difference_K);
+  }
+};
+
+}  // namespace
+
+EffectType contact_law() {
+  return {
+      .name = {},
+      .summary =
+          "A conductance between two nodes that varies exponentially with their mean temperature and with their difference, in parallel to "
+          "the constant resistance between them.",
+      .equation = "P_hot→cold = G · r_m^((T_mean − 60 °C)/100 K) · r_d^((ΔT − 30 K)/100 K) · ΔT",
+      .reference =
+          "an empirical law; D. Staton, A. Boglietti, A. Cavagnino, Solving the more difficult aspects of electric motor thermal analysis, "
+          "IEEE Trans. Energy Convers. 20 (2005): gaps between parts decide and change with temperature",
+      .nodes = {{"hot", "winding"}, {"cold", "stator"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "at a mean of 60 °C and a difference of 30 K"},
+                     {"mean_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the mean temperature"},
+                     {"difference_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the difference"}},
+      .typical = "half of the conductance between winding and stator, with ratios of 0.3 to 3",
+      .look_alike =
+          "contact_temperature_dependence, a contact that comes in one step; a winding of several bodies. An effect for forecasts: it "
+          "stands for whatever bends the conductance.",
+      // mean 110 °C, difference 80 K: 0.5 W/K · 4^0.5 · 4^0.5 · 80 K = 0.5 · 4 · 80 = 160 W
+      .example = {.parameters = {0.5, 4.0, 4.0}, .at = {}, .temperature_C = {150.0, 70.0}, .expected_heat_W = {-160.0, 160.0}},
+      .laws = laws<ContactLaw>(),
+  };
+}
+
+}  // namespace heatsoak::effects

@@ -1,0 +1,259 @@
+// Forecasts: the fit to whole runs against what is known of it, the choice of a network, the band, and a motor file run along a log.
+#include "identify/forecast/forecast.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "identify/forecast/prediction.h"
+#include "motor/write_motor.h"
+#include "study.h"
+
+namespace heatsoak::study {
+namespace {
+
+LogMaking long_enough() {
+  LogMaking making;
+  making.duration_s = 1200.0;
+  return making;
+}
+
+/// Logs of one motor from files.
+std::vector<Recording> logs_of(const TwoNodeTruth& truth, const LogMaking& making, const Folder& folder, int first, int count) {
+  std::vector<Recording> all;
+  for (int run = first; run < first + count; ++run) {
+    const auto file = folder.path() / ("run_" + std::to_string(run) + ".csv");
+    all.push_back(read_log(write_log(generated_log(truth, making, 17, static_cast<std::uint64_t>(run)), file)));
+  }
+  return all;
+}
+
+std::vector<MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<Recording>& logs) {
+  std::vector<std::string> notes;
+  return forecast_runs(setup, logs, MeasuredRunOptions::kNotStated_C, notes);
+}
+
+/// Of white noise every sample counts; of x(k+1) = a·x(k) + noise the share (1 − a)/(1 + a) does.
+TEST(IndependentSamples, AreThoseOfKnownProcesses) {
+  constexpr int kSamples = 20'000;
+  Random random(4, 1);
+  for (const double kept : {0.0, 0.5, 0.9}) {
+    Eigen::VectorXd error_K(kSamples);
+    double now_K = 0.0;
+    for (double& each : error_K) {
+      now_K = kept * now_K + standard_normal(random);
+      each = now_K;
+    }
+    const double expected = kSamples * (1.0 - kept) / (1.0 + kept);
+    EXPECT_NEAR(independent_samples(error_K) / expected, 1.0, 0.15) << kept;
+  }
+  // An error that never changes is one sample.
+  EXPECT_LT(independent_samples(Eigen::VectorXd::Ones(kSamples)), 2.1);
+}
+
+/// Columns of θ, of the heat factor and of a free sensor lag against differences of the simulation.
+TEST(ForecastModel, SlopesAreDifferences) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"5 %\""};
+  const std::vector<Recording> logs = logs_of(sheet.truth, long_enough(), folder, 0, 1);
+  ForecastSetup setup = forecast_setup(sheet.motor(folder), logs);
+  const MeasuredRun run = runs_of(setup, logs).front();
+  const ForecastModel base = setup.model();
+  for (const Extension& extension : extensions_for(setup, base, base.start(), std::vector{run})) {
+    const ForecastModel model = with_extension(setup, extension).model();
+    Eigen::VectorXd theta = model.start();
+    const std::vector<double> start_C(static_cast<std::size_t>(model.network().state_count()), 27.0);
+    const LinearisedRun here = model.along(run, theta, 0.02, start_C);
+    constexpr double kStep = 1e-4;
+    for (Eigen::Index i = 0; i <= model.count(); ++i) {
+      const auto moved = [&](double by) {
+        Eigen::VectorXd other = theta;
+        double heat_log = 0.02;
+        (i < model.count() ? other[i] : heat_log) += by;
+        return model.along(run, other, heat_log, start_C).residual_K;
+      };
+      const Eigen::VectorXd expected = (moved(-kStep) - moved(kStep)) / (2.0 * kStep);
+      const double size = std::max(1e-3, expected.array().isNaN().select(0.0, expected).cwiseAbs().maxCoeff());
+      const Eigen::VectorXd off = (here.by_parameter.col(i) - expected).cwiseAbs();
+      EXPECT_LT(off.array().isNaN().select(0.0, off).maxCoeff(), 1e-3 * size) << extension.name << ", coordinate " << i;
+    }
+  }
+}
+
+/// A motor of two nodes needs no other network, and its forecasts are as good as the unknown heat lets them be.
+TEST(Forecast, KeepsANetworkThatIsRight) {
+  const Folder folder;
+  const Sheet sheet;
+  const Motor motor = sheet.motor(folder);
+  const TwoNodeTruth truth = drawn_truth(sheet, motor, 5);
+  const std::vector<Recording> logs = logs_of(truth, long_enough(), folder, 0, 4);
+  const ForecastSetup setup = forecast_setup(motor, logs);
+  const std::vector<MeasuredRun> runs = runs_of(setup, logs);
+  const Forecast found = forecast_of(setup, runs, {}, 0);
+  EXPECT_THAT(found.accepted, testing::IsEmpty());
+  EXPECT_EQ(found.pieces, 4U);
+  EXPECT_NE(found.source, ForecastSource::file);
+  const ForecastModel model = found.model();
+  for (const MeasuredRun& run : runs_of(setup, logs_of(truth, long_enough(), folder, 10, 2))) {
+    const PredictedRun predicted = predict(model, found.fit.theta, found.fit.covariance, found.band, run);
+    for (const PredictedSignal& each : predicted.signals) {
+      // 0.06 W of unknown heat at each node over 180 s move it by some tenths of a kelvin.
+      EXPECT_LT(each.rmse_K, 0.6) << each.signal;
+      EXPECT_GT(each.coverage_share, 0.6) << each.signal;
+    }
+  }
+}
+
+/// A contact that gets better by 1 % per K, by a law that no candidate has: left-out runs ask for one that bends alike.
+TEST(Forecast, ExtendsANetworkThatIsWrong) {
+  const Folder folder;
+  const Sheet sheet;
+  const Motor motor = sheet.motor(folder);
+  TwoNodeTruth truth = sheet.truth;
+  truth.contact_change_per_K = 0.01;
+  LogMaking making = long_enough();
+  making.largest_current_A = 13.0;
+  making.flux_rms_W = 0.02;
+  const std::vector<Recording> logs = logs_of(truth, making, folder, 0, 4);
+  const ForecastSetup setup = forecast_setup(motor, logs);
+  const Forecast found = forecast_of(setup, runs_of(setup, logs), {}, 0);
+  ASSERT_FALSE(found.accepted.empty());
+  EXPECT_EQ(found.source, ForecastSource::tempered);
+  ASSERT_EQ(found.rivals.size(), 3U);
+  const ForecastModel model = found.model();
+  const ForecastModel base = setup.model();
+  const ForecastRules ordinary{.is_tempered = false, .has_heat_factors = false};
+  const ForecastFit plain = fit_forecast(base, runs_of(setup, logs), {}, base.start(), ordinary);
+  for (const MeasuredRun& run : runs_of(setup, logs_of(truth, making, folder, 10, 2))) {
+    const auto winding_K = [&](const ForecastModel& by, const ForecastFit& fit) {
+      return predict(by, fit.theta, fit.covariance, found.band, run).signals.front().rmse_K;
+    };
+    EXPECT_LT(winding_K(model, found.fit), 0.8 * winding_K(base, plain));
+  }
+}
+
+/// Without ten-fold data for one run, the priors of the data sheet count: a single steady state cannot tell two resistances apart.
+TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
+  const Folder folder;
+  const Sheet sheet;
+  const std::vector<Recording> logs = logs_of(sheet.truth, long_enough(), folder, 0, 1);
+  const ForecastSetup setup = forecast_setup(sheet.motor(folder), logs);
+  const ForecastModel model = setup.model();
+  const std::vector<MeasuredRun> runs = runs_of(setup, logs);
+  const ForecastFit fit = fit_forecast(model, runs, {}, model.start(), {});
+  EXPECT_GT(fit.weight, 0.0);
+  EXPECT_LT(fit.weight, 0.5) << "errors of slow unknown heat are correlated";
+  // The covariance is wider by the same share.
+  ForecastRules all_count{.held_error_K = fit.error_K, .held_weight = 1.0};
+  const ForecastFit sure = fit_forecast(model, runs, {}, fit.theta, all_count);
+  EXPECT_GT(fit.covariance(0, 0), 1.5 * sure.covariance(0, 0));
+}
+
+/// A log of torque and speed has the heat of one with the current that the torque takes.
+TEST(Prediction, TakesATorqueForACurrent) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
+  const Motor motor = sheet.motor(folder);
+  Recording with_current = generated_log(sheet.truth, long_enough(), 3, 0);
+  const std::size_t rows = with_current.rows();
+  with_current.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(rows, 100.0)});
+  Recording with_torque = with_current;
+  std::vector<double> torque_Nm;
+  for (const double current_A : with_current.find("current_A")->values) {
+    torque_Nm.push_back(0.034 * (current_A - 0.2));
+  }
+  std::erase_if(with_torque.channels, [](const Channel& each) { return each.quantity.key == "current_A"; });
+  with_torque.channels.push_back({*quantity_named("torque_Nm"), std::move(torque_Nm)});
+  const auto predicted = [&](const Recording& log) { return predict(motor, std::vector{log}, PredictionOptions{}).runs.front(); };
+  const PredictedRun by_current = predicted(with_current);
+  const PredictedRun by_torque = predicted(with_torque);
+  ASSERT_EQ(by_current.time_s, by_torque.time_s);
+  for (std::size_t k = 0; k < by_current.time_s.size(); ++k) {
+    EXPECT_NEAR(by_current.signals[0].predicted_C[k], by_torque.signals[0].predicted_C[k], 1e-6);
+  }
+}
+
+/// With nothing but a power, all of it heat: the temperature at rest is what P·R says.
+TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
+  const Folder folder;
+  const Sheet sheet;
+  const Motor motor = sheet.motor(folder);
+  constexpr double kPower_W = 4.0;
+  Recording log = generated_log(sheet.truth, {.duration_s = 7200.0, .period_s = 2.0, .ambient_swing_K = 0.0}, 3, 0);
+  std::erase_if(log.channels, [](const Channel& each) { return each.quantity.key == "current_A"; });
+  log.channels.push_back({*quantity_named("power_in_W"), std::vector<double>(log.rows(), kPower_W)});
+  const PredictedRun run = predict(motor, std::vector{log}, PredictionOptions{}).runs.front();
+  const double stator_C = 25.0 + kPower_W * sheet.truth.stator_ambient_K_per_W;
+  EXPECT_NEAR(run.signals[1].predicted_C.back(), stator_C, 0.1);
+  EXPECT_NEAR(run.signals[0].predicted_C.back(), stator_C + kPower_W * sheet.truth.winding_stator_K_per_W, 0.1);
+}
+
+/// The band of a data sheet holds what the tolerances of its figures allow; it is wide, and wider the less is known.
+TEST(Prediction, BandWidensWithTheToleranceOfTheFile) {
+  const Folder folder;
+  const std::vector<Recording> logs = logs_of({}, long_enough(), folder, 0, 1);
+  double width_K = 0.0;
+  for (const char* spread : {", tolerance = \"10 %\"", ", tolerance = \"40 %\""}) {
+    const Motor motor = Sheet{.truth = {}, .resistance_spread = {}, .thermal_spread = spread}.motor(folder);
+    const PredictedSignal winding = predict(motor, logs, PredictionOptions{}).runs.front().signals.front();
+    const double here_K = winding.high_C.back() - winding.low_C.back();
+    EXPECT_GT(here_K, 1.5 * width_K);
+    width_K = here_K;
+  }
+}
+
+TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
+  const Folder folder;
+  const Sheet sheet;
+  const Motor motor = sheet.motor(folder);
+  TwoNodeTruth truth = sheet.truth;
+  truth.contact_change_per_K = 0.01;
+  LogMaking making = long_enough();
+  making.largest_current_A = 13.0;
+  making.flux_rms_W = 0.02;
+  const std::vector<Recording> logs = logs_of(truth, making, folder, 0, 4);
+  const std::vector<Recording> others = logs_of(truth, making, folder, 10, 1);
+  const Calibration found = calibrate(motor, logs, others, {});
+  ASSERT_TRUE(found.is_forecast_written);
+  const auto file = folder.path() / "written.toml";
+  std::ofstream(file) << to_toml(calibrated_motor(motor, found));
+  const Motor read = read_motor(file);
+  ASSERT_TRUE(read.fit && read.fit->band);
+  EXPECT_EQ(data_quality(read), "measured");
+  const PredictedRun of_file = predict(read, others, PredictionOptions{}).runs.front();
+  const PredictedRun& at_once = found.holdout_after.front();
+  for (std::size_t s = 0; s < of_file.signals.size(); ++s) {
+    EXPECT_NEAR(of_file.signals[s].rmse_K, at_once.signals[s].rmse_K, 0.01);
+    const std::size_t last = of_file.time_s.size() - 1;
+    EXPECT_NEAR(of_file.signals[s].high_C[last] - of_file.signals[s].low_C[last],
+                at_once.signals[s].high_C[last] - at_once.signals[s].low_C[last], 0.05);
+  }
+  // The same as the library's own, before anything was written.
+  const ForecastModel model = found.forecast->model();
+  const MeasuredRun run = runs_of(found.forecast->setup, others).front();
+  const PredictedRun direct = predict(model, found.forecast->fit.theta, found.forecast->fit.covariance, found.forecast->band, run);
+  EXPECT_NEAR(direct.signals.front().rmse_K, of_file.signals.front().rmse_K, 0.05);
+}
+
+/// What forecasts of runs are off beside the parameters is part of what a duty may do: all heat has the factor of the band.
+TEST(ForecastBand, WidensTheDrawsOfACalibratedMotor) {
+  const Folder folder;
+  const Sheet sheet;
+  Motor motor = sheet.motor(folder);
+  motor.fit.emplace();
+  motor.fit->figures = {"thermal_resistance_winding_stator"};
+  motor.fit->correlation = Eigen::MatrixXd::Identity(1, 1);
+  motor.fit->band = ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
+  Random random(5, 0);
+  constexpr int kDraws = 4000;
+  double squares = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    squares += std::pow(std::log(draw_sample(motor, random).values.terminal_resistance_ohm / sheet.truth.resistance_25C_ohm), 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares / kDraws), 2.0 * 0.05, 0.005);
+}
+
+}  // namespace
+}  // namespace heatsoak::study

@@ -1,0 +1,111 @@
+// Every form that `heatsoak derate` writes, with inputs that no file can be made from: a clear error, and nothing written.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "program_run.h"
+#include "support/source_folder.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const Words kDerate{"derate", "--robot", "roboteam_twente_v2024", "--samples", "59"};
+
+std::vector<std::string> forms() {
+  std::vector<std::string> names;
+  const nlohmann::json listed = run({"list", "formats", "--json", "-"}).json();
+  for (const auto& item : listed.at("items")) {
+    if (item.at("summary").get<std::string>().starts_with("derating: ")) {
+      names.push_back(item.at("id"));
+    }
+  }
+  EXPECT_THAT(names, testing::IsSupersetOf({"c_header", "csv", "json", "vesc", "fmi2_motor", "fmi3_guard"}));
+  return names;
+}
+
+TEST(DerateForms, RefuseALimitThatIsNotAboveTheAir) {
+  for (const std::string& form : forms()) {
+    const TemporaryFolder folder;
+    RunOptions here;
+    here.folder = folder.path();
+    const ProgramRun done = run(kDerate + Words{"--motor", "maxon_dcx19s_24v", "--ambient", "100degC", "--to", form, "--out", "x"}, here);
+    EXPECT_EQ(done.exit_code, 2) << form;
+    EXPECT_THAT(done.err,
+                AllOf(HasSubstr("the winding limit of 100.0 °C is not above the hottest air of 100.0 °C"), HasSubstr("--ambient")))
+        << form;
+    EXPECT_THAT(folder.names(), IsEmpty()) << form;
+  }
+}
+
+// Its own drag heats it over its limit at every useful speed, without a current.
+TEST(DerateForms, RefuseAMotorThatCannotBearItsOwnFriction) {
+  const std::string shipped = content_of(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  for (const std::string& form : forms()) {
+    const TemporaryFolder folder;
+    RunOptions here;
+    here.folder = folder.path();
+    write(folder.path() / "motor.toml", shipped +
+                                            "\n[effects.jammed_bearing]\ntype = \"bearing_friction\"\n"
+                                            "loss = { value = \"300 W\", origin = \"estimated\", derivation = \"a test\" }\n"
+                                            "viscous_share = { value = \"0\", origin = \"estimated\", derivation = \"a test\" }\n"
+                                            "thinning = { value = \"0 1/K\", origin = \"estimated\", derivation = \"a test\" }\n");
+    const ProgramRun done = run(kDerate + Words{"--motor", "motor.toml", "--to", form, "--out", "x"}, here);
+    EXPECT_EQ(done.exit_code, 1) << form << done.err;
+    EXPECT_THAT(done.err, AllOf(HasSubstr("however little current is allowed"), HasSubstr("calibrate the motor"))) << form;
+    EXPECT_THAT(folder.names(), testing::ElementsAre("motor.toml")) << form;
+  }
+}
+
+TEST(DerateForms, RefuseANumberThatIsNone) {
+  const std::string shipped = content_of(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  for (const std::string& form : forms()) {
+    const TemporaryFolder folder;
+    RunOptions here;
+    here.folder = folder.path();
+    write(folder.path() / "motor.toml",
+          std::regex_replace(shipped, std::regex("(thermal_resistance_stator_ambient = \\{ value = \")[^\"]*"), "$1nan K/W"));
+    const ProgramRun done = run(kDerate + Words{"--motor", "motor.toml", "--to", form, "--out", "x"}, here);
+    EXPECT_EQ(done.exit_code, 2) << form;
+    EXPECT_THAT(done.err, testing::ContainsRegex("motor.toml:[0-9]+:[0-9]+: error: .*thermal_resistance_stator_ambient")) << form;
+    EXPECT_THAT(folder.names(), testing::ElementsAre("motor.toml")) << form;
+  }
+}
+
+// Root may write anywhere, so the target is one that nobody can write to.
+TEST(DerateForms, LeaveNothingWhereTheTargetCannotBeWritten) {
+  for (const std::string form : {"c_header", "json", "fmi3_guard"}) {
+    const TemporaryFolder folder;
+    RunOptions here;
+    here.folder = folder.path();
+    const ProgramRun done = run(kDerate + Words{"--motor", "maxon_ecx_flat_42m_24v", "--to", form, "--out", "/proc/heatsoak_guard"}, here);
+    EXPECT_EQ(done.exit_code, 2) << form << done.err;
+    EXPECT_THAT(done.err, HasSubstr("/proc/heatsoak_guard")) << form;
+    EXPECT_THAT(done.err, Not(HasSubstr("terminate"))) << form;
+    EXPECT_THAT(folder.names(), IsEmpty()) << form;
+  }
+}
+
+TEST(DerateForms, CompilerIsForUnitsOnly) {
+  const TemporaryFolder folder;
+  RunOptions here;
+  here.folder = folder.path();
+  const ProgramRun other =
+      run(kDerate + Words{"--motor", "maxon_ecx_flat_42m_24v", "--to", "json", "--compiler", "cc", "--out", "x"}, here);
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("json has no binary"));
+  const ProgramRun none =
+      run(kDerate + Words{"--motor", "maxon_ecx_flat_42m_24v", "--to", "fmi3_motor", "--compiler", "no_such_compiler", "--out", "x"}, here);
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("--compiler no_such_compiler: cannot be run"));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,236 @@
+// What a new user meets first: templates, pictures, terminals, interrupted commands.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <regex>
+#include <sstream>
+
+#include "program_run.h"
+#include "support/source_folder.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+const std::string kEvaluate =
+    "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v "
+    "--samples 120";
+
+class FrontDoor : public testing::Test {
+ protected:
+  ProgramRun run_here(const std::string& line, const std::vector<std::string>& environment = {}) {
+    RunOptions options;
+    options.folder = folder_.path();
+    options.environment = environment;
+    options.environment.insert(options.environment.begin(), {"COLUMNS", "NO_COLOR"});
+    return run_line(line, options);
+  }
+  [[nodiscard]] std::string file(const char* name) const { return content_of(folder_.path() / name); }
+  TemporaryFolder folder_;
+};
+
+/// Fills the blanks of a template that stand in front of `unit` in the line of `key`.
+void fill(std::string& text, const std::string& key, const std::string& value) {
+  text = std::regex_replace(text, std::regex("(\n" + key + " = [^\n?]*)\\?"), "$01" + value, std::regex_constants::format_first_only);
+}
+
+// The values are those of the sheet of the EC 45 flat.
+TEST_F(FrontDoor, motor_template_passes_lint_once_it_is_filled_in) {
+  ASSERT_EQ(run_here("heatsoak new motor mine.toml").exit_code, 0);
+  std::string text = file("mine.toml");
+  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"manufacturer", "maxon"},
+                                                                                   {"name", "EC 45 flat"},
+                                                                                   {"sheet", "catalogue page"},
+                                                                                   {"nominal_voltage", "24"},
+                                                                                   {"terminal_resistance", "0.608"},
+                                                                                   {"torque_constant", "36.9"},
+                                                                                   {"no_load_current", "234"},
+                                                                                   {"thermal_resistance_winding_stator", "4.1"},
+                                                                                   {"thermal_resistance_stator_ambient", "3.56"},
+                                                                                   {"thermal_time_constant_winding", "29.6"},
+                                                                                   {"thermal_time_constant_stator", "178"},
+                                                                                   {"winding_limit", "125"}}) {
+    fill(text, key, value);
+  }
+  write(folder_.path() / "mine.toml", text);
+  const ProgramRun lint = run_here("heatsoak lint mine.toml");
+  EXPECT_EQ(lint.exit_code, 0) << lint.out << lint.err;
+  EXPECT_LE(run_here("heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors mine.toml").exit_code, 1);
+}
+
+TEST_F(FrontDoor, motor_template_works_with_its_optional_lines_too) {
+  ASSERT_EQ(run_here("heatsoak new motor mine.toml").exit_code, 0);
+  const std::string text = std::regex_replace(file("mine.toml"), std::regex("\n# ([a-z_]+ = )"), "\n$1");
+  write(folder_.path() / "mine.toml", text);
+  // The blanks are missing still; no key and no unit is wrong.
+  EXPECT_THAT(run_here("heatsoak lint mine.toml").err, AllOf(HasSubstr("figures.diameter.value"), Not(HasSubstr("is not a key"))));
+}
+
+TEST_F(FrontDoor, robot_template_passes_lint_once_it_is_filled_in) {
+  ASSERT_EQ(run_here("heatsoak new robot mine.toml").exit_code, 0);
+  std::string text = file("mine.toml");
+  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"name", "mine"},
+                                                                                   {"source", "measured"},
+                                                                                   {"mass", "2.6"},
+                                                                                   {"radius", "28"},
+                                                                                   {"contact_radius", "80"},
+                                                                                   {"axis_angles", "-30"},
+                                                                                   {"axis_angles", "30"},
+                                                                                   {"axis_angles", "135"},
+                                                                                   {"axis_angles", "-135"},
+                                                                                   {"motor", "maxon_ecx_flat_32l_48v"},
+                                                                                   {"gear_ratio", "1"},
+                                                                                   {"nominal_voltage", "22.2"}}) {
+    fill(text, key, value);
+  }
+  write(folder_.path() / "mine.toml", text);
+  const ProgramRun lint = run_here("heatsoak lint mine.toml");
+  EXPECT_EQ(lint.exit_code, 0) << lint.out << lint.err;
+}
+
+TEST_F(FrontDoor, new_replaces_no_file) {
+  write(folder_.path() / "mine.toml", "precious");
+  EXPECT_EQ(run_here("heatsoak new motor mine.toml").exit_code, 2);
+  EXPECT_EQ(file("mine.toml"), "precious");
+}
+
+TEST_F(FrontDoor, every_kind_of_error_of_a_motor_file_is_reported_at_once) {
+  std::string text = content_of(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
+  const auto change = [&text](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  change("name = ", "nmae = ");            // a key
+  change("\"0.463 mH\"", "\"0.463 mV\"");  // a unit
+  change("mass = { value = \"141 g\", origin = \"datasheet\", source = \"maxon_2019\"",
+         "mass = { value = \"141 g\", origin = \"datasheet\", source = \"nowhere\"");
+  change("\"259 rpm/V\"", "\"100 rpm/V\"");              // a contradiction
+  change("\"1460 mN m\"", "\"14600 mN m\"");             // another one
+  text += "\n[effects.no_such_effect]\nsize = \"1\"\n";  // an effect
+  write(folder_.path() / "mine.toml", text);
+  for (const char* command :
+       {"heatsoak lint mine.toml", "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors mine.toml"}) {
+    const ProgramRun result = run_here(command);
+    EXPECT_EQ(result.exit_code, 2);
+    for (const char* said :
+         {"nmae", "terminal_inductance", "'nowhere' is not in [sources]", "constants: ", "stall_torque: ", "no_such_effect"}) {
+      EXPECT_THAT(result.err, HasSubstr(said)) << command;
+    }
+  }
+}
+
+TEST_F(FrontDoor, output_is_as_wide_as_columns_says) {
+  for (const int width : {80, 100, 160}) {
+    const ProgramRun result = run_here("COLUMNS=" + std::to_string(width) + " " + kEvaluate + " --explain");
+    std::istringstream lines(result.out);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }), width) << line;
+    }
+  }
+  EXPECT_THAT(run_here("COLUMNS=160 " + kEvaluate).out, HasSubstr("limited by"));
+  EXPECT_THAT(run_here(kEvaluate).out, Not(HasSubstr("limited by")));
+}
+
+TEST_F(FrontDoor, all_motors_fit_eighty_columns) {
+  std::istringstream lines(run_here("heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --samples 0").out);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }), 80) << line;
+    EXPECT_THAT(line, Not(HasSubstr("…  "))) << "no name is cut";
+  }
+}
+
+TEST_F(FrontDoor, a_fixed_load_says_first_that_the_robot_does_not_matter) {
+  EXPECT_THAT(
+      run_here(kEvaluate + " --quiet").out,
+      AllOf(StartsWith("1 of 2 motors passes paper_intermittent (a fixed wheel load: mass and"), HasSubstr("of the robot do not matter)")));
+}
+
+TEST_F(FrontDoor, colours_are_for_terminals_that_want_them) {
+  const std::string on_terminal = "script -qec '" + kEvaluate + "' /dev/null";
+  EXPECT_THAT(run_here(on_terminal, {"TERM=xterm"}).out, HasSubstr("\x1b[32m"));
+  EXPECT_THAT(run_here(on_terminal, {"TERM=xterm", "NO_COLOR=1"}).out, Not(HasSubstr("\x1b[3")));
+  EXPECT_THAT(run_here(kEvaluate, {"TERM=xterm"}).out, Not(HasSubstr("\x1b[")));
+}
+
+TEST_F(FrontDoor, report_holds_every_column) {
+  ASSERT_LE(run_here(kEvaluate + " --report answer.md").exit_code, 1);
+  EXPECT_THAT(file("answer.md"),
+              AllOf(HasSubstr("| motor | verdict |"), HasSubstr("limited by"), HasSubstr("maxon\\_ecx\\_flat\\_42m\\_24v")));
+  EXPECT_EQ(run_here(kEvaluate + " --report answer.docx").exit_code, 2);
+}
+
+TEST_F(FrontDoor, verdicts_are_described) {
+  const ProgramRun text = run_here("heatsoak describe verdict");
+  for (const char* word : {"\npass\n", "\nmarginal\n", "\nfail\n", "\ninfeasible\n", "\nundecided\n"}) {
+    EXPECT_THAT(text.out, HasSubstr(word));
+  }
+  EXPECT_EQ(run_here("heatsoak describe verdict --json -").json().at("verdicts").size(), 4U);
+}
+
+TEST_F(FrontDoor, pictures_are_drawn_as_png_too) {
+  ASSERT_LE(run_here(kEvaluate + " --plot verdict.png", {"DISPLAY", "WAYLAND_DISPLAY"}).exit_code, 1);
+  const std::string png = file("verdict.png");
+  ASSERT_GT(png.size(), 10'000U);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  // Width and height stand in the first chunk, most significant byte first: two pixels for one of the SVG's 1000.
+  const auto at = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(png[i])); };
+  EXPECT_EQ((at(18) << 8U) + at(19), 2000U);
+}
+
+TEST_F(FrontDoor, an_interrupted_command_leaves_nothing) {
+  const std::string robot = " --robot roboteam_twente_v2024 --duty division_a_match";
+  for (const std::string& line : std::vector<std::string>{
+           "timeout -s INT 1 heatsoak evaluate" + robot + " --samples 2000 --plot p.svg --json a.json",
+           "timeout -s INT 1 heatsoak simulate --motor maxon_ecx_flat_32l_48v" + robot + " --out t.csv --plot t.svg",
+           "timeout -s INT 1 heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out core"}) {
+    EXPECT_EQ(run_here(line).exit_code, 124) << line << " ended before it was interrupted";
+    EXPECT_THAT(folder_.names(), IsEmpty()) << line;
+  }
+}
+
+TEST_F(FrontDoor, undecided_verdicts_ask_for_more_samples) {
+  // Its probability lies near the threshold of 5 %.
+  const std::string line = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors nanotec_df45l024048_a2";
+  const ProgramRun few = run_here(line + " --samples 60 --json -");
+  const nlohmann::json before = few.json().at("motors").at(0);
+  ASSERT_TRUE(before.at("samples_needed").is_number()) << few.err;
+  EXPECT_THAT(few.err, AllOf(HasSubstr("undecided"), HasSubstr("more samples needed")));
+  const nlohmann::json after = run_here(line + " --json -").json().at("motors").at(0);
+  EXPECT_TRUE(after.at("samples_needed").is_null());
+  EXPECT_GT(after.at("samples"), 500);
+  const double low = after.at("probability_ci95").at(0);
+  const double high = after.at("probability_ci95").at(1);
+  EXPECT_TRUE(low > 0.05 || high <= 0.05) << low << " " << high;
+}
+
+TEST_F(FrontDoor, completion_scripts_are_sound_where_their_shell_is_there) {
+  ASSERT_EQ(run_here("heatsoak completion bash > b && heatsoak completion zsh > z && heatsoak completion fish > f").exit_code, 0);
+  EXPECT_EQ(run_here("bash -n b").exit_code, 0);
+  for (const auto& [shell, script] : {std::pair("zsh", "z"), {"fish", "f"}}) {
+    if (run_here(std::string("command -v ") + shell).exit_code != 0) {
+      std::cout << "not checked: " << shell << " is not installed\n";
+      continue;
+    }
+    const ProgramRun check = run_here(std::string(shell) + " -n " + script);
+    EXPECT_EQ(check.exit_code, 0) << check.err;
+  }
+}
+
+TEST_F(FrontDoor, man_pages_exist_for_every_verb) {
+  ASSERT_EQ(run_here("heatsoak manual --to man --out man1").exit_code, 0);
+  EXPECT_THAT(file("man1/heatsoak-evaluate.1"), AllOf(StartsWith(".TH \"HEATSOAK\\-EVALUATE\" 1"), HasSubstr(".B \\-\\-robot R\n")));
+  if (run_here("command -v groff").exit_code == 0) {
+    EXPECT_THAT(run_here("groff -K utf8 -man -ww -z man1/*.1").err, IsEmpty());
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

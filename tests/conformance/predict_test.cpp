@@ -1,0 +1,85 @@
+// `heatsoak predict` as a user meets it: the shipped logs, whatever heat input a log has, and what hold-out errors are made of.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "program_run.h"
+#include "soak_example.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+RunOptions in(const TemporaryFolder& folder) {
+  RunOptions options;
+  options.folder = folder.path();
+  return options;
+}
+
+std::string log(const std::string& name) { return (kSoak / name).string(); }
+
+TEST(Predict, AnswersAsTheInterfaceSays) {
+  const TemporaryFolder folder;
+  const ProgramRun done =
+      run({"predict", "--model", kMotor, log("match_1.csv"), log("bench.csv"), "--plot", "p.svg", "--json", "-"}, in(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const nlohmann::json answer = done.json();
+  EXPECT_EQ(answer["schema"], "heatsoak.prediction/1");
+  ASSERT_EQ(answer["runs"].size(), 2U);
+  EXPECT_EQ(answer["runs"][0]["name"], "match_1");
+  for (const nlohmann::json& run : answer["runs"]) {
+    for (const char* signal : {"winding_C", "stator_C"}) {
+      const double rmse_K = run["error"][signal]["rmse_K"].get<double>();
+      EXPECT_GT(rmse_K, 0.0);
+      EXPECT_GE(run["error"][signal]["max_abs_K"].get<double>(), rmse_K);
+      EXPECT_GE(run["coverage_90"][signal].get<double>(), 0.0);
+      EXPECT_LE(run["coverage_90"][signal].get<double>(), 1.0);
+    }
+  }
+  EXPECT_THAT(done.err, HasSubstr("within 90 % band"));
+  EXPECT_THAT(content_of(folder.path() / "p.svg"), HasSubstr("</svg>"));
+}
+
+/// Of a calibrated model the error of a hold-out run is smaller, and the same as `calibrate --holdout` says.
+TEST(Predict, IsWhereHoldoutErrorsComeFrom) {
+  const TemporaryFolder folder;
+  const ProgramRun fitted = run({"calibrate", "--motor", kMotor, log("match_1.csv"), log("match_2.csv"), log("bench.csv"), "--holdout",
+                                 log("match_3.csv"), "--out", "model.toml", "--json", "-"},
+                                in(folder));
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+  const ProgramRun before = run({"predict", "--model", kMotor, log("match_3.csv"), "--json", "-"}, in(folder));
+  const ProgramRun after = run({"predict", "--model", "model.toml", log("match_3.csv"), "--json", "-"}, in(folder));
+  ASSERT_EQ(after.exit_code, 0) << after.err;
+  for (const char* signal : {"winding_C", "stator_C"}) {
+    const auto rmse_K = [&](const ProgramRun& done) { return done.json()["runs"][0]["error"][signal]["rmse_K"].get<double>(); };
+    EXPECT_LT(rmse_K(after), rmse_K(before)) << signal;
+    EXPECT_NEAR(rmse_K(after), fitted.json()["holdout"]["after"][0]["error"][signal]["rmse_K"].get<double>(), 0.02) << signal;
+    EXPECT_NEAR(rmse_K(before), fitted.json()["holdout"]["before"][0]["error"][signal]["rmse_K"].get<double>(), 1e-4) << signal;
+  }
+  const ProgramRun own = run({"predict", "--model", "model.toml", log("match_1.csv")}, in(folder));
+  EXPECT_THAT(own.out, HasSubstr("match_1 is among the runs that the model was fitted to"));
+}
+
+TEST(Predict, SaysWhatALogLacks) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "cold.csv") << "time_s,winding_C,ambient_C\n0,25,25\n1,25.1,25\n2,25.2,25\n";
+  const ProgramRun done = run({"predict", "--model", kMotor, "cold.csv"}, in(folder));
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr("current_A"));
+}
+
+TEST(Predict, IsTheSameEachTime) {
+  const TemporaryFolder folder;
+  const auto once = [&] { return run({"predict", "--model", kMotor, log("match_2.csv"), "--json", "-"}, in(folder)).out; };
+  const std::string first = once();
+  EXPECT_FALSE(first.empty());
+  EXPECT_EQ(once(), first);
+}
+
+}  // namespace
+}  // namespace heatsoak

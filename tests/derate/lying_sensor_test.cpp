@@ -1,0 +1,173 @@
+// Attacks on the sensor of a generated guard: none gains more than is stated, and the nominal motor outlives them all.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sensed_motor.h"
+
+namespace heatsoak {
+namespace {
+
+struct Attack {
+  const char* name;
+  bool is_noticed;  ///< the cross-check must drop it within the run
+  Sensor sensor;
+};
+
+std::vector<Attack> attacks() {
+  return {
+      {"stuck at the cold air", true, [](double, double, double) { return 20.0F; }},
+      {"stuck where it was after 100 s", false,
+       [held = 40.0F](double time_s, double true_C, double) mutable {
+         held = time_s < 100.0 ? static_cast<float>(true_C) : held;
+         return held;
+       }},
+      {"stuck at a plausible value", true, [](double, double, double) { return 75.0F; }},
+      {"slow drift to cold", false, [](double time_s, double true_C, double) { return static_cast<float>(true_C - 0.03 * time_s); }},
+      {"very slow drift to cold", false, [](double time_s, double true_C, double) { return static_cast<float>(true_C - 0.01 * time_s); }},
+      {"half of the rise", false,
+       [](double, double true_C, double ambient_C) { return static_cast<float>(ambient_C + 0.5 * (true_C - ambient_C)); }},
+      {"0.7 of the reading", false, [](double, double true_C, double) { return static_cast<float>(0.7 * true_C); }},
+      {"noise of 20 K", false,
+       [engine = std::mt19937(3)](double, double true_C, double) mutable {
+         return static_cast<float>(true_C + std::normal_distribution<double>(0.0, 20.0)(engine));
+       }},
+      {"shows the air", true,
+       [engine = std::mt19937(4)](double, double, double ambient_C) mutable {
+         return static_cast<float>(ambient_C + std::normal_distribution<double>(0.0, 0.3)(engine));
+       }},
+      {"comes and goes, cold", false,
+       [](double time_s, double, double) { return std::fmod(time_s, 2.0) < 1.0 ? 30.0F : std::numeric_limits<float>::quiet_NaN(); }},
+      {"open circuit", false, [](double, double, double) { return -273.0F; }},
+      {"short circuit", false, [](double, double, double) { return 1000.0F; }},
+      {"not a number", false, [](double, double, double) { return std::numeric_limits<float>::quiet_NaN(); }},
+      {"infinite", false, [](double, double, double) { return -std::numeric_limits<float>::infinity(); }},
+  };
+}
+
+class LyingSensor : public testing::Test {
+ protected:
+  static const CompiledGuard& guard() {
+    static const CompiledGuard made(thermistor_derating(), "lying");
+    return made;
+  }
+};
+
+// 10⁵ steps and more each: all that is allowed, and random driving.
+TEST_F(LyingSensor, GainsNoMoreThanStatedAndSparesTheNominalMotor) {
+  const Derating& derating = thermistor_derating();
+  ASSERT_TRUE(guard());
+  for (const Attack& attack : attacks()) {
+    for (const bool is_all : {true, false}) {
+      Plant plant(ecx_32(), nominal_sample(ecx_32()), 40.0);
+      const SensedRun run = run_sensed(guard(), derating, plant, attack.sensor, 120'000, 11, is_all);
+      EXPECT_LE(run.most_excess_A, derating.sensor->most_gain_A + 1e-4) << attack.name;
+      EXPECT_LE(run.winding_peak_C, derating.rules.limits.winding_C + 0.1) << attack.name;
+      if (attack.is_noticed && is_all) {
+        EXPECT_GE(run.dropped_at_s, 0.0) << attack.name;
+      }
+      printf("%-32s all %d excess %.2f A peak %.1f C dropped at %.0f s status %d last %.2f A\n", attack.name, is_all, run.most_excess_A,
+             run.winding_peak_C, run.dropped_at_s, run.status, run.last_allowed_A);
+    }
+  }
+}
+
+TEST_F(LyingSensor, OfDrawnMotorsGainsNoMoreThanStated) {
+  const Derating& derating = thermistor_derating();
+  for (int i = 0; i < 12; ++i) {
+    Random random(31, static_cast<std::uint64_t>(i));
+    const MotorSample sample = draw_sample(ecx_32(), random);
+    for (const Attack& attack : attacks()) {
+      Plant plant(ecx_32(), sample, 40.0);
+      const SensedRun run = run_sensed(guard(), derating, plant, attack.sensor, 20'000, static_cast<unsigned>(i), i % 2 == 0);
+      EXPECT_LE(run.most_excess_A, derating.sensor->most_gain_A + 1e-4) << attack.name << " " << i;
+    }
+  }
+}
+
+// Without any reading it is the guard without a sensor, to the bit.
+TEST_F(LyingSensor, WithoutAReadingItIsTheGuardWithoutASensor) {
+  SensedGuard sensed(guard());
+  ModelGuard model(guard());
+  sensed.start(30.0F);
+  model.start(30.0F);
+  Driver driver(5);
+  float allowed_A = 0.0F;
+  for (int i = 0; i < 100'000; ++i) {
+    const Driver::Wish wish = driver.after(0.01);
+    const CompiledGuard::Input in{static_cast<float>(wish.current_share) * allowed_A,
+                                  static_cast<float>(wish.speed_share * thermistor_derating().rules.most_speed_rad_per_s), 30.0F};
+    const CompiledGuard::Output out = sensed.step(in, std::numeric_limits<float>::quiet_NaN());
+    const CompiledGuard::Output alone = model.step(in);
+    ASSERT_EQ(out.allowed_A, alone.allowed_A) << i;
+    ASSERT_EQ(out.guarded_C, alone.guarded_C) << i;
+    ASSERT_EQ(out.sensor, CompiledGuard::silent);
+    allowed_A = alone.allowed_A;
+  }
+}
+
+TEST_F(LyingSensor, AJumpIsNotUsedAndOneThatLastsEndsTheSensor) {
+  SensedGuard sensed(guard());
+  sensed.start(60.0F);
+  const CompiledGuard::Input in{1.0F, 0.0F, 40.0F};
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(sensed.step(in, 60.0F).sensor, CompiledGuard::used);
+  }
+  EXPECT_EQ(sensed.step(in, 30.0F).sensor, CompiledGuard::jumped);
+  EXPECT_EQ(sensed.step(in, 60.0F).sensor, CompiledGuard::used);
+  int status = CompiledGuard::used;
+  for (int i = 0; i < 60'000 && status != CompiledGuard::frozen && status != CompiledGuard::too_cold; ++i) {
+    status = sensed.step(in, i % 2 == 0 ? 200.0F : -3.0F).sensor;
+  }
+  EXPECT_NE(status, CompiledGuard::used);
+}
+
+// In a cold room with air that nobody measures the guard takes 40 °C; a correct sensor that shows the room is no liar.
+TEST_F(LyingSensor, ACorrectSensorInAColdRoomIsKept) {
+  SensedGuard sensed(guard());
+  sensed.start(15.0F);
+  Plant plant(ecx_32(), nominal_sample(ecx_32()), 15.0);
+  for (int i = 0; i < 100'000; ++i) {
+    const double current_A = i / 20'000 % 2 == 0 ? 0.0 : 2.0;
+    plant.step(current_A, 100.0, 15.0, 0.01);
+    const CompiledGuard::Output out =
+        sensed.step({static_cast<float>(current_A), 100.0F, 40.0F}, static_cast<float>(plant.true_C(states::stator)));
+    ASSERT_EQ(out.sensor, CompiledGuard::used) << i;
+  }
+}
+
+// A hot reading is believed, whatever the model says: it only takes current away.
+TEST_F(LyingSensor, AHotReadingTakesCurrentAway) {
+  SensedGuard sensed(guard());
+  ModelGuard model(guard());
+  sensed.start(40.0F);
+  model.start(40.0F);
+  const CompiledGuard::Input in{0.5F, 0.0F, 40.0F};
+  float reading_C = 40.0F;
+  CompiledGuard::Output out;
+  for (int i = 0; i < 20'000; ++i) {
+    reading_C = std::min(reading_C + 0.01F, 150.0F);
+    out = sensed.step(in, reading_C);
+    model.step(in);
+  }
+  EXPECT_LT(out.allowed_A, 0.5F * model.step(in).allowed_A);
+}
+
+// What radiation or a wild pointer leaves of the state gives no more than the guard without a sensor at its limit.
+TEST_F(LyingSensor, ACorruptStateCountsAsAtItsLimit) {
+  std::mt19937 engine(8);
+  for (int trial = 0; trial < 2000; ++trial) {
+    SensedGuard sensed(guard());
+    for (unsigned char& byte : sensed.state()) {
+      byte = static_cast<unsigned char>(engine());
+    }
+    const CompiledGuard::Output out = sensed.step({0.0F, 0.0F, 40.0F}, 30.0F);
+    EXPECT_EQ(out.allowed_A, 0.0F);
+    EXPECT_TRUE(std::isfinite(out.guarded_C));
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

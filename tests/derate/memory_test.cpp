@@ -1,0 +1,213 @@
+// Memory over power-off in the generated header: as warm as before after a short loss of power, never colder than the network says, and at
+// the limit where the buffer is not whole.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/crc.hpp>
+#include <cmath>
+#include <limits>
+
+#include "compiled_guard.h"
+#include "exported_motor.h"
+#include "thermal/transient.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr float kUnknown_s = std::numeric_limits<float>::quiet_NaN();
+
+class Memory : public testing::Test {
+ protected:
+  static const CompiledGuard& guard() {
+    static const CompiledGuard made(ecx_derating(), "memory");
+    return made;
+  }
+  /// Driven hard for a while.
+  static ModelGuard driven(int steps) {
+    ModelGuard motor(guard());
+    motor.start(25.0F);
+    float allowed_A = 0.0F;
+    for (int i = 0; i < steps; ++i) {
+      allowed_A = motor.step({allowed_A, 100.0F, 30.0F}).allowed_A;
+    }
+    return motor;
+  }
+  static float allowed_after_A(ModelGuard& motor, double time_s) {
+    float allowed_A = 0.0F;
+    for (int i = 0; i <= static_cast<int>(time_s / 0.01); ++i) {
+      allowed_A = motor.step({0.0F, 0.0F, 40.0F}).allowed_A;
+    }
+    return allowed_A;
+  }
+};
+
+TEST_F(Memory, WithoutTimeItIsWhatWasSaved) {
+  ModelGuard motor = driven(8000);
+  ModelGuard after(guard());
+  ASSERT_EQ(after.restore(motor.saved(2), 0.0F, 0.0F, 25.0F), CompiledGuard::restored);
+  EXPECT_EQ(after.temperatures_C(2), motor.temperatures_C(2));
+}
+
+TEST_F(Memory, ATwoSecondResetChangesNothingThatTwoSecondsWouldNot) {
+  ModelGuard motor = driven(8000);
+  ModelGuard after(guard());
+  after.restore(motor.saved(2), 2.0F, 0.0F, 25.0F);
+  for (int i = 0; i < 200; ++i) {
+    motor.step({0.0F, 0.0F, 40.0F});
+  }
+  for (std::size_t node = 0; node < 2; ++node) {
+    EXPECT_GE(after.temperatures_C(2)[node], motor.temperatures_C(2)[node] - 0.01F) << node;
+    EXPECT_LE(after.temperatures_C(2)[node], motor.temperatures_C(2)[node] + 1.0F) << node;
+  }
+}
+
+// The reference solver on the same network without current: never colder than it, and not much warmer.
+TEST_F(Memory, CoolsAsTheNetworkDoesAndNoFaster) {
+  const ModelGuard motor = driven(12'000);
+  const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
+  const std::vector<float> before_C = motor.temperatures_C(2);
+  for (const double elapsed_s : {0.5, 2.0, 10.0, 45.0, 120.0, 600.0, 3600.0, 1e6}) {
+    OperatingPoint<double> at;
+    at.ambient_C = 40.0;
+    TransientOptions options;
+    options.start_C = {before_C[0], before_C[1]};
+    const TransientResult exact = run_transient(network, network.values(), std::vector<Interval>{{std::min(elapsed_s, 1e4), at}}, options);
+    ModelGuard after(guard());
+    after.restore(motor.saved(2), static_cast<float>(elapsed_s), 0.0F, 20.0F);
+    const std::vector<float> found_C = after.temperatures_C(2);
+    for (std::size_t node = 0; node < 2; ++node) {
+      EXPECT_GE(found_C[node], exact.end_C[node] - 0.01) << elapsed_s << " " << node;
+      EXPECT_LE(found_C[node], exact.end_C[node] + 1.5) << elapsed_s << " " << node;
+    }
+  }
+}
+
+TEST_F(Memory, AfterAnUnknownTimeNoNodeIsColderThanItMayBe) {
+  const ModelGuard motor = driven(3000);
+  ModelGuard unknown(guard());
+  EXPECT_EQ(unknown.restore(motor.saved(2), kUnknown_s, 0.0F, 20.0F), CompiledGuard::time_unknown);
+  const std::vector<float> assumed_C = unknown.temperatures_C(2);
+  bool is_reached = false;
+  for (const float elapsed_s : {0.0F, 1.0F, 3.0F, 6.0F, 10.0F, 20.0F, 40.0F, 100.0F, 1000.0F}) {
+    ModelGuard after(guard());
+    after.restore(motor.saved(2), elapsed_s, 0.0F, 20.0F);
+    EXPECT_GE(assumed_C[0], after.temperatures_C(2)[0] - 1e-3F) << elapsed_s;
+    EXPECT_GE(assumed_C[1], after.temperatures_C(2)[1] - 0.05F) << elapsed_s;
+    is_reached = is_reached || after.temperatures_C(2)[1] > assumed_C[1] - 0.5F;
+  }
+  EXPECT_TRUE(is_reached) << "the assumption is one that can happen";
+  EXPECT_EQ(assumed_C[0], motor.temperatures_C(2)[0]);
+  ModelGuard negative(guard());
+  EXPECT_EQ(negative.restore(motor.saved(2), -1.0F, 0.0F, 20.0F), CompiledGuard::time_unknown);
+}
+
+TEST_F(Memory, NoNodeIsColderThanTheBoard) {
+  const ModelGuard motor = driven(100);
+  ModelGuard after(guard());
+  after.restore(motor.saved(2), 1e5F, 0.0F, 70.0F);
+  EXPECT_EQ(after.temperatures_C(2)[0], 70.0F);
+  EXPECT_EQ(after.temperatures_C(2)[1], 70.0F);
+  ModelGuard dead_sensor(guard());
+  dead_sensor.restore(motor.saved(2), 1e5F, 0.0F, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_GE(dead_sensor.temperatures_C(2)[1], 40.0F);
+}
+
+// What happened between the last save and the loss of power is at least as hot as any driving that the guard allowed.
+TEST_F(Memory, UnsavedTimeCountsAsTheHardestDriving) {
+  for (const int before : {10, 500, 8000}) {
+    ModelGuard motor = driven(before);
+    const std::vector<unsigned char> buffer = motor.saved(2);
+    float allowed_A = 8.0F;
+    for (int i = 0; i < 100; ++i) {
+      allowed_A = motor.step({allowed_A, 250.0F, 40.0F}).allowed_A;
+    }
+    ModelGuard after(guard());
+    after.restore(buffer, 0.0F, 1.0F, 25.0F);
+    EXPECT_GE(after.temperatures_C(2)[0], motor.temperatures_C(2)[0] - 0.01F);
+    EXPECT_GE(after.temperatures_C(2)[1], motor.temperatures_C(2)[1] - 0.01F);
+  }
+  ModelGuard after(guard());
+  after.restore(driven(10).saved(2), 0.0F, kUnknown_s, 25.0F);
+  EXPECT_FLOAT_EQ(after.temperatures_C(2)[1], 155.0F);
+}
+
+TEST_F(Memory, EveryFlippedBitCountsAsAtTheLimit) {
+  const std::vector<unsigned char> whole = driven(3000).saved(2);
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    std::vector<unsigned char> broken = whole;
+    broken[bit / 8] ^= static_cast<unsigned char>(1U << (bit % 8));
+    ModelGuard after(guard());
+    ASSERT_EQ(after.restore(broken, 10.0F, 0.0F, 25.0F), CompiledGuard::nothing_restored) << bit;
+    EXPECT_EQ(after.temperatures_C(2)[0], 155.0F);
+    EXPECT_LT(after.step({0.0F, 0.0F, 40.0F}).allowed_A, 0.05F);
+  }
+  for (const int fill : {0x00, 0xff}) {
+    ModelGuard after(guard());
+    EXPECT_EQ(after.restore(std::vector<unsigned char>(whole.size(), static_cast<unsigned char>(fill)), 1.0F, 0.0F, 25.0F),
+              CompiledGuard::nothing_restored);
+  }
+}
+
+TEST_F(Memory, TheCheckSumIsTheCommonOne) {
+  const std::vector<unsigned char> buffer = driven(1000).saved(2);
+  boost::crc_32_type sum;
+  sum.process_bytes(buffer.data(), buffer.size() - 4);
+  const std::size_t at = buffer.size() - 4;
+  EXPECT_EQ(sum.checksum(), static_cast<unsigned>(buffer[at]) | static_cast<unsigned>(buffer[at + 1]) << 8U |
+                                static_cast<unsigned>(buffer[at + 2]) << 16U | static_cast<unsigned>(buffer[at + 3]) << 24U);
+}
+
+TEST_F(Memory, AnotherGuardsBufferIsRefused) {
+  Derating other = ecx_derating();
+  other.robot_id = "another";
+  const CompiledGuard another(other, "another");
+  ModelGuard motor(another);
+  motor.start(30.0F);
+  ModelGuard after(guard());
+  EXPECT_EQ(after.restore(motor.saved(2), 1.0F, 0.0F, 25.0F), CompiledGuard::nothing_restored);
+}
+
+TEST_F(Memory, WhatWasNeverStartedIsNotSaved) {
+  ModelGuard zero(guard());
+  ModelGuard after(guard());
+  EXPECT_EQ(after.restore(zero.saved(2), 1.0F, 0.0F, 25.0F), CompiledGuard::nothing_restored);
+}
+
+/// The committed table of docs/power_off.md, written anew.
+std::string power_off_table(const CompiledGuard& guard, const std::vector<unsigned char>& hot) {
+  struct Case {
+    const char* name;
+    float elapsed_s;
+    bool is_whole;
+  };
+  std::string text = "| after | allowed after 1 s, A | after 10 s, A | after 60 s, A |\n|---|---|---|---|\n";
+  for (const Case& each :
+       {Case{"no loss of power", 0.0F, true}, Case{"2 s without power", 2.0F, true}, Case{"30 s", 30.0F, true}, Case{"5 min", 300.0F, true},
+        Case{"1 h", 3600.0F, true}, Case{"an unknown time", kUnknown_s, true}, Case{"a damaged buffer", 2.0F, false}}) {
+    text += fmt::format("| {} |", each.name);
+    for (const double time_s : {1.0, 10.0, 60.0}) {
+      std::vector<unsigned char> buffer = hot;
+      buffer[5] ^= each.is_whole ? 0U : 1U;
+      ModelGuard motor(guard);
+      motor.restore(buffer, each.elapsed_s, 0.0F, 25.0F);
+      CompiledGuard::Output out;
+      for (int i = 0; i < static_cast<int>(std::lround(time_s / 0.01)); ++i) {
+        out = motor.step({0.0F, 0.0F, 40.0F});
+      }
+      text += fmt::format(" {:.1f} |", out.allowed_A);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(Memory, TheDocumentsTableIsWhatTheHeaderDoes) {
+  // Driven until everything is as hot as it may be.
+  const std::string table = power_off_table(guard(), driven(60'000).saved(2));
+  std::stringstream page;
+  page << std::ifstream(kSource / "docs/power_off.md").rdbuf();
+  EXPECT_THAT(page.str(), testing::HasSubstr(table)) << "put this into docs/power_off.md:\n" << table;
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,102 @@
+// A motor with a sensor in the loop of its generated guard: the plant is the network of a drawn motor, integrated on its own.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "compiled_guard.h"
+#include "guarded_motor.h"
+#include "robot/motor_drive.h"
+
+namespace heatsoak {
+
+/// With a search of few motors: what it promises is checked on others.
+inline DerateOptions quick_options(const SensorOptions& sensor) {
+  DerateOptions options;
+  options.guarantee.samples = 120;
+  options.sensor = sensor;
+  return options;
+}
+inline const Derating& thermistor_derating() {
+  static const Derating derating = derate(ecx_32(), twente(), quick_options({}));
+  return derating;
+}
+inline Derating resistance_derating() {
+  return derate(ecx_32(), twente(), quick_options({.kind = SensorKind::winding_resistance, .node = states::winding, .accuracy_K = 10.0}));
+}
+
+/// Euler steps of the true network; its own time constants are hundreds of times the period.
+class Plant {
+ public:
+  Plant(const Motor& motor, const MotorSample& sample, double start_C)
+      : nominal_(motor.nominal),
+        network_(datasheet_network(motor, sample)),
+        values_(network_.values()),
+        true_C_(network_.node_count(), start_C),
+        rate_(network_.state_count()) {}
+
+  void step(double current_A, double speed_rad_per_s, double ambient_C, double period_s) {
+    const Signals signals{current_A, speed_rad_per_s, ambient_C, 0.0, ambient_C, 0.0, 0.0};
+    const OperatingPoint<double> at = operating_point<double>(nominal_, twente(), signals);
+    network_.rate_K_per_s<double>(at, values_, true_C_, rate_);
+    for (std::size_t node = 0; node < rate_.size(); ++node) {
+      true_C_[node] += period_s * rate_[node];
+    }
+  }
+  [[nodiscard]] double true_C(int node) const { return true_C_[static_cast<std::size_t>(node)]; }
+
+ private:
+  MotorValues nominal_;
+  Network network_;
+  std::vector<double> values_;
+  std::vector<double> true_C_;
+  std::vector<double> rate_;
+};
+
+/// What the sensor shows of the true stator at a time.
+using Sensor = std::function<float(double time_s, double true_C, double ambient_C)>;
+
+struct SensedRun {
+  double winding_peak_C = 0.0;
+  double most_excess_A = -1e9;  ///< above an independent guard without a sensor that saw what it would have allowed of the same current
+  double dropped_at_s = -1.0;
+  int status = 0;
+  double last_allowed_A = 0.0;
+};
+
+/// Drives as hard as is allowed, or as `Driver` does.
+inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating, Plant& plant, const Sensor& sensor, int steps,
+                            unsigned driver_seed, bool is_always_all = false) {
+  SensedGuard sensed(guard);
+  ModelGuard model(guard);
+  const double ambient_C = 39.5;  // measured: the hottest declared stands for one that is not
+  sensed.start(static_cast<float>(ambient_C));
+  model.start(static_cast<float>(ambient_C));
+  SensedRun run;
+  Driver driver(driver_seed);
+  const double period_s = derating.options.period_s;
+  double allowed_A = 0.0;
+  double capped_A = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const Driver::Wish wish = is_always_all ? Driver::Wish{} : driver.after(period_s);
+    const double current_A = wish.current_share * allowed_A;
+    const double speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
+    plant.step(current_A, speed_rad_per_s, ambient_C, period_s);
+    run.winding_peak_C = std::max(run.winding_peak_C, plant.true_C(states::winding));
+    CompiledGuard::Input in{static_cast<float>(current_A), static_cast<float>(speed_rad_per_s), static_cast<float>(ambient_C)};
+    const CompiledGuard::Output out = sensed.step(in, sensor(i * period_s, plant.true_C(states::stator), ambient_C));
+    in.current_A = std::clamp(in.current_A, -static_cast<float>(capped_A), static_cast<float>(capped_A));
+    capped_A = model.step(in).allowed_A;
+    run.most_excess_A = std::max(run.most_excess_A, out.allowed_A - capped_A);
+    allowed_A = out.allowed_A;
+    run.status = out.sensor;
+    const bool is_dropped = out.sensor == CompiledGuard::too_cold || out.sensor == CompiledGuard::frozen;
+    run.dropped_at_s = run.dropped_at_s < 0.0 && is_dropped ? i * period_s : run.dropped_at_s;
+  }
+  run.last_allowed_A = allowed_A;
+  return run;
+}
+
+}  // namespace heatsoak

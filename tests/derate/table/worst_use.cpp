@@ -1,0 +1,352 @@
+// Makes reports/derate anew: millions of uses and motors against the promise of `derate`. The same bytes on every run but for the time.
+//   heatsoak_worst_use [FOLDER [TRIALS]]
+// FOLDER: reports/derate of the checkout; TRIALS: per class, 1 000 000 unless given.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <numeric>
+
+#include "adversary.h"
+#include "base/binomial_bound.h"
+#include "base/files.h"
+#include "report/chart.h"
+#include "select/evaluate.h"
+#include "support/shipped.h"
+
+namespace heatsoak::studies {
+namespace {
+
+constexpr std::uint64_t kSeed = 20'261;
+/// Streams of chance of the motors; those of the search and of the check of `derate` end below.
+constexpr std::uint64_t kMotors = std::uint64_t{1} << 40U;
+constexpr std::uint64_t kPanel = std::uint64_t{1} << 41U;
+constexpr std::uint64_t kFresh = std::uint64_t{1} << 42U;
+constexpr int kMotorsPerUse = 64;
+
+/// The paper's robot with the motor that it lost, and what `derate` makes of them with its usual options.
+struct Subject {
+  Robot robot = twente();
+  Motor motor = with_default_spreads(ecx_32());
+  DerateOptions options = {};
+  Derating derating = derate(ecx_32(), robot, options);
+};
+
+struct Worst {
+  double winding_C = 0.0;
+  std::uint64_t use = 0;    ///< number of the script
+  std::uint64_t motor = 0;  ///< its stream of chance, or number of the corner
+  Script script;
+};
+
+struct Tally {
+  std::string name;
+  std::string meaning;
+  std::uint64_t uses = 0;
+  std::uint64_t trials = 0;
+  std::uint64_t over = 0;
+  Worst worst = {};
+  static constexpr int kFrom_C = 0;
+  static constexpr int kCells = 600;  ///< of 1 K
+  std::vector<std::uint64_t> peaks = std::vector<std::uint64_t>(kCells);
+
+  void take(const MotorPeak& peak, std::uint64_t use, std::uint64_t motor, const Script& script) {
+    ++trials;
+    over += peak.is_over ? 1 : 0;
+    ++peaks[static_cast<std::size_t>(std::clamp(static_cast<int>(peak.winding_C) - kFrom_C, 0, kCells - 1))];
+    if (peak.winding_C > worst.winding_C) {
+      worst = {peak.winding_C, use, motor, script};
+    }
+  }
+  /// Temperature that the share of trials stays below, to 1 K.
+  [[nodiscard]] int quantile_C(double share) const {
+    std::uint64_t sum = 0;
+    for (int cell = 0; cell < kCells; ++cell) {
+      sum += peaks[static_cast<std::size_t>(cell)];
+      if (static_cast<double>(sum) >= share * static_cast<double>(trials)) {
+        return kFrom_C + cell + 1;
+      }
+    }
+    return kFrom_C + kCells;
+  }
+};
+
+std::vector<Network> drawn(const Subject& subject, std::uint64_t first_stream) {
+  std::vector<Network> networks;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    Random random(kSeed, first_stream + static_cast<std::uint64_t>(lane));
+    networks.push_back(datasheet_network(subject.motor, draw_sample(subject.motor, random)));
+  }
+  return networks;
+}
+
+/// Every value at one end of what the file says of it, the ends by the bits of `corner`.
+Network at_the_ends(const Subject& subject, std::uint64_t corner) {
+  Motor motor = subject.motor;
+  unsigned bit = 0;
+  for (auto& [key, figure] : motor.figures) {
+    if (needs_spread(key) && figure.spread) {
+      figure.value = ((corner >> bit++) & 1U) != 0 ? figure.spread->high : figure.spread->low;
+    }
+  }
+  refresh_values(motor);
+  return datasheet_network(motor, nominal_sample(motor));
+}
+
+UsePlayed played(const Subject& subject, const Script& script) {
+  return play(script, subject.derating.observer, subject.derating.table, subject.motor, subject.robot, subject.options.period_s);
+}
+
+/// How hot a use makes the same motors: what the adversary climbs by.
+double heat_of(const UsePlayed& use, const Subject& subject, const std::vector<std::vector<Network>>& panel) {
+  double sum_C = 0.0;
+  for (const std::vector<Network>& motors : panel) {
+    for (const MotorPeak& peak : peaks(motors, subject.derating.rules.limits, {&use, 1})) {
+      sum_C += peak.winding_C;
+    }
+  }
+  return sum_C;
+}
+
+/// The hottest uses so far; half of the new ones are changes of them.
+class Adversary {
+ public:
+  explicit Adversary(const Subject& subject) : subject_(subject) {
+    for (int block = 0; block < 2; ++block) {
+      panel_.push_back(drawn(subject, kPanel + static_cast<std::uint64_t>(block * kLanes)));
+    }
+  }
+
+  Script next(Random& random) const {
+    const BarrierRules& rules = subject_.derating.rules;
+    if (best_.empty() || random.uniform() < 0.5) {
+      return bang_bang(rules, random);
+    }
+    const auto place = static_cast<std::size_t>(random.uniform() * static_cast<double>(best_.size()));
+    return mutated(best_[place].second, rules, random);
+  }
+  void learn(const Script& script, const UsePlayed& use) {
+    constexpr std::size_t kKept = 24;
+    const double heat = heat_of(use, subject_, panel_);
+    const auto place = std::ranges::lower_bound(best_, heat, std::greater<>(), &std::pair<double, Script>::first);
+    best_.insert(place, {heat, script});
+    if (best_.size() > kKept) {
+      best_.pop_back();
+    }
+  }
+  [[nodiscard]] std::vector<UsePlayed> best(std::size_t count) const {
+    std::vector<UsePlayed> uses;
+    for (std::size_t i = 0; i < std::min(count, best_.size()); ++i) {
+      uses.push_back(played(subject_, best_[i].second));
+    }
+    return uses;
+  }
+  [[nodiscard]] const Script& hottest() const { return best_.front().second; }
+
+ private:
+  const Subject& subject_;
+  std::vector<std::vector<Network>> panel_;
+  std::deque<std::pair<double, Script>> best_;  ///< hottest first
+};
+
+using MakeScript = std::function<Script(Random& random)>;
+/// Every use on motors of its own.
+void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::uint64_t number, const MakeScript& make,
+               const std::function<void(const Script&, const UsePlayed&)>& learn = {}) {
+  const std::uint64_t uses = (trials + kMotorsPerUse - 1) / kMotorsPerUse;
+  for (std::uint64_t use = 0; use < uses; ++use) {
+    const std::uint64_t id = (number << 32U) + use;
+    Random random(kSeed, id);
+    const Script script = make(random);
+    const UsePlayed done = played(subject, script);
+    if (learn) {
+      learn(script, done);
+    }
+    ++tally.uses;
+    for (std::uint64_t i = 0; i < kMotorsPerUse; i += kLanes) {
+      const std::uint64_t stream = kMotors + id * kMotorsPerUse + i;
+      const auto found = peaks(drawn(subject, stream), subject.derating.rules.limits, {&done, 1});
+      for (std::size_t lane = 0; lane < found.size(); ++lane) {
+        tally.take(found[lane], id, stream + lane, script);
+      }
+    }
+  }
+}
+
+/// All corners of the tolerances under the hottest uses and random ones.
+void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, const Adversary& adversary) {
+  const auto values = static_cast<unsigned>(
+      std::ranges::count_if(subject.motor.figures, [](const auto& each) { return needs_spread(each.first) && each.second.spread; }));
+  const std::uint64_t corners = std::uint64_t{1} << values;
+  std::vector<Network> networks;
+  for (std::uint64_t corner = 0; corner < corners; ++corner) {
+    networks.push_back(at_the_ends(subject, corner));
+  }
+  for (std::uint64_t use = 0; tally.trials < trials; ++use) {
+    Random random(kSeed, (std::uint64_t{7} << 32U) + use);
+    const Script script = use == 0 ? adversary.hottest() : bang_bang(subject.derating.rules, random);
+    const UsePlayed done = played(subject, script);
+    ++tally.uses;
+    for (std::uint64_t corner = 0; corner + kLanes <= corners; corner += kLanes) {
+      const auto found = peaks(std::span(networks).subspan(corner, kLanes), subject.derating.rules.limits, {&done, 1});
+      for (std::size_t lane = 0; lane < found.size(); ++lane) {
+        tally.take(found[lane], use, corner + lane, script);
+      }
+    }
+  }
+}
+
+struct Retest {
+  int motors = 0;
+  int over_check = 0;  ///< in one of the uses of the check
+  int over_all = 0;    ///< in one of them, or of what the adversary found
+};
+/// The promise on fresh motors, with the uses that `derate` looks at and with the hottest that were found.
+Retest retest(const Subject& subject, const Adversary& adversary, int motors) {
+  constexpr std::size_t kHottest = 8;
+  const std::vector<UsePlayed> found = adversary.best(kHottest);
+  Retest result;
+  for (; result.motors < motors; result.motors += kLanes) {
+    const std::vector<Network> block = drawn(subject, kFresh + static_cast<std::uint64_t>(result.motors));
+    const auto by_check = peaks(block, subject.derating.rules.limits, subject.derating.uses);
+    const auto by_found = peaks(block, subject.derating.rules.limits, found);
+    for (std::size_t lane = 0; lane < by_check.size(); ++lane) {
+      result.over_check += by_check[lane].is_over ? 1 : 0;
+      result.over_all += by_check[lane].is_over || by_found[lane].is_over ? 1 : 0;
+    }
+  }
+  return result;
+}
+
+std::string share_text(std::uint64_t over, std::uint64_t of) {
+  const auto count = static_cast<double>(over);
+  const auto all = static_cast<double>(of);
+  return fmt::format("{:.3g} % (at most {:.3g} %)", 100.0 * count / all, 100.0 * upper_bound_share(count, all, kCertainty_share));
+}
+
+std::string table_text(const std::vector<Tally>& tallies) {
+  std::string text =
+      "| class of use | uses | trials | over the limit | median °C | 95 % below °C | hottest °C |\n|---|--:|--:|---|--:|--:|--:|\n";
+  for (const Tally& each : tallies) {
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {:.1f} |\n", each.meaning, each.uses, each.trials,
+                        share_text(each.over, each.trials), each.quantile_C(0.5), each.quantile_C(0.95), each.worst.winding_C);
+  }
+  text += "\nThe hottest trial of each class, to be made again with its numbers (`tests/derate/table/worst_use.cpp`):\n\n";
+  for (const Tally& each : tallies) {
+    text += fmt::format("- {}: {:.1f} °C, use {}, motor {}, start {:.0f} °C (observer {:.0f} °C): {}\n", each.name, each.worst.winding_C,
+                        each.worst.use, each.worst.motor, each.worst.script.motor_start_C, each.worst.script.observer_start_C,
+                        to_text(each.worst.script, 6));
+  }
+  return text;
+}
+
+std::string csv_text(const std::vector<Tally>& tallies) {
+  std::string text = "class,winding_peak_below_C,trials\n";
+  for (const Tally& each : tallies) {
+    for (int cell = 0; cell < Tally::kCells; ++cell) {
+      if (const std::uint64_t count = each.peaks[static_cast<std::size_t>(cell)]; count > 0) {
+        text += fmt::format("{},{},{}\n", each.name, Tally::kFrom_C + cell + 1, count);
+      }
+    }
+  }
+  return text;
+}
+
+Chart chart_of(const std::vector<Tally>& tallies, double limit_C) {
+  Chart chart{
+      .title = "How hot windings get when the guard allows and the adversary takes",
+      .subtitle = fmt::format("ECX FLAT 32 L in roboteam_twente_v2024, limit {:.0f} °C, {:.1f} million trials, computed", limit_C,
+                              1e-6 * std::accumulate(tallies.begin(), tallies.end(), 0.0,
+                                                     [](double sum, const Tally& each) { return sum + static_cast<double>(each.trials); })),
+      .x_label = "peak winding temperature / °C",
+      .panels = {{.title = "share of trials that get hotter", .y_label = "share / %", .levels = {{"5 %", 5.0}}, .logarithmic = true}}};
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    ChartCurve curve{.name = tallies[i].name, .color_index = static_cast<int>(i)};
+    std::uint64_t above = tallies[i].trials;
+    for (int cell = 0; cell < Tally::kCells && above > 0; ++cell) {
+      above -= tallies[i].peaks[static_cast<std::size_t>(cell)];
+      if (above < tallies[i].trials) {
+        curve.x.push_back(Tally::kFrom_C + cell + 1);
+        curve.y.push_back(100.0 * static_cast<double>(above) / static_cast<double>(tallies[i].trials));
+      }
+    }
+    chart.panels[0].curves.push_back(curve);
+  }
+  return chart;
+}
+
+std::vector<Tally> run_all(const Subject& subject, std::uint64_t trials, Adversary& adversary) {
+  const BarrierRules& rules = subject.derating.rules;
+  std::vector<Tally> tallies{{"adversary", "on and off by an adversary that learns"},
+                             {"match", "wheels of division A matches, 1 to 3 times the current"},
+                             {"ambient", "the same adversary in air that jumps"},
+                             {"cold_observer", "observer starts 20 K below the motor"},
+                             {"ends", "every value at an end of its tolerance, all combinations"}};
+  run_class(
+      tallies[0], subject, trials, 1, [&](Random& random) { return adversary.next(random); },
+      [&](const Script& script, const UsePlayed& use) { adversary.learn(script, use); });
+  constexpr int kGames = 40;
+  const std::vector<WheelDemand> games =
+      draw_demands(read_duty(kSource / "duty_profiles/division_a_match.toml"), subject.robot, kSeed, kGames, 1);
+  run_class(tallies[1], subject, trials, 2, [&](Random& random) {
+    const WheelDemand& game = games[static_cast<std::size_t>(random.uniform() * kGames)];
+    const double aggressiveness = 1.0 + 2.0 * random.uniform();
+    return match(game, subject.motor, subject.robot, rules, aggressiveness, random.uniform());
+  });
+  run_class(tallies[2], subject, trials, 3, [&](Random& random) {
+    Script script = adversary.next(random);
+    step_ambient(script, subject.options.coldest_ambient_C + 1.0, rules, random);
+    return script;
+  });
+  run_class(tallies[3], subject, trials, 4, [&](Random& random) {
+    constexpr double kWrong_K = 20.0;
+    Script script = adversary.next(random);
+    script.motor_start_C = std::lerp(rules.hottest_ambient_C + kWrong_K, rules.limits.winding_C, random.uniform());
+    script.observer_start_C = script.motor_start_C - kWrong_K;
+    return script;
+  });
+  run_corners(tallies[4], subject, trials, adversary);
+  return tallies;
+}
+
+void run(const std::filesystem::path& folder, std::uint64_t trials) {
+  const auto start = std::chrono::steady_clock::now();
+  const Subject subject;
+  Adversary adversary(subject);
+  const std::vector<Tally> tallies = run_all(subject, trials, adversary);
+  const Retest again = retest(subject, adversary, 20'000);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const auto share = [&](int over) { return share_text(static_cast<std::uint64_t>(over), static_cast<std::uint64_t>(again.motors)); };
+  write_file(folder / "worst_use.md",
+             fmt::format("Safety factor on heat {:.2f}, confidence {:.2f}, limit {:.0f} °C. Run time {:.0f} min, one thread.\n\n{}\n"
+                         "The promise on {} fresh motors: over a limit in one of the {} uses of the check {}, in one of those or of the "
+                         "eight hottest that the adversary found {}.\n",
+                         subject.derating.observer.heat_reserve_ratio(), subject.options.guarantee.confidence,
+                         subject.derating.rules.limits.winding_C, took.count() / 60.0, table_text(tallies), again.motors,
+                         subject.derating.uses.size(), share(again.over_check), share(again.over_all)));
+  write_file(folder / "worst_use.csv", csv_text(tallies));
+  write_file(folder / "worst_use.svg", draw_svg(chart_of(tallies, subject.derating.rules.limits.winding_C)));
+}
+
+}  // namespace
+}  // namespace heatsoak::studies
+
+int main(int argc, char** argv) {
+  try {
+    const std::filesystem::path folder = argc > 1 ? std::filesystem::path(argv[1]) : heatsoak::kSource / "reports" / "derate";
+    std::uint64_t trials = 1'000'000;
+    if (argc > 2) {
+      const std::string_view text(argv[2]);
+      std::from_chars(text.data(), text.data() + text.size(), trials);
+    }
+    heatsoak::studies::run(folder, trials);
+    return 0;
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "{}\n", problem.what());
+    return 70;
+  }
+}

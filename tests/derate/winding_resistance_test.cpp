@@ -1,0 +1,134 @@
+// The winding's temperature from voltage and current: within its accuracy where it is shown, and not shown where it cannot be.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "derate/sensed/sensor_plan.h"
+#include "sensed_motor.h"
+
+namespace heatsoak {
+namespace {
+
+const SensorOptions kResistance{.kind = SensorKind::winding_resistance, .node = states::winding, .accuracy_K = 10.0};
+
+/// The thermistor's plan with readings of the resistance: what is tested here is how they are made.
+const CompiledGuard& guard() {
+  static const CompiledGuard made(
+      [] {
+        Derating derating = thermistor_derating();
+        derating.sensor->options = kResistance;
+        derating.sensor->resistance = resistance_reading(ecx_32(), kResistance, derating.options.period_s);
+        return derating;
+      }(),
+      "resistance");
+  return made;
+}
+
+/// A motor's terminals with everything wrong at once that is declared.
+struct Terminals {
+  double resistance_25C_ohm = 1.07;
+  double torque_constant_Nm_per_A = 0.0328;
+  double voltage_error_V = 0.0;
+  double current_error_A = 0.0;
+  double gain_ratio = 1.0;  ///< of the voltage sensor
+
+  [[nodiscard]] double voltage_V(double current_A, double speed_rad_per_s, double winding_C) const {
+    const double resistance_ohm = resistance_25C_ohm * (1.0 + 0.0039 * (winding_C - 25.0));
+    return gain_ratio * (resistance_ohm * current_A + torque_constant_Nm_per_A * speed_rad_per_s) + voltage_error_V;
+  }
+};
+
+class ResistanceSensor {
+ public:
+  ResistanceSensor() : sensor_(static_cast<std::size_t>(guard().function<int()>("resistance_size")())), sensed_(guard()) { start(30.0F); }
+
+  void start(float body_C) {
+    sensed_.start(body_C);
+    guard().function<void(void*, float)>("resistance_start")(sensor_.data(), body_C);
+  }
+  /// Twice, so that the current has not just changed.
+  float reading_C(const Terminals& terminals, double current_A, double speed_rad_per_s, double winding_C) {
+    const CompiledGuard::Input in{static_cast<float>(current_A + terminals.current_error_A), static_cast<float>(speed_rad_per_s), 30.0F};
+    const auto voltage_V = static_cast<float>(terminals.voltage_V(current_A, speed_rad_per_s, winding_C));
+    const auto read = guard().function<float(void*, const void*, const void*, float)>("resistance_reading_C");
+    read(sensor_.data(), sensed_.state().data(), &in, voltage_V);
+    return read(sensor_.data(), sensed_.state().data(), &in, voltage_V);
+  }
+  /// The guard's own state, while the motor works.
+  void work(int steps) {
+    for (int i = 0; i < steps; ++i) {
+      sensed_.step({5.0F, 0.0F, 30.0F}, std::nanf(""));
+    }
+  }
+
+ private:
+  std::vector<unsigned char> sensor_;
+  SensedGuard sensed_;
+};
+
+TEST(WindingResistance, ExactTerminalsShowTheTemperature) {
+  ResistanceSensor sensor;
+  const Terminals exact;
+  EXPECT_NEAR(sensor.reading_C(exact, 6.0, 0.0, 30.0), 30.0, 0.1);
+  for (const double winding_C : {40.0, 90.0, 150.0}) {
+    EXPECT_NEAR(sensor.reading_C(exact, 6.0, 0.0, winding_C), winding_C, 0.1);
+    EXPECT_NEAR(sensor.reading_C(exact, -6.0, 0.0, winding_C), winding_C, 0.1);
+    EXPECT_NEAR(sensor.reading_C(exact, 6.0, 5.0, winding_C), winding_C, 0.2);
+  }
+}
+
+// Random errors within what is declared, random motors: never more than the accuracy off where anything is shown.
+TEST(WindingResistance, StaysWithinItsAccuracyForDrawnMotorsAndErrors) {
+  std::mt19937_64 engine(12);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int shown = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    Random random(7, static_cast<std::uint64_t>(i % 500));
+    const MotorSample sample = draw_sample(ecx_32(), random);
+    const Terminals terminals{.resistance_25C_ohm = sample.values.terminal_resistance_ohm,
+                              .torque_constant_Nm_per_A = sample.values.torque_constant_Nm_per_A * (0.95 + 0.05 * uniform(engine)),
+                              .voltage_error_V = 0.02 * uniform(engine),
+                              .current_error_A = 0.01 * uniform(engine),
+                              .gain_ratio = 1.0 + 0.05 * uniform(engine)};
+    ResistanceSensor sensor;
+    if (std::isnan(sensor.reading_C(terminals, 3.0 + 2.0 * uniform(engine), 0.0, 30.0))) {
+      continue;
+    }
+    const double winding_C = 90.0 + 60.0 * uniform(engine);
+    const float reading_C = sensor.reading_C(terminals, 8.0 * uniform(engine), 10.0 * uniform(engine), winding_C);
+    if (!std::isnan(reading_C)) {
+      ++shown;
+      ASSERT_NEAR(reading_C, winding_C, kResistance.accuracy_K) << i;
+    }
+  }
+  EXPECT_GT(shown, 10'000);
+}
+
+TEST(WindingResistance, ShowsNothingWhereItCannotBeRead) {
+  ResistanceSensor sensor;
+  const Terminals exact;
+  EXPECT_FALSE(std::isnan(sensor.reading_C(exact, 6.0, 0.0, 30.0)));
+  EXPECT_TRUE(std::isnan(sensor.reading_C(exact, 0.5, 0.0, 80.0))) << "too little current";
+  EXPECT_TRUE(std::isnan(sensor.reading_C(exact, 0.0, 0.0, 80.0)));
+  EXPECT_TRUE(std::isnan(sensor.reading_C(exact, 6.0, 300.0, 80.0))) << "too fast";
+  EXPECT_TRUE(std::isnan(sensor.reading_C(exact, std::nan(""), 0.0, 80.0)));
+}
+
+TEST(WindingResistance, AMotorThatHasWorkedDoesNotCalibrate) {
+  ResistanceSensor sensor;
+  sensor.work(500);
+  EXPECT_TRUE(std::isnan(sensor.reading_C(Terminals{}, 6.0, 0.0, 60.0)));
+}
+
+TEST(WindingResistance, HelpsAtRestAndIsTheGuardWithoutASensorAtSpeed) {
+  const Derating derating = resistance_derating();
+  const SensorPlan& plan = *derating.sensor;
+  EXPECT_LT(plan.observer.heat_reserve_ratio(), derating.observer.heat_reserve_ratio());
+  EXPECT_GT(plan.lasting.front().with_A, 1.05 * plan.lasting.front().without_A);
+  EXPECT_NEAR(plan.lasting.back().with_A, plan.lasting.back().without_A, 0.05 * plan.lasting.back().without_A);
+  EXPECT_LE(plan.over, 0.05 * plan.samples);
+}
+
+}  // namespace
+}  // namespace heatsoak

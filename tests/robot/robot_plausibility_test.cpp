@@ -1,0 +1,78 @@
+// Slips that a robot file can hold and `lint` finds: lengths, batteries and inertias of another unit.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "robot/robot.h"
+#include "robot/robot_lint.h"
+#include "support/source_folder.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kRobots = kSource / "robot_core/robots";
+
+std::string content_of_robot(const char* name) {
+  std::ifstream stream(kRobots / name);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Findings of a robot file in which `pattern` is replaced, as "check level".
+std::vector<std::string> findings_with(const std::string& pattern, const std::string& by) {
+  const std::string text = content_of_robot("roboteam_twente_v2024.toml");
+  const std::string changed = std::regex_replace(text, std::regex(pattern), by, std::regex_constants::format_first_only);
+  EXPECT_NE(changed, text) << pattern;
+  std::vector<std::string> found;
+  for (const LintFinding& each : lint(parse_robot(changed, "robot.toml"), std::vector<std::string>{"maxon_ecx_flat_32l_48v"})) {
+    found.push_back(each.check + " " + std::string(to_string(each.level)));
+  }
+  return found;
+}
+
+using testing::Contains;
+using testing::IsEmpty;
+
+TEST(RobotPlausibility, diameter_in_place_of_the_radius_makes_wheels_overlap) {
+  EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"56 mm\""), Contains("wheels error"));
+  EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"62 mm\""), Contains("wheels error"));
+}
+
+// Two wheels at ±30° on a circle of 80.4 mm touch where their radius is 80.4 mm · tan 30° = 46.4 mm.
+TEST(RobotPlausibility, wheels_overlap_from_the_radius_of_geometry_on) {
+  EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"46 mm\""), IsEmpty());
+  EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"47 mm\""), Contains("wheels error"));
+}
+
+TEST(RobotPlausibility, large_wheels_far_apart_get_a_warning) {
+  EXPECT_THAT(findings_with(
+                  "\nradius = \"28 mm\"\ncontact_radius = \"80.4 mm\"\naxis_angles = \\[[^\\]]*\\]",
+                  "\nradius = \"62 mm\"\ncontact_radius = \"80.4 mm\"\naxis_angles = [\"-45 deg\", \"45 deg\", \"135 deg\", \"-135 deg\"]"),
+              Contains("wheels warning"));
+}
+
+TEST(RobotPlausibility, nominal_voltage_lies_between_empty_and_full) {
+  EXPECT_THAT(findings_with("nominal_voltage = \"22.2 V\"", "nominal_voltage = \"222 V\""), Contains("battery error"));
+  EXPECT_THAT(findings_with("nominal_voltage = \"22.2 V\"", "nominal_voltage = \"2.22 V\""), Contains("battery error"));
+}
+
+TEST(RobotPlausibility, yaw_inertia_fits_mass_and_size) {
+  EXPECT_THAT(findings_with("yaw_inertia = \\{ value = \"0.011 kg m2\", origin = \"estimated\", range = \\[[^\\]]*\\]",
+                            "yaw_inertia = { value = \"1100 g cm2\", origin = \"estimated\""),
+              Contains("inertia warning"));
+}
+
+TEST(RobotPlausibility, robots_of_the_project_pass) {
+  for (const auto& entry : std::filesystem::directory_iterator(kRobots)) {
+    if (entry.path().extension() != ".toml") {
+      continue;
+    }
+    const Robot robot = read_robot(entry.path());
+    EXPECT_THAT(lint(robot, std::vector<std::string>{robot.drive_motor}), IsEmpty()) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

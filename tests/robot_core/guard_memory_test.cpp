@@ -1,0 +1,135 @@
+// Guards of the drive core over a loss of power.
+#include "robot_core/guard_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "test_robot.h"
+
+namespace heatsoak {
+namespace {
+
+using namespace robot_core;
+using test_robot::make_config;
+
+constexpr float kUnknown_s = std::numeric_limits<float>::quiet_NaN();
+
+/// A guard that has carried a current for a while.
+GuardState worked(const GuardModel& model, int steps, float current_A = 4.0F) {
+  GuardState guard;
+  start_guard(model, guard, 30.0F);
+  float signal[kGuardSignals] = {};
+  signal[guard_current_A] = current_A;
+  signal[guard_ambient_C] = 30.0F;
+  for (int i = 0; i < steps; ++i) {
+    step_guard(model, guard, signal, 0.0F);
+  }
+  return guard;
+}
+
+TEST(GuardMemory, WithoutTimeItIsWhatWasSaved) {
+  const Config config = make_config(4);
+  const GuardState saved = worked(*config.guard, 3000);
+  GuardState found;
+  EXPECT_EQ(restore_guard(*config.guard, found, saved, 0.0F, 20.0F), Restored::cooled);
+  for (int node = 0; node < config.guard->node_count; ++node) {
+    EXPECT_EQ(found.state_C[node], saved.state_C[node]);
+  }
+}
+
+// The guard itself, stepped without current through the same time, is the reference.
+TEST(GuardMemory, CoolsAsTheGuardDoesAndNoFaster) {
+  const Config config = make_config(4);
+  const GuardModel& model = *config.guard;
+  const GuardState saved = worked(model, 3000);
+  for (const float elapsed_s : {0.3F, 2.0F, 20.0F, 100.0F, 400.0F}) {
+    GuardState stepped = saved;
+    float signal[kGuardSignals] = {};
+    signal[guard_ambient_C] = model.hottest_ambient_C;
+    for (int i = 0; i < static_cast<int>(std::lround(elapsed_s / model.period_s)); ++i) {
+      step_guard(model, stepped, signal, 0.0F);
+    }
+    GuardState found;
+    restore_guard(model, found, saved, elapsed_s, 20.0F);
+    for (int node = 0; node < model.node_count; ++node) {
+      EXPECT_GE(found.state_C[node], stepped.state_C[node] - 0.02F) << elapsed_s << " " << node;
+      EXPECT_LE(found.state_C[node], stepped.state_C[node] + 2.0F) << elapsed_s << " " << node;
+    }
+  }
+}
+
+TEST(GuardMemory, UnknownTimeIsAsHotAsAnyTime) {
+  const Config config = make_config(4);
+  const GuardState saved = worked(*config.guard, 600);
+  GuardState unknown;
+  EXPECT_EQ(restore_guard(*config.guard, unknown, saved, kUnknown_s, 20.0F), Restored::time_unknown);
+  for (const float elapsed_s : {0.0F, 1.0F, 5.0F, 20.0F, 60.0F, 300.0F}) {
+    GuardState known;
+    restore_guard(*config.guard, known, saved, elapsed_s, 20.0F);
+    for (int node = 0; node < config.guard->node_count; ++node) {
+      EXPECT_GE(unknown.state_C[node], known.state_C[node] - 0.05F) << elapsed_s << " " << node;
+    }
+  }
+}
+
+TEST(GuardMemory, AFlippedBitCountsAsAtTheLimit) {
+  const Config config = make_config(4);
+  const GuardState saved = worked(*config.guard, 1000);
+  for (std::size_t bit = 0; bit < 8 * sizeof(GuardState); ++bit) {
+    GuardState broken = saved;
+    reinterpret_cast<unsigned char*>(&broken)[bit / 8] ^= static_cast<unsigned char>(1U << (bit % 8));
+    GuardState found;
+    ASSERT_EQ(restore_guard(*config.guard, found, broken, 1.0F, 20.0F), Restored::nothing) << bit;
+    EXPECT_EQ(found.state_C[0], config.guard->winding_limit_C);
+  }
+}
+
+TEST(GuardMemory, TheDriveCoreGoesOnFromIt) {
+  const Config config = make_config(4);
+  State state;
+  ASSERT_TRUE(start(config, state, {}));
+  GuardState saved[kMostWheels];
+  for (GuardState& each : saved) {
+    each = worked(*config.guard, 500, 2.0F);
+  }
+  EXPECT_TRUE(restore_guards(config, state, saved, 2.0F, 25.0F));
+  Input input;
+  input.elapsed_s = config.period_s;
+  const Output out = step(config, state, input);
+  EXPECT_NE(out.robot_reason, Reason::state_corrupted);
+  EXPECT_GT(out.allowed_current_A[0], 0.0F);
+  EXPECT_LT(out.winding_C[0], config.guard->winding_limit_C - 10.0F);
+}
+
+TEST(GuardMemory, AWheelWithoutACopyStaysAtItsLimit) {
+  const Config config = make_config(4);
+  State state;
+  ASSERT_TRUE(start(config, state, {}));
+  GuardState saved[kMostWheels] = {};
+  saved[0] = worked(*config.guard, 500, 2.0F);
+  EXPECT_FALSE(restore_guards(config, state, saved, 2.0F, 25.0F));
+  EXPECT_LT(state.guard[0].state_C[0], config.guard->winding_limit_C);
+  EXPECT_EQ(state.guard[1].state_C[0], config.guard->winding_limit_C);
+}
+
+// A State that was not valid before does not become so.
+TEST(GuardMemory, HealsNoCorruptState) {
+  const Config config = make_config(4);
+  State state;
+  ASSERT_TRUE(start(config, state, {}));
+  state.yaw_integral_rad = 3.0F;
+  GuardState saved[kMostWheels];
+  for (GuardState& each : saved) {
+    each = worked(*config.guard, 100);
+  }
+  restore_guards(config, state, saved, 2.0F, 25.0F);
+  Input input;
+  input.elapsed_s = config.period_s;
+  EXPECT_EQ(step(config, state, input).robot_reason, Reason::state_corrupted);
+}
+
+}  // namespace
+}  // namespace heatsoak
