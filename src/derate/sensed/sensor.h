@@ -45,6 +45,7 @@ ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& op
 
 /// What the cross-check of a reading allows. A reading outside of it is not used.
 struct ReadingCheck {
+  double most_C = 300.0;           ///< a reading above is none, like one below the coldest air
   double most_rate_K_per_s = 0.0;  ///< of the node
   double most_jump_K = 0.0;        ///< between two readings, beyond that rate
   /// The rise of the node above the air is at least this share of the nominal motor's, less `cold_margin_K`. Where the
