@@ -2,10 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "program_run.h"
 
 namespace heatsoak {
 namespace {
+
+namespace fs = std::filesystem;
 
 using nlohmann::json;
 using testing::HasSubstr;
