@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "program_run.h"
+#include "support/shipped.h"
 
 namespace heatsoak {
 namespace {
