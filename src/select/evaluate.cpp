@@ -458,11 +458,16 @@ std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std:
                                       std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress) {
   std::vector<Motor> complete;
   std::ranges::transform(motors, std::back_inserter(complete), with_default_spreads);
+  return evaluate_as_stated(robot, duty, wheels, complete, options, progress);
+}
+
+std::vector<MotorEvaluation> evaluate_as_stated(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
+                                                std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress) {
   const auto samples = static_cast<std::size_t>(options.samples);
   const std::size_t blocks = (samples + kLanes - 1) / kLanes;
   std::vector<Work> works(motors.size());
   for (std::size_t i = 0; i < motors.size(); ++i) {
-    works[i].motor = &complete[i];
+    works[i].motor = &motors[i];
     works[i].winding_peak_C.resize(samples);
     works[i].stator_peak_C.resize(samples);
     works[i].over_limit.resize(samples);

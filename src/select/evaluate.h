@@ -121,4 +121,9 @@ void sort_by_verdict(std::vector<MotorEvaluation>& results);
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                       std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress = {});
 
+/// The same with the spreads that the motors have, be they missing or narrower than anybody can know: for comparisons, not for verdicts.
+std::vector<MotorEvaluation> evaluate_as_stated(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
+                                                std::span<const Motor> motors, const EvaluateOptions& options,
+                                                const Progress& progress = {});
+
 }  // namespace heatsoak

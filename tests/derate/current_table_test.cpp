@@ -46,8 +46,8 @@ TEST(CurrentTable, ObserverNeverPassesItsLimit) {
       for (const double approach_s : {0.1, 0.5, 5.0}) {
         const GuardedMotor guarded(motor, rules_for(motor, approach_s), reserve);
         const Peaks peaks = drive(guarded, 5, 0.01F);
-        EXPECT_LE(peaks.winding_C, motor.nominal.winding_limit_C + 1e-3) << id << ", reserve " << reserve << ", approach " << approach_s;
-        EXPECT_GT(peaks.winding_C, motor.nominal.winding_limit_C - 3.0) << "what is allowed is not used: " << id;
+        EXPECT_LE(peaks.winding_C, guarded.rules.limits.winding_C + 1e-3) << id << ", reserve " << reserve << ", approach " << approach_s;
+        EXPECT_GT(peaks.winding_C, guarded.rules.limits.winding_C - 3.0) << "what is allowed is not used: " << id;
       }
     }
   }

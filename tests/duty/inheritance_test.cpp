@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -18,7 +20,7 @@ using testing::HasSubstr;
 
 class Inheritance : public testing::Test {
  protected:
-  Inheritance() : folder_(fs::path(testing::TempDir()) / "heatsoak_inheritance") {
+  Inheritance() : folder_(fs::path(testing::TempDir()) / ("heatsoak_inheritance_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
     fs::copy_file(kSource / "duty_profiles/division_a_match.toml", folder_ / "division_a_match.toml", fs::copy_options::overwrite_existing);
   }

@@ -163,7 +163,10 @@ TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncerta
   }
   duty_.ambient_C.spread.reset();
   duty_.load.spread.reset();
-  const MotorEvaluation result = evaluation(motor, 8);
+  EvaluateOptions options;
+  options.samples = 8;
+  const std::vector<Motor> one{motor};
+  const MotorEvaluation result = evaluate_as_stated(robot_, duty_, duty_.demand(robot_, 1), one, options).front();
   EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 2e-3);
   EXPECT_NEAR(result.stator_peak_C.p50, result.stator_peak_C.nominal, 2e-3);
 }

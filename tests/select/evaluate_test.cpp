@@ -329,6 +329,7 @@ TEST(Samples, without_any_spread_all_are_the_nominal_one) {
 Figure resistance_within_10_percent() {
   Figure figure;
   figure.value = kResistance_ohm;
+  figure.origin = Origin::measured;
   figure.spread = Spread{Spread::Kind::tolerance, 0.9 * kResistance_ohm, 1.1 * kResistance_ohm, true};
   return figure;
 }
@@ -365,6 +366,7 @@ TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
   give(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
   Figure inner;
   inner.value = kInner_K_per_W;
+  inner.origin = Origin::measured;
   inner.spread = Spread{Spread::Kind::tolerance, 0.9 * kInner_K_per_W, 1.1 * kInner_K_per_W, true};
   give(motor, "thermal_resistance_winding_stator", &MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(5.0), {.samples = 2000, .seed = 5});
