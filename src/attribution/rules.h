@@ -21,7 +21,6 @@ struct SelectionRules {
   double curve_gain_nats = 10.0;       ///< that a curve must explain beyond the best effects
   double narrow_nats = 5.0;            ///< that knots over half the range must explain more
   double second_signal_nats = 10.0;    ///< that heat over one signal times another must be ahead of heat over one
-  double beside_unknown_share = 0.5;   ///< of the error of whole runs, with which a name stays although unknown heat remains that matters
   double better_share = 0.97;          ///< of the error of whole runs, that a calibrated model may have with a name
   double plainly_better_share = 0.85;  ///< the same where whole runs decided its figures
   double same_shape_share = 0.2;   ///< of the evidence of an effect and a curve: with more of it a curve is no other shape of the effect

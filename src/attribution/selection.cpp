@@ -123,10 +123,11 @@ class Selector : Rounds {
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
     const bool has_curve = !scan.empty() && scan.front().gain_nats > rules_.curve_gain_nats;
     if (!has_curve) {
-      if (out_.is_material()) {
-        keep_what_outweighs(best, named);
-        out_.is_unexplained = named.empty();
+      out_.is_unexplained = out_.is_material();
+      for (const std::size_t m : out_.is_unexplained ? named : std::vector<std::size_t>()) {
+        refuse(best.members[m], "more heat remains than what every model leaves");
       }
+      named.resize(out_.is_unexplained ? 0 : named.size());
       return;
     }
     const ScanResult& curve = scan.front();
@@ -154,38 +155,6 @@ class Selector : Rounds {
 
   [[nodiscard]] double free_run_error_K(const ExtendedModel& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
 
-  /// Of whole training runs, with some members of the best set.
-  [[nodiscard]] double error_with_K(const EffectSet& best, const std::vector<std::size_t>& members) const {
-    std::vector<int> kept;
-    std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
-    std::ranges::sort(kept);
-    const SetSearch::AtBest at = search_->at_best(kept);
-    const ExtendedModel model = with_members(kept, at, ShapesAre::held);
-    RefitOptions options = final_options(best_place_);
-    options.around.clear();
-    const RefitResult fit = try_refit(model, input_.runs, starts_of(model), options);
-    return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
-  }
-
-  /// Beside unknown heat that matters a name stays where whole runs are followed far better with it than without.
-  void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
-    if (named.empty()) {
-      return;
-    }
-    const double with_all_K = error_with_K(best, named);
-    std::vector<std::size_t> kept;
-    for (const std::size_t m : named) {
-      std::vector<std::size_t> others = named;
-      std::erase(others, m);
-      if (with_all_K < rules_.beside_unknown_share * error_with_K(best, others)) {
-        kept.push_back(m);
-      } else {
-        refuse(best.members[m], "more heat remains than what every model leaves");
-      }
-    }
-    named = std::move(kept);
-  }
-
   /// What a calibrated model leaves of the runs at once it left of the runs that it was fitted to as well: a name must let whole runs be
   /// followed plainly better, and where whole runs decided the file's figures, runs that are followed as usual show nothing.
   void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
@@ -196,13 +165,24 @@ class Selector : Rounds {
       out_.is_as_usual = true;
       return;
     }
+    const auto error_with_K = [&](const std::vector<std::size_t>& members) {
+      std::vector<int> kept;
+      std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
+      std::ranges::sort(kept);
+      const SetSearch::AtBest at = search_->at_best(kept);
+      const ExtendedModel model = with_members(kept, at, ShapesAre::held);
+      RefitOptions options = final_options(best_place_);
+      options.around.clear();
+      const RefitResult fit = try_refit(model, input_.runs, starts_of(model), options);
+      return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
+    };
     // The surest stays longest.
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
     for (std::size_t i = named.size(); i-- > 0;) {
       std::vector<std::size_t> others = named;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       const double better_share = input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share;
-      if (error_with_K(best, named) > better_share * error_with_K(best, others)) {
+      if (error_with_K(named) > better_share * error_with_K(others)) {
         refuse(best.members[named[i]], "whole runs are followed hardly better with it");
         named = std::move(others);
       }
@@ -234,13 +214,7 @@ class Selector : Rounds {
       out_.after = std::move(fit);
       add_terms(best, named, kept);
     }
-    if (out_.open_curve && !adopt_curve(judged) && !out_.terms.empty()) {
-      std::vector<std::size_t> outweighing = named;
-      keep_what_outweighs(best, outweighing);
-      if (outweighing.size() == named.size()) {
-        out_.is_unexplained = false;
-        return;
-      }
+    if (out_.open_curve && !adopt_curve(judged)) {
       // A part of what is missing foretells no better than the model without it.
       for (const AcceptedTerm& term : out_.terms) {
         out_.refused.push_back({term.candidate->id, fmt::format("{}: more heat remains than what every model leaves", term.candidate->id)});
