@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "attribution/advisor.h"
 #include "drive_rows.h"
+#include "identify/attribution/advisor.h"
 #include "scoring.h"
 
 namespace heatsoak::truth {
@@ -39,6 +39,7 @@ TEST(Examination, CurveAndLawThatBalanceEachOtherAreBothFound) {
   Case one = sealed(missing, 12);
   one.is_calibrated = true;
   const Answer answer = examine(one);
+  EXPECT_TRUE(answer.diagnosis.selection.waits_for_others) << account(answer);
   EXPECT_THAT(answer.named, testing::UnorderedElementsAre("constant_heat", "stator~bus_voltage")) << account(answer);
   EXPECT_LT(answer.after_K, 0.3 * answer.before_K) << account(answer);
 }
@@ -279,6 +280,36 @@ TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
   EXPECT_LT(answer.after_K, 0.25 * answer.before_K) << account(answer);
 }
 
+/// What few candidates say of the runs does not hang on who was asked beside them.
+TEST(Examination, TableOfAFewSaysWhatTheTableOfAllDoes) {
+  const Case one = sealed(subject("iron_loss_eddy").make(0.8), 12);
+  const DiagnosisInput input = question(one, record(one));
+  const std::vector<Candidate> candidates = candidates_for(input.model, input.train).candidates;
+  std::vector<LinearisedRun> fitted;
+  std::vector<Columns> columns;
+  for (const MeasuredRun& run : input.train) {
+    fitted.push_back(linearise(input.model, measured_start_C(input.model.model.network, run), run));
+    columns.push_back(candidate_columns(candidates, input.model, fitted.back(), run));
+  }
+  const auto table = [&] {
+    return EvidenceTable(design(input.model.model.network, fitted, input.train, {}, {}, columns), flux_grid(4.0, 900.0),
+                         prior_here(input.model), std::vector<CandidateColumn>(candidates.size(), {true, 2.0}));
+  };
+  EvidenceTable all = table();
+  const FluxGrid::Place start{4, 4, 2};
+  const std::vector<int> few{static_cast<int>(candidates.size()) - 1, 3, 0};
+  EvidenceTable visited = table();
+  (void)visited.score(few, start);
+  for (EvidenceTable& narrow : std::array{table().only(few), std::move(visited).only(few)}) {
+    for (int j = 0; j < 3; ++j) {
+      const SetScore alone = all.best(std::array{few[static_cast<std::size_t>(j)]}, start), same = narrow.best(std::array{j}, start);
+      EXPECT_EQ(alone.place, same.place);
+      EXPECT_NEAR(alone.evidence_nats, same.evidence_nats, 1e-9 * std::abs(alone.evidence_nats));
+      EXPECT_NEAR(alone.coefficient.tail(1)[0], same.coefficient.tail(1)[0], 1e-6);
+    }
+  }
+}
+
 TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
   const Answer answer = examine(sealed(subject("windage").make(0.8), 41));
   ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
@@ -309,6 +340,20 @@ TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
   }
   EXPECT_GE(held, 5);
   EXPECT_LE(unnamed, 1);
+}
+
+TEST(Examination, FinerGridKeepsItsPlaces) {
+  const FluxGrid grid = flux_grid(4.0, 900.0);
+  const FluxGrid finer = grid.finer();
+  for (const FluxGrid::Place& place : {FluxGrid::Place{0, 3, 2}, FluxGrid::Place{1, 0, 0}, FluxGrid::Place{5, 6, 4}}) {
+    const LatentFlux flux = grid.at(place), same = finer.at(FluxGrid::in_finer(place));
+    EXPECT_EQ(flux.rms_W, same.rms_W);
+    EXPECT_EQ(flux.time_scale_s, same.time_scale_s);
+  }
+  EXPECT_EQ(finer.rms_W.size(), 2 * grid.rms_W.size() - 2);
+  EXPECT_TRUE(std::ranges::is_sorted(finer.rms_W));
+  EXPECT_EQ(finer.time_scale_s.size(), 2 * grid.time_scale_s.size() - 1);
+  EXPECT_TRUE(std::ranges::is_sorted(finer.time_scale_s));
 }
 
 /// A peak of one row is no level for minutes: ten minutes of it would melt the motor.
@@ -363,13 +408,12 @@ TEST(Examination, OrderOfRunsChangesNothing) {
   const Runs runs = record(one);
   SelectionInput forwards, backwards;
   forwards.model = backwards.model = model_before(runs.make, one.seed);
-  SelectionRules rules;
-  rules.scans_drivers = false;
+  forwards.scans_drivers = backwards.scans_drivers = false;
   for (const TrueRun& run : runs.training) {
     forwards.runs.push_back(measured(run));
     backwards.runs.insert(backwards.runs.begin(), measured(run));
   }
-  const Selection a = select_effects(forwards, rules), b = select_effects(backwards, rules);
+  const Selection a = select_effects(forwards, {}), b = select_effects(backwards, {});
   ASSERT_EQ(a.terms.size(), b.terms.size());
   EXPECT_NEAR(a.after.evidence_nats, b.after.evidence_nats, 1e-3 * std::abs(a.after.evidence_nats));
   EXPECT_EQ(a.terms.front().candidate->id, b.terms.front().candidate->id);

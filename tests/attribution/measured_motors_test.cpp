@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "../support/measured_data.h"
-#include "attribution/model_file.h"
+#include "identify/attribution/model_file.h"
 #include "identify/calibration/calibrate.h"
 #include "identify/measurement/mapping.h"
 #include "identify/measurement/read_recording.h"

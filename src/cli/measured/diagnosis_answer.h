@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "attribution/diagnosis.h"
+#include "identify/attribution/diagnosis.h"
 #include "report/chart.h"
 
 namespace heatsoak {

@@ -295,8 +295,7 @@ MeasuredRunOptions how_to_read(const Motor& motor) {
   const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
   MeasuredRunOptions how;
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
-  how.torque = {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal)),
-                known(motor.nominal.terminal_resistance_ohm)};
+  how.torque = {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
   how.least_current_A = least_driving_current_A(motor);
   for (const MotorSensor& sensor : motor.sensors) {
     how.faults.push_back({sensor.type, sensor.size.value});
