@@ -15,9 +15,9 @@ struct HeldCurrent {
   /// Whether the next period, of magnitude `current_A`, belongs to another interval.
   [[nodiscard]] bool is_over(double current_A, double at_rad_per_s) const {
     constexpr double kLongest_s = 1.0;
-    constexpr double kLittle = 0.02;
+    constexpr double kLittle_share = 0.02;
     return duration_s > 0.0 &&
-           (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle * first_A || at_rad_per_s != speed_rad_per_s);
+           (duration_s >= kLongest_s || std::abs(current_A - first_A) > kLittle_share * first_A || at_rad_per_s != speed_rad_per_s);
   }
   void take(double current_A, double at_rad_per_s, double period_s) {
     speed_rad_per_s = at_rad_per_s;

@@ -328,7 +328,7 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
 
 namespace {
 
-/// Of a motor whose file a calibration wrote: what it fitted and the data told is measured. A limit and a tabulated constant of a sheet
+/// Of a motor whose file a calibration wrote: what it fitted and the runs show is measured. A limit and a tabulated constant of a sheet
 /// do not make it worse, a guess does.
 std::string_view quality_of_fit(const Motor& motor) {
   bool is_measured = true;

@@ -91,7 +91,8 @@ TEST(Layers, TreeKeepsToTheTable) {
   }
   for (const SourceFile& file : files_in("src")) {
     // What is written for others to compile includes what stands beside it there; the map of the sources includes nothing.
-    if (file.path.find("/templates/") != std::string::npos || file.path == "src/README.md") {
+    if (file.path.find("/templates/") != std::string::npos || file.path.find("/fmi/sources/") != std::string::npos ||
+        file.path == "src/README.md") {
       continue;
     }
     for (const std::string& violation : layer_violations(table, file.path, file.text)) {

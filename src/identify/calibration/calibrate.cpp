@@ -106,8 +106,9 @@ class Calibrating {
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
-    // Without unknown heat the innovations fit is asked for as a comparison.
-    if (options_.fit.with_flux && is_rejected_by_whole_runs(*all_.forecast, all_.runs, all_.fit.theta, options_.fit.threads)) {
+    // With the same network the innovations fit stays: its intervals are tested, and it knows which figures the runs do not tell.
+    // Without unknown heat it is asked for as a comparison.
+    if (options_.fit.with_flux && extends_the_network(*all_.forecast)) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "base/quantity.h"
@@ -49,15 +48,7 @@ Range declared_range(const Motor& motor, std::string_view key) {
   return found == specs.end() ? Range::positive() : found->spec.range;
 }
 
-bool is_rejected_by_whole_runs(const Forecast& forecast, std::span<const MeasuredRun> runs, const Eigen::VectorXd& theta, int threads) {
-  if (!forecast.accepted.empty() || forecast.source == ForecastSource::file) {
-    return true;
-  }
-  constexpr double kSure = 0.95;
-  const boost::math::chi_squared chance(static_cast<double>(theta.size()));
-  const double there_nats = cost_at(forecast.model(), runs, {}, forecast.fit, theta, threads);
-  return there_nats - forecast.fit.cost_nats > 0.5 * boost::math::quantile(chance, kSure);
-}
+bool extends_the_network(const Forecast& forecast) { return !forecast.accepted.empty(); }
 
 void write_forecast(Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;

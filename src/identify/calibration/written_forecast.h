@@ -10,10 +10,9 @@
 
 namespace heatsoak {
 
-/// Both fits estimate the same parameters where the model is right, and the innovations fit is then the better one; whole runs reject it
-/// beyond 95 % by a likelihood-ratio test (after Hausman 1978). An accepted extension, or a file that no fit improves, decides without a
-/// test.
-bool is_rejected_by_whole_runs(const Forecast& forecast, std::span<const MeasuredRun> runs, const Eigen::VectorXd& theta, int threads);
+/// Whether the forecast fit added an effect or a sensor fault: then its parameters belong to another network than those of the
+/// innovations fit.
+bool extends_the_network(const Forecast& forecast);
 
 /// Puts the forecast's model, parameters and intervals in place of those of the innovations fit.
 void write_forecast(Calibration& calibration);
