@@ -85,7 +85,7 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
 TEST(DerateCommand, WritesTheTableAlone) {
   const TemporaryFolder folder;
   ASSERT_EQ(run(kDerate + Words{"--motor", kMotor, "--to", "csv", "--out", "table.csv"}, here(folder)).exit_code, 0);
-  EXPECT_THAT(content_of(folder.path() / "table.csv"), testing::StartsWith("speed_rad_per_s,stator_C,winding_C,allowed_current_A\n"));
+  EXPECT_THAT(content_of(folder.path() / "table.csv"), AllOf(testing::StartsWith("# "), HasSubstr("\nspeed_rad_per_s,stator_C,winding_C,allowed_current_A\n")));
 }
 
 TEST(DerateCommand, JsonFileIsTheAnswerAndNamesItsInputs) {
@@ -111,11 +111,11 @@ TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
       {{"--motor", kMotor}, 2, "--out"},
       {{"--motor", kMotor, "--to", "c_heder", "--out", "x.h"}, 2, "did you mean 'c_header'?"},
       {{"--motor", kMotor, "--out", "x.h", "--period", "1s"}, 2, "too long"},
-      {{"--motor", kMotor, "--out", "x.h", "--samples", "0"}, 2, "--samples 60"},
-      {{"--motor", kMotor, "--out", "x.h", "--confidence", "0.999"}, 2, "--samples 3000"},
+      {{"--motor", kMotor, "--out", "x.h", "--samples", "0"}, 2, "--samples 59"},
+      {{"--motor", kMotor, "--out", "x.h", "--confidence", "0.999"}, 2, "--samples 2995"},
       {{"--motor", "maxon_dcx19s_24v", "--to", "moteus", "--out", "x.cfg"}, 2, "moteus cannot drive maxon_dcx19s_24v"},
       {{"--motor", kMotor, "--to", "json", "--out", "missing/x.json"}, 2, "missing"},
-      {{"--motor", "maxon_dcx19s_24v", "--out", "x.h", "--ambient", "110degC"}, 1, "however little current"},
+      {{"--motor", "maxon_dcx19s_24v", "--out", "x.h", "--ambient", "110degC"}, 2, "is not above the hottest air"},
       {{"--motor", kMotor, "--out", "-"}, 2, "/dev/stdout"},
       {{"--motor", kMotor, "--out", "x.h", "--coldest", "50degC"}, 2, "is not below"},
       {{"--motor", kMotor, "--model", "maxon_ecx_flat_32l_48v", "--out", "x.h"}, 2, "is no model of"},

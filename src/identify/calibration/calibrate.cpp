@@ -102,20 +102,10 @@ class Calibrating {
   }
 
  private:
-  /// Of the whole runs, and what of it is written.
+  /// Its band serves the comparison of errors; what it finds is not written yet.
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
-    // With the same network the innovations fit stays: its intervals are tested, and it knows which figures the runs do not tell.
-    // Without unknown heat it is asked for as a comparison.
-    if (options_.fit.with_flux && extends_the_network(*all_.forecast)) {
-      write_forecast(all_);
-      all_.effects = all_.forecast->setup.motor.effects;
-      widen_by_rows();
-      all_.figures.clear();
-      figures();
-    }
-    std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
   }
 
   /// Of the file and of what is written, over the fitted runs.
@@ -490,7 +480,9 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
     const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node))].noise_K * calibration.fit.noise_ratio[i];
     fit.noise_K.emplace_back(node, noise_K);
   }
-  fit.band = calibration.forecast->band;
+  if (calibration.is_forecast_written) {
+    fit.band = calibration.forecast->band;
+  }
   refresh_values(result);
   return result;
 }
