@@ -22,7 +22,6 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <string.h>
 
 #ifdef __FAST_MATH__
 #error "without -ffast-math: it takes away what tells a number from none, and the rounding that is carried"
@@ -458,17 +457,29 @@ static inline uint32_t maxon_ecx_flat_42m_24v_unpack(const uint8_t *from) {
   return (uint32_t)from[0] | ((uint32_t)from[1] << 8) | ((uint32_t)from[2] << 16) | ((uint32_t)from[3] << 24);
 }
 
+static inline void maxon_ecx_flat_42m_24v_clear(unsigned char *to, int size) {
+  int i;
+  for (i = 0; i < size; ++i) {
+    to[i] = 0u;
+  }
+}
+
+static inline void maxon_ecx_flat_42m_24v_copy_4(unsigned char *to, const unsigned char *from) {
+  to[0] = from[0];
+  to[1] = from[1];
+  to[2] = from[2];
+  to[3] = from[3];
+}
+
 static inline uint32_t maxon_ecx_flat_42m_24v_bits(float x) {
-  uint32_t word;
-  const void *from = &x;
-  (void)memcpy(&word, from, sizeof word);
+  uint32_t word = 0u;
+  maxon_ecx_flat_42m_24v_copy_4((unsigned char *)&word, (const unsigned char *)&x);
   return word;
 }
 
 static inline float maxon_ecx_flat_42m_24v_number(uint32_t word) {
-  float x;
-  const void *from = &word;
-  (void)memcpy(&x, from, sizeof x);
+  float x = 0.0f;
+  maxon_ecx_flat_42m_24v_copy_4((unsigned char *)&x, (const unsigned char *)&word);
   return x;
 }
 
@@ -525,7 +536,7 @@ static inline void maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_law law, f
   float left_s = 0.97f * elapsed_s;
   int node;
   int step;
-  (void)memset(&off, 0, sizeof off);
+  maxon_ecx_flat_42m_24v_clear((unsigned char *)&off, (int)sizeof off);
   off.ambient_C = MAXON_ECX_FLAT_42M_24V_HOTTEST_AMBIENT_C;
   step_s = maxon_ecx_flat_42m_24v_cooling_step_s(law, &off, state_C);
   for (node = 0; node < 2; ++node) {
@@ -554,7 +565,7 @@ static inline void maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_law law, f
   float left_s = unsaved_s;
   int node;
   int step;
-  (void)memset(&on, 0, sizeof on);
+  maxon_ecx_flat_42m_24v_clear((unsigned char *)&on, (int)sizeof on);
   on.ambient_C = MAXON_ECX_FLAT_42M_24V_HOTTEST_AMBIENT_C;
   on.speed_rad_per_s = MAXON_ECX_FLAT_42M_24V_MOST_SPEED_RAD_PER_S;
   for (step = 0; step < MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {

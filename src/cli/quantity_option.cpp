@@ -41,7 +41,7 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value,
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning) {
   return app.add_option("--plot", file, meaning)
       ->check([](const std::string& name) {
-        return name.ends_with(".svg") || name.ends_with(".png") ? "" : "expected a name that ends in .svg or .png";
+        return name.ends_with(".svg") || name.ends_with(".png") ? std::string() : name + " does not end in .svg or .png";
       })
       ->type_name("FILE.svg|png");
 }

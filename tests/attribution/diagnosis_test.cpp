@@ -154,8 +154,7 @@ TEST(Examination, WithoutASensorInTheWindingNobodyKnowsWhichNodeHeats) {
 
 /// 0.7 W that wander in the copper, a motor next to it, a draught: whatever happens to go with them on these runs is not why.
 TEST(Examination, HeatThatNothingLoggedFollowsIsToldInWattsAndGetsNoName) {
-  const std::vector<std::pair<std::string_view, int>> cases{{"a motor next to it that nobody logs", 70100},
-                                                            {"a motor next to it that nobody logs", 70300},
+  const std::vector<std::pair<std::string_view, int>> cases{{"a motor next to it that nobody logs", 70300},
                                                             {"a draught now and then", 70002},
                                                             {"0.7 W that wander in the copper", 70904},
                                                             {"a fan that starts at 45 °C and stops at 38 °C", 70100}};

@@ -195,18 +195,18 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
   EXPECT_NEAR(foretold_C.col(0).tail(run.samples() - stopped).maxCoeff() - foretold_C(stopped, 0), measured_rise_K, 1.0);
 }
 
-/// Calibrated without the propeller's air the figures carry what they can of it, and much heat is left that comes and goes. The law
-/// foretells another day's recording at half the error; that is more than the heat can say against it.
-TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_because_another_day_is_foretold_with_it) {
+/// Calibrated without the propeller's air the figures carry what they can of it, and one training run cannot tell whether the law predicts
+/// better: it is reported and not named.
+TEST(MeasuredMotors, a_calibrated_motor_does_not_get_a_name_from_the_one_run_that_it_was_fitted_to) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
   const Motor motor = calibrated_motor(start, calibrate(start, std::vector{january}, {}, {}));
   const auto [model, input, diagnosis, score] = diagnosed(motor, {january}, {march});
-  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
-  ASSERT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
-  EXPECT_LT(score.after.at("stator_C").rmse_K, 0.5 * score.before.at("stator_C").rmse_K);
-  EXPECT_LT(score.after.at("stator_C").rmse_K, 0.5 * score.refitted.at("stator_C").rmse_K);
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unexplained) << diagnosis.description;
+  EXPECT_THAT(diagnosis.selection.refused, testing::Contains(testing::Field(&Refusal::id, "speed_dependent_convection")))
+      << diagnosis.description;
+  EXPECT_LE(score.after.at("stator_C").rmse_K, 1.05 * score.before.at("stator_C").rmse_K);
 }
 
 /// From the guess no step along the whitened errors leads anywhere: the way goes past the figures that follow the runs as they are.
@@ -218,8 +218,10 @@ TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anyth
   const Diagnosis diagnosis = diagnosed(start, both, {}).diagnosis;
   EXPECT_GT(diagnosis.before_train.at("stator_C").rmse_K, 40.0);
   EXPECT_LT(diagnosis.refitted_train.at("stator_C").rmse_K, 3.0);
-  EXPECT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
-  EXPECT_LT(diagnosis.after_train.at("stator_C").rmse_K, diagnosis.refitted_train.at("stator_C").rmse_K);
+  // Refitted alone, each of the two days predicts the other to 2 K, better than with the law.
+  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::unexplained) << diagnosis.description;
+  EXPECT_THAT(diagnosis.selection.refused, testing::Contains(testing::Field(&Refusal::id, "speed_dependent_convection")))
+      << diagnosis.description;
 }
 
 /// With nothing added the model is the one with its own figures refitted, wherever a law that did not stay had led them.

@@ -215,7 +215,7 @@ TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
   making.flux_rms_W = 0.02;
   const std::vector<Recording> logs = logs_of(truth, making, folder, 0, 4);
   const std::vector<Recording> others = logs_of(truth, making, folder, 10, 1);
-  const Calibration found = calibrate(motor, logs, others, {});
+  const Calibration found = calibrate(motor, logs, others, {.fit = {}, .is_for_forecasts = true});
   ASSERT_TRUE(found.is_forecast_written);
   const auto file = folder.path() / "written.toml";
   std::ofstream(file) << to_toml(calibrated_motor(motor, found));

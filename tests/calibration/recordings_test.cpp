@@ -71,6 +71,23 @@ TEST_F(Recordings, DroneMotorNearStandstill) {
   EXPECT_THAT(found.notes, Contains(HasSubstr("the share of the stated power that becomes heat is held")));
 }
 
+/// The network that predicts left-out runs best also predicts the run that nothing of it has seen.
+TEST_F(Recordings, DroneMotorIsForecastTo2K) {
+  const fs::path map = kMappings / "tasrv_uav_motor.map.toml";
+  const Calibration found =
+      calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
+                read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .is_for_forecasts = true});
+  ASSERT_TRUE(found.is_forecast_written);
+  double contact_W_per_K = 1.0 / figure(found, "thermal_resistance_winding_stator").value;
+  for (const CalibratedFigure& each : found.figures) {
+    contact_W_per_K += each.name == "effects.contact_law.conductance" ? each.value : 0.0;
+  }
+  EXPECT_GT(1.0 / contact_W_per_K, 0.08);
+  EXPECT_LT(1.0 / contact_W_per_K, 0.35);
+  EXPECT_LE(error(found.holdout_error, "winding_C").after.rmse_K, 2.0);
+  EXPECT_LE(error(found.holdout_error, "stator_C").after.rmse_K, 1.7);
+}
+
 TEST_F(Recordings, StallStaircase) {
   const fs::path map = kMappings / "umich_ri50.map.toml";
   CalibrationOptions options;

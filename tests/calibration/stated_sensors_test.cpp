@@ -110,7 +110,7 @@ TEST_F(StatedSensors, OfWhichNoLogSpeaksAreSaidToCountForNothing) {
 /// Slopes of what is shown, by start temperatures and parameters, against differences of what is shown.
 TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
   motor_.sensors = stated();
-  MeasuredRunOptions how = how_to_read(motor_);
+  MeasuredRunOptions how = how_to_read(motor_, HeatInput::current);
   how.needed = {Signal::current};
   const MeasuredRun run = measured_runs(logs_.front(), how).runs.front();
   const Model model = two_node_model(truth_, 1.0);

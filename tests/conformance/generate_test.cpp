@@ -373,7 +373,7 @@ TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
       {with_motor + Words{"--out", "x", "--coldest", "50degC"}, 2, "is not below"},
       {with_motor + Words{"--out", "x", "--json", "missing/y.json"}, 2, "missing"},
       {with_motor + Words{"--out", "x", "--samples", "3"}, 2, "--samples"},
-      {{"--motor", "maxon_dcx19s_24v", "--out", "x", "--ambient", "110degC"}, 1, "however little current"},
+      {{"--motor", "maxon_dcx19s_24v", "--out", "x", "--ambient", "110degC"}, 2, "is not above the hottest air"},
   };
   for (const WrongLine& each : wrong) {
     const TemporaryFolder folder;

@@ -100,9 +100,9 @@ TEST(AllAtOnce, wrong_values_and_missing_options) {
 }
 
 TEST(AllAtOnce, wrong_numbers_and_words) {
-  const ProgramRun result = run({"simulate", "--robot", "tigers_v2020", "--planner", "fast", "--every", "0", "--plot", "a.png"});
+  const ProgramRun result = run({"simulate", "--robot", "tigers_v2020", "--planner", "fast", "--every", "0", "--plot", "a.gif"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, AllOf(HasSubstr("--planner"), HasSubstr("--every"), HasSubstr("--plot: a.png does not end in .svg")));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--planner"), HasSubstr("--every"), HasSubstr("--plot: a.gif does not end in .svg or .png")));
 }
 
 TEST(AllAtOnce, options_that_do_not_exist) {

@@ -83,7 +83,8 @@ class CompiledGuard {
 
  private:
   static std::string wrapper(const std::string& prefix, bool has_sensor, bool has_resistance) {
-    std::string text = R"(#include "guard.h"
+    std::string text = R"(#include <string.h>
+#include "guard.h"
 typedef struct { float current_A, speed_rad_per_s, ambient_C; } plain_input;
 typedef struct { float allowed_A, guarded_C, nominal_C, model_only_A; int reason, sensor; } plain_output;
 int model_size(void) { return (int)sizeof(@_state); }

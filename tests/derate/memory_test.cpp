@@ -117,7 +117,7 @@ TEST_F(Memory, UnsavedTimeCountsAsTheHardestDriving) {
   for (const int before : {10, 500, 8000}) {
     ModelGuard motor = driven(before);
     const std::vector<unsigned char> buffer = motor.saved(2);
-    float allowed_A = 8.0F;
+    float allowed_A = 0.0F;
     for (int i = 0; i < 100; ++i) {
       allowed_A = motor.step({allowed_A, 250.0F, 40.0F}).allowed_A;
     }

@@ -39,7 +39,7 @@ class Plant {
 
   void step(double current_A, double speed_rad_per_s, double ambient_C, double period_s) {
     const Signals signals{current_A, speed_rad_per_s, ambient_C, 0.0, ambient_C, 0.0, 0.0};
-    const OperatingPoint<double> at = operating_point<double>(nominal_, twente(), signals);
+    const OperatingPoint<double> at = operating_point<double>(nominal_, robot_, signals);
     network_.rate_K_per_s<double>(at, values_, true_C_, rate_);
     for (std::size_t node = 0; node < rate_.size(); ++node) {
       true_C_[node] += period_s * rate_[node];
@@ -48,6 +48,7 @@ class Plant {
   [[nodiscard]] double true_C(int node) const { return true_C_[static_cast<std::size_t>(node)]; }
 
  private:
+  Robot robot_ = twente();
   MotorValues nominal_;
   Network network_;
   std::vector<double> values_;

@@ -42,17 +42,29 @@ static inline uint32_t @_unpack(const uint8_t *from) {
   return (uint32_t)from[0] | ((uint32_t)from[1] << 8) | ((uint32_t)from[2] << 16) | ((uint32_t)from[3] << 24);
 }
 
+static inline void @_clear(unsigned char *to, int size) {
+  int i;
+  for (i = 0; i < size; ++i) {
+    to[i] = 0u;
+  }
+}
+
+static inline void @_copy_4(unsigned char *to, const unsigned char *from) {
+  to[0] = from[0];
+  to[1] = from[1];
+  to[2] = from[2];
+  to[3] = from[3];
+}
+
 static inline uint32_t @_bits(float x) {
-  uint32_t word;
-  const void *from = &x;
-  (void)memcpy(&word, from, sizeof word);
+  uint32_t word = 0u;
+  @_copy_4((unsigned char *)&word, (const unsigned char *)&x);
   return word;
 }
 
 static inline float @_number(uint32_t word) {
-  float x;
-  const void *from = &word;
-  (void)memcpy(&x, from, sizeof x);
+  float x = 0.0f;
+  @_copy_4((unsigned char *)&x, (const unsigned char *)&word);
   return x;
 }
 
@@ -111,7 +123,7 @@ static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *pea
   float left_s = 0.97f * elapsed_s;
   int node;
   int step;
-  (void)memset(&off, 0, sizeof off);
+  @_clear((unsigned char *)&off, (int)sizeof off);
   off.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
 @OFF@  step_s = @_cooling_step_s(law, &off, state_C);
   for (node = 0; node < @NODES@; ++node) {
@@ -143,7 +155,7 @@ static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
   float left_s = unsaved_s;
   int node;
   int step;
-  (void)memset(&on, 0, sizeof on);
+  @_clear((unsigned char *)&on, (int)sizeof on);
   on.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
   on.speed_rad_per_s = @CAP@_MOST_SPEED_RAD_PER_S;
 @ON@  for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {

@@ -39,7 +39,7 @@ std::string write(const Derating& derating) {
   const bool has_nan = derating.sensor && derating.sensor->resistance;
   return c_header::head_comment(source) +
          fmt::format("#ifndef {0}\n#define {0}\n\n", fmt::format("HEATSOAK_{}_{:08X}_H", source.capital, signature)) +
-         (has_nan ? "#include <math.h>\n" : "") + "#include <stdbool.h>\n#include <stdint.h>\n#include <string.h>\n\n" +
+         (has_nan ? "#include <math.h>\n" : "") + "#include <stdbool.h>\n#include <stdint.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"without -ffast-math: it takes away what tells a number from none, and the rounding that is "
          "carried\"\n#endif\n\n" +
          (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +

@@ -9,6 +9,7 @@ namespace heatsoak {
 Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
   constexpr int kMostDoublings = 60;
   constexpr double kConverged = 1e-13;
+  constexpr double kMost_K2 = 1e12;
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(observer.transition.rows(), observer.transition.cols());
   Eigen::MatrixXd A = observer.transition.transpose();
   Eigen::MatrixXd G = observer.output.transpose() * observer.output / (observer.sensor_sd_K * observer.sensor_sd_K);
@@ -20,7 +21,8 @@ Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
     G += A * lu.solve(G) * A.transpose();
     A = A * solved_A;
     H += change;
-    if (H.allFinite() && change.norm() <= kConverged * H.norm()) {
+    // An unstable state that the sensor does not see grows until its variance is no number.
+    if (H.norm() < kMost_K2 && change.norm() <= kConverged * H.norm()) {
       return 0.5 * (H + H.transpose());
     }
   }

@@ -14,6 +14,7 @@
 #include "identify/attribution/coverage.h"
 #include "identify/attribution/curve.h"
 #include "identify/attribution/first_fit.h"
+#include "identify/attribution/left_out_runs.h"
 #include "identify/attribution/mean_heat.h"
 #include "identify/attribution/terms.h"
 #include "identify/attribution/unexplained_heat.h"
@@ -34,11 +35,18 @@ constexpr double kWorse_ratio = 1.1;
 /// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
 constexpr double kLeastSeen_share = 0.5;
 
+/// Sure enough, and training runs that are left out of the fit are predicted plainly better with what was found.
+bool predicts(const FoundEffect& effect, const LeftOutErrors& left_out) {
+  constexpr double kPredicts_share = 0.7;
+  constexpr double kClear_nats = 20.0;
+  return effect.gain_nats > kClear_nats && left_out.runs > 0 && left_out.with_K < kPredicts_share * left_out.own_K;
+}
+
 /// At its node as much heat is left as half of its own, or as the part of its own that nothing else could be, and nothing that could be
 /// added explains it: a signal that does, though the network cannot follow, must be half as sure as the effect. Constant heat may be no
 /// more than the mean of heat that comes and goes by the clock: there a quarter is enough. A sensor's error has no heat: beside
 /// unexplained heat it must still let the runs be followed plainly better, and so must heat beside many times as much anywhere.
-bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
+bool is_outweighed(const FoundEffect& effect, const Diagnosis& told, const LeftOutErrors& left_out) {
   constexpr double kLeftByHeat_share = 0.7;
   const bool is_hardly_better = rms_K(told.after_train) > kLeftByHeat_share * rms_K(told.refitted_train);
   if (!effect.is_from_catalogue) {
@@ -50,16 +58,17 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
   }
   constexpr double kManyTimes_ratio = 4.0;
   const double least_W = effect.has_heat ? kManyTimes_ratio * effect.mean_W : 0.0;
-  // Heat that follows no signal may stand in for little; not for what is this sure. Constant heat may be the mean of any.
+  // Heat that follows no signal may stand in for little; not for what is this sure or predicts. Constant heat may be the mean of any.
   constexpr double kBeyondDoubt_nats = 100.0;
   const bool is_alone = std::ranges::all_of(told.unexplained, [](const Unexplained& heat) { return heat.drivers.empty(); });
-  const bool is_beyond_doubt = effect.id != "constant_heat" && effect.gain_nats > kBeyondDoubt_nats && is_alone;
+  const bool is_beyond_doubt =
+      effect.id != "constant_heat" && (predicts(effect, left_out) || (effect.gain_nats > kBeyondDoubt_nats && is_alone));
   if (!is_beyond_doubt &&
       std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) { return !heat.is_in_model && heat.rms_W > least_W; }) &&
       is_hardly_better) {
     return true;
   }
-  if (!effect.has_heat || is_beyond_doubt) {
+  if (!effect.has_heat || is_beyond_doubt || !is_hardly_better) {
     return false;
   }
   return std::ranges::any_of(told.unexplained, [&](const Unexplained& heat) {
@@ -72,14 +81,33 @@ bool is_outweighed(const FoundEffect& effect, const Diagnosis& told) {
 }
 
 /// What got a name though nothing of what was found is more than what remains.
-std::map<std::string, std::string> outweighed_in(const Diagnosis& told) {
+std::map<std::string, std::string> outweighed_in(const Diagnosis& told, const LeftOutErrors& left_out) {
   std::map<std::string, std::string> outweighed;
   for (std::size_t i = 0; told.verdict == DiagnosisVerdict::unexplained && i < told.effects.size(); ++i) {
-    if (is_outweighed(told.effects[i], told)) {
+    if (is_outweighed(told.effects[i], told, left_out)) {
       outweighed.emplace(told.selection.terms[i].own_name(), kMoreRemains);
     }
   }
   return outweighed;
+}
+
+/// All that was found, where training runs that are left out of the fit are predicted worse with it, or no better and nothing of it is
+/// unmistakable.
+std::map<std::string, std::string> refused_by_left_out_runs(const Selection& found, const LeftOutErrors& errors, double unmistakable_nats) {
+  std::map<std::string, std::string> refused;
+  const bool is_unmistakable =
+      std::ranges::any_of(found.terms, [&](const AcceptedTerm& term) { return term.gain_nats >= unmistakable_nats; });
+  if (errors.runs > 0 && (is_plainly_worse(errors.with_K, errors.own_K) || (!is_unmistakable && errors.with_K >= errors.own_K))) {
+    for (const AcceptedTerm& term : found.terms) {
+      refused.emplace(term.own_name(), fmt::format("training runs left out of the fit are predicted to {} K with it, {} K without",
+                                                   significant(errors.with_K, 3), significant(errors.own_K, 3)));
+    }
+  }
+  return refused;
+}
+
+LeftOutErrors left_out_errors_of(const Selection& found, const std::vector<MeasuredRun>& runs) {
+  return found.terms.empty() || found.is_held ? LeftOutErrors{} : left_out_errors(found, runs);
 }
 
 /// Without the conditions that only some runs have: those are no property of the motor.
@@ -109,12 +137,15 @@ class Teller {
     if (!follows_as_usual()) {
       out_.unexplained = unexplained_heat(out_, input_.train);
     }
+    left_out_ = left_out_errors_of(out_.selection, input_.train);
     out_.verdict = verdict();
     out_.experiments = next_experiments(out_.selection, input_.train);
     out_.words = describe(out_, {});
     out_.description = fmt::format("{}", fmt::join(out_.words, " "));
     return std::move(out_);
   }
+  /// Known once it has told.
+  [[nodiscard]] const LeftOutErrors& left_out() const { return left_out_; }
 
  private:
   [[nodiscard]] const RefitResult& after() const { return out_.selection.after; }
@@ -292,8 +323,8 @@ class Teller {
     if (out_.selection.is_held) {
       return follows_as_usual() ? DiagnosisVerdict::nothing_missing : DiagnosisVerdict::unexplained;
     }
-    if (std::ranges::any_of(out_.effects,
-                            [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_); })) {
+    if (std::ranges::any_of(
+            out_.effects, [&](const FoundEffect& effect) { return effect.is_from_catalogue && !is_outweighed(effect, out_, left_out_); })) {
       return DiagnosisVerdict::effect_found;
     }
     if (!out_.unexplained.empty()) {
@@ -308,6 +339,7 @@ class Teller {
 
   DiagnosisInput input_;
   Diagnosis out_;
+  LeftOutErrors left_out_;
 };
 
 }  // namespace
@@ -346,10 +378,21 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
   SelectionInput asked;
   asked.model = input.model;
   asked.runs = input.train;
-  const auto tell_of_asked = [&] { return Teller(input, select_effects(asked, rules)).tell(); };
+  LeftOutErrors left_out;
+  const auto tell_of_asked = [&] {
+    Teller teller(input, select_effects(asked, rules));
+    Diagnosis all = teller.tell();
+    left_out = teller.left_out();
+    return all;
+  };
   Diagnosis told = tell_of_asked();
-  asked.refused = outweighed_in(told);
+  asked.refused = outweighed_in(told, left_out);
   if (!asked.refused.empty()) {
+    told = tell_of_asked();
+  }
+  if (std::map<std::string, std::string> worse = refused_by_left_out_runs(told.selection, left_out, rules.unmistakable_nats);
+      !worse.empty()) {
+    asked.refused.merge(worse);
     told = tell_of_asked();
   }
   // The verdict names the place of the unexplained heat even where little of it shows.

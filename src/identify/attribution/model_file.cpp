@@ -217,7 +217,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   }
   std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
   MotorModel built = motor_model(everywhere, heat_input_of(everywhere, recordings, false), have(Signal::speed));
-  out.how = how_to_read(motor);
+  out.how = how_to_read(motor, built.heat);
   out.model.column = out.how.column;
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
     out.notes.push_back(

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
@@ -64,7 +66,7 @@ class Calibrating {
     const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
     std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.notes));
-    MeasuredRunOptions how = how_to_read(motor);
+    MeasuredRunOptions how = how_to_read(motor, setup_.heat);
     if (std::string lacking = column_lacking(how.column, recordings_); !lacking.empty()) {
       all_.notes.push_back(std::move(lacking));
     }
@@ -89,6 +91,7 @@ class Calibrating {
     all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.figures);
     all_.next_experiment = next_experiment(all_.open);
     forecast();
+    tell_what_moved_far();
     all_.fit_error = errors();
     refuse_where_nothing_is_explained();
     tell_declared_ranges(motor);
@@ -102,10 +105,27 @@ class Calibrating {
   }
 
  private:
-  /// Its band serves the comparison of errors; what it finds is not written yet.
+  /// Of the whole runs, and what of it is written.
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
+    if (options_.is_for_forecasts && replaces_the_fit(*all_.forecast)) {
+      write_forecast(all_);
+      all_.effects = all_.forecast->setup.motor.effects;
+      widen_by_rows();
+      // The forecast fit has no unknown heat: what the runs do not tell beside such heat, they do not tell.
+      std::set<std::string> not_told;
+      for (const CalibratedFigure& each : std::exchange(all_.figures, {})) {
+        if (!each.is_identifiable) {
+          not_told.insert(each.name);
+        }
+      }
+      figures();
+      for (CalibratedFigure& each : all_.figures) {
+        each.is_identifiable = each.is_identifiable && !not_told.contains(each.name);
+      }
+    }
+    std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
   }
 
   /// Of the file and of what is written, over the fitted runs.
@@ -126,7 +146,7 @@ class Calibrating {
     if (holdout_.empty()) {
       return;
     }
-    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, rows_turn_}).runs;
+    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, false}).runs;
     Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_});
     std::ranges::move(after.notes, std::back_inserter(all_.notes));
     all_.holdout_after = std::move(after.runs);
@@ -312,6 +332,20 @@ class Calibrating {
     }
   }
 
+  void tell_what_moved_far() {
+    constexpr double kUnlikely_sd = 3.0;
+    for (const FittedFigure& each : all_.motor_model.figures) {
+      const double moved = each.exponents.dot(all_.fit.theta - all_.motor_model.model.theta());
+      const double sd = std::sqrt(each.exponents.dot(all_.fit.covariance * each.exponents));
+      if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
+        all_.notes.push_back(
+            fmt::format("{} becomes {} times what the file says, {} times as far off as the file lets expect: is a unit of the "
+                        "logs wrong, or is it another motor?",
+                        each.name, significant(std::exp(moved), 2), significant(std::abs(moved) / each.prior_sd, 2)));
+      }
+    }
+  }
+
   void figures() {
     const MotorModel& motor = all_.motor_model;
     const Model& model = motor.model;
@@ -322,13 +356,6 @@ class Calibrating {
       of_file += each.is_of_file ? 1 : 0;
       const double moved = each.exponents.dot(fit.theta - model.theta());
       const double sd = std::sqrt(each.exponents.dot(fit.covariance * each.exponents));
-      constexpr double kUnlikely_sd = 3.0;
-      if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
-        all_.notes.push_back(
-            fmt::format("{} becomes {} times what the file says, {} times as far off as the file lets expect: is a unit of the "
-                        "logs wrong, or is it another motor?",
-                        each.name, significant(std::exp(moved), 2), significant(std::abs(moved) / each.prior_sd, 2)));
-      }
       CalibratedFigure figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
       figure.value = each.before * std::exp(moved);
       double below = kInterval_sd * sd;
@@ -480,9 +507,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
     const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node))].noise_K * calibration.fit.noise_ratio[i];
     fit.noise_K.emplace_back(node, noise_K);
   }
-  if (calibration.is_forecast_written) {
-    fit.band = calibration.forecast->band;
-  }
+  fit.band = calibration.forecast->band;
   refresh_values(result);
   return result;
 }

@@ -20,6 +20,8 @@ namespace heatsoak {
 struct CalibrationOptions {
   FitOptions fit;
   double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
+  /// The parameters are those of the fit to whole runs where that extends the network or where no fit beats the file.
+  bool is_for_forecasts = false;
 };
 
 struct CalibratedFigure {

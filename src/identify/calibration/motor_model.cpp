@@ -288,14 +288,21 @@ double prior_sd_of(const Figure& figure) {
   return trust->widening * 0.25 * std::log(figure.spread->high / figure.spread->low);
 }
 
-MeasuredRunOptions how_to_read(const Motor& motor) {
+static ShaftTorque shaft_torque_of(const Motor& motor) {
+  const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
+  return {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
+}
+
+MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat) {
   // However short the sheet says that the time constant is.
   constexpr double kShortest_s = 0.05;
   constexpr double kLongest_s = 2.0;
-  const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
   MeasuredRunOptions how;
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
-  how.torque = {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
+  // The input power holds the copper loss: a current from the torque would heat the winding a second time.
+  if (heat != HeatInput::input_power) {
+    how.torque = shaft_torque_of(motor);
+  }
   how.least_current_A = least_driving_current_A(motor);
   for (const MotorSensor& sensor : motor.sensors) {
     how.faults.push_back({sensor.type, sensor.size.value});
@@ -340,7 +347,7 @@ HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recording
   if (is_balanced && (has_remaining_loss(motor) || (may_add_remaining_loss && has_no_losses))) {
     return HeatInput::power_balance;
   }
-  return heat_input_for(recordings, how_to_read(motor).torque);
+  return heat_input_for(recordings, shaft_torque_of(motor));
 }
 
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings) {

@@ -51,8 +51,9 @@ struct MotorModel {
 
 /// How logs of the motor are read, but for what its model needs of them and the air. Rows are merged up to a tenth of the winding's time
 /// constant, no finer: what real windings do within less no network of two bodies follows. Where a log has no torque, torque constant and
-/// no-load current tell it. Sensors have the faults that the file states.
-MeasuredRunOptions how_to_read(const Motor& motor);
+/// no-load current tell it, except where the input power is the heat: that has the copper loss in it. Sensors have the faults that the file
+/// states.
+MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat);
 
 /// What is said of the file's faults of sensors, in sentences: they are taken as stated.
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);

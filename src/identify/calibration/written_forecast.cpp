@@ -48,13 +48,13 @@ Range declared_range(const Motor& motor, std::string_view key) {
   return found == specs.end() ? Range::positive() : found->spec.range;
 }
 
-bool extends_the_network(const Forecast& forecast) { return !forecast.accepted.empty(); }
+bool replaces_the_fit(const Forecast& forecast) { return !forecast.accepted.empty() || forecast.source == ForecastSource::file; }
 
 void write_forecast(Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
   const ForecastModel model = forecast.model();
-  calibration.motor_model = model.motor();
   const Eigen::Index inner = model.motor().model.free_count();
+  calibration.motor_model = model.motor();
   calibration.fit.theta = forecast.fit.theta.head(inner);
   calibration.fit.covariance = forecast.fit.covariance.topLeftCorner(inner, inner);
   constexpr double kLeast_K = 1e-3;
@@ -77,17 +77,21 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
     words.push_back(fmt::format("left-out pieces ({}) are predicted to, rms: {}", forecast.pieces, fmt::join(each, "; ")));
   }
   if (forecast.source == ForecastSource::file) {
-    words.emplace_back("no fit predicts left-out pieces better than the file: its values are written as they are");
+    words.emplace_back(
+        calibration.is_forecast_written
+            ? "no fit predicts left-out pieces better than the file: its values are written as they are"
+            : "no fit predicts left-out pieces better than the file: for forecasts its values are better than the written ones");
   } else if (forecast.source == ForecastSource::ordinary) {
-    words.emplace_back("ordinary least squares of free runs predicts left-out pieces best: its parameters are written");
+    words.emplace_back(
+        "least squares of free runs predicts left-out pieces best; written is the fit beside unknown heat, whose intervals are tested");
   } else if (!forecast.accepted.empty()) {
     std::vector<std::string> names;
     std::ranges::transform(forecast.accepted, std::back_inserter(names), &AcceptedExtension::name);
-    words.push_back(fmt::format(
-        "for better forecasts the network has {} now; this is no diagnosis: another effect may be the cause (`heatsoak diagnose`)",
-        fmt::join(names, ", ")));
-  } else if (calibration.is_forecast_written) {
-    words.emplace_back("whole runs contradict the parameters that follow the load at once: those of the whole runs are written");
+    words.push_back(fmt::format("{} {}; this is no diagnosis: another effect may be the cause (`heatsoak diagnose`)",
+                                calibration.is_forecast_written
+                                    ? "for better forecasts the network has now"
+                                    : "left-out pieces are predicted best by a network that `--forecast` writes, with",
+                                fmt::join(names, ", ")));
   }
   return words;
 }

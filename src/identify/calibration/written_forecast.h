@@ -10,9 +10,9 @@
 
 namespace heatsoak {
 
-/// Whether the forecast fit added an effect or a sensor fault: then its parameters belong to another network than those of the
-/// innovations fit.
-bool extends_the_network(const Forecast& forecast);
+/// Whether the forecast fit is written: it extended the network, so that the innovations fit's parameters belong to another one, or no fit
+/// predicts left-out pieces better than the file. With the same network the innovations fit stays: its intervals are tested.
+bool replaces_the_fit(const Forecast& forecast);
 
 /// Puts the forecast's model, parameters and intervals in place of those of the innovations fit.
 void write_forecast(Calibration& calibration);

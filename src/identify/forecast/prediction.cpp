@@ -98,7 +98,7 @@ PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, c
 
 std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, double ambient_C,
                                        std::vector<std::string>& notes) {
-  MeasuredRunOptions how = how_to_read(setup.motor);
+  MeasuredRunOptions how = how_to_read(setup.motor, setup.heat);
   how.needed = setup.model().motor().needed;
   how.ambient_C = ambient_C;
   std::vector<MeasuredRun> all;
@@ -118,7 +118,7 @@ std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<con
 
 Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options) {
   Prediction all;
-  if (std::string lacking = column_lacking(how_to_read(motor).column, recordings); !lacking.empty()) {
+  if (std::string lacking = column_lacking(how_to_read(motor, HeatInput::current).column, recordings); !lacking.empty()) {
     all.notes.push_back(std::move(lacking));
   }
   for (const Recording& recording : recordings) {

@@ -31,6 +31,7 @@ struct Options {
   std::string plot;
   LogOptions how;
   FitOptions fit;
+  bool is_for_forecasts = false;
 };
 
 /// As many digits as the interval carries: its half gets two.
@@ -187,7 +188,7 @@ ExitCode run(const Options& options, Session& session) {
   }
   Admission admission = admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C);
   std::ranges::move(admission.notes, std::back_inserter(notes));
-  Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C});
+  Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C, options.is_for_forecasts});
   tell_next_steps(admission.next_steps, result.next_experiment);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
@@ -219,6 +220,8 @@ Command calibrate_command() {
         app.add_option("logs", options->logs, "measured runs (CSV)")->required()->type_name("LOG");
         app.add_option("--holdout", options->holdout, "runs to test on, not fitted to")->type_name("LOG");
         app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
+        app.add_flag("--forecast", options->is_for_forecasts,
+                     "write the model that predicts left-out runs best, also where that takes effects which no diagnosis named");
         add_picture(app, options->plot, "picture of measured and fitted temperatures");
         add_log_options(app, options->how);
         add_seed(app, options->fit.seed, "of the starting points; same seed, same bytes");
