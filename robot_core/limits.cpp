@@ -150,16 +150,21 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
 
 /// The guards of a robot with a hot motor. A stopping robot brakes as a whole: a wheel that turns over or is pulled along drives for a
 /// moment, and without current for it the common factor would leave none to the others. So all wheels may use the braking reserve while the
-/// wanted currents take power out of the body, and a wheel that brakes may always. Returns the new least share.
-[[gnu::noinline]] float apply_guards(const Config& config, State& state, const Believed& believed, const BodyReference& body, float most_V,
-                                     WheelDemand* demand, LimitedVoltages& limited, float least) {
+/// wanted currents take power out of the body, and do so without the wheel that brakes most: its speed sensor may lie. A wheel that brakes
+/// may always. Returns the new least share.
+[[gnu::cold, gnu::noinline]] float apply_guards(const Config& config, State& state, const Believed& believed, const BodyReference& body,
+                                                float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
   float body_W = 0.0F;
+  float most_braking_W = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    body_W += demand[i].back_V * demand[i].current_A;
+    const float driving_W = demand[i].back_V * demand[i].current_A;
+    body_W += driving_W;
+    most_braking_W = smaller(most_braking_W, driving_W);
   }
+  const bool body_brakes = body_W < most_braking_W && !body.is_wheelwise;
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
-    const bool brakes = demand[i].back_V * demand[i].current_A < 0.0F || (body_W < 0.0F && !body.is_wheelwise);
+    const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
     const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     would_limit = apply_guard(config, state, allowed_A, believed.elapsed_s, demand[i]) || would_limit;
     if (believed.wheel[i].is_speed_known) {

@@ -50,7 +50,7 @@
 //     be above its limit.
 //   - One wheel sensor with a wrong scale, sign or offset, or one that is stuck with noise: the robot turns and its wheels work against
 //   each
-//     other. Sliding wheels look the same. The robot may seem to brake, and then driving may use the reserve kept for braking. A slipping
+//     other. Sliding wheels look the same. A slipping
 //     wheel whose own sensor lies and whose current is not sensed may exceed its limit.
 //   - Two or more speed sensors (wheels, gyro) that lie at once. If all wheel speeds show 0, the robot accelerates without control. Current
 //     limits may be exceeded.

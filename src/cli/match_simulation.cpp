@@ -10,6 +10,7 @@
 #include "cli/silent_effects.h"
 #include "cli/verdict_words.h"
 #include "report/chart.h"
+#include "robot/assumed_friction.h"
 #include "simulate/match_trace.h"
 #include "simulate/reason_name.h"
 
@@ -352,7 +353,8 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
     }
   }
   const bool is_guarded = wanted.guard != GuardUse::off;
-  session.say(silent_effects({&wanted.motor, 1}) + (is_guarded ? default_spreads_text({&wanted.motor, 1}) : ""));
+  session.say(silent_effects({&wanted.motor, 1}) + (is_guarded ? default_spreads_text({&wanted.motor, 1}) : "") +
+              assumed_friction_text(wanted.robot));
   for (const std::string& file : {wanted.out, wanted.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }
@@ -375,6 +377,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
                   {"current_rms_A", rounded(first.current_rms_A, 4)},
                   {"verdict", verdict(wanted, all)},
                   {"data_quality", data_quality(wanted.motor)},
+                  {"is_friction_assumed", wanted.robot.is_friction_assumed},
                   {"sensing", wanted.is_sensing_ideal ? "ideal" : "real"},
                   {"guard", guard_json(wanted, guard)},
                   {"default_spreads", is_guarded ? default_spreads_json({&wanted.motor, 1}) : nlohmann::ordered_json::array()},

@@ -10,6 +10,7 @@
 
 #include "motor/datasheet_network.h"
 #include "motor/default_spread.h"
+#include "robot/assumed_friction.h"
 #include "robot/driver.h"
 #include "thermal/copper.h"
 

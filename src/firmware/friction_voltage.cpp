@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "robot/assumed_friction.h"
 #include "robot/inverse_dynamics.h"
 #include "robot/motor_drive.h"
 
@@ -103,17 +104,12 @@ double residual_rms_V(const std::vector<Point>& points, double sine_V, double si
 
 }  // namespace
 
-bool has_friction(const Robot& robot) {
-  return !robot.heading_wheels.empty() || std::ranges::any_of(robot_figure_specs(), [&](const RobotFigureSpec& each) {
-    return each.table.starts_with("friction") && !std::isnan(robot.*each.value);
-  });
-}
-
 BodyConfig make_body_with_known_friction(const Robot& robot, const MotorValues& motor) {
   if (has_friction(robot)) {
     return make_body(robot, motor);
   }
   Robot smooth = robot;
+  smooth.rolling_efficiency = kAbsent;
   smooth.wheel_friction_torque_Nm = 0.0;
   smooth.wheel_damping_Nm_s_per_rad = 0.0;
   smooth.roller_drag_ratio = 0.0;

@@ -30,9 +30,6 @@ struct FrictionVoltage {
 /// Needs the figures that make_body() needs, [friction] apart; throws Failure (bad_input) that names those that are missing.
 FrictionVoltage friction_voltage(const Robot& robot, const MotorValues& motor);
 
-/// Whether the file has any figure of [friction] or [friction.heading].
-bool has_friction(const Robot& robot);
-
 /// The body with the friction of the file, or without any where the file has none.
 BodyConfig make_body_with_known_friction(const Robot& robot, const MotorValues& motor);
 

@@ -80,6 +80,7 @@ struct Robot {
   std::vector<double> heading_double_angle_phase_rad;  ///< per wheel; empty without double angle
   std::vector<HeadingWheel> heading_wheels;            ///< one per wheel, or none
   std::map<std::string, Figure, std::less<>> figures;  ///< by "table.key", "friction.heading.wheel[0].key"
+  bool is_friction_assumed = false;                    ///< by with_assumed_friction(): the file states none
 
   [[nodiscard]] double available_V() const;
   /// Between the battery and a motor's terminals; a robot that does not say has none.

@@ -2,10 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "program_run.h"
+#include "support/shipped.h"
 
 namespace heatsoak {
 namespace {
+
+namespace fs = std::filesystem;
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -57,6 +62,30 @@ TEST(EvaluateClosedLoop, ranks_by_games_and_does_not_depend_on_threads) {
     EXPECT_LE(margin_K, margin_before_K);
     margin_before_K = margin_K;
   }
+}
+
+/// Shipped robot without its [friction].
+fs::path bare_robot(const TemporaryFolder& folder) {
+  std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const std::size_t begin = robot.find("[friction]");
+  robot.erase(begin, robot.find("[traction]") - begin);
+  write(folder.path() / "bare.toml", robot);
+  return folder.path() / "bare.toml";
+}
+
+TEST(RobotWithoutFriction, is_simulated_with_assumed_friction_and_without_feed_forward) {
+  const TemporaryFolder folder;
+  const std::string bare = bare_robot(folder).string();
+  const Words words{"--robot", bare, "--duty", "division_b_match", "--json", "-"};
+  const ProgramRun driven = run(Words{"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--guard", "off"} + words);
+  ASSERT_EQ(driven.exit_code, 0) << driven.err;
+  EXPECT_THAT(driven.err, HasSubstr("bare.toml has no [friction]: the feed-forward of friction is off"));
+  EXPECT_TRUE(driven.json().at("is_friction_assumed").get<bool>());
+  const ProgramRun ranked = run(
+      Words{"evaluate", "--motors", "maxon_ecx_flat_42m_24v", "--samples", "0", "--closed-loop", "--games", "1", "--guard", "off"} + words);
+  ASSERT_EQ(ranked.exit_code, 0) << ranked.err;
+  EXPECT_THAT(ranked.err, HasSubstr("the feed-forward of friction is off"));
+  EXPECT_TRUE(ranked.json().at("is_friction_assumed").get<bool>());
 }
 
 TEST(EvaluateClosedLoop, is_for_matches) {

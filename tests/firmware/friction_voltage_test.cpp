@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/diagnostic.h"
+#include "robot/assumed_friction.h"
 #include "robot/inverse_dynamics.h"
 #include "support/shipped.h"
 
@@ -168,6 +169,13 @@ TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
     EXPECT_EQ(friction.sign_V[i], 0.0);
   }
   EXPECT_TRUE(friction_note(robot).starts_with("feed-forward of friction is off"));
+  // The core knows nothing of friction that is assumed for the simulated robot.
+  const Robot assumed = with_assumed_friction(robot);
+  EXPECT_GT(assumed.roller_drag_ratio, 0.0);
+  const FrictionVoltage unknown = friction_voltage(assumed, ecx_32().nominal);
+  EXPECT_FALSE(unknown.is_known);
+  EXPECT_EQ(unknown.damping_V_s_per_rad, friction.damping_V_s_per_rad);
+  EXPECT_EQ(unknown.rotation_V, 0.0);
   EXPECT_EQ(friction_note(twente()), "");
 }
 

@@ -5,9 +5,6 @@
 // K_t·n/R. Excluded, because in principle nobody can know it:
 //   - a wheel that slips while its own sensor lies, without a current sensor: wheels and gyro know a wheel that rolls only. The excess is
 //     at most K_t·n·(speed − implied speed)/R, which slip_A() calculates from the truth and the test takes off;
-//   - the reserve for braking, which a robot uses that seems to brake because one speed sensor lies: 39 wheels and steps of 7e7, up to 0.22
-//   A,
-//     with HEATSOAK_HOSTILE_FACTOR=30, on three wheels; the winding's limit holds. That factor makes this test fail;
 //   - two or more speed sensors (wheels, gyro) that lie at once, swapped ones among them until they are found: measured, not limited. See
 //     swapped_sensors_test.cpp for the time and the current until swapped sensors are found;
 //   - a battery sensor that is wrong by the same factor since the start, or sinks slower than a battery does (0.4 %/s);

@@ -24,6 +24,7 @@
 #include "motor/conditions.h"
 #include "motor/motor.h"
 #include "report/chart.h"
+#include "robot/assumed_friction.h"
 #include "robot/robot.h"
 #include "select/evaluate.h"
 
@@ -218,12 +219,12 @@ ExitCode run(Options& options, Session& session) {
   const std::optional<Duty> duty_read = named.duty(options.duty);
   const std::vector<Motor> motors = read_motors(options, named);
   named.throw_if_any();
-  const Robot& robot = *robot_read;
   const Duty& duty = *duty_read;
   if (motors.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", named.folders().motors.string()));
   }
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
+  const Robot robot = match ? with_assumed_friction(*robot_read) : *robot_read;
   if (options.is_closed_loop && !match) {
     throw Failure(ExitCode::bad_input, fmt::format("--closed-loop drives matches; {} is {}. Expected a duty of the shape match, or no "
                                                    "--closed-loop",
@@ -249,7 +250,7 @@ ExitCode run(Options& options, Session& session) {
     session.write(options.plot, draw_svg(verdict_chart(results, robot, duty)));
   }
   session.say(report(results, robot, duty, wheels.front().duration_s(), options) + slip_text(wheels.front()) + silent_effects(motors) +
-              default_spreads_text(motors));
+              default_spreads_text(motors) + assumed_friction_text(robot));
   if (options.is_closed_loop) {
     session.say(closed_loop_text(ranks, options.games, options.evaluate.seed));
   }
@@ -261,6 +262,7 @@ ExitCode run(Options& options, Session& session) {
                                 {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
                                 {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
   answer["default_spreads"] = default_spreads_json(motors);
+  answer["is_friction_assumed"] = robot.is_friction_assumed;
   const Verdict least_bad = static_cast<Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();

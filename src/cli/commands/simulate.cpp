@@ -19,6 +19,7 @@
 #include "cli/verdict_words.h"
 #include "motor/conditions.h"
 #include "report/chart.h"
+#include "robot/assumed_friction.h"
 #include "select/trace.h"
 
 namespace heatsoak::commands {
@@ -129,7 +130,8 @@ ExitCode run(const Options& options, Session& session) {
   const std::optional<Motor> motor_read = named.motor(options.model.empty() ? options.motor : options.model);
   const std::optional<Duty> duty_read = options.jerk_sweep ? std::nullopt : named.duty(options.duty);
   named.throw_if_any();
-  const Robot& robot = *robot_read;
+  const bool is_driven = options.jerk_sweep || std::dynamic_pointer_cast<const MatchDuty>(duty_read->shape_data) != nullptr;
+  const Robot robot = is_driven ? with_assumed_friction(*robot_read) : *robot_read;
   const Motor motor = under(*motor_read, options.conditions);
   const auto needs_a_plant = [&motor] {
     if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {

@@ -1,0 +1,68 @@
+// The friction that is assumed for a robot whose file states none.
+#include "robot/assumed_friction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/random.h"
+
+namespace heatsoak {
+namespace {
+
+const std::filesystem::path kRobots = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots";
+
+Robot without_friction(Robot robot) {
+  for (const RobotFigureSpec& each : robot_figure_specs()) {
+    if (each.table.starts_with("friction")) {
+      robot.*each.value = kAbsent;
+    }
+  }
+  robot.heading_wheels.clear();
+  return robot;
+}
+
+TEST(AssumedFriction, stated_friction_stays) {
+  const Robot stated = read_robot(kRobots / "tigers_v2020.toml");
+  const Robot same = with_assumed_friction(stated);
+  EXPECT_FALSE(same.is_friction_assumed);
+  EXPECT_EQ(same.wheel_friction_torque_Nm, stated.wheel_friction_torque_Nm);
+  EXPECT_EQ(assumed_friction_text(same), "");
+}
+
+/// Ranges hold what both teams measured on their robots.
+TEST(AssumedFriction, ranges_include_the_measured_robots) {
+  for (const char* const id : {"tigers_v2020", "roboteam_twente_v2024"}) {
+    const Robot stated = read_robot(kRobots / (std::string(id) + ".toml"));
+    const Robot assumed = with_assumed_friction(without_friction(stated));
+    ASSERT_TRUE(assumed.is_friction_assumed);
+    EXPECT_FALSE(has_friction(assumed));
+    for (const RobotFigureSpec& each : robot_figure_specs()) {
+      if (each.table == "friction" && !std::isnan(stated.*each.value)) {
+        const Spread& range = assumed.figures.at("friction." + std::string(each.spec.key)).spread.value();
+        EXPECT_GE(stated.*each.value, range.low) << id << " " << each.spec.key;
+        EXPECT_LE(stated.*each.value, range.high) << id << " " << each.spec.key;
+      }
+    }
+  }
+}
+
+TEST(AssumedFriction, draws_stay_in_their_ranges) {
+  const Robot assumed = with_assumed_friction(without_friction(read_robot(kRobots / "tigers_v2020.toml")));
+  const Spread drag = assumed.figures.at("friction.roller_drag").spread.value();
+  Random random(1, 0);
+  double least = 1.0;
+  double most = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const double drawn = draw_sample(assumed, random).roller_drag_ratio;
+    least = std::min(least, drawn);
+    most = std::max(most, drawn);
+  }
+  EXPECT_GE(least, drag.low);
+  EXPECT_LE(most, drag.high);
+  EXPECT_GT(most - least, 0.8 * (drag.high - drag.low));
+}
+
+}  // namespace
+}  // namespace heatsoak
