@@ -748,7 +748,7 @@ TEST(Unwritable, target_is_told_and_leaves_nothing) {
                                kSimulate + Words{"--out", target}, kSimulate + Words{"--plot", target}}) {
       const ProgramRun result = run(words, inside);
       EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(words) << result.err;
-      EXPECT_THAT(result.err, testing::AnyOf(HasSubstr("writ"), HasSubstr("ends in .svg or .png"))) << target;
+      EXPECT_THAT(result.err, testing::AnyOf(HasSubstr("writ"), HasSubstr("end in .svg or .png"))) << target;
       EXPECT_THAT(folder.names(), UnorderedElementsAre("taken.svg")) << target;
     }
   }

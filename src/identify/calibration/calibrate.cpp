@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include "base/diagnostic.h"
@@ -94,7 +93,7 @@ class Calibrating {
     tell_what_moved_far();
     all_.fit_error = errors();
     refuse_where_nothing_is_explained();
-    tell_declared_ranges(motor);
+    std::ranges::move(outside_declared_ranges(motor, all_.figures), std::back_inserter(all_.notes));
     tell_common_factor();
     tell_terminal_resistance(motor);
     tell_what_got_worse("the runs that were fitted", all_.fit_error);
@@ -114,16 +113,9 @@ class Calibrating {
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
       // The forecast fit has no unknown heat: what the runs do not tell beside such heat, they do not tell.
-      std::set<std::string> not_told;
-      for (const CalibratedFigure& each : std::exchange(all_.figures, {})) {
-        if (!each.is_identifiable) {
-          not_told.insert(each.name);
-        }
-      }
+      const std::vector<CalibratedFigure> before = std::exchange(all_.figures, {});
       figures();
-      for (CalibratedFigure& each : all_.figures) {
-        each.is_identifiable = each.is_identifiable && !not_told.contains(each.name);
-      }
+      keep_untold(before, all_.figures);
     }
     std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
   }
@@ -152,21 +144,6 @@ class Calibrating {
     all_.holdout_after = std::move(after.runs);
     all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
     tell_what_got_worse("the runs held out", all_.holdout_error);
-  }
-
-  /// A value outside of what the file declares is reported: verbs that need a sound motor may refuse the new file.
-  void tell_declared_ranges(const Motor& motor) {
-    Motor declared = motor;
-    for (const CalibratedFigure& each : all_.figures) {
-      const Figure* const figure = each.is_of_file ? find_figure(declared, each.name) : nullptr;
-      if (figure && figure->spread && (each.value < figure->spread->low || each.value > figure->spread->high)) {
-        all_.notes.push_back(
-            fmt::format("{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether "
-                        "the range still holds for this motor and its mounting",
-                        each.name, significant(each.value, 3), unit_for_display(each.unit), significant(figure->spread->low, 3),
-                        significant(figure->spread->high, 3), unit_for_display(each.unit)));
-      }
-    }
   }
 
   /// Where the motor may have turned round within rows: once more from there with the speed that it then had.

@@ -48,6 +48,29 @@ Range declared_range(const Motor& motor, std::string_view key) {
   return found == specs.end() ? Range::positive() : found->spec.range;
 }
 
+std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedFigure> figures) {
+  std::vector<std::string> notes;
+  Motor declared = motor;
+  for (const CalibratedFigure& each : figures) {
+    const Figure* const figure = each.is_of_file ? find_figure(declared, each.name) : nullptr;
+    if (figure && figure->spread && (each.value < figure->spread->low || each.value > figure->spread->high)) {
+      notes.push_back(
+          fmt::format("{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether "
+                      "the range still holds for this motor and its mounting",
+                      each.name, significant(each.value, 3), unit_for_display(each.unit), significant(figure->spread->low, 3),
+                      significant(figure->spread->high, 3), unit_for_display(each.unit)));
+    }
+  }
+  return notes;
+}
+
+void keep_untold(std::span<const CalibratedFigure> before, std::vector<CalibratedFigure>& figures) {
+  for (CalibratedFigure& each : figures) {
+    const auto same = std::ranges::find(before, each.name, &CalibratedFigure::name);
+    each.is_identifiable = each.is_identifiable && (same == before.end() || same->is_identifiable);
+  }
+}
+
 bool replaces_the_fit(const Forecast& forecast) { return !forecast.accepted.empty() || forecast.source == ForecastSource::file; }
 
 void write_forecast(Calibration& calibration) {

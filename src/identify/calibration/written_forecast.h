@@ -14,6 +14,12 @@ namespace heatsoak {
 /// predicts left-out pieces better than the file. With the same network the innovations fit stays: its intervals are tested.
 bool replaces_the_fit(const Forecast& forecast);
 
+/// A value outside of what the file declares, in sentences: verbs that need a sound motor may refuse the new file.
+std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedFigure> figures);
+
+/// What was not told `before` is not told in `figures` either.
+void keep_untold(std::span<const CalibratedFigure> before, std::vector<CalibratedFigure>& figures);
+
 /// Puts the forecast's model, parameters and intervals in place of those of the innovations fit.
 void write_forecast(Calibration& calibration);
 
