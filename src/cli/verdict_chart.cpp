@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include "present/evaluation.h"
+
 namespace heatsoak {
 namespace {
 
@@ -57,9 +59,9 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
   std::map<double, std::vector<std::string>> limits_C;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const TemperatureCurves& curves = shown[i]->curves;
-    const std::string name =
-        of_winding ? fmt::format("{}, {:.0f} °C, {}", shown[i]->motor_id, shown[i]->winding_peak_C.nominal, to_string(shown[i]->verdict))
-                   : std::string();
+    const std::string name = of_winding ? fmt::format("{}, {:.0f} °C, {}", shown[i]->motor_id, shown[i]->winding_peak_C.nominal,
+                                                      present::verdict_word(*shown[i]))
+                                        : std::string();
     const int color = static_cast<int>(i);
     const auto values_of = [of_winding](const TemperatureCurves& c) -> const std::vector<double>& {
       return of_winding ? c.winding_C : c.stator_C;
@@ -89,8 +91,10 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
 
 std::string title_of(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
   const auto good = std::ranges::count(results, Verdict::pass, &MotorEvaluation::verdict);
-  const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, to_string(results.front().verdict))
-                                                  : fmt::format("{} of {} motors pass", good, results.size());
+  const auto open = std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.samples_needed.has_value(); });
+  const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, present::verdict_word(results.front()))
+                                                  : fmt::format("{} of {} motors pass{}", good, results.size(),
+                                                                open > 0 ? fmt::format(", {} undecided", open) : "");
   return fmt::format("{}, {} on {}", verdict, robot.name, duty.id);
 }
 

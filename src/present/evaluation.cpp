@@ -22,9 +22,8 @@ std::string percent_range(const Interval95& range) {
   return fmt::format("{:.0f}…{:.0f}", std::floor(100.0 * range.low), std::ceil(100.0 * range.high));
 }
 
-/// "undecided" only stands where more samples could tell: the JSON keeps the cautious one of both verdicts.
 Text verdict_cell(const MotorEvaluation& motor) {
-  return motor.samples_needed ? Text{"undecided", Tone::doubtful} : Text{std::string(to_string(motor.verdict)), tone_of(motor.verdict)};
+  return {std::string(verdict_word(motor)), motor.samples_needed ? Tone::doubtful : tone_of(motor.verdict)};
 }
 
 std::string_view factor_text(const MotorEvaluation& motor) {
@@ -266,6 +265,8 @@ std::string sparkline(const MotorEvaluation& motor, double ambient_C) {
   }
   return line;
 }
+
+std::string_view verdict_word(const MotorEvaluation& motor) { return motor.samples_needed ? "undecided" : to_string(motor.verdict); }
 
 Document evaluation_document(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
   Document document{.headline = headline(results, context), .paragraphs = paragraphs(context)};

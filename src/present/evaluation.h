@@ -33,6 +33,9 @@ void add_changes(Document& document, std::span<const ChangeEffect> effects, cons
 /// each shows the highest temperature of an eighth of the time. Empty without curves.
 std::string sparkline(const MotorEvaluation& motor, double ambient_C);
 
+/// The verdict, or "undecided" where more samples could tell: the JSON keeps the cautious one of both verdicts then.
+std::string_view verdict_word(const MotorEvaluation& motor);
+
 /// The colour of a verdict.
 Tone tone_of(Verdict verdict);
 

@@ -108,7 +108,7 @@ class Calibrating {
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
-    if (options_.is_for_forecasts && replaces_the_fit(*all_.forecast)) {
+    if (options_.is_for_forecasts) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();

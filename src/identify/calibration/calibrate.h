@@ -20,7 +20,7 @@ namespace heatsoak {
 struct CalibrationOptions {
   FitOptions fit;
   double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
-  /// The parameters are those of the fit to whole runs where that extends the network or where no fit beats the file.
+  /// The parameters are those of the fit to whole runs, with which left-out pieces are predicted best; else those of the innovations fit.
   bool is_for_forecasts = false;
 };
 

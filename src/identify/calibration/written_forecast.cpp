@@ -71,8 +71,6 @@ void keep_untold(std::span<const CalibratedFigure> before, std::vector<Calibrate
   }
 }
 
-bool replaces_the_fit(const Forecast& forecast) { return !forecast.accepted.empty() || forecast.source == ForecastSource::file; }
-
 void write_forecast(Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
   const ForecastModel model = forecast.model();
@@ -105,8 +103,8 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
             ? "no fit predicts left-out pieces better than the file: its values are written as they are"
             : "no fit predicts left-out pieces better than the file: for forecasts its values are better than the written ones");
   } else if (forecast.source == ForecastSource::ordinary) {
-    words.emplace_back(
-        "least squares of free runs predicts left-out pieces best; written is the fit beside unknown heat, whose intervals are tested");
+    words.push_back(fmt::format("least squares of free runs predicts left-out pieces best: {}",
+                                calibration.is_forecast_written ? "its parameters are written" : "`--forecast` writes its parameters"));
   } else if (!forecast.accepted.empty()) {
     std::vector<std::string> names;
     std::ranges::transform(forecast.accepted, std::back_inserter(names), &AcceptedExtension::name);

@@ -1,4 +1,4 @@
-// Which parameters a calibration writes: those of the innovations fit, or those of the forecast fit where whole runs contradict it.
+// Which parameters a calibration writes: those of the innovations fit, or on demand those of the forecast fit.
 #pragma once
 
 #include <span>
@@ -9,10 +9,6 @@
 #include "identify/calibration/calibrate.h"
 
 namespace heatsoak {
-
-/// Whether the forecast fit is written: it extended the network, so that the innovations fit's parameters belong to another one, or no fit
-/// predicts left-out pieces better than the file. With the same network the innovations fit stays: its intervals are tested.
-bool replaces_the_fit(const Forecast& forecast);
 
 /// A value outside of what the file declares, in sentences: verbs that need a sound motor may refuse the new file.
 std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedFigure> figures);
