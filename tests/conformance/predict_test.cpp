@@ -45,6 +45,13 @@ TEST(Predict, AnswersAsTheInterfaceSays) {
   EXPECT_THAT(content_of(folder.path() / "p.svg"), HasSubstr("</svg>"));
 }
 
+TEST(Predict, DrawsAPngWhereItsNameSaysSo) {
+  const TemporaryFolder folder;
+  const ProgramRun done = run({"predict", "--model", kMotor, log("match_1.csv"), "--plot", "p.png"}, in(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(content_of(folder.path() / "p.png").starts_with("\x89PNG"));
+}
+
 /// Of a calibrated model the error of a hold-out run is smaller, and the same as `calibrate --holdout` says.
 TEST(Predict, IsWhereHoldoutErrorsComeFrom) {
   const TemporaryFolder folder;

@@ -37,7 +37,7 @@ ExitCode run(const Options& options, Session& session) {
   Prediction prediction = predict(motor, logs, {.ambient_C = options.how.ambient_C});
   prediction.notes.insert(prediction.notes.begin(), notes.begin(), notes.end());
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_svg(prediction_chart(motor, prediction)));
+    session.write(options.plot, draw_picture(prediction_chart(motor, prediction), options.plot));
   }
   session.say(prediction_text(motor, prediction));
   session.say(options.plot.empty() ? "" : fmt::format("written: {}\n", options.plot));
