@@ -52,8 +52,10 @@ constexpr HarderFigure kHarderFigures[] = {
 HardMatch make_hard_match(const Robot& robot, double share) {
   constexpr double kHardAmbient_C = 40.0;
   const Duty duty = read_duty(kSource / "duty_profiles" / "division_a_match.toml");
-  HardMatch match{robot, std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)->inputs(),
-                  std::lerp(duty.ambient_C.value, kHardAmbient_C, share), {}};
+  HardMatch match{robot,
+                  std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)->inputs(),
+                  std::lerp(duty.ambient_C.value, kHardAmbient_C, share),
+                  {}};
   match.changed.push_back({"air at the motors", fmt::format("{:.0f} °C", duty.ambient_C.value), fmt::format("{:.3g} °C", match.ambient_C),
                            "harsher than the declared 20 to 32 °C of a hall: 8 K more inside of a closed robot"});
   const auto specs = match_input_specs();
@@ -98,7 +100,10 @@ Motor bench_tested(const Motor& motor) {
     if (figure == nullptr) {
       throw Failure(ExitCode::bug, fmt::format("the motor has no {}", each.key));
     }
-    figure->spread = heatsoak::Spread{.low = figure->value * (1.0 - each.share), .high = figure->value * (1.0 + each.share)};
+    // Of an estimate nobody would believe tolerances this narrow: they would be replaced.
+    figure->origin = Origin::measured;
+    figure->spread = heatsoak::Spread{
+        .kind = heatsoak::Spread::Kind::range, .low = figure->value * (1.0 - each.share), .high = figure->value * (1.0 + each.share)};
   }
   return tested;
 }
