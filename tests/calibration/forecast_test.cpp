@@ -106,17 +106,21 @@ TEST(Forecast, KeepsANetworkThatIsRight) {
   }
 }
 
+/// Logs of a motor whose contact conductance rises by 1 % per K, hot enough to show it.
+std::vector<Recording> logs_of_better_contact(TwoNodeTruth truth, const Folder& folder, int first, int count) {
+  truth.contact_change_per_K = 0.01;
+  LogMaking making = long_enough();
+  making.largest_current_A = 13.0;
+  making.flux_rms_W = 0.02;
+  return logs_of(truth, making, folder, first, count);
+}
+
 /// A contact that gets better by 1 % per K, by a law that no candidate has: left-out runs ask for one that bends alike.
 TEST(Forecast, ExtendsANetworkThatIsWrong) {
   const Folder folder;
   const Sheet sheet;
   const Motor motor = sheet.motor(folder);
-  TwoNodeTruth truth = sheet.truth;
-  truth.contact_change_per_K = 0.01;
-  LogMaking making = long_enough();
-  making.largest_current_A = 13.0;
-  making.flux_rms_W = 0.02;
-  const std::vector<Recording> logs = logs_of(truth, making, folder, 0, 4);
+  const std::vector<Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
   const ForecastSetup setup = forecast_setup(motor, logs);
   const Forecast found = forecast_of(setup, runs_of(setup, logs), {}, 0);
   ASSERT_FALSE(found.accepted.empty());
@@ -126,7 +130,7 @@ TEST(Forecast, ExtendsANetworkThatIsWrong) {
   const ForecastModel base = setup.model();
   const ForecastRules ordinary{.is_tempered = false, .has_heat_factors = false};
   const ForecastFit plain = fit_forecast(base, runs_of(setup, logs), {}, base.start(), ordinary);
-  for (const MeasuredRun& run : runs_of(setup, logs_of(truth, making, folder, 10, 2))) {
+  for (const MeasuredRun& run : runs_of(setup, logs_of_better_contact(sheet.truth, folder, 10, 2))) {
     const auto winding_K = [&](const ForecastModel& by, const ForecastFit& fit) {
       return predict(by, fit.theta, fit.covariance, found.band, run).signals.front().rmse_K;
     };
@@ -208,13 +212,8 @@ TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
   const Folder folder;
   const Sheet sheet;
   const Motor motor = sheet.motor(folder);
-  TwoNodeTruth truth = sheet.truth;
-  truth.contact_change_per_K = 0.01;
-  LogMaking making = long_enough();
-  making.largest_current_A = 13.0;
-  making.flux_rms_W = 0.02;
-  const std::vector<Recording> logs = logs_of(truth, making, folder, 0, 4);
-  const std::vector<Recording> others = logs_of(truth, making, folder, 10, 1);
+  const std::vector<Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
+  const std::vector<Recording> others = logs_of_better_contact(sheet.truth, folder, 10, 1);
   const Calibration found = calibrate(motor, logs, others, {.fit = {}, .is_for_forecasts = true});
   ASSERT_TRUE(found.is_forecast_written);
   const auto file = folder.path() / "written.toml";

@@ -19,14 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-RunOptions in(const TemporaryFolder& folder) {
-  RunOptions options;
-  options.folder = folder.path();
-  return options;
-}
-
-std::string log(const std::string& name) { return (kSoak / name).string(); }
-
 // The logs are of a motor in a chassis that soaks heat; the third match was never trained on.
 TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   const TemporaryFolder folder;

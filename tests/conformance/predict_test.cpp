@@ -15,14 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-RunOptions in(const TemporaryFolder& folder) {
-  RunOptions options;
-  options.folder = folder.path();
-  return options;
-}
-
-std::string log(const std::string& name) { return (kSoak / name).string(); }
-
 TEST(Predict, AnswersAsTheInterfaceSays) {
   const TemporaryFolder folder;
   const ProgramRun done =

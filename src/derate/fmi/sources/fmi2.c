@@ -148,12 +148,7 @@ FMI2_Export fmi2Status fmi2SetString(fmi2Component of, const fmi2ValueReference 
 
 FMI2_Export fmi2Status fmi2GetFMUstate(fmi2Component of, fmi2FMUstate *kept) {
   component *const me = of;
-  if (!*kept) {
-    *kept = instance_copy(&me->state);
-  } else {
-    memcpy(*kept, &me->state, sizeof me->state);
-  }
-  return told(me, *kept ? 0 : "out of memory");
+  return told(me, instance_keep(&me->state, kept));
 }
 
 FMI2_Export fmi2Status fmi2SetFMUstate(fmi2Component of, fmi2FMUstate kept) {
@@ -176,23 +171,12 @@ FMI2_Export fmi2Status fmi2SerializedFMUstateSize(fmi2Component of, fmi2FMUstate
 }
 
 FMI2_Export fmi2Status fmi2SerializeFMUstate(fmi2Component of, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
-  if (size < sizeof(instance_state)) {
-    return not_there(of, "the place for the state is too small");
-  }
-  memcpy(bytes, kept, sizeof(instance_state));
-  return fmi2OK;
+  return told(of, instance_serialize(kept, bytes, size));
 }
 
 FMI2_Export fmi2Status fmi2DeSerializeFMUstate(fmi2Component of, const fmi2Byte bytes[], size_t size, fmi2FMUstate *kept) {
   component *const me = of;
-  instance_state *const made = *kept ? *kept : instance_copy(&me->state);
-  const char *const problem = made ? instance_restore(made, bytes, size) : "out of memory";
-  if (problem && made && !*kept) {
-    free(made);
-  } else {
-    *kept = made;
-  }
-  return told(me, problem);
+  return told(me, instance_deserialize(&me->state, bytes, size, kept));
 }
 
 FMI2_Export fmi2Status fmi2GetDirectionalDerivative(fmi2Component of, const fmi2ValueReference unknowns[], size_t unknown_count,

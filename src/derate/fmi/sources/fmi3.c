@@ -153,12 +153,7 @@ VALUES(fmi3Boolean, fmi3GetBoolean, fmi3SetBoolean, type_boolean)
 
 FMI3_Export fmi3Status fmi3GetFMUState(fmi3Instance of, fmi3FMUState *kept) {
   component *const me = of;
-  if (!*kept) {
-    *kept = instance_copy(&me->state);
-  } else {
-    memcpy(*kept, &me->state, sizeof me->state);
-  }
-  return fmi3_told(of, *kept ? 0 : "out of memory");
+  return fmi3_told(of, instance_keep(&me->state, kept));
 }
 
 FMI3_Export fmi3Status fmi3SetFMUState(fmi3Instance of, fmi3FMUState kept) {
@@ -181,23 +176,12 @@ FMI3_Export fmi3Status fmi3SerializedFMUStateSize(fmi3Instance of, fmi3FMUState 
 }
 
 FMI3_Export fmi3Status fmi3SerializeFMUState(fmi3Instance of, fmi3FMUState kept, fmi3Byte bytes[], size_t size) {
-  if (size < sizeof(instance_state)) {
-    return fmi3_told(of, "the place for the state is too small");
-  }
-  memcpy(bytes, kept, sizeof(instance_state));
-  return fmi3OK;
+  return fmi3_told(of, instance_serialize(kept, bytes, size));
 }
 
 FMI3_Export fmi3Status fmi3DeserializeFMUState(fmi3Instance of, const fmi3Byte bytes[], size_t size, fmi3FMUState *kept) {
   component *const me = of;
-  instance_state *const made = *kept ? *kept : instance_copy(&me->state);
-  const char *const problem = made ? instance_restore(made, bytes, size) : "out of memory";
-  if (problem && made && !*kept) {
-    free(made);
-  } else {
-    *kept = made;
-  }
-  return fmi3_told(of, problem);
+  return fmi3_told(of, instance_deserialize(&me->state, bytes, size, kept));
 }
 
 FMI3_Export fmi3Status fmi3DoStep(fmi3Instance of, fmi3Float64 current_s, fmi3Float64 step_s, fmi3Boolean no_earlier_state,

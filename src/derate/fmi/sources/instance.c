@@ -42,6 +42,15 @@ const char *instance_terminate(instance_state *state) {
   return 0;
 }
 
+/* The caller frees it. 0 without memory. */
+static instance_state *copy_of(const instance_state *state) {
+  instance_state *const copy = malloc(sizeof *copy);
+  if (copy) {
+    memcpy(copy, state, sizeof *copy);
+  }
+  return copy;
+}
+
 const char *instance_step(instance_state *state, double current_s, double step_s) {
   const double now_s = state->model.value[at_time_s];
   instance_state *next;
@@ -55,7 +64,7 @@ const char *instance_step(instance_state *state, double current_s, double step_s
   if (!(step_s > 0.0) || !isfinite(step_s)) {
     return "the step is not longer than 0 s";
   }
-  next = instance_copy(state);
+  next = copy_of(state);
   if (!next) {
     return "out of memory";
   }
@@ -102,18 +111,38 @@ const char *instance_get(instance_state *state, unsigned reference, model_type t
   return problem;
 }
 
-instance_state *instance_copy(const instance_state *state) {
-  instance_state *const copy = malloc(sizeof *copy);
-  if (copy) {
-    memcpy(copy, state, sizeof *copy);
-  }
-  return copy;
-}
-
 const char *instance_restore(instance_state *state, const void *bytes, size_t size) {
   if (size != sizeof *state || memcmp(bytes, MODEL_TOKEN, sizeof MODEL_TOKEN) != 0) {
     return "the bytes are no state of this FMU";
   }
   memcpy(state, bytes, size);
   return 0;
+}
+
+const char *instance_keep(const instance_state *state, void **kept) {
+  if (*kept) {
+    memcpy(*kept, state, sizeof *state);
+  } else {
+    *kept = copy_of(state);
+  }
+  return *kept ? 0 : "out of memory";
+}
+
+const char *instance_serialize(const void *kept, void *bytes, size_t size) {
+  if (size < sizeof(instance_state)) {
+    return "the place for the state is too small";
+  }
+  memcpy(bytes, kept, sizeof(instance_state));
+  return 0;
+}
+
+const char *instance_deserialize(const instance_state *state, const void *bytes, size_t size, void **kept) {
+  instance_state *const made = *kept ? *kept : copy_of(state);
+  const char *const problem = made ? instance_restore(made, bytes, size) : "out of memory";
+  if (problem && made && !*kept) {
+    free(made);
+  } else {
+    *kept = made;
+  }
+  return problem;
 }

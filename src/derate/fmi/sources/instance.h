@@ -23,9 +23,13 @@ const char *instance_terminate(instance_state *state);
 const char *instance_step(instance_state *state, double current_s, double step_s);
 const char *instance_set(instance_state *state, unsigned reference, model_type type, double value);
 const char *instance_get(instance_state *state, unsigned reference, model_type type, double *value);
-/* The caller frees it. 0 without memory. */
-instance_state *instance_copy(const instance_state *state);
-/* From the bytes of a state; another FMU's are refused. */
+/* Copies the state to *kept, which the caller frees. If *kept is 0, it is allocated. */
+const char *instance_keep(const instance_state *state, void **kept);
+/* Restores the state from the bytes of a state. Bytes of another FMU are refused. */
 const char *instance_restore(instance_state *state, const void *bytes, size_t size);
+/* Writes the bytes of a kept state. */
+const char *instance_serialize(const void *kept, void *bytes, size_t size);
+/* Restores a kept state from its bytes. If *kept is 0, it is allocated as a copy of state and freed again if the bytes are refused. */
+const char *instance_deserialize(const instance_state *state, const void *bytes, size_t size, void **kept);
 
 #endif
