@@ -215,7 +215,8 @@ struct alignas(8) ComparisonState {
   std::uint8_t speed_fault[kMostWheels] = {};
   std::uint8_t yaw_fault = 0;
   std::uint8_t unused[3] = {};
-  float standing_s = 0.0F;  ///< how long no speed sample has changed while more than the limp current would flow through standing motors
+  float standing_s =
+      0.0F;  ///< time without any change of a speed sample, while the voltage would drive more than the limp current through blocked motors
 };
 
 /// What evolves. Only start() and step() write it; a copy can be logged. The check sum covers what follows it up to `comparison`;

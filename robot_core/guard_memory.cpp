@@ -8,7 +8,7 @@ constexpr float kStep_share = 0.05F;
 constexpr float kCounted_share = 0.97F;
 constexpr float kVeryLong_s = 1e9F;
 
-/// Without current, speed and wind; what nobody knows is as hot as it may be.
+/// Cooling without current, speed and airflow. Unknown temperatures take their highest safe value.
 void signals_without_power(const GuardModel& model, float* signal) {
   for (int i = 0; i < kGuardSignals; ++i) {
     signal[i] = 0.0F;

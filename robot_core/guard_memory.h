@@ -12,7 +12,7 @@ namespace robot_core {
 
 enum class Restored {
   cooled,        ///< for the time that has passed
-  time_unknown,  ///< as hot as it may be after any time
+  time_unknown,  ///< time without power unknown: each node takes its highest safe temperature
   nothing        ///< the copy fails its check sum or holds no temperatures: as hot as the limit
 };
 

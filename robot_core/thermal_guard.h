@@ -42,7 +42,7 @@ struct GuardModel {
   float winding_limit_C = 0.0F;
   float coldest_ambient_C = 0.0F;
   float hottest_ambient_C = 0.0F;
-  float most_current_A = 0.0F;  ///< that the driver can let through
+  float most_current_A = 0.0F;  ///< current limit of the motor driver
   float cold_current_A = 0.0F;  ///< allowed to a cold motor that stands
   heatsoak_current_table table{};
   GuardBelief belief[kGuardSignals];

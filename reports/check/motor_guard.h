@@ -429,7 +429,7 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
 #define MAXON_ECX_FLAT_42M_24V_SAVED_SIZE 24
 typedef enum {
   maxon_ecx_flat_42m_24v_restored,        /* cooled for the time that has passed */
-  maxon_ecx_flat_42m_24v_time_unknown,    /* as hot as it may be after any time */
+  maxon_ecx_flat_42m_24v_time_unknown,    /* time without power unknown: each node takes its highest safe temperature */
   maxon_ecx_flat_42m_24v_nothing_restored /* not saved, damaged or of another guard: as hot as the limit */
 } maxon_ecx_flat_42m_24v_restored_from;
 

@@ -16,7 +16,7 @@ struct HelpOption {
   std::string meaning;
   bool is_required = false;
   bool takes_value = false;
-  std::vector<std::string> choices;  ///< where the value is one of a set
+  std::vector<std::string> choices;  ///< allowed values; empty if any value is allowed
 };
 
 struct HelpPage {
@@ -26,7 +26,7 @@ struct HelpPage {
   std::vector<std::string> examples;
 };
 
-/// Of every verb of the program, sorted by name.
+/// Returns the help pages of all verbs, sorted by name.
 std::vector<HelpPage> help_pages(const CLI::App& program);
 
 std::string markdown_of(const HelpPage& page);

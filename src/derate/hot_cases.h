@@ -24,7 +24,7 @@ struct BarrierRules {
   double approach_s = 0.5;
   double stator_approach_s = 10.0;
   double hottest_ambient_C = 40.0;
-  double most_current_A = 0.0;        ///< that the driver can let through
+  double most_current_A = 0.0;        ///< current limit of the motor driver
   double most_speed_rad_per_s = 0.0;  ///< of the motor: up to here limits are kept for good
   /// Where the allowed current has fallen to none, more than the highest speed; 0: as near to it as the table lets (current_table.h).
   double no_current_speed_rad_per_s = 0.0;

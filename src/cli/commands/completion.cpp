@@ -11,7 +11,7 @@
 namespace heatsoak::commands {
 namespace {
 
-/// What the value of an option may be: ids are asked of the program when a key is pressed.
+/// Kind of value that an option takes. The shell asks the program for ids each time the user completes a word.
 std::string_view kind_of(const std::string& option) {
   return option == "--motor" || option == "--motors" ? "motors" : option == "--robot" ? "robots" : option == "--duty" ? "duties" : "";
 }

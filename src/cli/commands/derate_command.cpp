@@ -34,7 +34,7 @@ struct Options {
   std::string to = "c_header";
   std::string out;
   std::string committed;  ///< table of --check
-  std::string compiler;   ///< of a form with a binary; empty: sources only
+  std::string compiler;   ///< C compiler that builds the binary of an FMU; empty: the FMU has only sources
   SensorFlags sensor;
 };
 

@@ -13,7 +13,7 @@ std::string prediction_text(const Motor& motor, const Prediction& prediction);
 
 /// heatsoak.prediction/1.
 nlohmann::ordered_json prediction_json(const Motor& motor, const Prediction& prediction);
-/// Of each run, as in heatsoak.prediction/1.
+/// Returns one JSON object per run, with the keys of heatsoak.prediction/1.
 nlohmann::ordered_json runs_json(const std::vector<PredictedRun>& runs);
 
 /// Measured, predicted and the 90 % band; one panel per signal and run.

@@ -14,7 +14,7 @@ constexpr std::string_view kPacked =
 #define @CAP@_SAVED_SIZE @SIZE@
 typedef enum {
   @_restored,        /* cooled for the time that has passed */
-  @_time_unknown,    /* as hot as it may be after any time */
+  @_time_unknown,    /* time without power unknown: each node takes its highest safe temperature */
   @_nothing_restored /* not saved, damaged or of another guard: as hot as the limit */
 } @_restored_from;
 

@@ -35,7 +35,7 @@ constexpr double kWorse_ratio = 1.1;
 /// Runs in which fewer of the catalogue's effects would show at their usual size cannot say that nothing is missing.
 constexpr double kLeastSeen_share = 0.5;
 
-/// Sure enough, and training runs that are left out of the fit are predicted plainly better with what was found.
+/// The effect has enough evidence, and left-out training runs are predicted much better with the accepted terms.
 bool predicts(const FoundEffect& effect, const LeftOutErrors& left_out) {
   constexpr double kPredicts_share = 0.7;
   constexpr double kClear_nats = 20.0;
@@ -91,8 +91,8 @@ std::map<std::string, std::string> outweighed_in(const Diagnosis& told, const Le
   return outweighed;
 }
 
-/// All that was found, where training runs that are left out of the fit are predicted worse with it, or no better and nothing of it is
-/// unmistakable.
+/// Rejects all accepted terms if left-out training runs are predicted worse with them. Terms below `unmistakable_nats` are also rejected if
+/// the prediction does not improve. Returns the reason by the term's name.
 std::map<std::string, std::string> refused_by_left_out_runs(const Selection& found, const LeftOutErrors& errors, double unmistakable_nats) {
   std::map<std::string, std::string> refused;
   const bool is_unmistakable =
@@ -144,7 +144,7 @@ class Teller {
     out_.description = fmt::format("{}", fmt::join(out_.words, " "));
     return std::move(out_);
   }
-  /// Known once it has told.
+  /// Valid after tell().
   [[nodiscard]] const LeftOutErrors& left_out() const { return left_out_; }
 
  private:

@@ -10,10 +10,10 @@
 
 namespace heatsoak {
 
-/// A value outside of what the file declares, in sentences: verbs that need a sound motor may refuse the new file.
+/// Returns one sentence per fitted value outside its declared range. Verbs that need a sound motor may refuse such a file.
 std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedFigure> figures);
 
-/// What was not told `before` is not told in `figures` either.
+/// Marks a value as not identifiable if it was not identifiable in `before`.
 void keep_untold(std::span<const CalibratedFigure> before, std::vector<CalibratedFigure>& figures);
 
 /// Puts the forecast's model, parameters and intervals in place of those of the innovations fit.

@@ -91,7 +91,8 @@ ExitCode run(const Options& options, Session& session) {
 Command log_command() {
   return {
       .name = {},
-      .summary = "Measured logs: what is in them, how good the data are, what is left out and why; or the canonical CSV of a foreign one",
+      .summary =
+          "Inspects a measured log: channels, data quality, rejected samples with the reason; or converts a foreign log to canonical CSV",
       .example =
           "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
           "heatsoak log inspect log.csv --plot log.svg",
@@ -104,7 +105,7 @@ Command log_command() {
         app.add_option("--map", options->map,
                        "mapping of columns to quantities; FILE.map.toml beside the log is found by itself (README, \"Measured logs\")")
             ->type_name("FILE.toml");
-        add_picture(app, options->plot, "every channel over time, with what is left out");
+        add_picture(app, options->plot, "all channels over time, rejected samples marked");
         add_table(app, options->out, "of convert: the canonical form");
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
