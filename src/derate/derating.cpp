@@ -172,7 +172,7 @@ class Search {
   Promise promise(double from) {
     constexpr double kGrowth = 1.05;
     std::optional<Promise> made;
-    smallest(from, kGrowth, [&](double tried) {
+    static_cast<void>(smallest(from, kGrowth, [&](double tried) {
       Attempt with = attempt_or_throw(tried);
       const Guarantee found = checked(with, kStreamsApart);
       const bool holds = found.least_kept_share >= options_.guarantee.confidence;
@@ -180,7 +180,7 @@ class Search {
         made.emplace(Promise{std::move(with), found});
       }
       return holds;
-    });
+    }));
     return std::move(*made);
   }
 
@@ -230,7 +230,6 @@ class Search {
     }
     return high;
   }
-
 
   const Motor& motor_;
   const Robot& robot_;
