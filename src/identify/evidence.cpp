@@ -44,33 +44,6 @@ RunEvidence run_evidence(const LinearisedRun& run, const Eigen::Ref<const Column
           whitening.count()};
 }
 
-RunEvidence run_evidence_of_many(const LinearisedRun& run, const Columns& columns, Eigen::Index inner, const Whitening& whitening,
-                                 const StartPrior& start) {
-  const Eigen::Index x = run.states;
-  const Eigen::Index first = x + inner;
-  const Eigen::Index rest = columns.cols() - inner + 1;
-  Columns tall = whitened(run, columns, whitening, start);
-  if (tall.rows() < first + rest) {
-    return run_evidence(run, columns, whitening, start);
-  }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(tall.leftCols(first));
-  const Eigen::MatrixXd directions = decomposition.householderQ() * Eigen::MatrixXd::Identity(tall.rows(), first);
-  const Eigen::MatrixXd along = directions.transpose() * tall.rightCols(rest);
-  tall.rightCols(rest).noalias() -= directions * along;
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(rest, rest);
-  products.selfadjointView<Eigen::Upper>().rankUpdate(tall.rightCols(rest).transpose());
-  // Columns of nothing, and columns that are the same, leave nothing to decompose.
-  products.diagonal() = products.diagonal() * (1.0 + 1e-12) + Eigen::VectorXd::Constant(rest, std::numeric_limits<double>::min());
-  Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(inner + rest, inner + rest);
-  triangle.topLeftCorner(inner, inner) = decomposition.matrixQR().block(x, x, inner, inner).triangularView<Eigen::Upper>();
-  triangle.topRightCorner(inner, rest) = along.bottomRows(inner);
-  triangle.bottomRightCorner(rest, rest) = products.selfadjointView<Eigen::Upper>().llt().matrixU();
-  return {std::move(triangle),
-          whitening.log_determinant() + 2.0 * log_of_diagonal(decomposition.matrixQR().topLeftCorner(x, x)) +
-              2.0 * start.sd_K.array().log().sum(),
-          whitening.count()};
-}
-
 Eigen::VectorXd start_correction_K(const LinearisedRun& run, const Columns& columns, const Eigen::VectorXd& coefficients,
                                    const Whitening& whitening, const StartPrior& start) {
   const Eigen::Index x = run.states;

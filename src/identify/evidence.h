@@ -29,11 +29,6 @@ struct StartPrior {
 RunEvidence run_evidence(const LinearisedRun& run, const Eigen::Ref<const Columns>& columns, const Whitening& whitening,
                          const StartPrior& start);
 
-/// The same for many columns of which only the first `inner` are fitted together: what those leave of the others is multiplied out
-/// instead of decomposed, several times as fast. Others that go together but for 1e-6 of them are not told apart.
-RunEvidence run_evidence_of_many(const LinearisedRun& run, const Columns& columns, Eigen::Index inner, const Whitening& whitening,
-                                 const StartPrior& start);
-
 /// The best correction of the start temperatures in K, given the correction of the c columns' coefficients.
 Eigen::VectorXd start_correction_K(const LinearisedRun& run, const Columns& columns, const Eigen::VectorXd& coefficients,
                                    const Whitening& whitening, const StartPrior& start);

@@ -12,9 +12,11 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 class Recorder {
  public:
-  Recorder(LinearisedRun& out, const MeasuredRun& run, Eigen::Index wanted)
+  /// `path_C`: null where the network runs freely.
+  Recorder(LinearisedRun& out, const MeasuredRun& run, Eigen::Index wanted, const Eigen::MatrixXd* path_C)
       : out_(out),
         run_(run),
+        path_C_(path_C),
         by_start_(Eigen::MatrixXd::Identity(out.states, out.states)),
         next_by_start_(by_start_),
         by_parameter_(Eigen::MatrixXd::Zero(out.states, wanted)),
@@ -24,6 +26,7 @@ class Recorder {
     out.state_C.resize(out.states, samples);
     out.shown_C.resize(samples, out.sensors());
     out.residual_K.resize(rows);
+    off_K_ = next_off_K_ = Eigen::VectorXd::Zero(out.states);
     out.by_start.resize(rows, out.states);
     out.by_parameter.resize(rows, wanted);
     out.transition.resize(static_cast<std::size_t>((samples - 1) * out.states * out.states));
@@ -35,8 +38,8 @@ class Recorder {
     for (Eigen::Index sensor = 0; sensor < out_.sensors(); ++sensor) {
       const Eigen::Index row = sample * out_.sensors() + sensor;
       const int node = out_.sensor_node[static_cast<std::size_t>(sensor)];
-      out_.shown_C(sample, sensor) = out_.state_C(node, sample);
-      out_.residual_K[row] = run_.measured_C(sample, sensor) - out_.state_C(node, sample);
+      out_.shown_C(sample, sensor) = out_.state_C(node, sample) + off_K_[node];
+      out_.residual_K[row] = run_.measured_C(sample, sensor) - out_.shown_C(sample, sensor);
       out_.by_start.row(row) = by_start_.row(node);
       out_.by_parameter.row(row) = by_parameter_.row(node);
     }
@@ -49,7 +52,14 @@ class Recorder {
     Eigen::Map<RowMajor>(out_.transition.data() + interval * x * x, x, x) = step.by_start;
     Eigen::Map<RowMajor>(out_.injection.data() + interval * x * out_.fluxes, x, out_.fluxes) = step.by_parameter.rightCols(out_.fluxes);
     out_.duration_s[place] = run_.time_s[place + 1] - run_.time_s[place];
-    out_.state_C.col(interval + 1) = step.state_C;
+    next_off_K_.noalias() = step.by_start * off_K_;
+    if (path_C_) {
+      out_.state_C.col(interval + 1) = path_C_->col(interval + 1);
+      next_off_K_ += step.state_C - path_C_->col(interval + 1);
+    } else {
+      out_.state_C.col(interval + 1) = step.state_C;
+    }
+    off_K_.swap(next_off_K_);
     next_by_start_.noalias() = step.by_start * by_start_;
     by_start_.swap(next_by_start_);
     next_by_parameter_.noalias() = step.by_start * by_parameter_;
@@ -60,6 +70,8 @@ class Recorder {
  private:
   LinearisedRun& out_;
   const MeasuredRun& run_;
+  const Eigen::MatrixXd* path_C_;
+  Eigen::VectorXd off_K_, next_off_K_;  ///< of the linear equations from the path
   Eigen::MatrixXd by_start_, next_by_start_;
   Eigen::MatrixXd by_parameter_, next_by_parameter_;
 };
@@ -83,14 +95,15 @@ void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun&
 namespace {
 
 LinearisedRun linearise_unnamed(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
-                                std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
+                                std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run,
+                                const Eigen::MatrixXd* path_C) {
   LinearisedRun out;
   out.states = network.state_count();
   out.fluxes = static_cast<Eigen::Index>(flux_nodes.size());
   for (const Sensor& sensor : run.sensors) {
     out.sensor_node.push_back(network.find_node(sensor.node));
   }
-  Recorder recorder(out, run, static_cast<Eigen::Index>(wanted.size()));
+  Recorder recorder(out, run, static_cast<Eigen::Index>(wanted.size()), path_C);
   out.state_C.col(0) = Eigen::Map<const Eigen::VectorXd>(start_C.data(), out.states);
   recorder.note(0);
   TangentRun tangent(network, parameters, wanted, flux_nodes);
@@ -105,9 +118,10 @@ LinearisedRun linearise_unnamed(const Network& network, std::span<const double> 
       others_C.conservativeResize(Eigen::NoChange, others_C.cols() + 1);
       others_C.rightCols<1>() = tangent.over(start, duration_s, unknown->other).state_C;
     }
-    recorder.advance(k, tangent.over(start, duration_s, run.at[place]));
+    const NetworkStep& step = tangent.over(start, duration_s, run.at[place]);
+    recorder.advance(k, step);
     if (others_C.cols() > 0) {
-      others_C.colwise() -= out.state_C.col(k + 1);
+      others_C.colwise() -= step.state_C;
       out.doubts.push_back({k, others_C * others_C.transpose()});
     }
     recorder.note(k + 1);
@@ -120,18 +134,33 @@ LinearisedRun linearise_unnamed(const Network& network, std::span<const double> 
   return out;
 }
 
-}  // namespace
-
-LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
-                        std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
+/// Failures name the run.
+template <class Make>
+LinearisedRun named(const MeasuredRun& run, const Make& make) {
   try {
-    return linearise_unnamed(network, parameters, wanted, flux_nodes, start_C, run);
+    return make();
   } catch (const Failure& failure) {
     throw Failure(failure.code(),
                   fmt::format("{}: {}; is a column of the log in another unit (milliamperes, a sensor's wrong gain), or a resistance of "
                               "the model many times what it is? `heatsoak log inspect` shows the log, `heatsoak lint` the motor",
                               run.name, failure.message()));
   }
+}
+
+}  // namespace
+
+LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+                        std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
+  return named(run, [&] { return linearise_unnamed(network, parameters, wanted, flux_nodes, start_C, run, nullptr); });
+}
+
+LinearisedRun linearise_along(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+                              std::span<const int> flux_nodes, const Eigen::MatrixXd& path_C, const MeasuredRun& run) {
+  const Eigen::VectorXd start_C = path_C.col(0);
+  return named(run, [&] {
+    return linearise_unnamed(network, parameters, wanted, flux_nodes, {start_C.data(), static_cast<std::size_t>(start_C.size())}, run,
+                             &path_C);
+  });
 }
 
 }  // namespace heatsoak

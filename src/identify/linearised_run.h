@@ -46,4 +46,9 @@ void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun&
 LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run);
 
+/// The same about a path (states × samples, in °C) that the network need not follow by itself: the equations are linearised along it, and
+/// shown_C is what the linear equations make of the path's own start.
+LinearisedRun linearise_along(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+                              std::span<const int> flux_nodes, const Eigen::MatrixXd& path_C, const MeasuredRun& run);
+
 }  // namespace heatsoak

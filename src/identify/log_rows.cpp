@@ -26,6 +26,10 @@ constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A",
 
 bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
   const auto is_recorded = [&](Signal each) { return has_values(recording.find(column_of(each))); };
+  if (signal == Signal::modulation && torque.resistance_ohm > 0.0 && torque.per_current_Nm_per_A > 0.0) {
+    const bool is_told = is_recorded(Signal::current) && is_recorded(Signal::speed) && is_recorded(Signal::bus_voltage);
+    return is_told || is_recorded(signal);
+  }
   if (signal == Signal::current && torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::shaft_power)) {
     return true;
   }
@@ -108,7 +112,8 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
   at.input_power_W = of(input_power_W_, row);
   at.bus_V = of(bus_V_, row);
-  at.modulation_ratio = std::abs(of(modulation_, row));
+  at.modulation_ratio =
+      modulation_ ? std::abs(of(modulation_, row)) : modulation_of_current(of(current_A_, row), speed_rad_per_s, at.bus_V);
   at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
   at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
   at.neighbour_C = neighbour_C_ && at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
@@ -131,6 +136,17 @@ bool LogRows::is_known(std::size_t row) const {
 double LogRows::power_of_current_W(double current_A, double speed_rad_per_s) const {
   const double drives_A_rad_per_s = is_signed_ ? current_A * speed_rad_per_s : std::abs(current_A * speed_rad_per_s);
   return options_.torque.per_current_Nm_per_A * drives_A_rad_per_s - options_.torque.drag_Nm * std::abs(speed_rad_per_s);
+}
+
+double LogRows::modulation_of_current(double current_A, double speed_rad_per_s, double bus_V) const {
+  const ShaftTorque& motor = options_.torque;
+  if (!(motor.resistance_ohm > 0.0) || !current_A_ || !speed_rad_per_s_ || !bus_V_) {
+    return 0.0;
+  }
+  const double back_V = motor.per_current_Nm_per_A * speed_rad_per_s;
+  const double across_V = motor.resistance_ohm * current_A;
+  const double terminal_V = is_signed_ ? std::abs(back_V + across_V) : std::abs(back_V) + std::abs(across_V);
+  return bus_V > 0.0 ? std::min(1.0, terminal_V / bus_V) : std::isnan(bus_V) ? bus_V : 0.0;
 }
 
 double quantity_of(const OperatingPoint<double>& at, Signal signal) {

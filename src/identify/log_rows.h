@@ -34,6 +34,8 @@ class LogRows {
   [[nodiscard]] double current_of_torque_A(double torque_Nm, double speed_rad_per_s) const;
   /// Only a current and a speed that both have signs tell braking from driving.
   [[nodiscard]] double power_of_current_W(double current_A, double speed_rad_per_s) const;
+  /// Of the supply, from back-EMF and resistance; 0 where a constant or a signal is not known.
+  [[nodiscard]] double modulation_of_current(double current_A, double speed_rad_per_s, double bus_V) const;
 
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
       *neighbour_C_, *age_h_;

@@ -49,10 +49,12 @@ struct MeasuredRun {
   [[nodiscard]] Eigen::Index sensor_at(std::string_view node) const;
 };
 
-/// Torque at the shaft of a motor whose current is known; nothing where a log's torque is all that counts.
+/// What the constants of a motor tell of rows whose current and speed are known: the torque at the shaft and the voltage at the terminals.
+/// Nothing where the log's own columns are all that counts.
 struct ShaftTorque {
   double per_current_Nm_per_A = 0.0;
-  double drag_Nm = 0.0;  ///< that the motor loses inside while it turns
+  double drag_Nm = 0.0;         ///< that the motor loses inside while it turns
+  double resistance_ohm = 0.0;  ///< of the terminals
 };
 
 struct MeasuredRunOptions {

@@ -41,8 +41,8 @@ using ConstRowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 
 Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise)
     : run_(&run),
       flux_(flux),
-      wander_K_(noise.wander_K),
-      wanders_(std::ranges::any_of(noise.wander_K, [](double each_K) { return each_K > 0.0; })),
+      wander_K_(noise.wander_K.empty() ? std::vector<double>(static_cast<std::size_t>(run.sensors()), flux.wander_K) : noise.wander_K),
+      wanders_(std::ranges::any_of(wander_K_, [](double each_K) { return each_K > 0.0; })),
       size_(run.states + run.fluxes + (wanders_ ? run.sensors() : 0)),
       noise_K_(noise.noise_K) {
   const Eigen::Index rows = run.samples() * run.sensors();
@@ -53,7 +53,8 @@ Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const Sen
   for (std::size_t k = 0; k < run.duration_s.size(); ++k) {
     forget_ratio_[k] = std::exp(-run.duration_s[k] / flux.time_scale_s);
     if (wanders_) {
-      wander_forget_ratio_.push_back(std::exp(-run.duration_s[k] / noise.wander_time_scale_s));
+      wander_forget_ratio_.push_back(
+          std::exp(-run.duration_s[k] / (noise.wander_K.empty() ? flux.wander_time_scale_s : noise.wander_time_scale_s)));
     }
   }
   for_layout([&](const auto& layout) { build(layout, noise); });

@@ -15,9 +15,13 @@
 namespace heatsoak {
 
 /// Of the unknown heat: stationary standard deviation per node that it may reach, and the time over which it forgets.
+/// And of what every sensor shows for a while though nothing is heated: of bodies that the network does not have. A sensor whose noise has
+/// a slow error of its own has that instead.
 struct LatentFlux {
   std::vector<double> rms_W;
   double time_scale_s = 300.0;
+  double wander_K = 0.0;
+  double wander_time_scale_s = 40.0;
 };
 
 /// Per sensor and sample: standard deviation of the noise in K is noise_K[sensor] / √weight.

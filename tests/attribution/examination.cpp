@@ -98,7 +98,8 @@ Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vect
   all.fit = fit(all.model.model, rows, {});
   all.model.set_theta(all.fit.theta);
   all.model.model.prior = {all.fit.theta, all.fit.covariance.inverse()};
-  all.model.free_run_error_K = all.fit.free_run_error_K;
+  all.model.usual_error_K = all.fit.free_run_error_K;
+  all.model.usual_flux_W = std::ranges::max(all.fit.flux.rms_W);
   return all;
 }
 
@@ -196,9 +197,9 @@ double floor_K(Case sealed) {
   SelectionInput input;
   input.model = std::move(given.model);
   input.runs = std::move(given.train);
-  input.scans_drivers = false;
   SelectionRules rules;
-  rules.most_terms = 0;
+  rules.scans_drivers = false;
+  rules.most_effects = 0;
   return rms_error_K(select_effects(input, rules).before.model, runs.unseen);
 }
 

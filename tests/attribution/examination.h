@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/attribution/diagnosis.h"
+#include "attribution/diagnosis.h"
 #include "identify/fit.h"
 #include "missing_effects.h"
 #include "truth_motor.h"

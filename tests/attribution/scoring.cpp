@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace heatsoak::truth {
 namespace {
@@ -80,14 +81,14 @@ std::string account(const Answer& answer) {
                                  to_string(answer.diagnosis.verdict));
   for (std::size_t i = 0; i < answer.named.size(); ++i) {
     const AcceptedTerm& term = selection.terms[i];
-    text += fmt::format(" [{} {:.1f} nats, visible {:.2f}{}]", answer.named[i], term.gain_nats, term.visibility_ratio,
+    text += fmt::format(" [{} {:.1f} nats, visible {:.2f}{}]", answer.named[i], term.loss_without_nats, term.visibility_ratio,
                         term.confusable_with.empty() ? "" : fmt::format(", or {}", fmt::join(term.confusable_with, "/")));
   }
   for (const Round& round : selection.rounds) {
     text += " |";
     for (std::size_t i = 0; i < std::min<std::size_t>(4, round.ladder.size()); ++i) {
       const JudgedCandidate& each = round.ladder[i];
-      text += fmt::format(" {}:{:.1f}(v{:.2f},l{:.0f})", each.candidate.id, each.gain_nats, each.visibility_ratio, each.left_out_gain_nats);
+      text += fmt::format(" {}:{:.1f}(v{:.2f},P{:.2f})", each.candidate.id, each.gain_nats, each.visibility_ratio, each.probability);
     }
     for (std::size_t i = 0; i < std::min<std::size_t>(3, round.scan.size()); ++i) {
       text += fmt::format(" {}:{:.1f}", curve_name(selection, round.scan[i]), round.scan[i].gain_nats);
@@ -96,9 +97,10 @@ std::string account(const Answer& answer) {
   for (const Unexplained& heat : answer.diagnosis.unexplained) {
     text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.drivers, "/"), heat.rms_W);
   }
-  const LatentFlux flux = selection.grid.at(selection.after.place);
+  const LatentFlux& flux = selection.after.flux;
   return text +
-         fmt::format(" | unknown {:.2f} W, {:.0f} s of {:.1f} W", fmt::join(flux.rms_W, ", "), flux.time_scale_s, selection.mean_heat_W);
+         fmt::format(" | unknown {:.2f} W, {:.0f} s of {:.1f} W", fmt::join(flux.rms_W, ", "), flux.time_scale_s, selection.mean_heat_W) +
+         fmt::format(" | left {:.2f} W of {:.2f} W", fmt::join(std::views::values(selection.left_W), ", "), selection.material_W);
 }
 
 }  // namespace heatsoak::truth

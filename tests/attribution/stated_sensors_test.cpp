@@ -8,9 +8,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "attribution/model_file.h"
+#include "attribution/terms.h"
 #include "examination.h"
-#include "identify/attribution/model_file.h"
-#include "identify/attribution/terms.h"
 #include "motor/write_motor.h"
 
 namespace heatsoak::truth {

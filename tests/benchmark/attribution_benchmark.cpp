@@ -2,8 +2,8 @@
 // half-hour runs at 1 Hz.
 #include <benchmark/benchmark.h>
 
+#include "attribution/diagnosis.h"
 #include "examination.h"
-#include "identify/attribution/diagnosis.h"
 #include "missing_effects.h"
 
 namespace heatsoak::truth {

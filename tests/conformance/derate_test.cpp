@@ -74,9 +74,9 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
   ASSERT_EQ(before.exit_code, 0) << before.err;
   ASSERT_EQ(after.exit_code, 0) << after.err;
   EXPECT_THAT(before.json()["nodes"], ElementsAre("winding", "stator"));
-  EXPECT_THAT(after.json()["nodes"], ElementsAre("winding", "stator", "third_node"));
-  EXPECT_THAT(after.err, HasSubstr("effects of the file that act: third_node"));
-  EXPECT_THAT(content_of(folder.path() / "after.h"), HasSubstr("winding stator third_node"));
+  EXPECT_THAT(after.json()["nodes"], ElementsAre("winding", "stator", "enclosure_warm_up"));
+  EXPECT_THAT(after.err, HasSubstr("effects of the file that act: enclosure_warm_up"));
+  EXPECT_THAT(content_of(folder.path() / "after.h"), HasSubstr("winding stator enclosure_warm_up"));
   // What was measured needs less of a reserve than a data sheet, so more current is allowed.
   EXPECT_LT(after.json()["heat_reserve_ratio"].get<double>(), before.json()["heat_reserve_ratio"].get<double>());
   EXPECT_GT(lasting_A(after.json()), 1.02 * lasting_A(before.json()));

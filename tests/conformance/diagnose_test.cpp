@@ -31,7 +31,9 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   EXPECT_EQ(answer["verdict"], "effect_found");
   ASSERT_EQ(answer["effects"].size(), 1U) << done.out;
   const nlohmann::json& effect = answer["effects"][0];
-  EXPECT_EQ(effect["id"], "third_node");
+  // A body of its own behind the stator; whether the motor's copper loss reaches it directly too these runs cannot tell.
+  EXPECT_EQ(effect["id"], "enclosure_warm_up");
+  EXPECT_THAT(effect["confusable_with"].dump(), HasSubstr("third_node"));
   EXPECT_EQ(effect["node"], "stator");
   for (const char* key : {"parameters", "heat_W", "evidence", "confusable_with"}) {
     EXPECT_TRUE(effect.contains(key)) << key;
@@ -43,7 +45,7 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   for (const char* key : {"residual_tests", "description"}) {
     EXPECT_TRUE(answer.contains(key)) << key;
   }
-  EXPECT_THAT(content_of(folder.path() / "found/diagnosis.html"), HasSubstr("third_node"));
+  EXPECT_THAT(content_of(folder.path() / "found/diagnosis.html"), HasSubstr("enclosure_warm_up"));
   const ProgramRun used = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--model",
                                "found/maxon_ec45_flat_70w_24v.toml", "--samples", "0"},
                               in(folder));

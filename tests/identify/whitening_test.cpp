@@ -327,31 +327,6 @@ TEST(Evidence, one_more_column_gains_what_the_projected_score_says) {
   EXPECT_NEAR(misfit(3) - misfit(4), gain, 1e-8 * misfit(3));
 }
 
-TEST(Evidence, products_say_of_many_columns_what_their_decomposition_says) {
-  const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(12, 200));
-  const Whitening whitening(run, {{0.2, 0.3}, 100.0}, {{0.15, 0.1}, {}});
-  const StartPrior start{Eigen::VectorXd::Constant(2, 0.3), Eigen::VectorXd::Constant(2, 5.0)};
-  // Two columns are fitted; among the others are one that hardly differs from another, and one of nothing.
-  Columns columns(run.by_parameter.rows(), 6);
-  columns << run.by_parameter, run.by_parameter.col(2) + 1e-4 * run.by_parameter.col(0).cwiseAbs2(),
-      Eigen::VectorXd::Zero(run.by_parameter.rows());
-  const RunEvidence decomposed = run_evidence(run, columns, whitening, start);
-  const RunEvidence multiplied = run_evidence_of_many(run, columns, 2, whitening, start);
-  const Eigen::MatrixXd expected = decomposed.triangle.transpose() * decomposed.triangle;
-  const Eigen::MatrixXd products = multiplied.triangle.transpose() * multiplied.triangle;
-  EXPECT_LT((products - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
-  EXPECT_TRUE(multiplied.triangle.isUpperTriangular(0.0));
-  EXPECT_NEAR(multiplied.log_determinant, decomposed.log_determinant, 1e-9 * std::abs(decomposed.log_determinant));
-  EXPECT_EQ(multiplied.count, decomposed.count);
-  // What is left of the nearly equal column is small, and still right to a part in a thousand.
-  const auto left = [](const RunEvidence& evidence) {
-    const Eigen::MatrixXd base = evidence.triangle.leftCols(4);
-    const Eigen::VectorXd column = evidence.triangle.col(4);
-    return (column - base * base.colPivHouseholderQr().solve(column)).squaredNorm();
-  };
-  EXPECT_NEAR(left(multiplied), left(decomposed), 1e-3 * left(decomposed));
-}
-
 TEST(Evidence, many_runs_say_what_one_long_least_squares_says) {
   const Model model = two_node_model({}, 1.0);
   const StartPrior start{Eigen::VectorXd::Constant(2, 0.3), Eigen::VectorXd::Constant(2, 5.0)};

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "identify/attribution/diagnosis.h"
+#include "attribution/diagnosis.h"
 #include "report/chart.h"
 
 namespace heatsoak {

@@ -117,7 +117,7 @@ Json ladder_json(const Selection& selection) {
                             {"variant", each.candidate.variant},
                             {"nats", rounded(each.gain_nats, 2)},
                             {"visibility", rounded(each.visibility_ratio, 4)},
-                            {"left_out_nats", rounded(each.left_out_gain_nats, 2)}});
+                            {"probability", rounded(each.probability, 4)}});
     }
     Json curves = Json::array();
     for (const ScanResult& each : round.scan) {

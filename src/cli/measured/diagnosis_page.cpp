@@ -118,10 +118,10 @@ std::string ladder_table(const Diagnosis& diagnosis) {
   int number = 1;
   for (const Round& round : diagnosis.selection.rounds) {
     text += fmt::format("<h3>Round {}</h3><table>", number++) +
-            row({"candidate", "evidence / nats", "size in typical sizes", "visibility", "gain on runs left out / nats"}, "th");
+            row({"candidate", "evidence / nats", "size in typical sizes", "visibility", "probability"}, "th");
     for (const JudgedCandidate& each : best_of_each(round.ladder)) {
       text += row({each.candidate.id, fmt::format("{:.1f}", each.gain_nats), fmt::format("{:.2f}", each.size_share),
-                   fmt::format("{:.3f}", each.visibility_ratio), fmt::format("{:.1f}", each.left_out_gain_nats)});
+                   fmt::format("{:.3f}", each.visibility_ratio), fmt::format("{:.0f} %", 100.0 * each.probability)});
     }
     text += round.ladder.empty() ? row({"no effect of the catalogue makes the runs more probable", "", "", "", ""}) : "";
     for (const ScanResult& each : round.scan) {
@@ -266,11 +266,11 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     text += fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
   text += fmt::format(
-              "<h2>Evidence ladder</h2><p>Gain in evidence over the model of the round, each candidate with its own most probable unknown "
-              "heat; {:.0f} nats are asked for (the table of effects above has what the finished model loses without each). Visibility is "
-              "the share of an effect that no change of the model's own figures could pass for; of what has less than {} nothing is named "
-              "but what the runs cannot be followed without.</p>",
-              SelectionRules{}.least_gain_nats, SelectionRules{}.least_visibility_ratio) +
+              "<h2>Evidence ladder</h2><p>Each candidate alone: its gain in evidence over the model without any, the mean taken over "
+              "what is probable of the unknown heat. Its probability is that of all sets of effects that contain it; a name needs {:.0f} % "
+              "for all effects of one kind together. Visibility is the share of an effect that no change of the model's own figures could "
+              "pass for.</p>",
+              100.0 * SelectionRules{}.named_probability) +
           ladder_table(diagnosis);
   text += "<h2>Power balance</h2>" + balance_table(diagnosis);
   text += "<h2>Residual tests</h2>" + test_table(diagnosis);

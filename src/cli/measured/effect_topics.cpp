@@ -6,7 +6,7 @@
 
 #include "base/quantity.h"
 #include "cli/effect_topic.h"
-#include "identify/attribution/run_deviation.h"
+#include "attribution/run_deviation.h"
 
 namespace heatsoak {
 namespace {

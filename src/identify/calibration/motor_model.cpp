@@ -172,6 +172,10 @@ class ModelBuilder {
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
         const ParameterSpec& spec = effect.type->parameters[i];
         const std::string name = fmt::format("{}.{}", effect.name, spec.key);
+        // Cooling under a condition of which nobody says that it holds is not in the network.
+        if (place_of(all_.model.network, name) < 0) {
+          continue;
+        }
         if (!spec.choices.empty() || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
           if (spec.choices.empty()) {
             held.push_back(spec.key);
@@ -290,7 +294,8 @@ double prior_sd_of(const Figure& figure) {
 
 static ShaftTorque shaft_torque_of(const Motor& motor) {
   const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
-  return {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal))};
+  return {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal)),
+          known(motor.nominal.terminal_resistance_ohm)};
 }
 
 MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat) {

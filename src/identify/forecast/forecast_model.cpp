@@ -67,8 +67,10 @@ void ForecastModel::find_heat() {
 void ForecastModel::find_conditions(const Motor& motor) {
   for (const MotorEffect& effect : motor.effects) {
     const int size = effect.type->candidacy.size_parameter;
-    if (!effect.condition.empty() && size >= 0) {
-      conditional_.push_back({effect_named(network(), effect.name)->parameter_index[static_cast<std::size_t>(size)], effect.condition});
+    // Effects whose condition no recording has are not in the network.
+    const EffectInPlace* const in_place = effect_named(network(), effect.name);
+    if (!effect.condition.empty() && size >= 0 && in_place) {
+      conditional_.push_back({in_place->parameter_index[static_cast<std::size_t>(size)], effect.condition});
     }
   }
 }

@@ -5,11 +5,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "base/quantity.h"
 #include "identify/calibration/unlogged_speed.h"
 #include "identify/log_columns.h"
 #include "identify/turning_rows.h"
+#include "motor/conditions.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
@@ -57,6 +60,21 @@ double longest_s(std::span<const MeasuredRun> runs) {
 }
 
 /// Of the recording alone.
+/// The motor under the conditions that a recording states; its name tells which run it is.
+Motor as_in(const Recording& recording, const Motor& motor) {
+  std::map<std::string, std::string> stated = recording.conditions;
+  stated.emplace("run", recording.name);
+  std::map<std::string, std::string> of_motor;
+  for (const MotorEffect& effect : motor.effects) {
+    for (const auto& [key, value] : effect.condition) {
+      if (const auto found = stated.find(key); found != stated.end()) {
+        of_motor.insert(*found);
+      }
+    }
+  }
+  return of_motor.empty() ? motor : under(motor, of_motor);
+}
+
 void predict_one(const Motor& motor, const Recording& recording, const PredictionOptions& options, Prediction& all) {
   const std::span<const Recording> own(&recording, 1);
   ForecastSetup setup = forecast_setup(motor, own);
@@ -122,7 +140,7 @@ Prediction predict(const Motor& motor, std::span<const Recording> recordings, co
     all.notes.push_back(std::move(lacking));
   }
   for (const Recording& recording : recordings) {
-    predict_one(motor, recording, options, all);
+    predict_one(as_in(recording, motor), recording, options, all);
   }
   if (!motor.fit || !motor.fit->band) {
     all.notes.push_back(fmt::format(

@@ -50,6 +50,12 @@ constexpr std::size_t kMostSamples = 1 << 14;
 constexpr std::size_t kShortStretch = 20;
 constexpr std::size_t kPile = 10;  ///< samples at one end of the range, at least, that are called cut off there
 
+/// Of a sample to be equal to the one before while the temperature stands still in the middle of a step, where they repeat most.
+double repeat_probability(const NoiseLevel& noise) {
+  const double white = std::sqrt(std::max(0.0, noise.noise * noise.noise - noise.step * noise.step / 12.0));
+  return white > 0.0 ? std::erf(0.5 * noise.step / (std::sqrt(2.0) * white)) : 1.0;
+}
+
 Habits habits_of(std::span<const double> values, std::span<const std::vector<Stretch>> runs, const NoiseLevel& noise, double high) {
   Habits habits;
   habits.high = high;
@@ -67,14 +73,19 @@ Habits habits_of(std::span<const double> values, std::span<const std::vector<Str
   constexpr std::size_t kEnoughSamples = 50;
   constexpr double kTooCoarse_share = 0.5;
   habits.repeats_share = samples > 0 ? static_cast<double>(repeats) / static_cast<double>(samples) : 1.0;
-  if (samples >= kEnoughSamples && habits.repeats_share < kTooCoarse_share) {
+  const double share = std::max({habits.repeats_share, 0.05, repeat_probability(noise)});
+  if (samples >= kEnoughSamples && share < kTooCoarse_share) {
     // n equal neighbours by chance once in a thousand logs of this length: rows · share^n = 1/1000.
     constexpr double kLogOfThousand = 6.9;
-    const double share = std::max(habits.repeats_share, 0.05);
     habits.longest_chance =
         1 + static_cast<std::size_t>(std::ceil((std::log(static_cast<double>(values.size())) + kLogOfThousand) / -std::log(share)));
   }
   return habits;
+}
+
+/// Longer than noise leaves any temperature at one value, still or not.
+bool is_improbable(const Stretch& stretch, const Habits& habits) {
+  return habits.longest_chance > 0 && stretch.samples > habits.longest_chance;
 }
 
 /// The change out of the stretch stands alone: what follows moves far less. A sensor that held still while the temperature went on.
@@ -217,7 +228,8 @@ void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& no
       const bool is_saturated =
           (is_low && low_is_cut) || (is_high && high_is_cut) || ((is_low || is_high) && climb_stops_dead(run, at, habits));
       const bool goes_on = stretch.value == was_frozen_at && stretch.begin < reported.first && stretch.end > reported.first;
-      if (!is_saturated && !goes_on && !ends_in_isolated_jump(run, at, habits) && !stays_still_to_the_end(run, at, habits)) {
+      if (!is_saturated && !goes_on && !is_improbable(stretch, habits) && !ends_in_isolated_jump(run, at, habits) &&
+          !stays_still_to_the_end(run, at, habits)) {
         continue;
       }
       if (!is_saturated && stretch.begin < reported.last && stretch.end >= reported.last) {
@@ -232,32 +244,50 @@ void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& no
   }
 }
 
-constexpr std::size_t kWindow = 7;
+/// Valid samples on each side of one that is judged.
+constexpr std::size_t kSide = 3;
 
-double window_median(std::array<double, kWindow>& values, std::size_t count) {
-  std::sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-  return count % 2 == 1 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+/// Median of up to three samples, and how far the middle one of them is off it.
+struct Side {
+  double median = 0.0;
+  double deviation = 0.0;
+};
+
+Side side_of(std::span<const double> values, std::span<const std::size_t> rows) {
+  std::array<double, kSide> sorted{};
+  const std::size_t count = rows.size();
+  std::ranges::transform(rows, sorted.begin(), [&](std::size_t row) { return values[row]; });
+  const auto middle_of_first = [&sorted, count] {
+    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+    return count % 2 == 1 ? sorted[count / 2] : 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
+  };
+  Side side{middle_of_first(), 0.0};
+  for (double& value : sorted) {
+    value = std::abs(value - side.median);
+  }
+  side.deviation = middle_of_first();
+  return side;
 }
 
-/// Three of the six neighbours within the distance: then the window_median of the seven is within it too, and there is nothing to sort.
-bool has_near_majority(std::span<const double> values, std::span<const std::size_t> rows, std::size_t k, double distance) {
-  constexpr std::size_t kSide = kWindow / 2;
-  if (k < kSide || k + kSide >= rows.size()) {
-    return false;
-  }
+/// Far from the medians of the three valid samples before and after, on the same side of both, which agree. At the ends of a run one side
+/// decides: an outlier beside a gap or at the very beginning has no other.
+bool is_spike(std::span<const double> values, std::span<const std::size_t> rows, std::size_t k, double least) {
+  constexpr double kOfSlope_ratio = 3.0;
+  constexpr double kAgree_share = 0.4;
   const double value = values[rows[k]];
-  std::size_t near = 0;
-  for (std::size_t j = k - kSide; j <= k + kSide; ++j) {
-    near += std::abs(values[rows[j]] - value) <= distance ? 1 : 0;
-  }
-  return near > kSide;
+  const bool has_before = k >= kSide;
+  const bool has_after = k + kSide < rows.size();
+  const Side before = has_before ? side_of(values, rows.subspan(k - kSide, kSide)) : side_of(values, rows.subspan(k + 1, kSide));
+  const Side after = has_after ? side_of(values, rows.subspan(k + 1, kSide)) : before;
+  const double distance = std::min(std::abs(value - before.median), std::abs(value - after.median));
+  return distance > std::max(least, kOfSlope_ratio * std::max(before.deviation, after.deviation)) &&
+         (value > before.median) == (value > after.median) && std::abs(before.median - after.median) <= kAgree_share * distance;
 }
 
-/// Hampel's rule on the samples that are there, window 7, 6 window_median deviations.
+/// Neighbours are the samples that are there, whatever lies between.
 void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noise, const Reported& reported) {
-  constexpr double kDeviations = 6.0;
-  constexpr double kSigmaToMedian = 0.6745;
-  const double least_deviation = kSigmaToMedian * std::max(noise.noise, noise.usual);
+  constexpr double kFar_ratio = 5.0;
+  const double least = kFar_ratio * std::max(noise.noise, noise.usual);
   std::vector<std::size_t> rows;
   std::vector<std::size_t> outliers;
   for (const auto& [begin, end] : part.runs()) {
@@ -267,25 +297,10 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
         rows.push_back(i);
       }
     }
-    for (std::size_t k = 0; k < rows.size() && rows.size() >= kWindow; ++k) {
-      if (has_near_majority(channel.values, rows, k, kDeviations * least_deviation)) {
-        continue;
-      }
-      const std::size_t first = k >= kWindow / 2 ? k - kWindow / 2 : 0;
-      const std::size_t last = std::min(rows.size(), k + kWindow / 2 + 1);
-      std::array<double, kWindow> window{};
-      for (std::size_t j = first; j < last; ++j) {
-        window[j - first] = channel.values[rows[j]];
-      }
-      const double middle = window_median(window, last - first);
-      const double deviation = std::abs(channel.values[rows[k]] - middle);
-      if (deviation <= kDeviations * least_deviation) {
-        continue;
-      }
-      for (double& value : std::span(window).first(last - first)) {
-        value = std::abs(value - middle);
-      }
-      if (deviation > kDeviations * window_median(window, last - first)) {
+    for (std::size_t k = 0; k < rows.size() && rows.size() > 2 * kSide; ++k) {
+      const bool is_near_next = k + 1 < rows.size() && k > 0 && std::abs(channel.values[rows[k]] - channel.values[rows[k - 1]]) < least &&
+                                std::abs(channel.values[rows[k]] - channel.values[rows[k + 1]]) < least;
+      if (!is_near_next && is_spike(channel.values, rows, k, least)) {
         outliers.push_back(rows[k]);
       }
     }
@@ -294,6 +309,8 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
     reported.leave_out(part, channel, row, LeftOutReason::outlier);
   }
 }
+
+constexpr std::size_t kWindow = 7;  ///< of the median of a heat input
 
 /// 0: nothing of such a channel is too large by itself.
 double largest_of_any_motor(const Quantity& quantity) {

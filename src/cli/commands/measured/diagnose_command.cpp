@@ -14,7 +14,7 @@
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "identify/admission.h"
-#include "identify/attribution/model_file.h"
+#include "attribution/model_file.h"
 #include "identify/log_columns.h"
 #include "identify/open_loop.h"
 #include "motor/write_motor.h"

@@ -1,0 +1,243 @@
+#include "attribution/advisor.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr int kSeconds = 600;
+
+/// The most that the runs reached.
+struct Levels {
+  double current_A = 0.0;
+  double speed_rad_per_s = 0.0;
+  double bus_V = 0.0;
+  double input_power_W = 0.0;
+  double vehicle_speed_m_per_s = 0.0;
+  double shaft_W_per_A_rad_per_s = 0.0;
+  double ambient_C = 25.0;
+  double measured_C = 0.0;
+};
+
+Levels levels_of(const std::vector<MeasuredRun>& runs) {
+  Levels most;
+  for (const MeasuredRun& run : runs) {
+    for (const OperatingPoint<double>& at : run.at) {
+      most.current_A = std::max(most.current_A, at.current_rms_A);
+      most.speed_rad_per_s = std::max(most.speed_rad_per_s, at.speed_mean_rad_per_s);
+      most.bus_V = std::max(most.bus_V, at.bus_V);
+      most.input_power_W = std::max(most.input_power_W, at.input_power_W);
+      if (const double turns_A_rad_per_s = at.current_rms_A * at.speed_mean_rad_per_s; turns_A_rad_per_s > 0.0) {
+        most.shaft_W_per_A_rad_per_s = std::max(most.shaft_W_per_A_rad_per_s, std::abs(at.shaft_power_W) / turns_A_rad_per_s);
+      }
+      most.vehicle_speed_m_per_s = std::max(most.vehicle_speed_m_per_s, at.vehicle_speed_m_per_s);
+    }
+  }
+  most.ambient_C = runs.front().at.front().ambient_C;
+  // Where nothing got warm this much hurts nothing either.
+  constexpr double kHarmless_K = 10.0;
+  most.measured_C = most.ambient_C + kHarmless_K;
+  for (const MeasuredRun& run : runs) {
+    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+      for (const double shown_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
+        most.measured_C = std::fmax(most.measured_C, true_at_rest_C(run.sensors[sensor].faults, shown_C));
+      }
+    }
+  }
+  return most;
+}
+
+struct Primitive {
+  std::string_view what;
+  /// Shares of the highest speed and current at a second of the experiment.
+  std::function<std::pair<double, double>(int)> shares;
+};
+
+/// Of a staircase with steps of this length, from 0.
+int step_of(int time_s, int length_s) { return time_s / length_s; }
+
+const std::vector<Primitive>& menu() {
+  static const std::vector<Primitive> all{
+      {"ten minutes of a no-load staircase of speed", [](int s) { return std::pair(0.2 * (1 + step_of(s, 120)), 0.05); }},
+      {"ten minutes of current pulses at standstill",
+       [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * step_of(s, 120) : 0.0); }},
+      {"heat at standstill for five minutes, then spin without load while hot",
+       [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.9, 0.05); }},
+      {"spin without load while cold for five minutes, then rest",
+       [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
+      {"one current at four speeds", [](int s) { return std::pair(0.25 * (1 + step_of(s, 150)), 0.5); }},
+      {"one speed at four currents", [](int s) { return std::pair(0.6, 0.2 * (1 + step_of(s, 150))); }},
+      {"heat at standstill for five minutes, then rest", [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.0, 0.0); }},
+  };
+  return all;
+}
+
+MeasuredRun planned(const Primitive& primitive, const Levels& levels, const MeasuredRun& like) {
+  MeasuredRun run;
+  run.name = "planned";
+  run.sensors = like.sensors;
+  run.signals = like.signals;
+  for (int s = 0; s <= kSeconds; ++s) {
+    run.time_s.push_back(s);
+    if (s < kSeconds) {
+      const auto [speed_share, current_share] = primitive.shares(s);
+      OperatingPoint<double> at;
+      at.current_rms_A = current_share * levels.current_A;
+      at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = at.velocity_rad_per_s = speed_share * levels.speed_rad_per_s;
+      at.input_power_W = current_share * current_share * levels.input_power_W;
+      at.shaft_power_W = levels.shaft_W_per_A_rad_per_s * at.current_rms_A * at.speed_mean_rad_per_s;
+      at.bus_V = levels.bus_V;
+      at.modulation_ratio = std::min(1.0, 0.9 * speed_share);
+      at.ambient_C = levels.ambient_C;
+      run.at.push_back(at);
+    }
+  }
+  // Measured as predicted: only the columns count.
+  run.measured_C = Eigen::MatrixXd::Constant(run.samples(), static_cast<Eigen::Index>(run.sensors.size()), levels.ambient_C);
+  return run;
+}
+
+/// An experiment that stays below what the runs measured, and the path of the model along it.
+struct Plan {
+  std::string what;
+  MeasuredRun run;
+  LinearisedRun path;
+};
+
+double hottest_C(const ExtendedModel& model, const MeasuredRun& run, LinearisedRun& path) {
+  const std::vector<double> start_C(static_cast<std::size_t>(model.model.network.state_count()), run.at.front().ambient_C);
+  try {
+    path = linearise(model, start_C, run);
+  } catch (const Failure&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return path.state_C.maxCoeff();
+}
+
+std::string description_of(const Primitive& primitive, const MeasuredRun& run) {
+  const double most_A = std::ranges::max(run.at, {}, &OperatingPoint<double>::current_rms_A).current_rms_A;
+  const double fastest_rad_per_s = std::ranges::max(run.at, {}, &OperatingPoint<double>::speed_mean_rad_per_s).speed_mean_rad_per_s;
+  std::vector<std::string> levels;
+  if (most_A > 0.0) {
+    levels.push_back(significant(most_A, 2) + " A");
+  }
+  if (fastest_rad_per_s > 0.0) {
+    levels.push_back(significant(fastest_rad_per_s, 2) + " rad/s");
+  }
+  return levels.empty() ? std::string(primitive.what)
+                        : fmt::format("{}; with at most {} it gets no hotter than these runs", primitive.what, fmt::join(levels, " and "));
+}
+
+/// The menu, each with as much of the runs' highest current as they were hot: a peak of tenths of a second is no level for minutes.
+std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRun>& runs) {
+  constexpr double kStep_ratio = 0.7;
+  constexpr int kTries = 12;
+  const Levels most = levels_of(runs);
+  std::vector<Plan> all;
+  for (const Primitive& primitive : menu()) {
+    Levels levels = most;
+    for (int i = 0; i < kTries; ++i, levels.current_A *= kStep_ratio, levels.input_power_W *= kStep_ratio * kStep_ratio) {
+      Plan plan{{}, planned(primitive, levels, runs.front()), {}};
+      if (hottest_C(selection.after.model, plan.run, plan.path) <= levels.measured_C &&
+          hottest_C(selection.before.model, plan.run, plan.path) <= levels.measured_C) {
+        plan.what = description_of(primitive, plan.run);
+        all.push_back(std::move(plan));
+        break;
+      }
+    }
+  }
+  return all;
+}
+
+/// Of ½‖φ·(column − its part along θ and the rival)‖², θ as known as the fit knows it.
+double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
+                       const Plan& plan) {
+  const std::vector<MeasuredRun> runs{plan.run};
+  const std::vector<LinearisedRun> path{plan.path};
+  const std::vector<DesignRun> designs =
+      design(fit.model.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), plan.run)});
+  const Whitening whitening(path.front(), flux, designs.front().noise);
+  const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
+  const Eigen::Index own = fit.model.free_count();
+  std::vector<Eigen::Index> absorbing;
+  for (Eigen::Index i = 0; i < own; ++i) {
+    absorbing.push_back(i);
+  }
+  absorbing.push_back(own + 1);
+  // What the runs so far have said of the parameters holds: they absorb only what it leaves them free to.
+  const Eigen::MatrixXd precision = (fit.covariance + 1e-12 * Eigen::MatrixXd::Identity(own, own)).inverse();
+  Eigen::MatrixXd others = Eigen::MatrixXd::Zero(triangle.rows() + own, own + 1);
+  others.topRows(triangle.rows()) = triangle(Eigen::all, absorbing);
+  others.bottomLeftCorner(own, own) = precision.llt().matrixU();
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(others.rows());
+  column.head(triangle.rows()) = size_share * triangle.col(own);
+  return 0.5 * (column - others * others.colPivHouseholderQr().solve(column)).squaredNorm();
+}
+
+bool has_nodes_of(const Network& network, const Candidate& candidate) {
+  bool has_all = true;
+  for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
+    has_all = has_all && (candidate.type->nodes[role].own_capacity >= 0 || network.find_node(candidate.nodes[role]) >= 0);
+  }
+  return has_all;
+}
+
+/// In the first round that judged it; null where none did: then it has the words of its own experiment.
+const JudgedCandidate* judged(const Selection& selection, const std::string& id) {
+  for (const Round& round : selection.rounds) {
+    const auto found = std::ranges::find_if(round.ladder, [&](const JudgedCandidate& each) { return each.candidate.id == id; });
+    if (found != round.ladder.end()) {
+      return &*found;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs) {
+  std::vector<Experiment> experiments;
+  const bool has_rivals = std::ranges::any_of(selection.terms, [](const AcceptedTerm& term) { return !term.confusable_with.empty(); });
+  const std::vector<Plan> menu_here = has_rivals ? plans(selection, runs) : std::vector<Plan>();
+  for (const AcceptedTerm& term : selection.terms) {
+    for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
+      Experiment best{fmt::format("{} or {}", term.candidate->id, term.confusable_with[rival]), term.experiments[rival], 0.0};
+      const JudgedCandidate* const other = judged(selection, term.confusable_with[rival]);
+      // At a body that came with another effect: there is no such body where the next run is tried out.
+      if (!other || !has_nodes_of(selection.before.model.model.network, *term.candidate) ||
+          !has_nodes_of(selection.before.model.model.network, other->candidate)) {
+        experiments.push_back(std::move(best));
+        continue;
+      }
+      const JudgedCandidate* const own = judged(selection, term.candidate->id);
+      const std::vector<Candidate> pair{*term.candidate, other->candidate};
+      for (const Plan& plan : menu_here) {
+        const double nats = separation_nats(selection.before, selection.after.flux, pair, own ? own->size_share : 1.0, plan);
+        if (nats > best.expected_nats) {
+          best.expected_nats = nats;
+          best.what = plan.what;
+        }
+      }
+      // What ten minutes cannot tell needs another set-up: that stands with the effect.
+      if (best.expected_nats < 1.0) {
+        best.what = term.experiments[rival];
+        best.expected_nats = 0.0;
+      }
+      experiments.push_back(std::move(best));
+    }
+  }
+  std::ranges::stable_sort(experiments, [](const Experiment& a, const Experiment& b) { return a.expected_nats > b.expected_nats; });
+  return experiments;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,458 @@
+#include "attribution/candidates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "attribution/extended_model.h"
+#include "identify/log_rows.h"
+
+namespace heatsoak {
+namespace {
+
+/// Heat capacity of the motors that the catalogue's typical sizes are of.
+constexpr double kUsualCapacity_J_per_K = 120.0;
+
+/// Names of the signals that some run lacks.
+std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const std::vector<MeasuredRun>& runs) {
+  std::vector<std::string_view> names;
+  for (const Signal signal : needs) {
+    if (std::ranges::any_of(runs, [&](const MeasuredRun& run) { return !run.has(signal); })) {
+      names.push_back(words_of(signal));
+    }
+  }
+  return names;
+}
+
+bool is_in(const ExtendedModel& model, const Candidate& candidate) {
+  const Network& network = model.model.network;
+  return std::ranges::any_of(network.effects(), [&](const EffectInPlace& effect) {
+    if (effect.type->name != candidate.type->name) {
+      return false;
+    }
+    const auto term = std::ranges::find(model.conditional, effect.name, &ConditionalTerm::effect_name);
+    if ((term == model.conditional.end() ? Condition{} : term->condition) != candidate.condition) {
+      return false;
+    }
+    for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
+      if (candidate.type->nodes[role].own_capacity < 0 && network.node_name(effect.node_index[role]) != candidate.nodes[role]) {
+        return false;
+      }
+    }
+    return true;
+  });
+}
+
+/// The roles' usual nodes; a node of the effect's own gets a name that the network does not have. Empty where a node is missing.
+std::vector<std::string> usual_nodes(const Network& network, const EffectType& type) {
+  std::vector<std::string> nodes;
+  for (const NodeRole& role : type.nodes) {
+    std::string node(role.default_node);
+    if (role.own_capacity >= 0) {
+      for (int number = 2; network.find_node(node) >= 0; ++number) {
+        node = fmt::format("{}_{}", role.default_node, number);
+      }
+    } else if (network.find_node(node) < 0) {
+      return {};
+    }
+    nodes.push_back(std::move(node));
+  }
+  return nodes;
+}
+
+/// Effects of one node act at every node that stores heat, in a network of two the usual one unless they say otherwise; the rest where
+/// their roles say.
+std::vector<std::vector<std::string>> placements(const Network& network, const EffectType& type) {
+  std::vector<std::vector<std::string>> all;
+  if (std::vector<std::string> usual = usual_nodes(network, type); !usual.empty()) {
+    all.push_back(std::move(usual));
+  }
+  const bool moves =
+      type.nodes.size() == 1 && type.nodes.front().own_capacity < 0 && (type.candidacy.is_anywhere || network.state_count() > 2);
+  for (int node = 0; moves && node < network.state_count(); ++node) {
+    if (network.node_name(node) != type.nodes.front().default_node) {
+      all.push_back({std::string(network.node_name(node))});
+    }
+  }
+  return all;
+}
+
+/// What is typical of a motor beside one of some 50 W.
+struct MotorSize {
+  double heat_ratio = 1.0;     ///< in W, W/K, J/K
+  double current_ratio = 1.0;  ///< in A: of windings for another voltage
+};
+
+std::vector<double> scaled(const EffectType& type, std::vector<double> parameters, const MotorSize& size) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const std::string_view unit = unit_of(type.parameters, p, parameters);
+    if (!type.parameters[p].choices.empty()) {
+      continue;
+    }
+    if (unit.starts_with("W") || unit == "J/K") {
+      parameters[p] *= size.heat_ratio;
+    } else if (unit == "A") {
+      parameters[p] *= size.current_ratio;
+    } else if (unit == "ohm") {
+      parameters[p] *= size.heat_ratio / (size.current_ratio * size.current_ratio);
+    }
+  }
+  return parameters;
+}
+
+/// Currents of the usual order count as usual.
+double current_ratio_of(const std::vector<MeasuredRun>& runs) {
+  constexpr double kUsual_A = 8.0;
+  constexpr double kOrder_ratio = 2.5;
+  constexpr double kTop_share = 0.98;
+  std::vector<double> current_A;
+  for (const MeasuredRun& run : runs) {
+    std::ranges::transform(run.at, std::back_inserter(current_A), [](const OperatingPoint<double>& at) { return at.current_rms_A; });
+  }
+  std::erase_if(current_A, [](double each_A) { return !(each_A > 0.0); });
+  if (current_A.empty()) {
+    return 1.0;
+  }
+  const auto top = current_A.begin() + static_cast<std::ptrdiff_t>(kTop_share * static_cast<double>(current_A.size() - 1));
+  std::ranges::nth_element(current_A, top);
+  const double ratio = *top / kUsual_A;
+  return ratio < 1.0 / kOrder_ratio || ratio > kOrder_ratio ? ratio : 1.0;
+}
+
+MotorSize size_of(const Model& model, const std::vector<MeasuredRun>& runs) {
+  double capacity_J_per_K = 0.0;
+  for (int node = 0; node < model.network.state_count(); ++node) {
+    capacity_J_per_K += model.values[static_cast<std::size_t>(model.network.capacity_index(node))];
+  }
+  return {std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K), current_ratio_of(runs)};
+}
+
+std::string in_words(const Condition& condition) {
+  std::string text;
+  for (const auto& [key, value] : condition) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", key == "run" ? value : fmt::format("{}={}", key, value));
+  }
+  return text;
+}
+
+/// Every way in which what is said of the runs parts them in two; a stated condition comes before the name of the only run that has it.
+std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
+  std::vector<Condition> conditions;
+  std::vector<std::vector<bool>> known;
+  for (const bool named : {false, true}) {
+    for (const MeasuredRun& each : runs) {
+      for (const auto& [key, value] : each.conditions) {
+        const Condition condition{{key, value}};
+        std::vector<bool> has;
+        for (const MeasuredRun& run : runs) {
+          has.push_back(has_condition(run, condition));
+        }
+        const bool parts = std::ranges::find(has, false) != has.end();
+        if ((key == "run") == named && parts && std::ranges::find(known, has) == known.end()) {
+          known.push_back(std::move(has));
+          conditions.push_back(condition);
+        }
+      }
+    }
+  }
+  return conditions;
+}
+
+/// What may be different in some of the runs without any signal of it: air that is moved or missing, heat from outside or not in the log.
+void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size,
+                                CandidateList& list) {
+  const Network& network = model.model.network;
+  for (const Condition& condition : conditions_of(runs)) {
+    for (const std::string_view name : {"airflow", "constant_heat"}) {
+      const EffectType& type = *find_effect(name);
+      for (const std::string_view node : {"stator", "winding"}) {
+        if (network.find_node(node) < 0) {
+          continue;
+        }
+        Candidate candidate;
+        candidate.type = &type;
+        candidate.id = fmt::format("{}@{} in {}", name, node, in_words(condition));
+        candidate.nodes.emplace_back(node);
+        candidate.condition = condition;
+        for (std::size_t role = 1; role < type.nodes.size(); ++role) {
+          candidate.nodes.emplace_back(type.nodes[role].default_node);
+        }
+        candidate.parameters = scaled(type, type.candidacy.variants.front(), size);
+        if (!is_in(model, candidate)) {
+          list.candidates.push_back(std::move(candidate));
+        }
+      }
+    }
+    for (const RunDeviationType& type : all_run_deviations()) {
+      const bool is_there = std::ranges::any_of(model.deviations, [&](const RunDeviation& each) { return each.is_same(&type, condition); });
+      if (!is_there && !type.places_in(network).empty()) {
+        list.candidates.push_back(
+            {nullptr, nullptr, &type, fmt::format("{} in {}", type.name, in_words(condition)), {}, {type.usual}, 0, 1.0, condition});
+      }
+    }
+  }
+}
+
+std::string id_of(const EffectType& type, const std::vector<std::string>& nodes) {
+  for (std::size_t role = 0; role < nodes.size(); ++role) {
+    if (type.nodes[role].own_capacity < 0 && nodes[role] != type.nodes[role].default_node) {
+      return fmt::format("{}@{}", type.name, nodes[role]);
+    }
+  }
+  return std::string(type.name);
+}
+
+void add_network_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
+  for (const EffectType& type : all_effects()) {
+    if (type.candidacy.size_parameter < 0) {
+      continue;
+    }
+    if (const std::vector<std::string_view> names = lacking(type.needs, runs); !names.empty()) {
+      list.not_judged.push_back(fmt::format("{}: not every log has {}", type.name, fmt::join(names, " and ")));
+      continue;
+    }
+    for (const std::vector<std::string>& nodes : placements(model.model.network, type)) {
+      int variant = 0;
+      for (const std::vector<double>& parameters : type.candidacy.variants) {
+        Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, size), variant++, 1.0, {}};
+        if (!is_in(model, candidate)) {
+          list.candidates.push_back(std::move(candidate));
+        }
+      }
+    }
+  }
+}
+
+bool is_measured(const std::vector<MeasuredRun>& runs, std::string_view signal) {
+  return std::ranges::all_of(runs, [&](const MeasuredRun& run) {
+    return std::ranges::any_of(run.sensors, [&](const Sensor& sensor) { return sensor.signal == signal; });
+  });
+}
+
+Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
+  return std::ranges::find(run.sensors, signal, &Sensor::signal) - run.sensors.begin();
+}
+
+/// All of them in one network at a size of 0: they do not change what it does, but it has their derivatives.
+struct Extended {
+  Network network;
+  std::vector<int> wanted;           ///< sizes; where an effect brings nodes of its own, their capacities behind the size
+  std::vector<double> slope;         ///< what each of them counts in its candidate's column
+  std::vector<std::size_t> own;      ///< which candidate it belongs to
+  std::vector<double> state_C;       ///< at the start of an interval; nodes of their own behind the network's
+  std::vector<Eigen::Index> bodies;  ///< those nodes
+};
+
+/// Where a body of its own comes with the effect, its capacity goes with the size: a body of a given time constant that takes hardly
+/// any heat. With the capacity held it would never warm at a size near 0 and look like a wall at ambient temperature.
+constexpr double kHardly_share = 1e-3;
+
+void extend(Extended& extended, const Candidate& candidate, std::size_t own, double ambient_C) {
+  std::vector<double> parameters = candidate.parameters;
+  const auto size = static_cast<std::size_t>(candidate.size_parameter());
+  std::vector<std::size_t> scaled{size};
+  std::vector<std::string> nodes = candidate.nodes;
+  for (std::size_t role = 0; role < nodes.size(); ++role) {
+    if (const int capacity = candidate.type->nodes[role].own_capacity; capacity >= 0) {
+      nodes[role] += fmt::format(" {}", own);
+      extended.bodies.push_back(static_cast<Eigen::Index>(extended.state_C.size()));
+      extended.state_C.push_back(ambient_C);
+      scaled.push_back(static_cast<std::size_t>(capacity));
+    }
+  }
+  const double share = scaled.size() > 1 ? kHardly_share : 0.0;
+  for (const std::size_t place : scaled) {
+    parameters[place] *= share;
+  }
+  extended.network.add_effect(fmt::format("candidate {}", own), *candidate.type, nodes, parameters);
+  for (const std::size_t place : scaled) {
+    extended.wanted.push_back(extended.network.effects().back().parameter_index[place]);
+    extended.slope.push_back(candidate.parameters[place]);
+    extended.own.push_back(own);
+  }
+}
+
+/// How a linear system answers over a step to where it was and to a rate that is held: e^(A·h) and ∫e^(A·s)ds, both to the fourth order
+/// as the fit's own steps have them.
+void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd& power, Eigen::MatrixXd& forward,
+              Eigen::MatrixXd& held_s) {
+  const Eigen::Index size = slope_per_s.rows();
+  power.setIdentity(size, size);
+  forward.setIdentity(size, size);
+  held_s.setIdentity(size, size);
+  for (int order = 1; order <= 4; ++order) {
+    power = (slope_per_s * power.eval()) * (step_s / order);
+    forward += power;
+    held_s += order < 4 ? Eigen::MatrixXd(power / (order + 1.0)) : Eigen::MatrixXd::Zero(size, size);
+  }
+  held_s *= step_s;
+}
+
+/// The tangent of the extended network along the path that the fit has taken: laws are asked once per interval, halfway.
+/// `first_body`: place of the columns of the bodies' starts.
+void add_network_columns(Extended& extended, std::span<const double> parameters, const LinearisedRun& fitted, const MeasuredRun& run,
+                         Eigen::Index first_body, Columns& columns) {
+  const Eigen::Index own = fitted.states;
+  const auto states = static_cast<Eigen::Index>(extended.state_C.size());
+  const auto wanted = static_cast<Eigen::Index>(extended.wanted.size());
+  std::vector<double> values = extended.network.values();
+  std::ranges::copy(parameters, values.begin());
+  const auto bodies = static_cast<Eigen::Index>(extended.bodies.size());
+  Linearised slope;
+  // How far the states go with what is wanted, with the bodies' starts, and by themselves in this interval.
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(states, wanted + bodies + 1), moved = rate, next = rate;
+  for (Eigen::Index body = 0; body < bodies; ++body) {
+    moved(extended.bodies[static_cast<std::size_t>(body)], wanted + body) = 1.0;
+  }
+  Eigen::MatrixXd power, forward, held_s;
+  for (Eigen::Index k = 0; k + 1 < fitted.samples(); ++k) {
+    for (Eigen::Index node = 0; node < own; ++node) {
+      extended.state_C[static_cast<std::size_t>(node)] = 0.5 * (fitted.state_C(node, k) + fitted.state_C(node, k + 1));
+    }
+    extended.network.linearise(run.at[static_cast<std::size_t>(k)], values, extended.state_C, slope);
+    rate.leftCols(wanted) = slope.by_parameter(Eigen::all, extended.wanted);
+    rate.rightCols<1>() = slope.rate_K_per_s;
+    const double duration_s = fitted.duration_s[static_cast<std::size_t>(k)];
+    const double fastest_per_s = slope.by_state.cwiseAbs().rowwise().sum().maxCoeff();
+    const int parts = std::max(1, static_cast<int>(std::ceil(2.0 * duration_s * fastest_per_s)));
+    set_step(slope.by_state, duration_s / parts, power, forward, held_s);
+    moved.rightCols<1>().setZero();
+    for (int part = 0; part < parts; ++part) {
+      next.noalias() = forward * moved;
+      next.noalias() += held_s * rate;
+      moved.swap(next);
+    }
+    for (Eigen::Index node = own; node < states; ++node) {
+      extended.state_C[static_cast<std::size_t>(node)] += moved(node, wanted + bodies);
+    }
+    for (Eigen::Index i = 0; i < wanted; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
+        columns((k + 1) * fitted.sensors() + sensor, static_cast<Eigen::Index>(extended.own[place])) +=
+            extended.slope[place] * moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], i);
+      }
+    }
+    for (Eigen::Index body = 0; body < bodies; ++body) {
+      for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
+        columns((k + 1) * fitted.sensors() + sensor, first_body + body) =
+            moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], wanted + body) / kHardly_share;
+      }
+    }
+  }
+}
+
+/// How the nodes move becomes how the sensors do with the faults that are stated for them.
+void show(const MeasuredRun& run, Columns& columns) {
+  const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
+  for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
+    const auto rows = Eigen::seq(sensor, columns.rows() - 1, sensors);
+    const std::vector<SensorFault>& faults = run.sensors[static_cast<std::size_t>(sensor)].faults;
+    for (Eigen::Index column = 0; column < (faults.empty() ? 0 : columns.cols()); ++column) {
+      Eigen::VectorXd change = columns(rows, column);
+      apply(faults, run.time_s, true, change);
+      columns(rows, column) = change;
+    }
+  }
+}
+
+}  // namespace
+
+bool Candidate::is_rare() const {
+  if (deviation_type) {
+    return deviation_type->is_rare;
+  }
+  return type && condition.empty() && nodes.size() == 1 && nodes.front() != type->nodes.front().default_node;
+}
+
+int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter : 0; }
+
+const ParameterSpec& Candidate::size_spec() const {
+  if (deviation_type) {
+    return deviation_type->size;
+  }
+  return type ? type->parameters[static_cast<std::size_t>(size_parameter())] : sensor_type->size;
+}
+
+std::string_view Candidate::family() const {
+  if (deviation_type) {
+    return deviation_type->family;
+  }
+  return type ? type->candidacy.family : std::string_view("error of a sensor");
+}
+
+std::string_view Candidate::experiment() const {
+  if (deviation_type) {
+    return deviation_type->experiment;
+  }
+  return type ? type->candidacy.experiment : sensor_type->experiment;
+}
+
+CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs) {
+  CandidateList list;
+  const MotorSize size = size_of(model.model, runs);
+  add_network_candidates(model, runs, size, list);
+  add_conditional_candidates(model, runs, size, list);
+  for (const SensorEffectType& type : all_sensor_effects()) {
+    const bool is_there = std::ranges::find(model.sensors, &type, &SensorTerm::type) != model.sensors.end();
+    if (!is_there && is_measured(runs, type.signal)) {
+      list.candidates.push_back({nullptr, &type, nullptr, std::string(type.name), {}, {type.typical_size}, 0, 1.0, {}});
+    }
+  }
+  return list;
+}
+
+std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates) {
+  std::vector<int> found;
+  for (int j = 0; j < static_cast<int>(candidates.size()); ++j) {
+    const EffectType* const type = candidates[static_cast<std::size_t>(j)].type;
+    if (type && std::ranges::any_of(type->nodes, [](const NodeRole& role) { return role.own_capacity >= 0; })) {
+      found.push_back(j);
+    }
+  }
+  return found;
+}
+
+Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
+                          const MeasuredRun& run) {
+  const std::vector<double> parameters = model.values_in(run);
+  Extended extended{model.model.network, {}, {}, {}, {}, {}};
+  const Eigen::VectorXd start_C = fitted.state_C.col(0);
+  extended.state_C.assign(start_C.begin(), start_C.end());
+  for (std::size_t j = 0; j < candidates.size(); ++j) {
+    if (!has_condition(run, candidates[j].condition)) {
+      continue;
+    }
+    if (candidates[j].type) {
+      extend(extended, candidates[j], j, run.at.front().ambient_C);
+    } else if (candidates[j].deviation_type) {
+      for (const int place : candidates[j].deviation_type->places_in(model.model.network)) {
+        extended.wanted.push_back(place);
+        extended.slope.push_back(candidates[j].typical_size() * parameters[static_cast<std::size_t>(place)]);
+        extended.own.push_back(j);
+      }
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(candidates.size());
+  Columns columns = Columns::Zero(fitted.residual_K.size(), count + static_cast<Eigen::Index>(extended.bodies.size()));
+  add_network_columns(extended, parameters, fitted, run, count, columns);
+  show(run, columns);
+  for (std::size_t j = 0; j < candidates.size(); ++j) {
+    const Candidate& candidate = candidates[j];
+    if (!candidate.sensor_type) {
+      continue;
+    }
+    const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
+    Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
+    apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, true_C);
+    // The change at a size of that order, not the slope at none: a lag is far from linear in its size.
+    Eigen::VectorXd shown_C = true_C;
+    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, shown_C);
+    for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
+      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = (shown_C[k] - true_C[k]) / candidate.column_at_share;
+    }
+  }
+  return columns;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,92 @@
+#include "attribution/coverage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+/// Of the time on either side that is passing by, not dwelling.
+constexpr double kTail_share = 0.02;
+/// Of the width of what was visited, or of its size, that a law may be trusted beyond it.
+constexpr double kReach_share = 0.1;
+constexpr double kMuch_share = 0.25;
+
+struct Watched {
+  Signal signal;
+  std::string_view name;
+  std::string_view unit;
+  double OperatingPoint<double>::*value;
+};
+constexpr std::array kWatched{
+    Watched{Signal::current, "the current", "A", &OperatingPoint<double>::current_rms_A},
+    Watched{Signal::speed, "the speed", "rad/s", &OperatingPoint<double>::speed_mean_rad_per_s},
+    Watched{Signal::input_power, "the input power", "W", &OperatingPoint<double>::input_power_W},
+    Watched{Signal::vehicle_speed, "the vehicle's speed", "m/s", &OperatingPoint<double>::vehicle_speed_m_per_s},
+};
+
+/// Values with the time that they are held.
+std::vector<std::pair<double, double>> held(const std::vector<MeasuredRun>& runs, const Watched& watched) {
+  std::vector<std::pair<double, double>> all;
+  for (const MeasuredRun& run : runs) {
+    for (std::size_t k = 0; run.has(watched.signal) && k < run.at.size(); ++k) {
+      all.emplace_back(run.at[k].*watched.value, run.time_s[k + 1] - run.time_s[k]);
+    }
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
+double time_s(const std::vector<std::pair<double, double>>& values) {
+  double sum_s = 0.0;
+  for (const auto& [value, duration_s] : values) {
+    sum_s += duration_s;
+  }
+  return sum_s;
+}
+
+/// The value below which `share` of the time is spent.
+double quantile(const std::vector<std::pair<double, double>>& values, double share) {
+  double left_s = share * time_s(values);
+  for (const auto& [value, duration_s] : values) {
+    left_s -= duration_s;
+    if (left_s <= 0.0) {
+      return value;
+    }
+  }
+  return values.back().first;
+}
+
+}  // namespace
+
+std::vector<std::string> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen) {
+  std::vector<std::string> sentences;
+  for (const Watched& watched : kWatched) {
+    const auto known = held(fitted, watched);
+    const auto wanted = held(unseen, watched);
+    if (known.empty() || wanted.empty()) {
+      continue;
+    }
+    const double low = quantile(known, kTail_share);
+    const double high = quantile(known, 1.0 - kTail_share);
+    const double reach = kReach_share * std::max(high - low, std::abs(high));
+    double outside_s = 0.0;
+    for (const auto& [value, duration_s] : wanted) {
+      outside_s += value < low - reach || value > high + reach ? duration_s : 0.0;
+    }
+    if (const double share = outside_s / time_s(wanted); share > kMuch_share) {
+      sentences.push_back(fmt::format(
+          "For {:.0f} % of the time of the runs never seen {} is outside of what the training runs dwelt at ({} to {} {}): what "
+          "depends on it is predicted, not known.",
+          100.0 * share, watched.name, significant(low, 2), significant(high, 2), watched.unit));
+    }
+  }
+  return sentences;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,101 @@
+#include "attribution/design.h"
+
+#include <Eigen/Dense>
+
+#include "base/parallel.h"
+#include "identify/averaged_run.h"
+#include "identify/open_loop.h"
+
+namespace heatsoak {
+
+std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
+                              const std::vector<Eigen::VectorXd>& weights, const std::vector<int>& merged,
+                              const std::vector<Columns>& extra) {
+  std::vector<DesignRun> all(runs.size());
+  in_parallel(runs.size(), 0, [&](std::size_t r) {
+    DesignRun& one = all[r];
+    const Averaging averaging(fitted[r], weights.empty() ? Eigen::VectorXd() : weights[r], merged.empty() ? 1 : merged[r]);
+    one.run = averaging.run();
+    one.noise.weight = averaging.weight();
+    one.interval_of = averaging.interval_of();
+    for (const Sensor& sensor : runs[r].sensors) {
+      one.noise.noise_K.push_back(sensor.noise_K);
+    }
+    const RunStart start = start_of(network, runs[r]);
+    one.start = {start.prior_C - fitted[r].state_C.col(0), start.prior_sd_K};
+    const Eigen::Index inner = fitted[r].by_parameter.cols();
+    one.columns.resize(one.run.residual_K.size(), inner + (extra.empty() ? 0 : extra[r].cols()));
+    one.columns.leftCols(inner) = averaging.average(fitted[r].by_parameter);
+    if (!extra.empty()) {
+      one.columns.rightCols(extra[r].cols()) = averaging.average(extra[r]);
+    }
+  });
+  return all;
+}
+
+ThetaPrior prior_here(const ExtendedModel& model) {
+  const Prior prior = model.prior();
+  return {prior.precision, prior.mean - model.theta()};
+}
+
+std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run) {
+  const Eigen::VectorXd start_C = start_of(network, run).state_C;
+  return {start_C.begin(), start_C.end()};
+}
+
+Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns) {
+  Products out;
+  for (const DesignRun& design : runs) {
+    const Whitening whitening(design.run, flux, design.noise);
+    const Eigen::Index x = design.run.states;
+    const Eigen::Index count = columns.empty() ? design.columns.cols() : static_cast<Eigen::Index>(columns.size());
+    Columns tall(design.columns.rows(), x + count + 1);
+    tall.leftCols(x) = design.run.by_start;
+    if (columns.empty()) {
+      tall.middleCols(x, count) = design.columns;
+    } else {
+      tall.middleCols(x, count) = design.columns(Eigen::all, columns);
+    }
+    tall.rightCols<1>() = design.run.residual_K;
+    whitening.apply(tall);
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tall.cols(), tall.cols());
+    square.selfadjointView<Eigen::Lower>().rankUpdate(tall.transpose());
+    square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
+    const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd pull = precision.cwiseProduct(design.start.mean_K);
+    square.topLeftCorner(x, x).diagonal() += precision;
+    square.topRightCorner(x, 1) += pull;
+    square.bottomLeftCorner(1, x) += pull.transpose();
+    square(x + count, x + count) += design.start.mean_K.dot(pull);
+    const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(x, x));
+    const Eigen::MatrixXd across = square.topRightCorner(x, count + 1);
+    const Eigen::MatrixXd rest = square.bottomRightCorner(count + 1, count + 1) - across.transpose() * start.solve(across);
+    out.square = out.square.size() == 0 ? rest : Eigen::MatrixXd(out.square + rest);
+    out.log_determinant +=
+        whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() - precision.array().log().sum();
+  }
+  return out;
+}
+
+Reduced reduced(const Products& products, const ThetaPrior& prior) {
+  const Eigen::Index t = prior.mean.size();
+  const Eigen::Index e = products.square.cols() - 1 - t;
+  const Eigen::MatrixXd& square = products.square;
+  const Eigen::VectorXd pull = prior.precision * prior.mean;
+  Eigen::MatrixXd normal = square.topLeftCorner(t, t) + prior.precision;
+  // A figure that neither the runs nor the file say anything about stays where it is.
+  normal.diagonal().array() += 1e-9;
+  const Eigen::LDLT<Eigen::MatrixXd> theta(normal);
+  const Eigen::VectorXd right = square.topRightCorner(t, 1) + pull;
+  Reduced out;
+  out.theta = theta.solve(right);
+  out.theta_by_size = theta.solve(square.block(0, t, t, e));
+  out.products = square.block(t, t, e, e) - square.block(t, 0, e, t) * out.theta_by_size;
+  out.right = square.block(t, t + e, e, 1) - square.block(t, 0, e, t) * out.theta;
+  out.whole = square.block(t, t, e, e).diagonal();
+  const double misfit = square(t + e, t + e) + prior.mean.dot(pull) - right.dot(out.theta);
+  out.base_nats = -0.5 * (misfit + products.log_determinant + theta.vectorD().array().log().sum());
+  return out;
+}
+
+}  // namespace heatsoak

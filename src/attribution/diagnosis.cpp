@@ -1,0 +1,309 @@
+#include "attribution/diagnosis.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "attribution/advisor.h"
+#include "attribution/coverage.h"
+#include "attribution/curve.h"
+#include "attribution/mean_heat.h"
+#include "attribution/terms.h"
+#include "attribution/unexplained_heat.h"
+#include "base/parallel.h"
+#include "base/quantity.h"
+#include "identify/calibration/unlogged_speed.h"
+#include "identify/interval.h"
+#include "identify/log_columns.h"
+#include "identify/turning_rows.h"
+
+namespace heatsoak {
+namespace {
+
+/// A figure of the file that is further off than this (of its logarithm) is no longer the same mounting.
+constexpr double kOtherMounting = 0.1;
+
+/// Errors that grow by more have grown.
+constexpr double kWorse_ratio = 1.1;
+
+/// Without the conditions that only some runs have: those are no property of the motor.
+Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
+  model.deviations.clear();
+  return open_loop_errors(model, runs, before_them);
+}
+
+class Teller {
+ public:
+  Teller(const DiagnosisInput& input, const SelectionRules& rules, Selection selection) : rules_(rules), input_(input) {
+    out_.selection = std::move(selection);
+    set_column(input_.train, out_.selection.after.model.column);
+  }
+
+  Diagnosis tell() {
+    for (const AcceptedTerm& term : out_.selection.terms) {
+      out_.effects.push_back(found_effect(term, out_.selection, input_.train));
+    }
+    tell_changed_figures();
+    out_.runs = input_.train;
+    tell_errors();
+    tell_flux();
+    tell_balance();
+    out_.tests_before = tests_of(out_.selection.before);
+    out_.tests_after = tests_of(out_.selection.after);
+    out_.unexplained = unexplained_heat(out_, input_.train);
+    out_.verdict = verdict();
+    out_.experiments = next_experiments(out_.selection, input_.train);
+    out_.words = describe(out_, {});
+    out_.description = fmt::format("{}", fmt::join(out_.words, " "));
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] const RefitResult& after() const { return out_.selection.after; }
+
+  void tell_changed_figures() {
+    const Model& model = after().model.model;
+    const Eigen::VectorXd theta = model.theta();
+    for (ChangedFigure figure : out_.selection.changed) {
+      const Eigen::Index own = figure.coordinate;
+      const double reach = kInterval_sd * std::sqrt(after().covariance(own, own));
+      figure.before = input_.model.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
+      figure.value = model.value_of(own, theta[own]);
+      figure.low = model.value_of(own, theta[own] - reach);
+      figure.high = model.value_of(own, theta[own] + reach);
+      out_.changed.push_back(std::move(figure));
+    }
+  }
+
+  void tell_errors() {
+    out_.before_train = open_loop_errors(input_.model, input_.train, {});
+    out_.refitted_train = open_loop_errors(out_.selection.own.model, input_.train, {});
+    out_.after_train = open_loop_errors(after().model, input_.train, {});
+    out_.file_train = errors_of_file(after().model, input_.train, {});
+  }
+
+  /// Smoothed unknown heat of every run: fluxes × samples.
+  [[nodiscard]] std::vector<FluxEstimate> smoothed(const RefitResult& fit) const {
+    std::vector<FluxEstimate> all(fit.fitted.size());
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
+    in_parallel(all.size(), 0, [&](std::size_t r) {
+      all[r] = Whitening(fit.fitted[r], fit.flux, designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
+    });
+    return all;
+  }
+
+  void tell_flux() {
+    const std::vector<FluxEstimate> before = smoothed(out_.selection.before);
+    const std::vector<FluxEstimate> now = smoothed(after());
+    const std::vector<int>& nodes = input_.model.model.flux_nodes;
+    std::map<std::string, double> counts;
+    for (std::size_t r = 0; r < input_.train.size(); ++r) {
+      for (std::size_t f = 0; f < nodes.size(); ++f) {
+        const std::string node(input_.model.model.network.node_name(nodes[f]));
+        const auto row = static_cast<Eigen::Index>(f);
+        FluxTrace trace{input_.train[r].name, node, input_.train[r].time_s, {}, {}, {}};
+        trace.before_W.assign(before[r].mean_W.row(row).begin(), before[r].mean_W.row(row).end());
+        trace.after_W.assign(now[r].mean_W.row(row).begin(), now[r].mean_W.row(row).end());
+        trace.after_sd_W.assign(now[r].sd_W.row(row).begin(), now[r].sd_W.row(row).end());
+        out_.flux_rms_before_W[node] += before[r].mean_W.row(row).squaredNorm();
+        out_.flux_rms_after_W[node] += now[r].mean_W.row(row).squaredNorm();
+        counts[node] += static_cast<double>(before[r].mean_W.cols());
+        out_.flux.push_back(std::move(trace));
+      }
+    }
+    for (auto& [node, count] : counts) {
+      out_.flux_rms_before_W[node] = std::sqrt(out_.flux_rms_before_W[node] / count);
+      out_.flux_rms_after_W[node] = std::sqrt(out_.flux_rms_after_W[node] / count);
+    }
+  }
+
+  void tell_balance() {
+    const ExtendedModel& model = after().model;
+    const Network& network = model.model.network;
+    const auto nodes = static_cast<std::size_t>(network.node_count());
+    const std::size_t effects = network.effects().size();
+    std::vector<double> energy_J((effects + model.deviations.size()) * nodes, 0.0);  // of effects, then of deviations
+    double time_s = 0.0;
+    for (std::size_t r = 0; r < input_.train.size(); ++r) {
+      const MeasuredRun& run = input_.train[r];
+      std::vector<double> in_run_J(effects * nodes, 0.0);
+      heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
+        const double duration_s = run.time_s[k + 1] - run.time_s[k];
+        time_s += duration_s;
+        for (std::size_t i = 0; i < in_run_J.size(); ++i) {
+          in_run_J[i] += duration_s * heat_W[i];
+        }
+      });
+      std::ranges::transform(in_run_J, energy_J, energy_J.begin(), std::plus<>());
+      for (std::size_t d = 0; d < model.deviations.size(); ++d) {
+        add_part(model.deviations[d], run, in_run_J, energy_J, (effects + d) * nodes);
+      }
+    }
+    for (std::size_t row_of = 0; row_of * nodes < energy_J.size(); ++row_of) {
+      BalanceRow row{row_of < effects ? network.effects()[row_of].name : name_of(model.deviations[row_of - effects]), {}};
+      for (std::size_t n = 0; n < nodes; ++n) {
+        if (energy_J[row_of * nodes + n] != 0.0) {
+          row.heat_W[std::string(network.node_name(static_cast<int>(n)))] = energy_J[row_of * nodes + n] / time_s;
+        }
+      }
+      out_.balance.push_back(std::move(row));
+    }
+  }
+
+  static std::string name_of(const RunDeviation& deviation) {
+    return fmt::format("{} in {}", deviation.type->name, deviation.condition.begin()->second);
+  }
+
+  /// What a deviation adds in a run goes from the rows of the effects that it concerns into its own, which begins at `own`.
+  void add_part(const RunDeviation& deviation, const MeasuredRun& run, std::span<const double> in_run_J, std::span<double> energy_J,
+                std::size_t own) const {
+    const Network& network = after().model.model.network;
+    const auto nodes = static_cast<std::size_t>(network.node_count());
+    if (!has_condition(run, deviation.condition)) {
+      return;
+    }
+    for (std::size_t e = 0; e < network.effects().size(); ++e) {
+      if (!deviation.type->concerns(network, network.effects()[e])) {
+        continue;
+      }
+      for (std::size_t n = 0; n < nodes; ++n) {
+        const double part_J = deviation.type->part_ratio(deviation.deviation_share) * in_run_J[e * nodes + n];
+        energy_J[e * nodes + n] -= part_J;
+        energy_J[own + n] += part_J;
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<InnovationTests> tests_of(const RefitResult& fit) const {
+    std::map<std::string, Eigen::VectorXd> innovations;
+    std::map<std::string, std::vector<NamedInput>> inputs;
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
+    for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
+      const LinearisedRun& path = fit.fitted[r];
+      const Eigen::VectorXd standardised = Whitening(path, fit.flux, designs[r].noise).innovations(path.residual_K).standardised;
+      const Eigen::VectorXd& weight = out_.selection.weights[r];
+      for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
+        const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
+        Eigen::VectorXd& all = innovations[signal];
+        const Eigen::Index begin = all.size();
+        all.conservativeResize(begin + path.samples());
+        for (Eigen::Index k = 0; k < path.samples(); ++k) {
+          const Eigen::Index row = k * path.sensors() + sensor;
+          const bool counts = !std::isnan(path.residual_K[row]) && (weight.size() == 0 || weight[row] > 0.0);
+          all[begin + k] = counts ? standardised[row] : std::nan("");
+        }
+        add_inputs(input_.train[r], inputs[signal]);
+      }
+    }
+    std::vector<InnovationTests> tests(innovations.size());
+    in_parallel(tests.size(), 0, [&](std::size_t i) {
+      const auto& [signal, all] = *std::next(innovations.begin(), static_cast<std::ptrdiff_t>(i));
+      tests[i] = test_innovations(signal, all, inputs.at(signal));
+    });
+    return tests;
+  }
+
+  static void add_inputs(const MeasuredRun& run, std::vector<NamedInput>& inputs) {
+    const auto add = [&](std::string_view name, Signal signal, auto value) {
+      if (!run.has(signal)) {
+        return;
+      }
+      auto found = std::ranges::find(inputs, name, &NamedInput::name);
+      if (found == inputs.end()) {
+        inputs.push_back({std::string(name), {}});
+        found = inputs.end() - 1;
+      }
+      const Eigen::Index begin = found->values.size();
+      found->values.conservativeResize(begin + run.samples());
+      for (Eigen::Index k = 0; k < run.samples(); ++k) {
+        found->values[begin + k] = value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]);
+      }
+    };
+    using Point = OperatingPoint<double>;
+    add("current", Signal::current, [](const Point& at) { return at.current_rms_A; });
+    add("speed", Signal::speed, [](const Point& at) { return at.speed_mean_rad_per_s; });
+    add("input power", Signal::input_power, [](const Point& at) { return at.input_power_W; });
+  }
+
+  [[nodiscard]] DiagnosisVerdict verdict() const {
+    if (out_.selection.is_unexplained) {
+      return DiagnosisVerdict::unexplained;
+    }
+    if (!out_.effects.empty()) {
+      return DiagnosisVerdict::effect_found;
+    }
+    if (out_.selection.is_as_usual) {
+      return DiagnosisVerdict::nothing_missing;
+    }
+    const bool is_same_mounting = std::ranges::none_of(
+        out_.changed, [](const ChangedFigure& figure) { return std::abs(std::log(figure.value / figure.before)) > kOtherMounting; });
+    const bool would_show = out_.selection.seen_share >= rules_.least_seen_share;
+    return !out_.selection.leaves_doubt(rules_) && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
+                                                                                  : DiagnosisVerdict::not_identifiable;
+  }
+
+  const SelectionRules& rules_;
+  DiagnosisInput input_;
+  Diagnosis out_;
+};
+
+}  // namespace
+
+bool is_plainly_worse(double error_K, double than_K) { return error_K > than_K + kMatters_K && error_K > kWorse_ratio * than_K; }
+
+std::string_view to_string(DiagnosisVerdict verdict) {
+  switch (verdict) {
+    case DiagnosisVerdict::effect_found:
+      return "effect_found";
+    case DiagnosisVerdict::nothing_missing:
+      return "nothing_missing";
+    case DiagnosisVerdict::unexplained:
+      return "unexplained";
+    case DiagnosisVerdict::not_identifiable:
+      return "not_identifiable";
+  }
+  return "?";
+}
+
+std::string settle_turning_rows(DiagnosisInput& input) {
+  if (std::ranges::none_of(input.train, may_turn_within_rows)) {
+    return {};
+  }
+  std::vector<MeasuredRun> turning;
+  std::ranges::transform(input.train, std::back_inserter(turning), turning_within_rows);
+  if (evidence_without_effects_nats({input.model, turning}) <= evidence_without_effects_nats({input.model, input.train})) {
+    return {};
+  }
+  input.train = std::move(turning);
+  input.turns_within_rows = true;
+  return std::string(kTurningRowsTold);
+}
+
+Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
+  return Teller(input, rules, select_effects({input.model, input.train}, rules)).tell();
+}
+
+HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout) {
+  HoldoutScore score;
+  if (holdout.empty()) {
+    return score;
+  }
+  const ExtendedModel& after = diagnosis.selection.after.model;
+  if (input.turns_within_rows) {
+    std::ranges::transform(holdout, holdout.begin(), turning_within_rows);
+  }
+  set_column(holdout, after.column);
+  score.before = open_loop_errors(input.model, holdout, diagnosis.runs);
+  score.refitted = open_loop_errors(diagnosis.selection.own.model, holdout, diagnosis.runs);
+  score.after = open_loop_errors(after, holdout, diagnosis.runs);
+  score.file = errors_of_file(after, holdout, diagnosis.runs);
+  score.beyond_training = beyond_fitted(diagnosis.runs, holdout);
+  score.runs = std::move(holdout);
+  return score;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,461 @@
+#include "attribution/driver_scan.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "attribution/curve.h"
+#include "attribution/set_search.h"
+#include "base/parallel.h"
+
+namespace heatsoak {
+namespace {
+
+/// All hats of a driver and what rounds them up to what is whitened at once.
+using HatColumns = Eigen::Matrix<double, Eigen::Dynamic, kKnots + 1, Eigen::RowMajor>;
+/// Of the heat that the prior takes for usual, as a share of the mean heat.
+constexpr double kUsual_share = 0.3;
+
+/// How the sensors answer to heats held over the intervals: `heat_W` (intervals × hats) into the node with place `flux`, out of `other`.
+HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
+  HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
+  HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
+  HatColumns next = state;
+  for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
+    const double* const transition = run.transition.data() + k * run.states * run.states;
+    const double* const injection = run.injection.data() + k * run.states * run.fluxes;
+    for (Eigen::Index i = 0; i < run.states; ++i) {
+      const double gain_K_per_W = injection[i * run.fluxes + flux] - (other >= 0 ? injection[i * run.fluxes + other] : 0.0);
+      next.row(i) = gain_K_per_W * heat_W.row(k);
+      for (Eigen::Index j = 0; j < run.states; ++j) {
+        next.row(i) += transition[i * run.states + j] * state.row(j);
+      }
+    }
+    state.swap(next);
+    for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
+      shown.row((k + 1) * run.sensors() + sensor) = state.row(run.sensor_node[static_cast<std::size_t>(sensor)]);
+    }
+  }
+  return shown;
+}
+
+/// Losses go with two signals of the operation; what goes with a temperature besides is cooling. A temperature alone makes no heat: it says
+/// how much moves, or how much of the copper's there is.
+bool goes_with(const Driver& driver, Multiplier multiplier) {
+  if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
+    return false;
+  }
+  const std::string_view second = second_signal(multiplier);
+  return second.empty() || (driver.kind == DriverKind::operating_point && driver.name != second);
+}
+
+bool is_taken_out(Multiplier multiplier) { return multiplier == Multiplier::excess || multiplier == Multiplier::difference; }
+
+/// A curve beside the subset and the unknown heat with which it is most probable.
+struct Scored {
+  double nats = -std::numeric_limits<double>::infinity();  ///< ln P, priors of the members counted
+  std::size_t subset = 0;
+  FluxPlace place;
+};
+
+struct Family {
+  ScanTerm term;
+  std::vector<double> knots;
+  double usual = 1.0;
+  std::vector<Eigen::VectorXd> multiplier;  ///< per run
+  std::vector<HatColumns> shown;            ///< per run, of every hat at its usual size
+  Scored scored;
+};
+
+/// What all curves share in one run under one supposition.
+struct SharedRun {
+  Whitening whitening;
+  Columns columns;           ///< whitened: start temperatures, θ, members, residual
+  Eigen::MatrixXd products;  ///< of the columns, the prior of the start temperatures included
+};
+
+class Scanner {
+ public:
+  Scanner(const ScanInput& input, const SelectionRules& rules)
+      : input_(input), rules_(rules), precision_(curve_precision(kKnots, rules)), subsets_(std::size_t{1} << input.members.columns.size()) {
+    const Eigen::Index own = input.prior.mean.size();
+    const auto more = static_cast<Eigen::Index>(input.members.companions.size());
+    prior_.mean = Eigen::VectorXd::Zero(own + more);
+    prior_.mean.head(own) = input.prior.mean;
+    prior_.precision = Eigen::MatrixXd::Identity(own + more, own + more) / (input.members.companion_sd * input.members.companion_sd);
+    prior_.precision.topLeftCorner(own, own) = input.prior.precision;
+  }
+
+  std::vector<ScanResult> run(std::size_t most) {
+    constexpr std::size_t kClimbed = 12;
+    constexpr std::size_t kZoomed = 4;
+    std::vector<Family> families = all_families();
+    const double without_nats = best_without_nats();
+    for (const FluxPlace& place : beginnings()) {
+      const std::vector<SharedRun>& shared = shared_at(place);
+      in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], shared, place)); });
+    }
+    const auto keep_best = [&families](std::size_t count) {
+      std::ranges::stable_sort(families, std::greater(), [](const Family& each) { return each.scored.nats; });
+      families.resize(std::min(families.size(), count));
+    };
+    keep_best(kClimbed);
+    for (Family& each : families) {
+      climb(each);
+    }
+    keep_best(most);
+    for (std::size_t i = 0; i < std::min(kZoomed, families.size()); ++i) {
+      zoom(families[i]);
+    }
+    keep_best(most);
+    std::vector<ScanResult> results;
+    for (const Family& each : families) {
+      results.push_back(result(each, without_nats));
+    }
+    return results;
+  }
+
+ private:
+  std::vector<Family> all_families() const {
+    std::vector<Family> families;
+    std::vector<ScanTerm> terms = terms_of_one_signal(*input_.model, *input_.runs);
+    std::ranges::copy(terms_of_two_signals(*input_.model, *input_.runs), std::back_inserter(terms));
+    for (const ScanTerm& term : terms) {
+      std::vector<Eigen::VectorXd> multiplier;
+      double squares = 0.0;
+      double count = 0.0;
+      for (std::size_t r = 0; r < input_.runs->size(); ++r) {
+        multiplier.push_back(multiplier_along(term, *input_.model, (*input_.fitted)[r], (*input_.runs)[r]));
+        squares += multiplier.back().squaredNorm();
+        count += static_cast<double>(multiplier.back().size());
+      }
+      const double usual = kUsual_share * input_.mean_heat_W / std::max(1e-9, std::sqrt(squares / std::max(1.0, count)));
+      for (std::size_t driver = 0; driver < input_.drivers->size(); ++driver) {
+        const Driver& of = (*input_.drivers)[driver];
+        if (!goes_with(of, term.multiplier)) {
+          continue;
+        }
+        std::vector<std::vector<double>> knots{knots_over(of)};
+        for (const Driver::Range& range : of.inner) {
+          knots.push_back(knots_between(range, of.kind));
+        }
+        for (std::vector<double>& each : knots) {
+          Family family{term, std::move(each), usual, multiplier, {}, {}};
+          family.term.driver = static_cast<int>(driver);
+          families.push_back(std::move(family));
+        }
+      }
+    }
+    in_parallel(families.size(), 0, [&](std::size_t i) { set_responses(families[i]); });
+    return families;
+  }
+
+  /// The given places, and ones with far less unknown heat: a curve that is right leaves little.
+  [[nodiscard]] std::vector<FluxPlace> beginnings() const {
+    constexpr int kLess = 2;
+    std::vector<FluxPlace> all = input_.places;
+    for (FluxPlace place : input_.places) {
+      for (std::size_t axis = 0; axis + 1 < place.size(); ++axis) {
+        place[axis] = std::max(0, place[axis] - kLess);
+      }
+      all.push_back(std::move(place));
+    }
+    std::ranges::sort(all);
+    const auto [first, last] = std::ranges::unique(all);
+    all.erase(first, last);
+    return all;
+  }
+
+  static void take_better(Family& family, Scored&& other) {
+    if (other.nats > family.scored.nats) {
+      family.scored = std::move(other);
+    }
+  }
+
+  /// To the unknown heat beside which the curve is most probable.
+  void climb(Family& family) {
+    (void)most_probable(input_.grid, family.scored.place, [&](const FluxPlace& place) {
+      Scored scored = score(family, shared_at(place), place);
+      const double nats = scored.nats;
+      take_better(family, std::move(scored));
+      return nats;
+    });
+  }
+
+  /// Knots where something happens: a thermostat or a resonance is narrower than a seventh of all that the driver does.
+  void zoom(Family& family) {
+    constexpr int kHalvings = 3;
+    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    for (int half = 0; half < kHalvings; ++half) {
+      const double low = family.knots.front();
+      const double quarter = 0.25 * (family.knots.back() - low);
+      std::vector<Family> narrower;
+      for (const double begin : {0.0, 1.0, 2.0}) {
+        Family& other = narrower.emplace_back(family);
+        other.knots = knots_between({low + begin * quarter, low + (begin + 2.0) * quarter}, driver.kind);
+        other.shown.clear();
+        other.scored = {};
+      }
+      const std::vector<SharedRun>& shared = shared_at(family.scored.place);
+      in_parallel(narrower.size(), 0, [&](std::size_t i) {
+        set_responses(narrower[i]);
+        take_better(narrower[i], score(narrower[i], shared, family.scored.place));
+      });
+      Family& best = *std::ranges::max_element(narrower, {}, [](const Family& each) { return each.scored.nats; });
+      if (best.scored.nats < family.scored.nats + rules_.narrow_nats) {
+        return;
+      }
+      climb(best);
+      family = std::move(best);
+    }
+  }
+
+  /// Without any curve: the best subset of the members at its own place.
+  double best_without_nats() {
+    double best_nats = -std::numeric_limits<double>::infinity();
+    for (const FluxPlace& start : input_.places) {
+      (void)most_probable(input_.grid, start, [&](const FluxPlace& place) {
+        const std::vector<SharedRun>& shared = shared_at(place);
+        Products sum;
+        for (std::size_t r = 0; r < shared.size(); ++r) {
+          add_run(shared[r].products, (*input_.designs)[r], shared[r].whitening, sum);
+        }
+        const Reduced all = reduced(sum, prior_);
+        double own_nats = -std::numeric_limits<double>::infinity();
+        for (std::size_t subset = 0; subset < subsets_; ++subset) {
+          own_nats = std::max(own_nats, all.base_nats + gain_of(all, subset, false) + prior_of(subset));
+        }
+        best_nats = std::max(best_nats, own_nats);
+        return own_nats;
+      });
+    }
+    return best_nats;
+  }
+
+  void set_responses(Family& family) const {
+    const int into = flux_of(*input_.model, family.term.node);
+    const int other = family.term.other.empty() ? -1 : flux_of(*input_.model, family.term.other);
+    for (std::size_t r = 0; r < input_.runs->size(); ++r) {
+      family.shown.push_back(response((*input_.designs)[r].run, heats_W(family, r), into, other));
+    }
+  }
+
+  /// Heat of every hat along a run, in units of the family's usual size.
+  [[nodiscard]] HatColumns heats_W(const Family& family, std::size_t r) const {
+    const double sign = is_taken_out(family.term.multiplier) ? -1.0 : 1.0;
+    const DesignRun& design = (*input_.designs)[r];
+    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
+    for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
+      const double value = driver.values[r][k];
+      const Eigen::Index row = design.interval_of[static_cast<std::size_t>(k)];
+      if (row < 0 || std::isnan(value)) {
+        continue;
+      }
+      const double share =
+          (*input_.fitted)[r].duration_s[static_cast<std::size_t>(k)] / design.run.duration_s[static_cast<std::size_t>(row)];
+      const double usual_W = sign * share * family.usual * family.multiplier[r][k];
+      const HatsAt hats = hats_at(family.knots, value);
+      heat_W(row, hats.left) += usual_W * (1.0 - hats.right_share);
+      heat_W(row, hats.left + 1) += usual_W * hats.right_share;
+    }
+    return heat_W;
+  }
+
+  const std::vector<SharedRun>& shared_at(const FluxPlace& place) {
+    const auto found = shared_.find(place);
+    return found != shared_.end() ? found->second : shared_[place] = made_at(input_.grid.at(place));
+  }
+
+  [[nodiscard]] std::vector<SharedRun> made_at(const LatentFlux& flux) const {
+    std::vector<SharedRun> shared;
+    for (const DesignRun& design : *input_.designs) {
+      shared.push_back({Whitening(design.run, flux, design.noise), {}, {}});
+      const Eigen::Index starts = design.run.states;
+      const Eigen::Index own = input_.prior.mean.size();
+      const Eigen::Index t = prior_.mean.size();
+      const auto members = static_cast<Eigen::Index>(input_.members.columns.size());
+      Columns& columns = shared.back().columns;
+      columns.resize(design.columns.rows(), starts + t + members + 1);
+      columns.leftCols(starts) = design.run.by_start;
+      columns.middleCols(starts, own) = design.columns.leftCols(own);
+      columns.middleCols(starts + own, t - own) = design.columns(Eigen::all, input_.members.companions);
+      columns.middleCols(starts + t, members) = design.columns(Eigen::all, input_.members.columns);
+      columns.rightCols<1>() = design.run.residual_K;
+      shared.back().whitening.apply(columns);
+      Eigen::MatrixXd& products = shared.back().products;
+      products = columns.transpose() * columns;
+      const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
+      const Eigen::VectorXd pull = precision.cwiseProduct(design.start.mean_K);
+      products.topLeftCorner(starts, starts).diagonal() += precision;
+      products.topRightCorner(starts, 1) += pull;
+      products.bottomLeftCorner(1, starts) += pull.transpose();
+      products(products.rows() - 1, products.cols() - 1) += design.start.mean_K.dot(pull);
+    }
+    return shared;
+  }
+
+  /// Products of a run without its start temperatures; adds what they say to the determinant.
+  static void add_run(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum) {
+    const Eigen::Index starts = design.run.states;
+    const Eigen::Index rest = square.cols() - starts;
+    const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(starts, starts));
+    const Eigen::MatrixXd across = square.topRightCorner(starts, rest);
+    const Eigen::MatrixXd left = square.bottomRightCorner(rest, rest) - across.transpose() * start.solve(across);
+    sum.square = sum.square.size() == 0 ? left : Eigen::MatrixXd(sum.square + left);
+    sum.log_determinant +=
+        whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() + 2.0 * design.start.sd_K.array().log().sum();
+  }
+
+  [[nodiscard]] std::vector<Eigen::Index> members_of(std::size_t subset) const {
+    std::vector<Eigen::Index> members;
+    for (std::size_t m = 0; m < input_.members.columns.size(); ++m) {
+      if ((subset >> m & 1U) != 0) {
+        members.push_back(static_cast<Eigen::Index>(m));
+      }
+    }
+    return members;
+  }
+
+  /// Of a subset of the members, with or without the hats; ln evidence above nothing. The curve is what `curve` and `covariance` become.
+  [[nodiscard]] double gain_of(const Reduced& all, std::size_t subset, bool with_curve, Eigen::VectorXd* sizes = nullptr,
+                               Eigen::MatrixXd* precision_of = nullptr) const {
+    std::vector<Eigen::Index> places = members_of(subset);
+    const auto members = static_cast<Eigen::Index>(places.size());
+    std::vector<bool> has_sign;
+    for (const Eigen::Index place : places) {
+      has_sign.push_back(input_.members.has_sign[static_cast<std::size_t>(place)]);
+    }
+    const auto first = static_cast<Eigen::Index>(input_.members.columns.size());
+    for (Eigen::Index hat = 0; with_curve && hat < kKnots; ++hat) {
+      places.push_back(first + hat);
+      has_sign.push_back(false);
+    }
+    const auto count = static_cast<Eigen::Index>(places.size());
+    Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(count, count) / (input_.members.size_sd * input_.members.size_sd);
+    if (with_curve) {
+      precision.bottomRightCorner(kKnots, kKnots) = precision_;
+      precision.topRightCorner(members, kKnots).setZero();
+      precision.bottomLeftCorner(kKnots, members).setZero();
+    }
+    const Eigen::MatrixXd products = all.products(places, places);
+    if (precision_of) {
+      *precision_of = products + precision;
+    }
+    return set_gain_nats(products, all.right(places), precision, has_sign, sizes);
+  }
+
+  /// θ eliminated: [members, hats].
+  [[nodiscard]] Reduced reduced_with(const Family& family, const std::vector<SharedRun>& shared) const {
+    Products sum;
+    for (std::size_t r = 0; r < shared.size(); ++r) {
+      HatColumns shown = family.shown[r];
+      shared[r].whitening.apply(shown);
+      const auto hats = shown.leftCols<kKnots>();
+      const Eigen::Index before = shared[r].columns.cols() - 1;
+      const Eigen::MatrixXd across = shared[r].columns.transpose() * hats;
+      Eigen::MatrixXd square(before + kKnots + 1, before + kKnots + 1);
+      square.topLeftCorner(before, before) = shared[r].products.topLeftCorner(before, before);
+      square.block(0, before, before, kKnots) = across.topRows(before);
+      square.block(before, 0, kKnots, before) = across.topRows(before).transpose();
+      square.block(before, before, kKnots, kKnots).noalias() = hats.transpose() * hats;
+      square.block(0, before + kKnots, before, 1) = shared[r].products.block(0, before, before, 1);
+      square.block(before + kKnots, 0, 1, before) = shared[r].products.block(before, 0, 1, before);
+      square.block(before, before + kKnots, kKnots, 1) = across.bottomRows(1).transpose();
+      square.block(before + kKnots, before, 1, kKnots) = across.bottomRows(1);
+      square(before + kKnots, before + kKnots) = shared[r].products(before, before);
+      add_run(square, (*input_.designs)[r], shared[r].whitening, sum);
+    }
+    return reduced(sum, prior_);
+  }
+
+  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const FluxPlace& place) const {
+    const Reduced all = reduced_with(family, shared);
+    const double second_nats = second_signal(family.term.multiplier).empty() ? 0.0 : rules_.second_signal_nats;
+    Scored best;
+    for (std::size_t subset = 0; subset < subsets_; ++subset) {
+      const double nats = all.base_nats + gain_of(all, subset, true) + prior_of(subset) + rules_.curve_nats - second_nats;
+      if (nats > best.nats) {
+        best = {nats, subset, place};
+      }
+    }
+    return best;
+  }
+
+  [[nodiscard]] double prior_of(std::size_t subset) const {
+    double nats = 0.0;
+    for (const Eigen::Index member : members_of(subset)) {
+      nats += input_.members.prior_nats[static_cast<std::size_t>(member)];
+    }
+    return nats;
+  }
+
+  [[nodiscard]] ScanResult result(const Family& family, double without_nats) {
+    const std::size_t subset = family.scored.subset;
+    ScanResult out;
+    out.term = family.term;
+    out.usual = family.usual;
+    out.knots = family.knots;
+    out.gain_nats = family.scored.nats - without_nats;
+    const Reduced at = reduced_with(family, shared_at(family.scored.place));
+    Eigen::VectorXd sizes;
+    Eigen::MatrixXd precision;
+    (void)gain_of(at, subset, true, &sizes, &precision);
+    const Eigen::VectorXd hats = sizes.tail<kKnots>();
+    out.curve = family.usual * hats;
+    const Eigen::Index count = precision.cols();
+    const Eigen::MatrixXd inverse = precision.llt().solve(Eigen::MatrixXd::Identity(count, count));
+    out.covariance = family.usual * family.usual * inverse.bottomRightCorner(kKnots, kKnots);
+    for (const Eigen::Index member : members_of(subset)) {
+      out.beside.push_back(static_cast<int>(member));
+    }
+    const auto first = static_cast<Eigen::Index>(input_.members.columns.size());
+    const double own = hats.dot(at.products.block(first, first, kKnots, kKnots) * hats);
+    for (Eigen::Index member = 0; member < first; ++member) {
+      const double across = hats.dot(at.products.block(first, member, kKnots, 1).col(0));
+      out.shape_ratio.push_back(across * across / std::max(1e-300, own * at.products(member, member)));
+    }
+    set_heat(out, family);
+    return out;
+  }
+
+  void set_heat(ScanResult& out, const Family& family) const {
+    std::vector<double> magnitude_W;
+    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    for (std::size_t r = 0; r < family.multiplier.size(); ++r) {
+      for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
+        const double value = driver.values[r][k];
+        if (!std::isnan(value)) {
+          magnitude_W.push_back(std::abs(value_at(family.knots, out.curve, value) * family.multiplier[r][k]));
+        }
+      }
+    }
+    if (magnitude_W.empty()) {
+      return;
+    }
+    for (const double each_W : magnitude_W) {
+      out.mean_W += each_W / static_cast<double>(magnitude_W.size());
+    }
+    const std::size_t peak = magnitude_W.size() * 99 / 100;
+    std::nth_element(magnitude_W.begin(), magnitude_W.begin() + static_cast<std::ptrdiff_t>(peak), magnitude_W.end());
+    out.peak_W = magnitude_W[peak];
+  }
+
+  const ScanInput& input_;
+  const SelectionRules& rules_;
+  Eigen::MatrixXd precision_;
+  std::size_t subsets_;
+  ThetaPrior prior_;  ///< of θ and the companions
+  std::map<FluxPlace, std::vector<SharedRun>> shared_;
+};
+
+}  // namespace
+
+std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRules& rules, std::size_t most) {
+  return input.drivers->empty() ? std::vector<ScanResult>() : Scanner(input, rules).run(most);
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,212 @@
+#include "attribution/drivers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/unknown.h"
+
+namespace heatsoak {
+namespace {
+
+/// Two drivers whose values go together more than this are one; the earlier name stays.
+constexpr double kSameCorrelation_ratio = 0.9995;
+/// A curve over a driver has seven knots: with fewer samples than a few for each it says nothing.
+constexpr std::size_t kFewestSamples = 30;
+
+Driver driver_of(std::string name, std::string unit, DriverKind kind) {
+  Driver driver;
+  driver.name = std::move(name);
+  driver.unit = std::move(unit);
+  driver.kind = kind;
+  return driver;
+}
+
+class Collector {
+ public:
+  Collector(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs)
+      : model_(model), fitted_(fitted), runs_(runs) {}
+
+  template <class Value>
+  void add(Driver driver, const Value& value) {
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      Eigen::VectorXd& values = driver.values.emplace_back(runs_[r].samples() - 1);
+      for (Eigen::Index k = 0; k < values.size(); ++k) {
+        values[k] = value(r, k);
+      }
+    }
+    keep(std::move(driver));
+  }
+
+  template <class Value>
+  void add_where(std::initializer_list<Signal> signals, std::string name, std::string unit, const Value& value) {
+    for (const Signal signal : signals) {
+      if (!std::ranges::all_of(runs_, [&](const MeasuredRun& run) { return run.has(signal); })) {
+        return;
+      }
+    }
+    Driver driver = driver_of(name, std::move(unit), DriverKind::operating_point);
+    driver.choice = std::move(name);
+    add(std::move(driver), [&](std::size_t r, Eigen::Index k) { return value(runs_[r].at[static_cast<std::size_t>(k)]); });
+  }
+
+  std::vector<Driver> take() { return std::move(kept_); }
+
+ private:
+  void keep(Driver driver) {
+    std::vector<double> known;
+    for (const Eigen::VectorXd& values : driver.values) {
+      std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return !std::isnan(value); });
+    }
+    if (known.size() < kFewestSamples) {
+      return;
+    }
+    std::ranges::sort(known);
+    driver.low = known[known.size() / 100];
+    driver.high = known[known.size() - 1 - known.size() / 100];
+    const double size = std::max(std::abs(driver.low), std::abs(driver.high));
+    if (!(driver.high - driver.low > 1e-6 * size) || is_label(driver) || is_copy(driver)) {
+      return;
+    }
+    double width = driver.high - driver.low;
+    for (const std::size_t part : {10, 4}) {
+      const double low = known[known.size() / part];
+      const double high = known[known.size() - 1 - known.size() / part];
+      if (high - low < 0.8 * width && high - low > 0.02 * (driver.high - driver.low)) {
+        driver.inner.push_back({low, high});
+        width = high - low;
+      }
+    }
+    kept_.push_back(std::move(driver));
+  }
+
+  /// Hardly moves within any run: it says which run it is, no more.
+  [[nodiscard]] static bool is_label(const Driver& driver) {
+    constexpr double kLeastWithin_share = 0.2;
+    return std::ranges::none_of(driver.values, [&](const Eigen::VectorXd& of_run) {
+      double low = driver.high;
+      double high = driver.low;
+      for (const double value : of_run) {
+        if (!std::isnan(value)) {
+          low = std::min(low, value);
+          high = std::max(high, value);
+        }
+      }
+      return high - low > kLeastWithin_share * (driver.high - driver.low);
+    });
+  }
+
+  [[nodiscard]] bool is_copy(const Driver& driver) const {
+    return std::ranges::any_of(kept_, [&](const Driver& other) { return std::abs(correlation(driver, other)) > kSameCorrelation_ratio; });
+  }
+
+  static double correlation(const Driver& a, const Driver& b) {
+    double count = 0.0, sum_a = 0.0, sum_b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+    for (std::size_t r = 0; r < a.values.size(); ++r) {
+      for (Eigen::Index k = 0; k < a.values[r].size(); ++k) {
+        const double x = a.values[r][k], y = b.values[r][k];
+        if (!std::isnan(x) && !std::isnan(y)) {
+          count += 1.0, sum_a += x, sum_b += y, aa += x * x, bb += y * y, ab += x * y;
+        }
+      }
+    }
+    const double spread = (aa - sum_a * sum_a / count) * (bb - sum_b * sum_b / count);
+    return count > 0.0 && spread > 0.0 ? (ab - sum_a * sum_b / count) / std::sqrt(spread) : 0.0;
+  }
+
+  const Model& model_;
+  const std::vector<LinearisedRun>& fitted_;
+  const std::vector<MeasuredRun>& runs_;
+  std::vector<Driver> kept_;
+};
+
+void add_operating_points(Collector& all) {
+  using Point = OperatingPoint<double>;
+  all.add_where({Signal::speed}, "speed", "rad/s", [](const Point& at) { return at.speed_mean_rad_per_s; });
+  all.add_where({Signal::speed}, "velocity", "rad/s", [](const Point& at) { return at.velocity_rad_per_s; });
+  all.add_where({Signal::current}, "current", "A", [](const Point& at) { return at.current_rms_A; });
+  all.add_where({Signal::modulation}, "modulation", "", [](const Point& at) { return at.modulation_ratio; });
+  all.add_where({Signal::shaft_power, Signal::speed}, "shaft_power", "W", [](const Point& at) { return at.shaft_power_W; });
+  all.add_where({Signal::input_power}, "input_power", "W", [](const Point& at) { return at.input_power_W; });
+  all.add_where({Signal::current, Signal::speed}, "current_speed_squared", "A rad2/s2",
+                [](const Point& at) { return at.current_rms_A * at.speed_rms_rad_per_s * at.speed_rms_rad_per_s; });
+  all.add_where({Signal::speed}, "acceleration", "rad/s2", [](const Point& at) { return at.acceleration_rad_per_s2; });
+  all.add_where({Signal::bus_voltage}, "bus_voltage", "V", [](const Point& at) { return at.bus_V; });
+  all.add_where({Signal::vehicle_speed}, "vehicle_speed", "m/s", [](const Point& at) { return at.vehicle_speed_m_per_s; });
+  all.add_where({Signal::age}, "age", "h", [](const Point& at) { return at.age_h; });
+}
+
+void add_temperatures(Collector& all, const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
+  const auto ambient_C = [&](std::size_t r, Eigen::Index k) { return runs[r].at[static_cast<std::size_t>(k)].ambient_C; };
+  const std::string ambient(Network::kAmbient);
+  for (int node = 0; node < model.network.state_count(); ++node) {
+    const std::string name(model.network.node_name(node));
+    const bool is_seen = std::ranges::any_of(runs, [&](const MeasuredRun& run) { return run.sensor_at(name) >= 0; });
+    if (!is_seen && name != "winding" && name != "stator") {
+      continue;  // a body that the model supposes is no signal
+    }
+    Driver absolute = driver_of(name + "_temperature", "degC", DriverKind::node_temperature);
+    absolute.choice = "temperature";
+    absolute.watched = name;
+    absolute.reference = ambient;
+    all.add(absolute, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k); });
+    Driver excess = driver_of(name + "_excess", "K", DriverKind::node_temperature);
+    excess.choice = "temperature_difference";
+    excess.watched = name;
+    excess.reference = ambient;
+    all.add(excess, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k) - ambient_C(r, k); });
+  }
+  if (model.network.state_count() > 1) {
+    Driver between =
+        driver_of(fmt::format("{}_above_{}", model.network.node_name(0), model.network.node_name(1)), "K", DriverKind::node_temperature);
+    between.choice = "temperature_difference";
+    between.watched = model.network.node_name(0);
+    between.reference = model.network.node_name(1);
+    all.add(between, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(0, k) - fitted[r].state_C(1, k); });
+  }
+  if (std::ranges::all_of(runs, [](const MeasuredRun& run) { return run.has(Signal::neighbour_temperature); })) {
+    Driver neighbour = driver_of("neighbour_above_stator", "K", DriverKind::node_temperature);
+    const int stator = std::max(0, model.network.find_node("stator"));
+    neighbour.choice = "neighbour_difference";
+    neighbour.watched = model.network.node_name(stator);
+    neighbour.reference = ambient;
+    all.add(neighbour, [&](std::size_t r, Eigen::Index k) {
+      return runs[r].at[static_cast<std::size_t>(k)].neighbour_C - fitted[r].state_C(stator, k);
+    });
+  }
+  Driver air = driver_of("ambient_temperature", "degC", DriverKind::node_temperature);
+  air.choice = "temperature";
+  air.watched = ambient;
+  air.reference = ambient;
+  all.add(air, ambient_C);
+}
+
+}  // namespace
+
+std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
+  Collector all(model, fitted, runs);
+  add_operating_points(all);
+  add_temperatures(all, model, fitted, runs);
+  all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only),
+          [&](std::size_t r, Eigen::Index k) { return runs[r].time_s[static_cast<std::size_t>(k)] - runs[r].time_s.front(); });
+  std::set<std::string> names;
+  for (const MeasuredRun& run : runs) {
+    for (const auto& [name, values] : run.columns) {
+      names.insert(name);
+    }
+  }
+  for (const std::string& name : names) {
+    const std::optional<Quantity> quantity = quantity_named(name);
+    Driver driver = driver_of(name, quantity ? quantity->unit : "", DriverKind::log_only);
+    driver.choice = kColumnChoice;
+    all.add(std::move(driver), [&](std::size_t r, Eigen::Index k) {
+      const auto found = runs[r].columns.find(name);
+      return found == runs[r].columns.end() ? kUnknown : found->second[k];
+    });
+  }
+  return all.take();
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,92 @@
+#include "attribution/flux_grid.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace heatsoak {
+
+LatentFlux FluxGrid::at(const FluxPlace& place) const {
+  LatentFlux flux;
+  for (std::size_t f = 0; f < fluxes; ++f) {
+    flux.rms_W.push_back(rms_W[static_cast<std::size_t>(place[f])]);
+  }
+  flux.time_scale_s = time_scale_s[static_cast<std::size_t>(place[fluxes])];
+  flux.wander_K = wander_K[static_cast<std::size_t>(place[fluxes + 1])];
+  flux.wander_time_scale_s = wander_time_scale_s[static_cast<std::size_t>(place[fluxes + 2])];
+  return flux;
+}
+
+FluxPlace FluxGrid::middle() const {
+  FluxPlace place(fluxes, static_cast<int>(rms_W.size()) / 2 - 1);
+  place.push_back(static_cast<int>(time_scale_s.size()) / 2);
+  place.push_back(0);
+  place.push_back(1);
+  return place;
+}
+
+std::vector<FluxPlace> FluxGrid::all_over() const {
+  std::vector<FluxPlace> all;
+  for (const int strength : {1, 3, 5}) {
+    for (const int time_scale : {1, 3}) {
+      for (const auto& [size, wander_time_scale] : {std::pair{0, 1}, {1, 1}, {2, 1}, {3, 1}, {2, 2}, {3, 2}}) {
+        FluxPlace place(fluxes, strength);
+        place.insert(place.end(), {time_scale, size, wander_time_scale});
+        all.push_back(std::move(place));
+      }
+    }
+  }
+  return all;
+}
+
+std::vector<FluxPlace> FluxGrid::star(const FluxPlace& place) const {
+  std::vector<std::size_t> counts(fluxes, rms_W.size());
+  counts.push_back(time_scale_s.size());
+  counts.push_back(wander_K.size());
+  counts.push_back(place[fluxes + 1] > 0 ? wander_time_scale_s.size() : 0);
+  std::vector<FluxPlace> all{place};
+  for (std::size_t axis = 0; axis < counts.size(); ++axis) {
+    for (const int step : {-1, 1}) {
+      FluxPlace other = place;
+      other[axis] += step;
+      if (other[axis] >= 0 && other[axis] < static_cast<int>(counts[axis])) {
+        all.push_back(std::move(other));
+      }
+    }
+  }
+  return all;
+}
+
+FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes) {
+  FluxGrid grid;
+  grid.fluxes = fluxes;
+  for (const double share : {0.02, 0.12, 0.3, 0.7, 1.6, 3.6, 8.0}) {
+    grid.rms_W.push_back(share * material_W);
+  }
+  for (const double share : {0.0, 0.003, 0.01, 0.03}) {
+    grid.wander_K.push_back(share * travel_K);
+  }
+  grid.wander_time_scale_s = {10.0, 40.0, 160.0};
+  grid.time_scale_s = {40.0, 130.0, 400.0, 1200.0};
+  return grid;
+}
+
+FluxPlace most_probable(const FluxGrid& grid, FluxPlace start, const std::function<double(const FluxPlace&)>& nats) {
+  std::map<FluxPlace, double> known;
+  const auto at = [&](const FluxPlace& place) {
+    const auto found = known.find(place);
+    return found != known.end() ? found->second : known[place] = nats(place);
+  };
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const FluxPlace& other : grid.star(start)) {
+      if (at(other) > at(start)) {
+        start = other;
+        moved = true;
+      }
+    }
+  }
+  return start;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,163 @@
+#include "attribution/found_effects.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+#include "attribution/mean_heat.h"
+#include "attribution/terms.h"
+#include "identify/interval.h"
+
+namespace heatsoak {
+namespace {
+
+class EffectTeller {
+ public:
+  EffectTeller(const Selection& selection, const std::vector<MeasuredRun>& runs) : selection_(selection), runs_(runs) {}
+
+  FoundEffect found(const AcceptedTerm& term) const {
+    FoundEffect effect;
+    effect.name = term.effect_name;
+    effect.gain_nats = term.loss_without_nats;
+    effect.delta_bic = -2.0 * term.loss_without_nats;
+    effect.visibility_ratio = term.visibility_ratio;
+    effect.confusable_with = term.confusable_with;
+    if (term.candidate && term.candidate->sensor_type) {
+      tell_sensor(*term.candidate, effect);
+      return effect;
+    }
+    if (term.candidate && term.candidate->deviation_type) {
+      tell_deviation(*term.candidate, effect);
+      return effect;
+    }
+    const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
+    effect.id = in_place.type->name;
+    effect.node = after().model.model.network.node_name(in_place.node_index.front());
+    effect.description = in_place.type->summary;
+    effect.look_alike = in_place.type->look_alike;
+    for (const ConditionalTerm& conditional : after().model.conditional) {
+      if (conditional.effect_name == term.effect_name) {
+        effect.condition = conditional.condition;
+      }
+    }
+    if (term.curve) {
+      effect.node = term.curve->term.node;
+      effect.drivers.push_back(selection_.drivers[static_cast<std::size_t>(term.curve->term.driver)].name);
+      if (const std::string_view second = second_signal(term.curve->term.multiplier); !second.empty()) {
+        effect.drivers.emplace_back(second);
+      }
+      effect.is_from_catalogue = false;
+    }
+    tell_parameters(in_place, effect);
+    const HeatOfEffect heat = heat_of(
+        after(), runs_, [&](const EffectInPlace& each) { return &each == &in_place; }, effect.condition);
+    effect.mean_W = heat.mean_W;
+    effect.peak_W = heat.peak_W;
+    return effect;
+  }
+
+ private:
+  void tell_sensor(const Candidate& candidate, FoundEffect& effect) const {
+    const SensorEffectType& type = *candidate.sensor_type;
+    effect.id = type.name;
+    effect.has_heat = false;
+    effect.node = type.signal.substr(0, type.signal.rfind('_'));
+    effect.description = type.summary;
+    effect.look_alike = type.look_alike;
+    tell_size(candidate, type.size, type.typical_size, type.size.range.low, effect);
+  }
+
+  /// Of what is no effect of the network: its only figure, `unit_size` for each unit of its coordinate.
+  void tell_size(const Candidate& candidate, const ParameterSpec& spec, double unit_size, double low, FoundEffect& effect) const {
+    const Eigen::Index own = size_coordinate(after().model, candidate, {});
+    const double value = unit_size * after().model.theta()[own];
+    const double sd = unit_size * std::sqrt(after().covariance(own, own));
+    FittedParameter size{std::string(spec.key), std::string(spec.unit), value, std::max(value - kInterval_sd * sd, low),
+                         value + kInterval_sd * sd};
+    drop_interval_at_bound(own, size);
+    effect.parameters.push_back(std::move(size));
+    effect.p_value = p_of(value, sd);
+  }
+
+  void tell_deviation(const Candidate& candidate, FoundEffect& effect) const {
+    const RunDeviationType& type = *candidate.deviation_type;
+    effect.id = type.name;
+    effect.node = type.node;
+    effect.condition = candidate.condition;
+    effect.description = type.summary;
+    effect.look_alike = type.look_alike;
+    tell_size(candidate, type.size, type.usual, std::max(-1.0, type.size.range.low), effect);
+    const double value = effect.parameters.front().value;
+    const Network& network = after().model.model.network;
+    const HeatOfEffect heat = heat_of(
+        after(), runs_, [&](const EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);
+    effect.mean_W = std::abs(type.part_ratio(value)) * heat.mean_W;
+    effect.peak_W = std::abs(type.part_ratio(value)) * heat.peak_W;
+  }
+
+  static double p_of(double value, double sd) {
+    return sd > 0.0 ? 2.0 * boost::math::cdf(boost::math::complement(boost::math::normal(), std::min(37.0, std::abs(value) / sd))) : 1.0;
+  }
+
+  void drop_interval_at_bound(Eigen::Index coordinate, FittedParameter& parameter) const {
+    constexpr double kThere = 1e-6;
+    const ExtendedModel& model = after().model;
+    const double theta = model.theta()[coordinate];
+    if (theta < model.low(coordinate) + kThere && model.low(coordinate) == 0.0) {
+      parameter.value = 0.0;
+    }
+    if (theta < model.low(coordinate) + kThere || theta > model.high(coordinate) - kThere) {
+      parameter.is_at_bound = true;
+      parameter.low = parameter.high = parameter.value;
+    }
+  }
+
+  void tell_parameters(const EffectInPlace& in_place, FoundEffect& effect) const {
+    const Model& model = after().model.model;
+    const Eigen::VectorXd theta = model.theta();
+    std::vector<double> values;
+    for (const int place : in_place.parameter_index) {
+      values.push_back(model.values[static_cast<std::size_t>(place)]);
+    }
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      const ParameterSpec& spec = in_place.type->parameters[p];
+      if (!spec.choices.empty()) {
+        continue;
+      }
+      FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p],
+                                values[p]};
+      for (Eigen::Index i = 0; i < model.free_count(); ++i) {
+        if (model.free[static_cast<std::size_t>(i)].place == in_place.parameter_index[p]) {
+          const double sd = std::sqrt(after().covariance(i, i));
+          parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
+          parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
+          // Where a curve's knots lie says nothing of whether it is there.
+          const int size = in_place.type->candidacy.size_parameter;
+          if (size < 0 ? spec.range.low == 0.0 : static_cast<std::size_t>(size) == p) {
+            effect.p_value = std::min(effect.p_value, p_of(theta[i], sd));
+          }
+          drop_interval_at_bound(i, parameter);
+        }
+      }
+      effect.parameters.push_back(std::move(parameter));
+    }
+  }
+
+  [[nodiscard]] const RefitResult& after() const { return selection_.after; }
+
+  const Selection& selection_;
+  const std::vector<MeasuredRun>& runs_;
+};
+
+}  // namespace
+
+const EffectInPlace* effect_named(const Network& network, const std::string& name) {
+  const auto found = std::ranges::find(network.effects(), name, &EffectInPlace::name);
+  return found == network.effects().end() ? nullptr : &*found;
+}
+
+FoundEffect found_effect(const AcceptedTerm& term, const Selection& selection, const std::vector<MeasuredRun>& runs) {
+  return EffectTeller(selection, runs).found(term);
+}
+
+}  // namespace heatsoak

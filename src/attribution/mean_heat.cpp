@@ -1,0 +1,86 @@
+#include "attribution/mean_heat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace heatsoak {
+
+double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
+  const auto nodes = static_cast<std::size_t>(model.network.node_count());
+  std::vector<double> heat_W(model.network.effects().size() * nodes);
+  double energy_J = 0.0;
+  double time_s = 0.0;
+  for (const MeasuredRun& run : runs) {
+    const std::vector<double> state_C = measured_start_C(model.network, run);
+    for (std::size_t k = 0; k < run.at.size(); ++k) {
+      const double duration_s = run.time_s[k + 1] - run.time_s[k];
+      model.network.balance_W(run.at[k], model.values, state_C, heat_W);
+      time_s += duration_s;
+      for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
+        const auto row = std::span(heat_W).subspan(e * nodes, nodes);
+        // What a flow takes out of one node it brings into another: only sources have a sum.
+        energy_J += duration_s * std::abs(std::accumulate(row.begin(), row.end(), 0.0));
+      }
+    }
+  }
+  return time_s > 0.0 ? energy_J / time_s : 0.0;
+}
+
+double longest_s(const std::vector<MeasuredRun>& runs) {
+  double longest = 0.0;
+  for (const MeasuredRun& run : runs) {
+    longest = std::max(longest, run.time_s.back() - run.time_s.front());
+  }
+  return longest;
+}
+
+void heat_along(const RefitResult& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit) {
+  const Network& network = fit.model.model.network;
+  const std::vector<double> values = fit.model.values_in(run);
+  std::vector<double> heat_W(network.effects().size() * static_cast<std::size_t>(network.node_count()));
+  for (std::size_t k = 0; k < run.at.size(); ++k) {
+    const std::span<const double> state_C(path.state_C.col(static_cast<Eigen::Index>(k)).data(), static_cast<std::size_t>(path.states));
+    network.balance_W(run.at[k], values, state_C, heat_W);
+    visit(k, std::span<const double>(heat_W));
+  }
+}
+
+HeatOfEffect heat_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const std::function<bool(const EffectInPlace&)>& counts,
+                     const Condition& condition) {
+  const Network& network = fit.model.model.network;
+  const auto nodes = static_cast<std::size_t>(network.node_count());
+  std::vector<std::size_t> places;
+  for (std::size_t effect = 0; effect < network.effects().size(); ++effect) {
+    if (const EffectInPlace& in_place = network.effects()[effect]; counts(in_place)) {
+      places.push_back(effect * nodes + static_cast<std::size_t>(in_place.node_index.front()));
+    }
+  }
+  std::vector<double> magnitude_W;
+  HeatOfEffect out;
+  double time_s = 0.0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const MeasuredRun& run = runs[r];
+    if (!has_condition(run, condition)) {
+      continue;
+    }
+    heat_along(fit, run, fit.fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
+      const double duration_s = run.time_s[k + 1] - run.time_s[k];
+      magnitude_W.push_back(0.0);
+      for (const std::size_t place : places) {
+        magnitude_W.back() += std::abs(heat_W[place]);
+      }
+      out.mean_W += duration_s * magnitude_W.back();
+      time_s += duration_s;
+    });
+  }
+  if (!magnitude_W.empty()) {
+    out.mean_W /= time_s;
+    const auto peak = magnitude_W.begin() + static_cast<std::ptrdiff_t>(magnitude_W.size() * 99 / 100);
+    std::nth_element(magnitude_W.begin(), peak, magnitude_W.end());
+    out.peak_W = *peak;
+  }
+  return out;
+}
+
+}  // namespace heatsoak

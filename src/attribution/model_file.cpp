@@ -1,0 +1,296 @@
+#include "attribution/model_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+#include "identify/admission.h"
+#include "identify/calibration/error_before_after.h"
+#include "identify/calibration/unlogged_speed.h"
+#include "identify/interval.h"
+#include "identify/log_columns.h"
+#include "identify/log_rows.h"
+#include "identify/measurement/fingerprint.h"
+
+namespace heatsoak {
+namespace {
+
+bool has_signal(const Recording& recording, Signal signal, const ShaftTorque& torque = {}) {
+  const std::vector<Signal> signals = signals_of(recording, torque);
+  return std::ranges::find(signals, signal) != signals.end();
+}
+
+std::vector<Signal> signals_of(const EffectInPlace& effect, const Model& model) {
+  std::vector<double> values;
+  for (const int place : effect.parameter_index) {
+    values.push_back(model.values[static_cast<std::size_t>(place)]);
+  }
+  return effect.type->needed_with(values);
+}
+
+void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recording>& recordings) {
+  std::set<Signal> wanted;
+  for (const EffectInPlace& effect : out.model.model.network.effects()) {
+    const std::vector<Signal> needed = signals_of(effect, out.model.model);
+    wanted.insert(needed.begin(), needed.end());
+  }
+  bool has_heat = false;
+  for (const Signal signal : wanted) {
+    const bool is_anywhere =
+        std::ranges::any_of(recordings, [&](const Recording& each) { return has_signal(each, signal, out.how.torque); });
+    if (is_anywhere) {
+      out.how.needed.push_back(signal);
+      has_heat = has_heat || signal == Signal::current || signal == Signal::input_power;
+    }
+  }
+  if (!has_heat) {
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("no log has a heat input that {} turns into heat: current_A, or power_in_W with an effect input_power_loss", motor.id));
+  }
+  for (const EffectInPlace& effect : out.model.model.network.effects()) {
+    std::vector<std::string_view> lacking;
+    for (const Signal signal : signals_of(effect, out.model.model)) {
+      if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
+        lacking.push_back(column_of(signal));
+      }
+    }
+    if (!lacking.empty()) {
+      out.notes.push_back(
+          fmt::format("no log has {}, which {} goes with: there it is taken as 0", fmt::join(lacking, " and "), effect.name));
+    }
+  }
+}
+
+constexpr const char* kSource = "diagnosis";
+
+Figure measured(double value, double low, double high, const Range& range) {
+  Figure figure;
+  figure.value = value;
+  figure.origin = Origin::measured;
+  figure.source = kSource;
+  if (low < value && high > value && low > 0.0) {
+    figure.spread = Spread{Spread::Kind::range, std::max(low, range.low), std::min(high, range.high), true};
+  }
+  return figure;
+}
+
+MotorSensor motor_sensor(const SensorEffectType& type, const FittedParameter& size) {
+  MotorSensor sensor{std::string(type.name), &type, measured(size.value, size.low, size.high, type.size.range)};
+  // An offset or a gain may have either sign.
+  if (size.low < size.value && size.value < size.high) {
+    sensor.size.spread =
+        Spread{Spread::Kind::range, std::max(size.low, type.size.range.low), std::min(size.high, type.size.range.high), false};
+  }
+  return sensor;
+}
+
+/// Adds the sensor's fault under a name that no effect of the motor has.
+void add_sensor(Motor& motor, const MotorSensor& sensor) {
+  const auto is_used = [&](const std::string& name) {
+    return std::ranges::find(motor.effects, name, &MotorEffect::name) != motor.effects.end() ||
+           std::ranges::find(motor.sensors, name, &MotorSensor::name) != motor.sensors.end();
+  };
+  MotorSensor added = sensor;
+  for (int number = 2; is_used(added.name); ++number) {
+    added.name = fmt::format("{}_{}", sensor.name, number);
+  }
+  motor.sensors.push_back(std::move(added));
+}
+
+MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
+  const Network& network = fit.model.model.network;
+  const auto in_place = std::ranges::find(network.effects(), found.name, &EffectInPlace::name);
+  MotorEffect effect{found.name, in_place->type, {}, {}, found.condition};
+  for (std::size_t role = 0; role < in_place->node_index.size(); ++role) {
+    const bool is_own = in_place->type->nodes[role].own_capacity >= 0;
+    effect.nodes.push_back(is_own ? found.name : std::string(network.node_name(in_place->node_index[role])));
+  }
+  for (std::size_t p = 0; p < in_place->parameter_index.size(); ++p) {
+    const ParameterSpec& spec = in_place->type->parameters[p];
+    const double value = fit.model.model.values[static_cast<std::size_t>(in_place->parameter_index[p])];
+    if (!spec.choices.empty()) {
+      Figure chosen;
+      chosen.value = value;
+      chosen.printed = spec.choices[static_cast<std::size_t>(value)].name;
+      effect.parameters.push_back(chosen);
+      effect.column = chosen.printed == kColumnChoice ? found.drivers.front() : effect.column;
+      continue;
+    }
+    const FittedParameter& fitted = *std::ranges::find(found.parameters, spec.key, &FittedParameter::name);
+    effect.parameters.push_back(measured(value, fitted.low, fitted.high, spec.range));
+  }
+  return effect;
+}
+
+/// The file's figures as the fit has them, and how they hang together.
+void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+  const RefitResult& fit = diagnosis.selection.after;
+  const auto free = model.model.model.free_count();
+  const Eigen::VectorXd moved = fit.model.model.theta().head(free) - model.model.model.theta();
+  const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
+  std::vector<const FittedFigure*> of_file;
+  for (const FittedFigure& each : model.figures) {
+    if (each.is_of_file) {
+      of_file.push_back(&each);
+    }
+  }
+  Eigen::MatrixXd exponents(static_cast<Eigen::Index>(of_file.size()), free);
+  MotorFit together;
+  together.motor = motor.fit ? motor.fit->motor : motor.id;
+  together.runs = model.fitted;
+  for (std::size_t i = 0; i < of_file.size(); ++i) {
+    const FittedFigure& each = *of_file[i];
+    exponents.row(static_cast<Eigen::Index>(i)) = each.exponents.transpose();
+    const double sd = std::sqrt(std::max(0.0, each.exponents.dot(covariance * each.exponents)));
+    Figure& figure = *find_figure(motor, each.name);
+    const double value = each.before * std::exp(each.exponents.dot(moved));
+    const std::string source = figure.source;
+    const Origin origin = figure.origin;
+    figure = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
+    figure.derivation = source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures, before it {}", source);
+    if (!is_told(sd, each)) {
+      figure.origin = origin;
+      figure.source += source.empty() ? "" : fmt::format(", {}", source);
+      figure.derivation = "fit to measured temperatures, which do not tell it alone";
+    }
+    together.figures.push_back(each.name);
+  }
+  Eigen::MatrixXd correlation = exponents * covariance * exponents.transpose();
+  const Eigen::VectorXd sd = correlation.diagonal().cwiseSqrt().cwiseMax(1e-9);
+  correlation = sd.cwiseInverse().asDiagonal() * correlation * sd.cwiseInverse().asDiagonal();
+  correlation.diagonal().setOnes();
+  together.correlation = correlation;
+  const LatentFlux flux = fit.flux;
+  together.latent_flux_W = flux.rms_W;
+  together.latent_flux_time_scale_s = flux.time_scale_s;
+  std::map<std::string, double> noise_K;
+  for (const MeasuredRun& run : diagnosis.runs) {
+    for (const Sensor& sensor : run.sensors) {
+      noise_K[sensor.node] = std::max(noise_K[sensor.node], sensor.noise_K);
+    }
+  }
+  together.noise_K.assign(noise_K.begin(), noise_K.end());
+  motor.fit = std::move(together);
+}
+
+/// Figures that were fitted to some of these very runs are known no better than from a data sheet: the runs would count twice, and the
+/// intervals held for a model that perhaps lacked something.
+void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vector<std::string>& notes) {
+  const auto is_fitted = [&](const Recording& each) { return was_fitted_to(*motor.fit, each); };
+  if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
+    return;
+  }
+  for (const std::string& name : motor.fit->figures) {
+    Figure* const figure = find_figure(motor, name);
+    // Of the others the fit has said that it does not tell them.
+    if (figure && figure->origin == Origin::measured && figure->value > 0.0) {
+      figure->spread =
+          Spread{Spread::Kind::range, figure->value * std::exp(-2.0 * kSheet_sd), figure->value * std::exp(2.0 * kSheet_sd), true};
+    }
+  }
+  motor.fit.reset();
+  notes.emplace_back("the model was fitted to some of these runs: its intervals do not count a second time");
+}
+
+}  // namespace
+
+ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings) {
+  ModelOfLogs out;
+  const auto have = [&](Signal signal) {
+    return std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, signal); });
+  };
+  Motor everywhere = motor;
+  for (MotorEffect& effect : everywhere.effects) {
+    effect.condition.clear();
+  }
+  forget_fit(everywhere, recordings, out.notes);
+  if (everywhere.fit) {
+    out.fitted = everywhere.fit->runs;
+  }
+  std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
+  MotorModel built = motor_model(everywhere, heat_input_of(everywhere, recordings, false), have(Signal::speed));
+  out.how = how_to_read(motor, built.heat);
+  out.model.column = out.how.column;
+  if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
+    out.notes.push_back(
+        fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of what is unexplained; no effect at the stator is "
+                    "named and no curve over another signal added in its place",
+                    significant(most_loss_at_speed_W(motor), 2)));
+  }
+  out.model.model = std::move(built.model);
+  out.model.usual_error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
+  out.model.usual_flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
+  out.figures = std::move(built.figures);
+  out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
+  std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));
+  for (const MotorEffect& effect : motor.effects) {
+    const int size = effect.type->candidacy.size_parameter;
+    if (!effect.condition.empty() && size >= 0) {
+      const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
+      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
+    }
+  }
+  if (const std::string lacking = column_lacking(out.how.column, recordings); !lacking.empty()) {
+    out.notes.push_back(lacking);
+  }
+  set_needed(out, motor, recordings);
+  const bool has_torque = have(Signal::shaft_power);
+  if (!has_torque &&
+      std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, Signal::shaft_power, out.how.torque); })) {
+    out.notes.emplace_back(
+        "not every log has a torque: where there is none, current times torque constant less the no-load drag stands for it");
+  }
+  return out;
+}
+
+void score_files(const Motor& before, const Motor& after, const std::vector<Recording>& holdout, const PredictionOptions& options,
+                 HoldoutScore& score) {
+  if (holdout.empty()) {
+    return;
+  }
+  score.runs_before = predict(before, holdout, options).runs;
+  score.runs_after = predict(after, holdout, options).runs;
+  for (const ErrorBeforeAfter& each : worst_errors(score.runs_before, score.runs_after)) {
+    score.before[each.signal] = {each.before.rmse_K, each.before.max_abs_K};
+    score.after[each.signal] = score.file[each.signal] = {each.after.rmse_K, each.after.max_abs_K};
+  }
+}
+
+Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+  Motor result = motor;
+  set_figures(result, model, diagnosis);
+  std::vector<std::string> names;
+  for (const MeasuredRun& run : diagnosis.runs) {
+    if (std::ranges::find(names, run.name) == names.end()) {
+      names.push_back(run.name);
+    }
+  }
+  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names, ", "));
+  std::vector<MotorSensor> sensors = std::move(result.sensors);
+  result.sensors.clear();
+  for (const FoundEffect& effect : diagnosis.effects) {
+    if (!effect.name.empty()) {
+      result.effects.push_back(motor_effect(effect, diagnosis.selection.after));
+    } else if (const SensorEffectType* type = find_sensor_effect(effect.id); type && !effect.parameters.empty()) {
+      sensors.push_back(motor_sensor(*type, effect.parameters.front()));
+    } else if (!effect.parameters.empty()) {
+      const FittedParameter& size = effect.parameters.front();
+      result.notes.push_back(fmt::format(
+          "{} at the {}{}: {} {:.3g} {}; found in measurements, no property of the motor", effect.id, effect.node,
+          effect.condition.empty() ? "" : fmt::format(" in {}", effect.condition.begin()->second), size.name, size.value, size.unit));
+    }
+  }
+  for (const MotorSensor& sensor : sensors) {
+    add_sensor(result, sensor);
+  }
+  refresh_values(result);
+  return result;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,94 @@
+#include "identify/open_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attribution/open_loop.h"
+#include "base/parallel.h"
+
+namespace heatsoak {
+namespace {
+
+/// A run that goes on within this time after another of the same recording continues it.
+constexpr double kContinues_s = 30.0;
+
+std::string recording_of(const MeasuredRun& run) {
+  const auto found = run.conditions.find("run");
+  return found == run.conditions.end() ? run.name : found->second;
+}
+
+/// The stated faults of a sensor and those that the model has beyond.
+std::vector<SensorFault> all_faults(const ExtendedModel& model, const Sensor& sensor) {
+  std::vector<SensorFault> faults = sensor.faults;
+  for (const SensorTerm& term : model.sensors) {
+    if (term.type->signal == sensor.signal) {
+      faults.push_back({term.type, term.value});
+    }
+  }
+  return faults;
+}
+
+std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
+  const Network& network = model.model.network;
+  for (const MeasuredRun& before : before_it) {
+    const double gap_s = run.time_s.front() - before.time_s.back();
+    if (recording_of(before) == recording_of(run) && gap_s > -1e-9 && gap_s < kContinues_s) {
+      const LinearisedRun path = linearise(network, model.values_in(before), {}, {}, start_C(model, before, {}), before);
+      const Eigen::VectorXd end_C = path.state_C.rightCols(1);
+      return {end_C.begin(), end_C.end()};
+    }
+  }
+  RunStart start = start_of(network, run);
+  for (const Sensor& sensor : run.sensors) {
+    double& node_C = start.state_C[network.find_node(sensor.node)];
+    node_C = true_at_rest_C(all_faults(model, sensor), shown_at_rest_C(sensor.faults, node_C));
+  }
+  start.prior_C = start.state_C;
+  const Eigen::VectorXd decided_C = decided_start_C(
+      network, start, run, [&](std::span<const double> from_C, const MeasuredRun& part) { return linearise(model, from_C, part); });
+  return {decided_C.begin(), decided_C.end()};
+}
+
+}  // namespace
+
+Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
+  // Nobody asks for derivatives by what is free.
+  ExtendedModel settled = model;
+  settled.model.free.clear();
+  settled.model.flux_nodes.clear();
+  return linearise(settled, start_C(model, run, before_it), run).shown_C;
+}
+
+Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
+  Errors errors;
+  std::map<std::string, double> counts;
+  std::vector<Eigen::MatrixXd> off_K(runs.size());
+  in_parallel(runs.size(), 0, [&](std::size_t r) { off_K[r] = runs[r].measured_C - open_loop_C(model, runs[r], before_them); });
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const MeasuredRun& run = runs[r];
+    for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+      ErrorOfSignal& error = errors[run.sensors[sensor].signal];
+      for (const double each_K : off_K[r].col(static_cast<Eigen::Index>(sensor))) {
+        if (!std::isnan(each_K)) {
+          error.rmse_K += each_K * each_K;
+          error.max_abs_K = std::max(error.max_abs_K, std::abs(each_K));
+          counts[run.sensors[sensor].signal] += 1.0;
+        }
+      }
+    }
+  }
+  for (auto& [signal, error] : errors) {
+    error.rmse_K = std::sqrt(error.rmse_K / std::max(1.0, counts[signal]));
+  }
+  return errors;
+}
+
+double rms_K(const Errors& errors) {
+  double squares_K2 = 0.0;
+  for (const auto& [signal, error] : errors) {
+    squares_K2 += error.rmse_K * error.rmse_K;
+  }
+  return std::sqrt(squares_K2 / static_cast<double>(std::max<std::size_t>(1, errors.size())));
+}
+
+}  // namespace heatsoak

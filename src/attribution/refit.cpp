@@ -1,0 +1,298 @@
+#include "attribution/refit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "attribution/uneven_bodies.h"
+#include "base/diagnostic.h"
+#include "base/parallel.h"
+#include "identify/averaged_run.h"
+#include "identify/open_loop.h"
+
+namespace heatsoak {
+namespace {
+
+/// A fit rests where its next step promises no more: no name depends on a tenth of a nat.
+constexpr double kConverged_nats = 0.1;
+
+/// The prior of the moving coordinates, the others held at `step`.
+ThetaPrior prior_given(const ThetaPrior& prior, const std::vector<Eigen::Index>& moving, const Eigen::VectorXd& step) {
+  const Eigen::MatrixXd own = prior.precision(moving, moving);
+  Eigen::VectorXd held = step - prior.mean;
+  held(moving).setZero();
+  const Eigen::VectorXd pull = (prior.precision * held)(moving);
+  return {own, prior.mean(moving) - Eigen::VectorXd(own.completeOrthogonalDecomposition().solve(pull))};
+}
+
+/// Least squares of the moving coordinates, the others held at `step`.
+LinearFit fit_moving(const RunEvidence& all, const ThetaPrior& prior, const std::vector<Eigen::Index>& moving,
+                     const Eigen::VectorXd& step) {
+  const auto inner = static_cast<Eigen::Index>(moving.size());
+  Eigen::VectorXd held = step;
+  held(moving).setZero();
+  Eigen::MatrixXd tall(all.triangle.rows(), inner + 1);
+  tall << all.triangle(Eigen::all, moving), all.triangle.rightCols<1>() - all.triangle.leftCols(step.size()) * held;
+  if (moving.empty()) {
+    return {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0), -0.5 * (tall.squaredNorm() + all.log_determinant), tall.squaredNorm()};
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(tall);
+  const RunEvidence reduced{decomposition.matrixQR().topRows(inner + 1).triangularView<Eigen::Upper>(), all.log_determinant, all.count};
+  const ThetaPrior own = prior_given(prior, moving, step);
+  return linear_fit({&reduced, 1}, own.mean, own.precision);
+}
+
+/// The step of all coordinates that decreases the squares most while none leaves its bounds (Stark and Parker 1995, bounded-variable
+/// least squares): those that would leave are held, and let go again where the squares pull them back inside.
+LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
+  const Eigen::Index count = prior.mean.size();
+  const auto data = all.triangle.leftCols(count);
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(count).cwiseMax(low).cwiseMin(high);
+  const auto residual = [&] { return Eigen::VectorXd(data * step - all.triangle.rightCols<1>()); };
+  std::vector<bool> is_held(static_cast<std::size_t>(count), false);
+  std::vector<Eigen::Index> moving;
+  LinearFit fit;
+  for (Eigen::Index round = 0; round < 4 * count + 4; ++round) {
+    moving.clear();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (!is_held[static_cast<std::size_t>(i)]) {
+        moving.push_back(i);
+      }
+    }
+    fit = fit_moving(all, prior, moving, step);
+    double share = 1.0;
+    Eigen::Index first = -1;
+    for (std::size_t m = 0; m < moving.size(); ++m) {
+      const Eigen::Index i = moving[m];
+      const double wanted = fit.coefficients[static_cast<Eigen::Index>(m)];
+      const double bound = std::clamp(wanted, low[i], high[i]);
+      if (bound != wanted && (bound - step[i]) / (wanted - step[i]) < share) {
+        share = std::max(0.0, (bound - step[i]) / (wanted - step[i]));
+        first = i;
+      }
+    }
+    step(moving) += share * (fit.coefficients - step(moving)).eval();
+    if (first >= 0) {
+      step[first] = std::clamp(fit.coefficients[std::ranges::find(moving, first) - moving.begin()], low[first], high[first]);
+      is_held[static_cast<std::size_t>(first)] = true;
+      continue;
+    }
+    const Eigen::VectorXd slope = data.transpose() * residual() + prior.precision * (step - prior.mean);
+    double steepest = 1e-9 * (1.0 + slope.cwiseAbs().maxCoeff());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double inwards = step[i] <= low[i] ? -slope[i] : slope[i];
+      if (is_held[static_cast<std::size_t>(i)] && inwards > steepest) {
+        steepest = inwards;
+        first = i;
+      }
+    }
+    if (first < 0) {
+      break;
+    }
+    is_held[static_cast<std::size_t>(first)] = false;
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
+  if (!moving.empty()) {
+    covariance(moving, moving) = fit.covariance;
+  }
+  // What the held ones cost before anything is measured counts as well.
+  const double misfit = residual().squaredNorm() + (step - prior.mean).dot(prior.precision * (step - prior.mean));
+  return {std::move(step), std::move(covariance), fit.log_evidence - 0.5 * (misfit - fit.misfit), misfit};
+}
+
+class Fitter {
+ public:
+  Fitter(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C, const RefitOptions& options)
+      : runs_(runs), options_(options) {
+    now_.model = std::move(model);
+    now_.start_C = std::move(start_C);
+    now_.flux = options.flux;
+    const Eigen::Index count = now_.model.free_count();
+    low_.resize(count);
+    high_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      low_[i] = now_.model.low(i);
+      high_[i] = now_.model.high(i);
+    }
+  }
+
+  RefitResult run() {
+    linearise_all(now_);
+    std::vector<DesignRun> designs = design_of(now_);
+    for (int step = 0; step < options_.most_steps; ++step) {
+      const RunEvidence all = all_runs(designs, now_.flux);
+      const double misfit = misfit_of(all, now_);
+      const LinearFit fit = bounded_step(all);
+      now_.evidence_nats = fit.log_evidence;
+      now_.covariance = fit.covariance;
+      now_.converged = misfit - fit.misfit < kConverged_nats;
+      if (now_.converged || !take(fit, misfit, designs)) {
+        break;
+      }
+    }
+    if (!options_.around.empty()) {
+      average();
+    }
+    return std::move(now_);
+  }
+
+ private:
+  void linearise_all(RefitResult& at) const {
+    at.fitted.resize(runs_.size());
+    in_parallel(runs_.size(), 0, [&](std::size_t r) { at.fitted[r] = linearise(at.model, at.start_C[r], runs_[r]); });
+  }
+
+  [[nodiscard]] std::vector<DesignRun> design_of(const RefitResult& at, const std::vector<Columns>& extra = {}) const {
+    std::vector<DesignRun> designs = design(at.model.model.network, at.fitted, runs_, options_.weights, options_.merged, extra);
+    for (DesignRun& each : designs) {
+      std::ranges::transform(each.noise.noise_K, each.noise.noise_K.begin(),
+                             [&](double own_K) { return options_.white_noise_K > 0.0 ? options_.white_noise_K : own_K; });
+    }
+    return designs;
+  }
+
+  /// Triangle of [columns, residual] of all runs.
+  [[nodiscard]] static RunEvidence all_runs(const std::vector<DesignRun>& designs, const LatentFlux& flux) {
+    std::vector<RunEvidence> each(designs.size());
+    in_parallel(designs.size(), 0, [&](std::size_t r) {
+      const DesignRun& one = designs[r];
+      each[r] = run_evidence(one.run, one.columns, Whitening(one.run, flux, one.noise), one.start);
+    });
+    RunEvidence all{stacked(each), 0.0, 0};
+    for (const RunEvidence& run : each) {
+      all.log_determinant += run.log_determinant;
+      all.count += run.count;
+    }
+    return all;
+  }
+
+  /// Whitened squares that are left where the columns were taken, the start temperatures at their best, the prior's included.
+  [[nodiscard]] static double misfit_of(const RunEvidence& all, const RefitResult& at) {
+    const ThetaPrior prior = prior_here(at.model);
+    return all.triangle.rightCols<1>().squaredNorm() + prior.mean.dot(prior.precision * prior.mean);
+  }
+
+  [[nodiscard]] LinearFit bounded_step(const RunEvidence& all) const {
+    const Eigen::VectorXd theta = now_.model.theta();
+    const Eigen::ArrayXd longest = Eigen::ArrayXd::Constant(theta.size(), options_.longest_step_ratio);
+    return bounded_fit(all, prior_here(now_.model), (low_ - theta).array().max(-longest), (high_ - theta).array().min(longest));
+  }
+
+  /// Mean and covariance over the suppositions: Σ w·(covariance + step·stepᵀ), w by evidence. Bodies may be a little uneven.
+  void average() {
+    const std::vector<Columns> uneven = uneven_bodies(now_.fitted, runs_);
+    const std::vector<DesignRun> designs = design_of(now_, uneven);
+    const Eigen::VectorXd theta = now_.model.theta();
+    const Eigen::Index count = theta.size();
+    const Eigen::Index uncertain = uneven.front().cols();
+    const ThetaPrior own = prior_here(now_.model);
+    ThetaPrior prior{Eigen::MatrixXd::Identity(count + uncertain, count + uncertain) / (kUneven_share * kUneven_share),
+                     Eigen::VectorXd::Zero(count + uncertain)};
+    prior.precision.topLeftCorner(count, count) = own.precision;
+    prior.precision.topRightCorner(count, uncertain).setZero();
+    prior.precision.bottomLeftCorner(uncertain, count).setZero();
+    prior.mean.head(count) = own.mean;
+    Eigen::VectorXd low = Eigen::VectorXd::Constant(count + uncertain, -1.0);
+    Eigen::VectorXd high = -low;
+    low.head(count) = low_ - theta;
+    high.head(count) = high_ - theta;
+    std::vector<LinearFit> fits;
+    double best_nats = -std::numeric_limits<double>::infinity();
+    for (const LatentFlux& flux : options_.around) {
+      fits.push_back(bounded_fit(all_runs(designs, flux), prior, low, high));
+      best_nats = std::max(best_nats, fits.back().log_evidence);
+    }
+    double total_weight = 0.0;
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(count + uncertain);
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+    for (const LinearFit& fit : fits) {
+      const double weight = std::exp(fit.log_evidence - best_nats);
+      total_weight += weight;
+      mean += weight * fit.coefficients;
+      square += weight * (fit.covariance + fit.coefficients * fit.coefficients.transpose());
+    }
+    mean /= total_weight;
+    now_.covariance = (square / total_weight - mean * mean.transpose()).topLeftCorner(count, count);
+    try {
+      now_ = moved(mean.head(count), start_steps_K(mean, designs), 1.0);
+    } catch (const Failure&) {
+      return;
+    }
+  }
+
+  /// What the start temperatures do when the coordinates make a step.
+  [[nodiscard]] std::vector<Eigen::VectorXd> start_steps_K(const Eigen::VectorXd& step, const std::vector<DesignRun>& designs) const {
+    std::vector<Eigen::VectorXd> steps_K;
+    for (const DesignRun& one : designs) {
+      steps_K.push_back(start_correction_K(one.run, one.columns, step, Whitening(one.run, now_.flux, one.noise), one.start));
+    }
+    return steps_K;
+  }
+
+  /// Throws Failure where the temperatures run away.
+  [[nodiscard]] RefitResult moved(const Eigen::VectorXd& step, const std::vector<Eigen::VectorXd>& start_step_K, double share) const {
+    RefitResult next;
+    next.model = now_.model;
+    next.model.set_theta((now_.model.theta() + share * step).cwiseMax(low_).cwiseMin(high_));
+    next.flux = now_.flux;
+    next.start_C = now_.start_C;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      next.start_C[r].resize(static_cast<std::size_t>(start_step_K[r].size()), runs_[r].at.front().ambient_C);
+      for (Eigen::Index i = 0; i < start_step_K[r].size(); ++i) {
+        next.start_C[r][static_cast<std::size_t>(i)] += share * start_step_K[r][i];
+      }
+    }
+    linearise_all(next);
+    next.evidence_nats = now_.evidence_nats;
+    next.covariance = now_.covariance;
+    next.converged = now_.converged;
+    return next;
+  }
+
+  /// The longest of the halved steps that lowers the squares; false where none does.
+  bool take(const LinearFit& fit, double misfit, std::vector<DesignRun>& designs) {
+    const std::vector<Eigen::VectorXd> start_step_K = start_steps_K(fit.coefficients, designs);
+    for (double share = 1.0; share > 0.05; share *= 0.5) {
+      try {
+        RefitResult next = moved(fit.coefficients, start_step_K, share);
+        std::vector<DesignRun> next_designs = design_of(next);
+        if (misfit_of(all_runs(next_designs, now_.flux), next) < misfit + 1e-9) {
+          now_ = std::move(next);
+          designs = std::move(next_designs);
+          return true;
+        }
+      } catch (const Failure&) {
+        continue;
+      }
+    }
+    return false;
+  }
+
+  const std::vector<MeasuredRun>& runs_;
+  const RefitOptions& options_;
+  RefitResult now_;
+  Eigen::VectorXd low_, high_;
+};
+
+}  // namespace
+
+RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                  const RefitOptions& options) {
+  return Fitter(std::move(model), runs, std::move(start_C), options).run();
+}
+
+RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                      const RefitOptions& options) {
+  try {
+    return refit(std::move(model), runs, std::move(start_C), options);
+  } catch (const Failure&) {
+    RefitResult none;
+    none.flux = options.flux;
+    none.evidence_nats = -std::numeric_limits<double>::infinity();
+    return none;
+  }
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,476 @@
+#include "attribution/rounds.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include "attribution/mean_heat.h"
+#include "attribution/open_loop.h"
+#include "base/parallel.h"
+#include "identify/averaged_run.h"
+#include "identify/calibration/motor_model.h"
+#include "identify/calibration/unlogged_speed.h"
+#include "identify/model_screening.h"
+
+namespace heatsoak {
+namespace {
+
+/// K/W: how far the outermost body that unknown heat may reach is warmed by a heat that is held, mean over the runs.
+double steady_rise_K_per_W(const std::vector<LinearisedRun>& runs) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Index x = runs.front().states;
+  const Eigen::Index q = runs.front().fluxes;
+  Eigen::MatrixXd lost = Eigen::MatrixXd::Zero(x, x);
+  Eigen::MatrixXd gained = Eigen::MatrixXd::Zero(x, q);
+  for (const LinearisedRun& run : runs) {
+    for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
+      lost += Eigen::MatrixXd::Identity(x, x) - Eigen::Map<const RowMajor>(run.transition.data() + k * x * x, x, x);
+      gained += Eigen::Map<const RowMajor>(run.injection.data() + k * x * q, x, q);
+    }
+  }
+  return (lost.colPivHouseholderQr().solve(gained)).colwise().maxCoeff().minCoeff();
+}
+
+/// K: how far the measured temperatures move, rms over the sensors.
+double travel_K(const std::vector<MeasuredRun>& runs) {
+  double sum_K2 = 0.0;
+  double count = 0.0;
+  for (const MeasuredRun& run : runs) {
+    for (const auto shown_C : run.measured_C.colwise()) {
+      const auto usable = [](double each_C) { return !std::isnan(each_C); };
+      std::vector<double> all_C;
+      std::ranges::copy_if(shown_C, std::back_inserter(all_C), usable);
+      if (!all_C.empty()) {
+        const auto [low, high] = std::ranges::minmax(all_C);
+        sum_K2 += (high - low) * (high - low);
+        count += 1.0;
+      }
+    }
+  }
+  return count > 0.0 ? std::sqrt(sum_K2 / count) : 0.0;
+}
+
+/// What the search knows of a candidate: those that act in some runs only, or at unusual nodes, share the odds of one effect.
+std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, const SelectionRules& rules) {
+  const auto group = [](const Candidate& each) {
+    if (each.condition.empty()) {
+      return each.is_rare() ? fmt::format("{} elsewhere", each.type->name) : each.id;
+    }
+    return fmt::format("{} in some runs", each.type ? each.type->name : each.deviation_type->name);
+  };
+  std::map<std::string, int> counts;
+  for (const Candidate& each : candidates) {
+    ++counts[group(each)];
+  }
+  std::vector<CandidateRule> all;
+  for (const Candidate& each : candidates) {
+    CandidateRule rule;
+    rule.has_sign = each.size_spec().range.low >= 0.0;
+    const double kind_nats = each.condition.empty() ? rules.inclusion_nats : rules.conditional_nats;
+    rule.prior_nats = kind_nats - std::log(static_cast<double>(counts[group(each)]));
+    rule.id = each.id;
+    // An offset of one sensor and one of the other differ by heat that both the runs and the figures may have.
+    rule.family = each.sensor_type ? each.id.substr(0, each.id.rfind('_')) : std::string(each.family());
+    for (const auto& [key, value] : each.condition) {
+      rule.family += fmt::format(" where {} is {}", key, value);
+    }
+    all.push_back(std::move(rule));
+  }
+  return all;
+}
+
+}  // namespace
+
+Rounds::Rounds(const SelectionInput& input, const SelectionRules& rules)
+    : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
+
+Judged Rounds::run_rounds() {
+  begin();
+  std::set<std::vector<int>> seen;
+  Judged judged;
+  for (int round = 0; round < rules_.most_rounds; ++round) {
+    judged = judge();
+    const bool repeats = round > 0 && judged.best == best_;
+    const bool circles = !seen.insert(judged.best).second;
+    best_ = judged.best;
+    if (repeats || circles) {
+      break;
+    }
+    follow(judged);
+  }
+  own_figures(judged);
+  note_sight();
+  return judged;
+}
+
+void Rounds::begin() {
+  out_.mean_heat_W = mean_heat_W(input_.model.model, input_.runs);
+  std::vector<std::vector<double>> start_C;
+  std::vector<LinearisedRun> paths;
+  for (const MeasuredRun& run : input_.runs) {
+    start_C.push_back(measured_start_C(input_.model.model.network, run));
+    paths.push_back(linearise(input_.model, start_C.back(), run));
+    merged_.push_back(mergeable_samples(paths.back()));
+  }
+  unit_W_ = rules_.material_K / std::max(1e-6, steady_rise_K_per_W(paths));
+  now_ = refit(input_.model, input_.runs, start_C, plain_options());
+  out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.model.usual_flux_W});
+  grid_ = flux_grid(unit_W_, travel_K(input_.runs), input_.model.model.flux_nodes.size());
+  out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
+  list_ = candidates_for(input_.model, input_.runs);
+  if (is_speed_open_) {
+    // Heat at the stator may well be the loss at the speed that nobody logged.
+    std::erase_if(list_.candidates, [](const Candidate& each) { return each.type && each.nodes.front() == "stator"; });
+  }
+  out_.not_judged = list_.not_judged;
+  figures_ = well_known_figures(input_.model, kSheet_sd);
+  set_rules_ = rules_of(candidates(), rules_);
+  for (const Eigen::Index figure : figures_) {
+    const std::string name = "figure " + input_.model.model.name(figure);
+    set_rules_.push_back({false, rules_.inclusion_nats, name, name});
+  }
+  bodies_ = candidates_with_body(candidates());
+  auto companion = static_cast<int>(set_rules_.size());
+  for (const int body : bodies_) {
+    CandidateRule& rule = set_rules_[static_cast<std::size_t>(body)];
+    rule.companion_sd = rules_.body_start_K;
+    for (std::size_t r = 0; r < input_.runs.size(); ++r) {
+      rule.companions.push_back(companion++);
+    }
+  }
+  place_ = grid_.middle();
+}
+
+Judged Rounds::judge() {
+  Judged judged;
+  const ExtendedModel base = base_here();
+  std::vector<Columns> extra(input_.runs.size());
+  judged.fitted.resize(input_.runs.size());
+  in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
+    const MeasuredRun& run = input_.runs[r];
+    judged.fitted[r] = linearise_along(base, now_.fitted[r].state_C.topRows(base.model.network.state_count()), run);
+    const auto own = static_cast<Eigen::Index>(set_rules_.size());
+    const auto bodies = static_cast<Eigen::Index>(bodies_.size());
+    const auto runs = static_cast<Eigen::Index>(input_.runs.size());
+    extra[r].setZero(judged.fitted[r].residual_K.size(), own + bodies * runs);
+    const Columns columns = candidate_columns(candidates(), base, judged.fitted[r], run);
+    const auto count = static_cast<Eigen::Index>(candidates().size());
+    extra[r].leftCols(count) = columns.leftCols(count);
+    for (Eigen::Index body = 0; body < bodies; ++body) {
+      extra[r].col(own + body * runs + static_cast<Eigen::Index>(r)) = columns.col(count + body);
+    }
+    for (std::size_t i = 0; i < figures_.size(); ++i) {
+      extra[r].col(static_cast<Eigen::Index>(candidates().size() + i)) = kSheet_sd * judged.fitted[r].by_parameter.col(figures_[i]);
+    }
+  });
+  judged.designs = design(base.model.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
+  const ThetaPrior prior = prior_here(base);
+  judged.empty_place = best_place(judged.designs, prior, {}, place_);
+  std::map<FluxPlace, Reduced> points;
+  add_points(judged.designs, prior, grid_.star(judged.empty_place), points);
+  add_points(judged.designs, prior, grid_.all_over(), points);
+  if (!best_.empty()) {
+    add_points(judged.designs, prior, grid_.star(best_place_), points);
+  }
+  // The unknown heat beside the best set is not that beside nothing.
+  constexpr int kMostMoves = 3;
+  for (int move = 0; move < kMostMoves; ++move) {
+    std::vector<Reduced> all;
+    judged.places.clear();
+    for (const auto& [place, reduced] : points) {
+      judged.places.push_back(place);
+      all.push_back(reduced);
+    }
+    search_.emplace(std::move(all), set_rules_, rules_);
+    judged.best = search_->sets().front().members;
+    judged.at_best = search_->at_best(judged.best);
+    judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[judged.at_best.point]);
+    const std::size_t before = points.size();
+    add_points(judged.designs, prior, grid_.star(judged.best_place), points);
+    if (points.size() == before) {
+      break;
+    }
+  }
+  constexpr std::size_t kMostFits = 6;
+  search_->reconsider(
+      [&](const std::vector<int>& members, const SetSearch::AtBest& at) {
+        RefitOptions options = final_options(judged.places[at.point]);
+        options.around.clear();
+        const ExtendedModel model = with_members(members, at, ShapesAre::free);
+        return try_refit(model, input_.runs, starts_of(model), options).evidence_nats;
+      },
+      kMostFits);
+  if (search_->sets().front().members != judged.best) {
+    judged.best = search_->sets().front().members;
+    judged.at_best = search_->at_best(judged.best);
+    judged.best_place = judged.places[judged.at_best.point];
+  }
+  place_ = judged.empty_place;
+  best_place_ = judged.best_place;
+  note();
+  return judged;
+}
+
+void Rounds::add_points(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<FluxPlace>& places,
+                        std::map<FluxPlace, Reduced>& points) const {
+  std::vector<std::pair<const FluxPlace, Reduced>*> wanted;
+  for (const FluxPlace& place : places) {
+    const auto [entry, is_new] = points.try_emplace(place);
+    if (is_new) {
+      wanted.push_back(&*entry);
+    }
+  }
+  in_parallel(wanted.size(), 0,
+              [&](std::size_t i) { wanted[i]->second = reduced(products_of(designs, grid_.at(wanted[i]->first), {}), prior); });
+}
+
+FluxPlace Rounds::best_place(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<int>& members,
+                             const FluxPlace& start) const {
+  SetColumns set = columns_of(members, set_rules_, rules_.size_sd);
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index i = 0; i < free_count(); ++i) {
+    columns.push_back(i);
+  }
+  for (Eigen::Index& column : set.columns) {
+    columns.push_back(free_count() + column);
+    column = static_cast<Eigen::Index>(columns.size()) - 1 - free_count();
+  }
+  return most_probable(grid_, start, [&](const FluxPlace& place) {
+    const Reduced own = reduced(products_of(designs, grid_.at(place), columns), prior);
+    return own.base_nats + set_gain_nats(own, set);
+  });
+}
+
+ExtendedModel Rounds::with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const {
+  ExtendedModel model = base_here();
+  Eigen::VectorXd theta = model.theta() + at.theta;
+  for (Eigen::Index i = 0; i < theta.size(); ++i) {
+    theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
+  }
+  model.set_theta(theta);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (is_figure(members[m])) {
+      const Eigen::Index figure = figure_of(members[m]);
+      model.model.prior = with_doubt(model.model.prior, figure, kSheet_sd);
+      Eigen::VectorXd moved = model.theta();
+      moved[figure] = std::clamp(moved[figure] + kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)], model.low(figure), model.high(figure));
+      model.set_theta(moved);
+    }
+  }
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (!is_figure(members[m])) {
+      const Candidate& candidate = candidates()[static_cast<std::size_t>(members[m])];
+      model = with_candidate(model, candidate, at.sizes[static_cast<Eigen::Index>(m)], {}, shapes);
+    }
+  }
+  return model;
+}
+
+void Rounds::follow(const Judged& judged) {
+  RefitOptions options;
+  options.flux = grid_.at(judged.best_place);
+  options.weights = out_.weights;
+  options.merged = merged_;
+  RefitResult next = try_refit(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
+  if (!std::isfinite(next.evidence_nats)) {
+    return;
+  }
+  now_ = std::move(next);
+  std::size_t instance = input_.model.model.network.effects().size();
+  for (const int member : judged.best) {
+    if (is_figure(member)) {
+      continue;
+    }
+    Candidate& candidate = list_.candidates[static_cast<std::size_t>(member)];
+    if (candidate.type) {
+      take_shapes(now_.model.model.network.effects()[instance++], candidate);
+    } else if (candidate.sensor_type) {
+      candidate.column_at_share = away_from_zero(now_.model.theta()[size_coordinate(now_.model, candidate, {})]);
+    }
+  }
+  out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
+}
+
+double Rounds::away_from_zero(double share) {
+  constexpr double kLeast_share = 0.1;
+  return std::abs(share) < kLeast_share ? std::copysign(kLeast_share, share) : share;
+}
+
+void Rounds::take_shapes(const EffectInPlace& fitted, Candidate& candidate) const {
+  const auto value_of = [&](std::size_t p) { return now_.model.model.values[static_cast<std::size_t>(fitted.parameter_index[p])]; };
+  const auto size = static_cast<std::size_t>(candidate.size_parameter());
+  const double share = away_from_zero(value_of(size) / candidate.typical_size());
+  for (std::size_t p = 0; p < candidate.parameters.size(); ++p) {
+    const bool is_capacity =
+        std::ranges::any_of(candidate.type->nodes, [&](const NodeRole& role) { return role.own_capacity == static_cast<int>(p); });
+    if (p != size && candidate.type->parameters[p].choices.empty()) {
+      candidate.parameters[p] = is_capacity ? value_of(p) / share : value_of(p);
+    }
+  }
+}
+
+void Rounds::note() {
+  constexpr std::size_t kTold = 12;
+  Round round;
+  for (int j = 0; j < static_cast<int>(candidates().size()); ++j) {
+    const double gain_nats = search_->single_gain_nats(j);
+    if (gain_nats > 0.0) {
+      JudgedCandidate each{candidates()[static_cast<std::size_t>(j)], gain_nats, search_->visibility_ratio(j), 0.0, 0.0};
+      each.size_share = search_->at_best({j}).sizes[0];
+      for (const EffectSet& set : search_->sets()) {
+        each.probability += std::ranges::find(set.members, j) != set.members.end() ? set.probability : 0.0;
+      }
+      round.ladder.push_back(std::move(each));
+    }
+  }
+  std::ranges::stable_sort(round.ladder, std::greater(), &JudgedCandidate::gain_nats);
+  round.ladder.resize(std::min(round.ladder.size(), kTold));
+  const EffectSet& best = search_->sets().front();
+  for (const int member : best.members) {
+    round.taken.push_back(set_rules_[static_cast<std::size_t>(member)].id);
+  }
+  const auto empty = std::ranges::find_if(search_->sets(), [](const EffectSet& set) { return set.members.empty(); });
+  round.taken_nats = best.log_probability_nats - empty->log_probability_nats;
+  out_.nothing_probability = empty->probability;
+  out_.rounds.push_back(std::move(round));
+}
+
+void Rounds::note_sight() {
+  std::map<std::string, double> best_nats;
+  for (std::size_t j = 0; j < candidates().size(); ++j) {
+    if (candidates()[j].type && candidates()[j].condition.empty()) {
+      double& best = best_nats[std::string(candidates()[j].type->name)];
+      best = std::max(best, search_->typical_gain_nats(static_cast<int>(j)));
+    }
+  }
+  for (const auto& [name, nats] : best_nats) {
+    if (nats < rules_.seen_nats) {
+      out_.unseen.push_back(name);
+    }
+  }
+  const auto all = static_cast<double>(std::max<std::size_t>(1, best_nats.size()));
+  out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
+}
+
+RefitOptions Rounds::final_options(const FluxPlace& place) const {
+  RefitOptions options;
+  options.flux = grid_.at(place);
+  options.weights = out_.weights;
+  options.merged = merged_;
+  for (const FluxPlace& each : grid_.star(place)) {
+    options.around.push_back(grid_.at(each));
+  }
+  return options;
+}
+
+RefitOptions Rounds::plain_options() const {
+  RefitOptions plain;
+  plain.white_noise_K = rules_.start_error_K;
+  plain.longest_step_ratio = rules_.longest_step_ratio;
+  plain.most_steps = 20;
+  plain.flux = {std::vector<double>(input_.model.model.flux_nodes.size(), 0.0), 100.0};
+  plain.weights = out_.weights;
+  plain.merged = merged_;
+  return plain;
+}
+
+double Rounds::error_of_ends_K(const RefitResult& start, RefitOptions options) const {
+  constexpr double kSeen_share = 2.0 / 3.0;
+  const auto seen = [](const MeasuredRun& run) { return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples())); };
+  for (std::size_t r = 0; r < input_.runs.size(); ++r) {
+    const MeasuredRun& run = input_.runs[r];
+    const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
+    if (options.weights[r].size() == 0) {
+      options.weights[r].setOnes(run.samples() * sensors);
+    }
+    options.weights[r].tail((run.samples() - seen(run)) * sensors).setZero();
+  }
+  const RefitResult fit = try_refit(start.model, input_.runs, start.start_C, options);
+  if (!std::isfinite(fit.evidence_nats)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double sum_K2 = 0.0;
+  double count = 0.0;
+  for (std::size_t r = 0; r < input_.runs.size(); ++r) {
+    const MeasuredRun& run = input_.runs[r];
+    const Eigen::MatrixXd error_K = open_loop_C(fit.model, run, {}) - run.measured_C;
+    for (const double each_K : error_K.bottomRows(run.samples() - seen(run)).reshaped()) {
+      if (!std::isnan(each_K)) {
+        sum_K2 += each_K * each_K;
+        count += 1.0;
+      }
+    }
+  }
+  return std::sqrt(sum_K2 / std::max(1.0, count));
+}
+
+RefitResult Rounds::to_predict(RefitResult fit) const {
+  if (fit.flux.wander_K <= 0.0 || !std::isfinite(fit.evidence_nats)) {
+    return fit;
+  }
+  RefitResult plain = try_refit(fit.model, input_.runs, fit.start_C, plain_options());
+  if (!std::isfinite(plain.evidence_nats)) {
+    return fit;
+  }
+  RefitOptions whitened;
+  whitened.flux = fit.flux;
+  whitened.weights = out_.weights;
+  whitened.merged = merged_;
+  if (error_of_ends_K(fit, whitened) <= error_of_ends_K(plain, plain_options())) {
+    return fit;
+  }
+  const Eigen::VectorXd moved = plain.model.theta() - fit.model.theta();
+  plain.covariance = fit.covariance + moved * moved.transpose();
+  plain.flux = fit.flux;
+  plain.evidence_nats = fit.evidence_nats;
+  plain.converged = fit.converged;
+  return plain;
+}
+
+void Rounds::own_figures(const Judged& judged) {
+  const ExtendedModel start = base_here();
+  out_.before = refit(start, input_.runs, starts_of(start), final_options(judged.empty_place));
+  out_.own = out_.before;
+  std::vector<int> doubted;
+  std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_figure(member); });
+  if (!doubted.empty()) {
+    const ExtendedModel with_doubts = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
+    out_.own = refit(with_doubts, input_.runs, starts_of(with_doubts), final_options(judged.best_place));
+  }
+  out_.own = to_predict(std::move(out_.own));
+}
+
+std::vector<std::vector<double>> Rounds::starts_of(const ExtendedModel& model) const {
+  std::vector<std::vector<double>> start_C = now_.start_C;
+  for (std::vector<double>& each : start_C) {
+    each.resize(std::min(each.size(), static_cast<std::size_t>(model.model.network.state_count())));
+  }
+  return start_C;
+}
+
+std::map<std::string, double> Rounds::left_by(const RefitResult& fit) const {
+  std::vector<Eigen::VectorXd> squares(input_.runs.size());
+  const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
+  in_parallel(designs.size(), 0, [&](std::size_t r) {
+    const DesignRun& one = designs[r];
+    squares[r] = Whitening(one.run, fit.flux, one.noise).smoothed_flux(one.run.residual_K).mean_W.rowwise().squaredNorm();
+  });
+  std::map<std::string, double> left;
+  for (std::size_t f = 0; f < input_.model.model.flux_nodes.size(); ++f) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t r = 0; r < designs.size(); ++r) {
+      sum += squares[r][static_cast<Eigen::Index>(f)];
+      count += static_cast<double>(designs[r].run.samples());
+    }
+    left[std::string(input_.model.model.network.node_name(input_.model.model.flux_nodes[f]))] = std::sqrt(sum / count);
+  }
+  return left;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,83 @@
+#include "attribution/run_deviation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace heatsoak {
+namespace {
+
+bool turns_input_into_heat(const Network& /*network*/, const EffectInPlace& effect) {
+  return effect.type->name == "copper_loss" || effect.type->name == "input_power_loss";
+}
+
+bool is_resistance_to_ambient(const Network& network, const EffectInPlace& effect) {
+  return effect.type->name == "conduction" &&
+         std::ranges::any_of(effect.node_index, [&](int node) { return network.node_name(node) == Network::kAmbient; });
+}
+
+bool is_contact(const Network& network, const EffectInPlace& effect) {
+  return effect.type->name == "conduction" && !is_resistance_to_ambient(network, effect);
+}
+
+}  // namespace
+
+const std::vector<RunDeviationType>& all_run_deviations() {
+  static const std::vector<RunDeviationType> all{
+      {.name = "heat_share",
+       .size = {"deviation", "", Range::between(-0.9, 3.0), "of the heat that goes in from what the log says, as a share of it"},
+       .usual = 0.1,
+       .node = "winding",
+       .summary = "More or less heat goes in than the log says: another phase carries the current, or the driver takes another share.",
+       .equation = "P_in = (1 + deviation) · P_in of the log",
+       .family = "heat that the log does not tell",
+       .look_alike = "constant_heat in that run, where the load hardly changes; airflow at the winding, of the opposite sign.",
+       .experiment =
+           "current and voltage measured at the motor's own terminals, with the rotor turned by a sixth of an electrical turn between runs",
+       .concerns = turns_input_into_heat,
+       .part_ratio = [](double d_share) { return d_share / std::max(0.01, 1.0 + d_share); }},
+      {.name = "hindered_cooling",
+       .size = {"resistance_rise", "", Range::between(0.0, 20.0), "of the resistance to ambient, as a share of it"},
+       .usual = 0.3,
+       .node = "stator",
+       .summary = "Less heat leaves than the model says: a cover, a mount that has come loose, a fan or a draught that is missing.",
+       .equation = "R_ambient = (1 + resistance_rise) · R_ambient of the other runs",
+       .family = "less cooling than usual",
+       .look_alike = "airflow in all the other runs.",
+       .experiment = "the same load twice, with the mount and the cover as they were and as they should be",
+       .concerns = is_resistance_to_ambient,
+       .part_ratio = [](double d_share) { return -d_share; }},
+      {.name = "changed_contact",
+       .size = {"resistance_change", "", Range::between(-0.9, 20.0), "of the resistance between winding and stator, as a share of it"},
+       .usual = 0.2,
+       .is_rare = true,
+       .node = "winding",
+       .summary =
+           "Heat crosses from the winding to the stator worse or better than the model says: a winding that has come loose, or was glued.",
+       .equation = "R_contact = (1 + resistance_change) · R_contact of the other runs",
+       .family = "contact between winding and stator",
+       .look_alike = "contact_ageing, contact_temperature_dependence where that run was another time or temperature.",
+       .experiment = "the same locked-rotor run once more, from equal temperatures",
+       .concerns = is_contact,
+       .part_ratio = [](double d_share) { return -d_share; }},
+  };
+  return all;
+}
+
+std::vector<int> RunDeviationType::places_in(const Network& network) const {
+  std::vector<int> places;
+  for (const EffectInPlace& effect : network.effects()) {
+    if (concerns(network, effect)) {
+      places.push_back(effect.parameter_index.front());
+    }
+  }
+  return places;
+}
+
+bool has_condition(const MeasuredRun& run, const Condition& condition) {
+  return std::ranges::all_of(condition, [&](const auto& part) {
+    const auto found = run.conditions.find(part.first);
+    return found != run.conditions.end() && found->second == part.second;
+  });
+}
+
+}  // namespace heatsoak

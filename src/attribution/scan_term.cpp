@@ -1,0 +1,116 @@
+#include "attribution/scan_term.h"
+
+#include <algorithm>
+
+namespace heatsoak {
+
+int flux_of(const Model& model, std::string_view node) {
+  const int place = model.network.find_node(node);
+  const auto found = std::ranges::find(model.flux_nodes, place);
+  return found == model.flux_nodes.end() ? -1 : static_cast<int>(found - model.flux_nodes.begin());
+}
+
+std::vector<ScanTerm> terms_of_one_signal(const Model& model, const std::vector<MeasuredRun>& runs) {
+  std::vector<ScanTerm> terms;
+  for (const int node : model.flux_nodes) {
+    const std::string name(model.network.node_name(node));
+    terms.push_back({name, "", Multiplier::source, 0});
+    terms.push_back({name, "", Multiplier::excess, 0});
+    if (name == "winding") {
+      terms.push_back({name, "", Multiplier::copper, 0});
+    }
+  }
+  const auto is_seen = [&](std::string_view node) {
+    return flux_of(model, node) >= 0 && std::ranges::any_of(runs, [&](const MeasuredRun& run) { return run.sensor_at(node) >= 0; });
+  };
+  if (is_seen("winding") && is_seen("stator")) {
+    terms.push_back({"winding", "stator", Multiplier::difference, 0});
+  }
+  return terms;
+}
+
+std::vector<ScanTerm> terms_of_two_signals(const Model& model, const std::vector<MeasuredRun>& runs) {
+  std::vector<ScanTerm> terms;
+  if (flux_of(model, "stator") < 0) {
+    return terms;
+  }
+  for (const auto& [signal, multiplier] : {std::pair(Signal::current, Multiplier::current), std::pair(Signal::speed, Multiplier::speed)}) {
+    if (std::ranges::all_of(runs, [signal = signal](const MeasuredRun& run) { return run.has(signal); })) {
+      terms.push_back({"stator", "", multiplier, 0});
+    }
+  }
+  return terms;
+}
+
+std::string_view unit_of(Multiplier multiplier) {
+  switch (multiplier) {
+    case Multiplier::source:
+      return "W";
+    case Multiplier::excess:
+    case Multiplier::difference:
+      return "W/K";
+    case Multiplier::copper:
+      return "";
+    case Multiplier::current:
+      return "W/A";
+    case Multiplier::speed:
+      return "W s/rad";
+  }
+  return "";
+}
+
+std::string_view to_string(Multiplier multiplier) {
+  switch (multiplier) {
+    case Multiplier::source:
+      return "heat";
+    case Multiplier::excess:
+      return "excess over ambient";
+    case Multiplier::copper:
+      return "copper loss";
+    case Multiplier::difference:
+      return "difference to the other node";
+    case Multiplier::current:
+      return "current";
+    case Multiplier::speed:
+      return "speed";
+  }
+  return "";
+}
+
+std::string_view second_signal(Multiplier multiplier) {
+  const bool is_second = multiplier == Multiplier::current || multiplier == Multiplier::speed;
+  return is_second ? to_string(multiplier) : std::string_view();
+}
+
+Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run) {
+  const int node = model.network.find_node(term.node);
+  Eigen::VectorXd along = Eigen::VectorXd::Ones(run.samples() - 1);
+  if (term.multiplier == Multiplier::copper) {
+    std::vector<double> heat_W(model.network.effects().size() * static_cast<std::size_t>(model.network.node_count()));
+    for (Eigen::Index k = 0; k < along.size(); ++k) {
+      const std::span<const double> state_C(fitted.state_C.col(k).data(), static_cast<std::size_t>(fitted.states));
+      model.network.balance_W(run.at[static_cast<std::size_t>(k)], model.values, state_C, heat_W);
+      along[k] = 0.0;
+      for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
+        const bool is_copper = model.network.effects()[e].type->name == "copper_loss";
+        along[k] += is_copper ? heat_W[e * static_cast<std::size_t>(model.network.node_count()) + static_cast<std::size_t>(node)] : 0.0;
+      }
+    }
+    return along;
+  }
+  if (!second_signal(term.multiplier).empty()) {
+    for (Eigen::Index k = 0; k < along.size(); ++k) {
+      const OperatingPoint<double>& at = run.at[static_cast<std::size_t>(k)];
+      along[k] = term.multiplier == Multiplier::current ? at.current_rms_A : at.speed_mean_rad_per_s;
+    }
+    return along;
+  }
+  const int other = term.other.empty() ? -1 : model.network.find_node(term.other);
+  for (Eigen::Index k = 0; k < along.size() && term.multiplier != Multiplier::source; ++k) {
+    const double other_C = other >= 0 ? fitted.state_C(other, k) : run.at[static_cast<std::size_t>(k)].ambient_C;
+    along[k] = fitted.state_C(node, k) - other_C;
+  }
+  return along;
+}
+
+}  // namespace heatsoak

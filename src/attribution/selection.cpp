@@ -1,0 +1,374 @@
+#include "attribution/selection.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "attribution/open_loop.h"
+#include "attribution/rounds.h"
+#include "identify/calibration/motor_model.h"
+#include "identify/log_columns.h"
+#include "identify/smoothed_path.h"
+
+namespace heatsoak {
+namespace {
+
+/// What the rounds found becomes names, a curve, heat that nothing explains, or nothing.
+class Selector : Rounds {
+ public:
+  using Rounds::Rounds;
+
+  double evidence_without_effects_nats() {
+    begin();
+    const std::vector<DesignRun> designs = design(now_.model.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
+    RefitOptions options = final_options(best_place(designs, prior_here(now_.model), {}, place_));
+    options.around.clear();
+    return refit(now_.model, input_.runs, now_.start_C, options).evidence_nats;
+  }
+
+  Selection run() {
+    decide(run_rounds());
+    return std::move(out_);
+  }
+
+ private:
+  /// The model has what lost its name to a curve: nothing that matters remains beside the best set.
+  bool keeps_helpers_ = false;
+
+  void decide(const Judged& judged) {
+    const EffectSet& best = search_->sets().front();
+    RefitOptions options = final_options(judged.best_place);
+    options.around.clear();
+    const ExtendedModel with_best = with_members(best.members, judged.at_best, ShapesAre::held);
+    const RefitResult full = try_refit(with_best, input_.runs, starts_of(with_best), options);
+    out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
+    std::vector<std::size_t> named;
+    for (std::size_t m = 0; m < best.members.size(); ++m) {
+      const double probability = search_->family_probability(best, m);
+      if (is_figure(best.members[m])) {
+        add_changed(best, m);
+      } else if (probability > rules_.named_probability) {
+        named.push_back(m);
+      } else {
+        refuse(best.members[m], fmt::format("its probability is {:.0f} %, and a name needs {:.0f} %", 100.0 * probability,
+                                            100.0 * rules_.named_probability));
+      }
+    }
+    if (rules_.scans_drivers && !is_speed_open_ && (out_.is_material() || !named.empty())) {
+      scan(judged, best);
+    }
+    weigh_curve(best, named);
+    if (input_.model.usual_flux_W > 0.0) {
+      keep_what_helps(best, named);
+    }
+    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    build(judged, best, named);
+  }
+
+  void refuse(int member, const std::string& why) {
+    const std::string& id = set_rules_[static_cast<std::size_t>(member)].id;
+    out_.refused.push_back({id, fmt::format("{}: {}", id, why)});
+  }
+
+  void add_changed(const EffectSet& best, std::size_t place) {
+    const Eigen::Index coordinate = figure_of(best.members[place]);
+    const FreeParameter& free = input_.model.model.free[static_cast<std::size_t>(coordinate)];
+    const NetworkParameter& parameter = input_.model.model.network.parameters()[static_cast<std::size_t>(free.place)];
+    ChangedFigure figure;
+    figure.coordinate = coordinate;
+    figure.name = parameter.name;
+    figure.unit = parameter.unit;
+    figure.gain_nats = search_->loss_without_nats(best, place);
+    out_.changed.push_back(std::move(figure));
+  }
+
+  void scan(const Judged& judged, const EffectSet& best) {
+    constexpr std::size_t kTold = 8;
+    const ExtendedModel base = base_here();
+    // Where the model is far off, curves are drawn over temperatures as they were measured, smoothed. What heat is multiplied with stays
+    // the model's: noise in it would be that of the residual.
+    std::vector<LinearisedRun> path = judged.fitted;
+    for (std::size_t r = 0; out_.is_material() && r < path.size(); ++r) {
+      const std::vector<DesignRun> own = design(now_.model.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
+      path[r].state_C = smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
+    }
+    out_.drivers = drivers_of(base.model, path, input_.runs);
+    ScanInput input{&base.model,
+                    &input_.runs,
+                    &judged.fitted,
+                    &out_.drivers,
+                    &judged.designs,
+                    prior_here(base),
+                    {},
+                    grid_,
+                    {judged.best_place, judged.empty_place},
+                    out_.mean_heat_W};
+    input.members.size_sd = rules_.size_sd;
+    input.members.companion_sd = rules_.body_start_K;
+    for (const int member : best.members) {
+      for (const int companion : set_rules_[static_cast<std::size_t>(member)].companions) {
+        input.members.companions.push_back(free_count() + companion);
+      }
+      input.members.columns.push_back(free_count() + member);
+      input.members.has_sign.push_back(set_rules_[static_cast<std::size_t>(member)].has_sign);
+      input.members.prior_nats.push_back(set_rules_[static_cast<std::size_t>(member)].prior_nats);
+    }
+    out_.rounds.back().scan = scan_drivers(input, rules_, kTold);
+  }
+
+  /// Whether heat remains that no effect is, whether a curve is it, and which names a curve takes away.
+  void weigh_curve(const EffectSet& best, std::vector<std::size_t>& named) {
+    const std::vector<ScanResult>& scan = out_.rounds.back().scan;
+    const bool has_curve = !scan.empty() && scan.front().gain_nats > rules_.curve_gain_nats;
+    if (!has_curve) {
+      if (out_.is_material()) {
+        keep_what_outweighs(best, named);
+        out_.is_unexplained = named.empty();
+      }
+      return;
+    }
+    const ScanResult& curve = scan.front();
+    for (std::size_t m = 0; m < best.members.size(); ++m) {
+      const double share = curve.gain_nats / (curve.gain_nats + search_->loss_without_nats(best, m));
+      // Another shape of the same effect is that effect.
+      if (!is_figure(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio && share < rules_.same_shape_share) {
+        if (std::ranges::find(named, m) == named.end()) {
+          named.push_back(m);
+        }
+        return;
+      }
+    }
+    std::erase_if(named, [&](std::size_t m) {
+      const bool goes = std::ranges::find(curve.beside, static_cast<int>(m)) == curve.beside.end();
+      if (goes) {
+        refuse(best.members[m],
+               fmt::format("a curve over {} explains the runs better", out_.drivers[static_cast<std::size_t>(curve.term.driver)].name));
+      }
+      return goes;
+    });
+    if (out_.is_material() || named.empty()) {
+      out_.is_unexplained = true;
+      out_.open_curve = curve;
+    } else {
+      keeps_helpers_ = true;
+    }
+  }
+
+  [[nodiscard]] double free_run_error_K(const ExtendedModel& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
+
+  /// Of whole training runs, with some members of the best set.
+  [[nodiscard]] double error_with_K(const EffectSet& best, const std::vector<std::size_t>& members) const {
+    std::vector<int> kept;
+    std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
+    std::ranges::sort(kept);
+    const SetSearch::AtBest at = search_->at_best(kept);
+    const ExtendedModel model = with_members(kept, at, ShapesAre::held);
+    RefitOptions options = final_options(best_place_);
+    options.around.clear();
+    const RefitResult fit = to_predict(try_refit(model, input_.runs, starts_of(model), options));
+    return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
+  }
+
+  /// Beside unknown heat that matters a name stays where whole runs are followed far better with it than without.
+  void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
+    if (named.empty()) {
+      return;
+    }
+    const double with_all_K = error_with_K(best, named);
+    std::vector<std::size_t> kept;
+    for (const std::size_t m : named) {
+      std::vector<std::size_t> others = named;
+      std::erase(others, m);
+      if (with_all_K < rules_.beside_unknown_share * error_with_K(best, others)) {
+        kept.push_back(m);
+      } else {
+        refuse(best.members[m], "more heat remains than what every model leaves");
+      }
+    }
+    named = std::move(kept);
+  }
+
+  /// What a calibrated model leaves of the runs at once it left of the runs that it was fitted to as well: a name must let whole runs be
+  /// followed plainly better, and where whole runs decided the file's figures, runs that are followed as usual show nothing.
+  void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
+    if (input_.model.usual_error_K > 0.0 && free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.model.usual_error_K) {
+      named.clear();
+      out_.open_curve.reset();
+      out_.is_unexplained = false;
+      out_.is_as_usual = true;
+      return;
+    }
+    // The surest stays longest.
+    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    for (std::size_t i = named.size(); i-- > 0;) {
+      std::vector<std::size_t> others = named;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const double better_share = input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share;
+      if (error_with_K(best, named) > better_share * error_with_K(best, others)) {
+        refuse(best.members[named[i]], "whole runs are followed hardly better with it");
+        named = std::move(others);
+      }
+    }
+  }
+
+  void build(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named) {
+    std::vector<int> kept;
+    for (std::size_t m = 0; m < best.members.size(); ++m) {
+      if (keeps_helpers_ || is_figure(best.members[m]) || std::ranges::find(named, m) != named.end()) {
+        kept.push_back(best.members[m]);
+      }
+    }
+    out_.after = out_.own;
+    if (out_.is_as_usual) {
+      RefitOptions as_it_is = final_options(judged.empty_place);
+      as_it_is.most_steps = 0;
+      as_it_is.around.clear();
+      out_.after = out_.own = refit(input_.model, input_.runs, starts_of(input_.model), as_it_is);
+      out_.after.covariance = input_.model.prior().precision.inverse();
+    } else if (!named.empty()) {
+      const SetSearch::AtBest at = search_->at_best(kept);
+      const ExtendedModel model = with_members(kept, at, ShapesAre::free);
+      RefitResult fit = try_refit(model, input_.runs, starts_of(model), final_options(judged.best_place));
+      if (!std::isfinite(fit.evidence_nats)) {
+        out_.is_unexplained = true;
+        return;
+      }
+      out_.after = to_predict(std::move(fit));
+      add_terms(best, named, kept);
+    }
+    if (!out_.open_curve || adopt_curve(judged)) {
+      return;
+    }
+    // What does not predict runs that its fit has not seen is no driver.
+    out_.open_curve.reset();
+    if (!out_.terms.empty()) {
+      std::vector<std::size_t> outweighing = named;
+      keep_what_outweighs(best, outweighing);
+      if (outweighing.size() == named.size()) {
+        out_.is_unexplained = false;
+        return;
+      }
+      // A part of what is missing predicts no better than the model without it.
+      for (const AcceptedTerm& term : out_.terms) {
+        out_.refused.push_back({term.candidate->id, fmt::format("{}: more heat remains than what every model leaves", term.candidate->id)});
+      }
+      out_.terms.clear();
+      out_.after = out_.own;
+    }
+  }
+
+  void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
+    constexpr double kAmbiguous_nats = 5.0;
+    // Instances stand in the network in the order in which they were added.
+    const std::size_t first = input_.model.model.network.effects().size();
+    std::map<int, std::string> names;
+    std::size_t instance = first;
+    for (const int member : kept) {
+      if (!is_figure(member) && candidates()[static_cast<std::size_t>(member)].type) {
+        names[member] = out_.after.model.model.network.effects()[instance++].name;
+      }
+    }
+    for (const std::size_t m : named) {
+      const int member = best.members[m];
+      AcceptedTerm term;
+      term.candidate = candidates()[static_cast<std::size_t>(member)];
+      term.effect_name = names.contains(member) ? names[member] : "";
+      term.probability = search_->family_probability(best, m);
+      term.loss_without_nats = search_->loss_without_nats(best, m);
+      term.visibility_ratio = search_->visibility_ratio(member);
+      for (const int other : search_->stand_ins(best, m, kAmbiguous_nats)) {
+        if (!is_figure(other)) {
+          const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
+          if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
+            term.confusable_with.push_back(rival.id);
+            term.experiments.emplace_back(rival.experiment());
+          }
+        }
+      }
+      out_.terms.push_back(std::move(term));
+    }
+  }
+
+  /// The model follows a curve where that predicts training runs that the fit did not see.
+  bool adopt_curve(const Judged& judged) {
+    const Driver& driver = out_.drivers[static_cast<std::size_t>(out_.open_curve->term.driver)];
+    const std::optional<ExtendedModel> curved = with_curve(out_.after.model, *out_.open_curve, driver);
+    if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
+      return false;
+    }
+    std::vector<MeasuredRun> runs = input_.runs;
+    set_column(runs, curved->column);
+    RefitOptions options = final_options(judged.best_place);
+    options.around.clear();
+    double without_K2 = 0.0;
+    double with_K2 = 0.0;
+    for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
+      const auto error_K2 = [&](const ExtendedModel& model, const LatentFlux& flux) {
+        std::vector<MeasuredRun> others;
+        std::vector<std::vector<double>> start_C;
+        RefitOptions own;
+        own.flux = flux;
+        for (std::size_t r = 0; r < runs.size(); ++r) {
+          if (r != left_out) {
+            others.push_back(runs[r]);
+            start_C.push_back(out_.after.start_C[r]);
+            own.weights.push_back(out_.weights[r]);
+            own.merged.push_back(merged_[r]);
+          }
+        }
+        const RefitResult fit = try_refit(model, others, start_C, own);
+        return std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
+                                                : std::numeric_limits<double>::infinity();
+      };
+      without_K2 += error_K2(out_.after.model, out_.after.flux);
+      with_K2 += error_K2(*curved, options.flux);
+    }
+    if (!(with_K2 < without_K2)) {
+      return false;
+    }
+    RefitResult fit = try_refit(*curved, runs, out_.after.start_C, final_options(judged.best_place));
+    if (!std::isfinite(fit.evidence_nats)) {
+      return false;
+    }
+    AcceptedTerm term;
+    term.curve = out_.open_curve;
+    term.effect_name = fit.model.model.network.effects().back().name;
+    term.loss_without_nats = out_.open_curve->gain_nats;
+    term.probability = 1.0;
+    for (const ScanResult& each : out_.rounds.back().scan) {
+      constexpr double kAmbiguous_nats = 5.0;
+      const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
+      if (each.gain_nats > out_.open_curve->gain_nats - kAmbiguous_nats && other != driver.name &&
+          std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
+        term.confusable_with.push_back(other);
+      }
+    }
+    out_.after = std::move(fit);
+    // In the order of their evidence.
+    const auto behind =
+        std::ranges::find_if(out_.terms, [&](const AcceptedTerm& other) { return other.loss_without_nats < term.loss_without_nats; });
+    out_.terms.insert(behind, std::move(term));
+    out_.open_curve.reset();
+    return true;
+  }
+};
+
+}  // namespace
+
+bool Selection::is_material() const {
+  return std::ranges::any_of(left_W, [&](const auto& each) { return each.second > material_W; });
+}
+
+double evidence_without_effects_nats(const SelectionInput& input) {
+  const SelectionRules rules;
+  return Selector(input, rules).evidence_without_effects_nats();
+}
+
+Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
+
+}  // namespace heatsoak

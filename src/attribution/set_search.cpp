@@ -1,0 +1,317 @@
+#include "attribution/set_search.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <set>
+
+namespace heatsoak {
+namespace {
+
+constexpr double kNone_nats = -std::numeric_limits<double>::infinity();
+
+/// ln 2Φ(x).
+double log_twice_normal(double x) {
+  constexpr double kFar = -20.0;
+  if (x > kFar) {
+    return std::log(std::erfc(-x / std::sqrt(2.0)));
+  }
+  return -0.5 * x * x - std::log(-x) - 0.5 * std::log(0.5 * M_PI);
+}
+
+}  // namespace
+
+double log_sum_nats(const std::vector<double>& nats) {
+  const double most = std::ranges::max(nats);
+  double sum = 0.0;
+  for (const double each : nats) {
+    sum += std::exp(each - most);
+  }
+  return std::isfinite(most) ? most + std::log(sum) : most;
+}
+
+double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
+                     const std::vector<bool>& has_sign, Eigen::VectorXd* sizes) {
+  const Eigen::Index count = right.size();
+  if (count == 0) {
+    return 0.0;
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(products + precision);
+  if (factor.info() != Eigen::Success) {
+    return kNone_nats;
+  }
+  const Eigen::VectorXd mean = factor.solve(right);
+  double gain = 0.5 * right.dot(mean) - factor.matrixLLT().diagonal().array().log().sum() +
+                precision.llt().matrixLLT().diagonal().array().log().sum();
+  if (std::ranges::find(has_sign, true) != has_sign.end()) {
+    const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(count, count));
+    for (Eigen::Index j = 0; j < count; ++j) {
+      gain += has_sign[static_cast<std::size_t>(j)] ? log_twice_normal(mean[j] / std::sqrt(inverse(j, j))) : 0.0;
+    }
+  }
+  if (sizes) {
+    *sizes = mean;
+  }
+  return gain;
+}
+
+SetColumns columns_of(const std::vector<int>& members, const std::vector<CandidateRule>& candidates, double size_sd) {
+  SetColumns set;
+  std::vector<double> precision;
+  for (const int member : members) {
+    set.columns.push_back(member);
+    set.has_sign.push_back(candidates[static_cast<std::size_t>(member)].has_sign);
+    precision.push_back(1.0 / (size_sd * size_sd));
+  }
+  for (const int member : members) {
+    const CandidateRule& rule = candidates[static_cast<std::size_t>(member)];
+    for (const int companion : rule.companions) {
+      set.columns.push_back(companion);
+      set.has_sign.push_back(false);
+      precision.push_back(1.0 / (rule.companion_sd * rule.companion_sd));
+    }
+  }
+  set.precision = Eigen::Map<const Eigen::VectorXd>(precision.data(), static_cast<Eigen::Index>(precision.size()));
+  return set;
+}
+
+double set_gain_nats(const Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes) {
+  return set_gain_nats(point.products(set.columns, set.columns), point.right(set.columns), set.precision.asDiagonal(), set.has_sign, sizes);
+}
+
+SetSearch::SetSearch(std::vector<Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules)
+    : points_(std::move(points)), candidates_(std::move(candidates)), rules_(rules) {
+  search();
+}
+
+double SetSearch::log_evidence(const std::vector<int>& members) const {
+  const SetColumns set = columns_of(members, candidates_, rules_.size_sd);
+  std::vector<double> nats;
+  for (const Reduced& point : points_) {
+    nats.push_back(point.base_nats + set_gain_nats(point, set));
+  }
+  return log_sum_nats(nats) - std::log(static_cast<double>(points_.size()));
+}
+
+bool SetSearch::is_allowed(const std::vector<int>& members) const {
+  std::set<std::string> ids;
+  return std::ranges::all_of(members, [&](int member) { return ids.insert(candidates_[static_cast<std::size_t>(member)].id).second; });
+}
+
+double SetSearch::score(std::vector<int> members) {
+  std::ranges::sort(members);
+  const auto known = std::ranges::find(sets_, members, &EffectSet::members);
+  if (known != sets_.end()) {
+    return known->log_probability_nats;
+  }
+  if (!is_allowed(members)) {
+    return kNone_nats;
+  }
+  double nats = log_evidence(members);
+  for (const int member : members) {
+    nats += candidates_[static_cast<std::size_t>(member)].prior_nats;
+  }
+  sets_.push_back({std::move(members), nats, 0.0});
+  return nats;
+}
+
+std::vector<std::vector<int>> SetSearch::best_of_size(std::size_t size, std::size_t most) const {
+  std::vector<const EffectSet*> found;
+  for (const EffectSet& set : sets_) {
+    if (set.members.size() == size) {
+      found.push_back(&set);
+    }
+  }
+  std::ranges::stable_sort(found, std::greater(), [](const EffectSet* set) { return set->log_probability_nats; });
+  found.resize(std::min(found.size(), most));
+  std::vector<std::vector<int>> members;
+  std::ranges::transform(found, std::back_inserter(members), &EffectSet::members);
+  return members;
+}
+
+void SetSearch::search() {
+  constexpr std::size_t kGrownFrom = 3;
+  const auto count = static_cast<int>(candidates_.size());
+  score({});
+  for (int j = 0; j < count; ++j) {
+    score({j});
+  }
+  std::set<int> pool;
+  for (const std::vector<int>& single : best_of_size(1, static_cast<std::size_t>(rules_.pool_of_one))) {
+    pool.insert(single.front());
+  }
+  const auto with = [](std::vector<int> set, int more) {
+    set.push_back(more);
+    return set;
+  };
+  for (int size = 1; size < rules_.most_effects; ++size) {
+    // What explains nothing alone may explain what the best sets leave.
+    std::vector<std::pair<double, int>> additions;
+    for (const std::vector<int>& set : best_of_size(static_cast<std::size_t>(size), kGrownFrom)) {
+      for (int j = 0; j < count; ++j) {
+        if (std::ranges::find(set, j) == set.end()) {
+          additions.emplace_back(score(with(set, j)), j);
+        }
+      }
+    }
+    std::ranges::sort(additions, std::greater());
+    const auto most = static_cast<std::size_t>(size == 1 ? rules_.pool_of_two : rules_.pool_of_three);
+    std::size_t added = 0;
+    for (const auto& [nats, j] : additions) {
+      if (added < most && pool.insert(j).second) {
+        ++added;
+      }
+    }
+    const std::size_t grown = size == 1 ? pool.size() : static_cast<std::size_t>(rules_.best_pairs);
+    for (const std::vector<int>& set :
+         size == 1 ? best_of_size(1, candidates_.size()) : best_of_size(static_cast<std::size_t>(size), grown)) {
+      if (size == 1 && !pool.contains(set.front())) {
+        continue;
+      }
+      for (const int j : pool) {
+        if (std::ranges::find(set, j) == set.end()) {
+          score(with(set, j));
+        }
+      }
+    }
+  }
+  rank();
+}
+
+void SetSearch::reconsider(const std::function<double(const std::vector<int>&, const AtBest&)>& fitted_nats, std::size_t most) {
+  constexpr double kKept_nats = 5.0;
+  std::vector<double> change_nats;
+  std::size_t winner = 0;
+  for (std::size_t i = 0; i < std::min(most, sets_.size()); ++i) {
+    const AtBest at = at_best(sets_[i].members);
+    change_nats.push_back(fitted_nats(sets_[i].members, at) - at.evidence_nats);
+    const auto nats = [&](std::size_t set) { return sets_[set].log_probability_nats + change_nats[set]; };
+    winner = nats(i) > nats(winner) ? i : winner;
+    if (change_nats.back() > -kKept_nats) {
+      break;
+    }
+  }
+  const double common_nats = change_nats[winner];
+  for (std::size_t i = 0; i < sets_.size(); ++i) {
+    sets_[i].log_probability_nats += i < change_nats.size() ? change_nats[i] : common_nats;
+  }
+  rank();
+}
+
+void SetSearch::rank() {
+  std::ranges::stable_sort(sets_, std::greater(), &EffectSet::log_probability_nats);
+  std::vector<double> nats;
+  std::ranges::transform(sets_, std::back_inserter(nats), &EffectSet::log_probability_nats);
+  const double all_nats = log_sum_nats(nats);
+  for (EffectSet& set : sets_) {
+    set.probability = std::exp(set.log_probability_nats - all_nats);
+  }
+}
+
+int SetSearch::count_of(const EffectSet& set, const std::string& family) const {
+  return static_cast<int>(
+      std::ranges::count_if(set.members, [&](int member) { return candidates_[static_cast<std::size_t>(member)].family == family; }));
+}
+
+int SetSearch::rank_in_family(const EffectSet& set, std::size_t place) const {
+  // Of two alike the one whose loss costs more is the surer.
+  const auto nats_without = [&](std::size_t gone) {
+    std::vector<int> rest = set.members;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));
+    const auto found = std::ranges::find(sets_, rest, &EffectSet::members);
+    return found == sets_.end() ? kNone_nats : found->log_probability_nats;
+  };
+  const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
+  const double own_nats = nats_without(place);
+  int rank = 1;
+  for (std::size_t other = 0; other < set.members.size(); ++other) {
+    const bool is_alike = other != place && candidates_[static_cast<std::size_t>(set.members[other])].family == family;
+    const double other_nats = is_alike ? nats_without(other) : 0.0;
+    rank += is_alike && (other_nats < own_nats || (other_nats == own_nats && other < place)) ? 1 : 0;
+  }
+  return rank;
+}
+
+double SetSearch::family_probability(const EffectSet& set, std::size_t place) const {
+  const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
+  const int least = rank_in_family(set, place);
+  double sum = 0.0;
+  for (const EffectSet& each : sets_) {
+    sum += count_of(each, family) >= least ? each.probability : 0.0;
+  }
+  return sum;
+}
+
+double SetSearch::loss_without_nats(const EffectSet& set, std::size_t place) const {
+  const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
+  const int least = rank_in_family(set, place);
+  for (const EffectSet& each : sets_) {
+    if (count_of(each, family) < least) {
+      return set.log_probability_nats - each.log_probability_nats;
+    }
+  }
+  return 0.0;
+}
+
+double SetSearch::single_gain_nats(int candidate) const {
+  double empty_nats = kNone_nats;
+  double own_nats = kNone_nats;
+  for (const EffectSet& set : sets_) {
+    if (set.members.empty()) {
+      empty_nats = set.log_probability_nats;
+    } else if (set.members == std::vector<int>{candidate}) {
+      own_nats = set.log_probability_nats - candidates_[static_cast<std::size_t>(candidate)].prior_nats;
+    }
+  }
+  return own_nats - empty_nats;
+}
+
+std::vector<int> SetSearch::stand_ins(const EffectSet& set, std::size_t place, double within_nats) const {
+  std::vector<int> found;
+  const int own = set.members[place];
+  for (const EffectSet& each : sets_) {
+    if (each.log_probability_nats < set.log_probability_nats - within_nats) {
+      break;
+    }
+    if (each.members.size() != set.members.size() || std::ranges::find(each.members, own) != each.members.end()) {
+      continue;
+    }
+    std::vector<int> others;
+    std::ranges::set_difference(each.members, set.members, std::back_inserter(others));
+    const bool is_other =
+        others.size() == 1 && candidates_[static_cast<std::size_t>(others.front())].id != candidates_[static_cast<std::size_t>(own)].id;
+    if (is_other && std::ranges::find(found, others.front()) == found.end()) {
+      found.push_back(others.front());
+    }
+  }
+  return found;
+}
+
+SetSearch::AtBest SetSearch::at_best(const std::vector<int>& members) const {
+  const SetColumns set = columns_of(members, candidates_, rules_.size_sd);
+  AtBest best;
+  double best_nats = kNone_nats;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Reduced& point = points_[i];
+    Eigen::VectorXd sizes(static_cast<Eigen::Index>(set.columns.size()));
+    const double nats = point.base_nats + set_gain_nats(point, set, &sizes);
+    if (nats > best_nats) {
+      best_nats = nats;
+      best = {i, nats, sizes.head(static_cast<Eigen::Index>(members.size())),
+              point.theta - point.theta_by_size(Eigen::all, set.columns) * sizes};
+    }
+  }
+  return best;
+}
+
+double SetSearch::visibility_ratio(int candidate) const {
+  const Reduced& point = points_[at_best({}).point];
+  return point.whole[candidate] > 0.0 ? std::max(0.0, point.products(candidate, candidate) / point.whole[candidate]) : 0.0;
+}
+
+double SetSearch::typical_gain_nats(int candidate) const { return 0.5 * points_[at_best({}).point].products(candidate, candidate); }
+
+}  // namespace heatsoak

@@ -1,0 +1,217 @@
+#include "attribution/terms.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "attribution/curve.h"
+#include "attribution/rules.h"
+
+namespace heatsoak {
+namespace {
+
+/// Standard deviation of a size before anything is measured, in typical sizes.
+constexpr double kSizeSpread_share = SelectionRules{}.size_sd;
+/// Of a shape parameter's logarithm before anything is measured.
+constexpr double kShapeSpread = 0.3;
+/// Of the ends of a curve over a temperature, in gaps between its knots.
+constexpr double kKnotSpread = 0.5;
+/// The same where the effect brings a body: anything may be screwed to a motor.
+constexpr double kBodySpread = 1.0;
+
+std::string named(std::string_view name, std::string usual) { return name.empty() ? std::move(usual) : std::string(name); }
+
+/// What a motor file takes for a name.
+std::string as_word(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '_'; });
+  return text;
+}
+
+std::string unused_name(const Network& network, const std::string& wanted) {
+  std::string name = wanted;
+  const auto is_used = [&] { return std::ranges::any_of(network.effects(), [&](const EffectInPlace& e) { return e.name == name; }); };
+  for (int number = 2; is_used(); ++number) {
+    name = fmt::format("{}_{}", wanted, number);
+  }
+  return name;
+}
+
+/// Adds the effect; `values` of the model stay what they are.
+const EffectInPlace& add(Model& model, const std::string& name, const EffectType& type, const std::vector<std::string>& nodes,
+                         const std::vector<double>& parameters) {
+  model.network.add_effect(unused_name(model.network, name), type, nodes, parameters);
+  const std::vector<double> all = model.network.values();
+  model.values.insert(model.values.end(), all.begin() + static_cast<std::ptrdiff_t>(model.values.size()), all.end());
+  return model.network.effects().back();
+}
+
+/// Free around nothing.
+void set_free_around_zero(Model& model, int place, double scale, const Range& range, double spread) {
+  model.set_free({.place = place, .by_log = false, .scale = scale, .low = range.low, .high = range.high}, spread);
+  model.prior.mean[model.free_count() - 1] = 0.0;
+}
+
+std::optional<double> choice_value(const ParameterSpec& spec, std::string_view name) {
+  const auto found = std::ranges::find(spec.choices, name, &Choice::name);
+  return found == spec.choices.end() ? std::nullopt : std::optional(static_cast<double>(found - spec.choices.begin()));
+}
+
+std::string_view form_of(Multiplier multiplier) {
+  switch (multiplier) {
+    case Multiplier::source:
+      return "heat";
+    case Multiplier::copper:
+      return "per_copper_loss";
+    case Multiplier::current:
+      return "per_current";
+    case Multiplier::speed:
+      return "per_speed";
+    case Multiplier::excess:
+    case Multiplier::difference:
+      return "per_difference";
+  }
+  return "";
+}
+
+/// The curve with what passivity asks: nowhere negative. The constant part of a conductance is the base network's own.
+Eigen::VectorXd passive(const ScanResult& curve) {
+  const bool is_conductance = curve.term.multiplier == Multiplier::excess || curve.term.multiplier == Multiplier::difference;
+  const double shift = is_conductance ? curve.curve.minCoeff() : 0.0;
+  return (curve.curve.array() - shift).cwiseMax(0.0);
+}
+
+std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
+  const EffectType& type = *find_effect("tabulated");
+  const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
+  const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
+  const bool is_column = driver.choice == kColumnChoice;
+  // An operating point has room for one.
+  if (!choice || !form || (is_column && !model.column.empty() && model.column != driver.name)) {
+    return std::nullopt;
+  }
+  const Eigen::VectorXd values = passive(curve);
+  const std::string ambient(Network::kAmbient);
+  const std::string cold = curve.term.other.empty() ? ambient : curve.term.other;
+  const std::string watched = driver.watched.empty() ? curve.term.node : driver.watched;
+  const std::string reference = driver.reference.empty() ? ambient : driver.reference;
+  std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
+  parameters.insert(parameters.end(), values.begin(), values.end());
+  ExtendedModel out = model;
+  out.column = is_column ? driver.name : model.column;
+  const EffectInPlace effect = add(out.model, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))), type,
+                                   {curve.term.node, cold, watched, reference}, parameters);
+  const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
+  for (const std::size_t end : {2U, 3U}) {
+    // The scan saw temperatures as they were measured, noise and a sensor's error and all: the curve may stand a little beside.
+    if (driver.kind == DriverKind::node_temperature) {
+      const double knot = parameters[end];
+      out.model.set_free(
+          {.place = effect.parameter_index[end], .by_log = false, .scale = gap, .low = knot - 2.0 * gap, .high = knot + 2.0 * gap},
+          kKnotSpread);
+    }
+  }
+  for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
+    set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
+  }
+  out.model.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size(), {});
+  return out;
+}
+
+}  // namespace
+
+ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name,
+                             ShapesAre shapes) {
+  ExtendedModel out = model;
+  if (candidate.sensor_type) {
+    const Range& faults = candidate.sensor_type->size.range;
+    out.sensors.push_back({candidate.sensor_type, std::clamp(size_share * candidate.typical_size(), faults.low, faults.high),
+                           kSizeSpread_share * candidate.typical_size()});
+    return out;
+  }
+  if (candidate.deviation_type) {
+    const Range& deviations = candidate.deviation_type->size.range;
+    out.deviations.push_back({candidate.deviation_type, candidate.condition,
+                              std::clamp(size_share * candidate.typical_size(), deviations.low, deviations.high),
+                              kSizeSpread_share * candidate.typical_size()});
+    return out;
+  }
+  std::vector<double> parameters = candidate.parameters;
+  const Range& range = candidate.size_spec().range;
+  double& size = parameters[static_cast<std::size_t>(candidate.size_parameter())];
+  size = std::clamp(size_share * size, range.low, range.high);
+  bool brings_body = false;
+  for (const NodeRole& role : candidate.type->nodes) {
+    brings_body = brings_body || role.own_capacity >= 0;
+    if (role.own_capacity >= 0) {
+      parameters[static_cast<std::size_t>(role.own_capacity)] *= std::max(0.05, size_share);
+    }
+  }
+  const EffectInPlace effect =
+      add(out.model, std::string(name.empty() ? candidate.type->name : name), *candidate.type, candidate.nodes, parameters);
+  for (std::size_t p = 0; shapes == ShapesAre::free && p < parameters.size(); ++p) {
+    const ParameterSpec& spec = candidate.type->parameters[p];
+    if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
+      // Exponents, thresholds, capacities: near what is usual, yet the runs may say otherwise.
+      out.model.set_free({.place = effect.parameter_index[p],
+                          .by_log = true,
+                          .scale = 1.0,
+                          .low = std::max(spec.range.low, parameters[p] / 20.0),
+                          .high = std::min(spec.range.high, parameters[p] * 20.0)},
+                         brings_body ? kBodySpread : kShapeSpread);
+    }
+  }
+  set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(),
+                       range, kSizeSpread_share);
+  if (!candidate.condition.empty()) {
+    out.conditional.push_back(
+        {effect.name, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], 0.0, candidate.condition});
+  }
+  return out;
+}
+
+Eigen::Index size_coordinate(const ExtendedModel& model, const Candidate& candidate, std::string_view effect_name) {
+  if (candidate.sensor_type) {
+    return model.model.free_count() + (std::ranges::find(model.sensors, candidate.sensor_type, &SensorTerm::type) - model.sensors.begin());
+  }
+  if (candidate.deviation_type) {
+    const auto is_own = [&](const RunDeviation& each) { return each.is_same(candidate.deviation_type, candidate.condition); };
+    return model.first_deviation() + (std::ranges::find_if(model.deviations, is_own) - model.deviations.begin());
+  }
+  const auto effect = std::ranges::find(model.model.network.effects(), effect_name, &EffectInPlace::name);
+  const int place = effect->parameter_index[static_cast<std::size_t>(candidate.size_parameter())];
+  return std::ranges::find(model.model.free, place, &FreeParameter::place) - model.model.free.begin();
+}
+
+std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
+  return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
+}
+
+ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
+  const std::span<const NetworkParameter> names = model.model.network.parameters();
+  const std::span<const NetworkParameter> others = other.model.network.parameters();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = std::ranges::find(others, names[i].name, &NetworkParameter::name);
+    if (found != others.end()) {
+      model.model.values[i] = other.model.values[static_cast<std::size_t>(found - others.begin())];
+    }
+  }
+  for (SensorTerm& term : model.sensors) {
+    const auto found = std::ranges::find(other.sensors, term.type, &SensorTerm::type);
+    term.value = found != other.sensors.end() ? found->value : term.value;
+  }
+  for (RunDeviation& each : model.deviations) {
+    const auto found =
+        std::ranges::find_if(other.deviations, [&](const RunDeviation& of_other) { return of_other.is_same(each.type, each.condition); });
+    each.deviation_share = found != other.deviations.end() ? found->deviation_share : each.deviation_share;
+  }
+  return model;
+}
+
+bool has_strayed(const ExtendedModel& model, const ExtendedModel& from) {
+  constexpr double kFar = 0.7;
+  return (model.model.theta() - with_values_of(model, from).model.theta()).cwiseAbs().maxCoeff() > kFar;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,145 @@
+#include "attribution/unexplained_heat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include "attribution/curve.h"
+#include "attribution/terms.h"
+#include "identify/calibration/unlogged_speed.h"
+
+namespace heatsoak {
+namespace {
+
+class HeatTeller {
+ public:
+  HeatTeller(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) : told_(diagnosis), train_(train) {}
+
+  /// Curves that were found, curves that could not be put into the network, and heat that no signal follows.
+  std::vector<Unexplained> tell() {
+    for (const AcceptedTerm& term : told_.selection.terms) {
+      if (term.curve) {
+        add_curve(*term.curve, term.confusable_with);
+        tell_as_added(term, heats_.back());
+      }
+    }
+    if (told_.selection.open_curve) {
+      add_curve(*told_.selection.open_curve, {});
+    }
+    if (heats_.empty() && told_.selection.is_unexplained) {
+      heats_.push_back(most());
+    }
+    return std::move(heats_);
+  }
+
+ private:
+  /// What is left at the node where most is.
+  [[nodiscard]] Unexplained most() const {
+    Unexplained most;
+    for (const auto& [node, members] : unknown_by_sensor()) {
+      Unexplained heat = unnamed_heat(node, members);
+      if (most.node.empty() || heat.rms_W > most.rms_W) {
+        most = std::move(heat);
+      }
+    }
+    return most;
+  }
+
+  [[nodiscard]] const RefitResult& after() const { return told_.selection.after; }
+  [[nodiscard]] double time_scale_s() const { return after().flux.time_scale_s; }
+
+  [[nodiscard]] bool has_sensor(const std::string& node) const {
+    return std::ranges::any_of(
+        train_, [&](const MeasuredRun& run) { return std::ranges::find(run.sensors, node, &Sensor::node) != run.sensors.end(); });
+  }
+
+  /// Nodes that unknown heat may enter, by the one whose sensor shows it: itself, or the first that has one.
+  [[nodiscard]] std::map<std::string, std::vector<std::string>> unknown_by_sensor() const {
+    std::map<std::string, std::vector<std::string>> shown;
+    const auto first = std::ranges::find_if(told_.flux_rms_after_W, [&](const auto& each) { return has_sensor(each.first); });
+    for (const auto& [node, rms_W] : told_.flux_rms_after_W) {
+      shown[has_sensor(node) || first == told_.flux_rms_after_W.end() ? node : first->first].push_back(node);
+    }
+    return shown;
+  }
+
+  /// Of all `members` together.
+  [[nodiscard]] Unexplained unnamed_heat(const std::string& node, const std::vector<std::string>& members) const {
+    Unexplained heat;
+    heat.node = node;
+    std::ranges::copy_if(members, std::back_inserter(heat.or_nodes), [&](const std::string& other) { return other != node; });
+    heat.time_scale_s = time_scale_s();
+    std::map<std::string, Eigen::VectorXd> of_run_W;
+    for (const FluxTrace& trace : told_.flux) {
+      if (std::ranges::find(members, trace.node) != members.end()) {
+        const Eigen::Map<const Eigen::VectorXd> own_W(trace.after_W.data(), static_cast<Eigen::Index>(trace.after_W.size()));
+        Eigen::VectorXd& sum_W = of_run_W[trace.run];
+        sum_W = sum_W.size() == 0 ? Eigen::VectorXd(own_W) : Eigen::VectorXd(sum_W + own_W);
+      }
+    }
+    double count = 0.0;
+    for (const auto& [run, sum_W] : of_run_W) {
+      heat.peak_W = std::max(heat.peak_W, sum_W.cwiseAbs().maxCoeff());
+      heat.mean_W += sum_W.cwiseAbs().sum();
+      heat.rms_W += sum_W.squaredNorm();
+      count += static_cast<double>(sum_W.size());
+    }
+    heat.mean_W /= count;
+    heat.rms_W = std::sqrt(heat.rms_W / count);
+    return heat;
+  }
+
+  /// The curve as the model has it, which is what physics leaves of the scan's.
+  void tell_as_added(const AcceptedTerm& term, Unexplained& heat) const {
+    const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
+    heat.is_in_model = true;
+    heat.mean_W = heat.rms_W = effect->mean_W;
+    heat.peak_W = effect->peak_W;
+    const Model& model = after().model.model;
+    const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
+    const std::size_t first = in_place.parameter_index.size() - heat.curve.size();
+    const auto value = [&](std::size_t parameter) { return model.values[static_cast<std::size_t>(in_place.parameter_index[parameter])]; };
+    heat.knots = knots_from({value(first - 2), value(first - 1)});
+    for (std::size_t knot = 0; knot < heat.curve.size(); ++knot) {
+      heat.curve[knot] = value(first + knot);
+      const auto free = std::ranges::find(model.free, in_place.parameter_index[first + knot], &FreeParameter::place);
+      const Eigen::Index own = free - model.free.begin();
+      heat.curve_sd[knot] = free == model.free.end() ? 0.0 : free->scale * std::sqrt(after().covariance(own, own));
+    }
+  }
+
+  void add_curve(const ScanResult& curve, const std::vector<std::string>& others) {
+    const Driver& driver = told_.selection.drivers[static_cast<std::size_t>(curve.term.driver)];
+    Unexplained heat;
+    heat.node = curve.term.node;
+    heat.drivers = {driver.name};
+    heat.drivers.insert(heat.drivers.end(), others.begin(), others.end());
+    heat.times = second_signal(curve.term.multiplier);
+    heat.mean_W = curve.mean_W;
+    heat.peak_W = curve.peak_W;
+    heat.rms_W = curve.mean_W;
+    heat.time_scale_s = time_scale_s();
+    heat.gain_nats = curve.gain_nats;
+    heat.knots = curve.knots;
+    heat.curve.assign(curve.curve.begin(), curve.curve.end());
+    for (Eigen::Index i = 0; i < curve.covariance.rows(); ++i) {
+      heat.curve_sd.push_back(std::sqrt(curve.covariance(i, i)));
+    }
+    heat.curve_unit = unit_of(curve.term.multiplier);
+    heat.driver_unit = driver.unit;
+    heats_.push_back(std::move(heat));
+  }
+
+  const Diagnosis& told_;
+  const std::vector<MeasuredRun>& train_;
+  std::vector<Unexplained> heats_;
+};
+
+}  // namespace
+
+std::vector<Unexplained> unexplained_heat(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) {
+  return HeatTeller(diagnosis, train).tell();
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,155 @@
+// Linear algebra of an attribution: products against the decomposition that fits use, equations about a path against free runs.
+#include "attribution/design.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "attribution/flux_grid.h"
+#include "identify/smoothed_path.h"
+#include "runs_for_tests.h"
+
+namespace heatsoak {
+namespace {
+
+MeasuredRun run_of(std::uint64_t seed, int samples) {
+  Random random(seed, 0);
+  MeasuredRun run;
+  run.name = "random";
+  run.sensors = {{"winding_C", "winding", 0.15, 0.0}, {"stator_C", "stator", 0.1, 0.0}};
+  run.signals = {Signal::current};
+  run.measured_C.resize(samples, 2);
+  for (int k = 0; k < samples; ++k) {
+    run.time_s.push_back(k);
+    if (k + 1 < samples) {
+      run.at.emplace_back().current_rms_A = (k / 25) % 3 * 4.0 * random.uniform();
+    }
+    for (int sensor = 0; sensor < 2; ++sensor) {
+      run.measured_C(k, sensor) = random.uniform() < 0.1 ? std::nan("") : 25.0 + 5.0 * random.uniform();
+    }
+  }
+  return run;
+}
+
+ExtendedModel model_of() {
+  ExtendedModel model;
+  model.model = two_node_model({}, 1.0);
+  return model;
+}
+
+TEST(Design, ProductsAreTheSquareOfTheTrianglesThatFitsUse) {
+  const ExtendedModel model = model_of();
+  const std::vector<MeasuredRun> runs{run_of(1, 200), run_of(2, 150)};
+  std::vector<LinearisedRun> fitted;
+  std::vector<Columns> extra;
+  for (const MeasuredRun& run : runs) {
+    fitted.push_back(linearise(model, std::vector<double>{25.0, 26.0}, run));
+    extra.emplace_back(fitted.back().by_parameter.cwiseAbs2());
+  }
+  const std::vector<DesignRun> designs = design(model.model.network, fitted, runs, {}, {}, extra);
+  const LatentFlux flux{{0.2, 0.3}, 100.0};
+  const Products products = products_of(designs, flux, {});
+  std::vector<RunEvidence> each;
+  double log_determinant = 0.0;
+  for (const DesignRun& one : designs) {
+    each.push_back(run_evidence(one.run, one.columns, Whitening(one.run, flux, one.noise), one.start));
+    log_determinant += each.back().log_determinant;
+  }
+  const Eigen::MatrixXd triangle = stacked(each);
+  const Eigen::MatrixXd expected = triangle.transpose() * triangle;
+  EXPECT_LT((products.square - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(products.log_determinant, log_determinant, 1e-9 * std::abs(log_determinant));
+  // A few columns in another order are the same products.
+  const Products few = products_of(designs, flux, {3, 0});
+  const Eigen::Index last = products.square.cols() - 1;
+  EXPECT_NEAR(few.square(0, 1), products.square(3, 0), 1e-9 * std::abs(products.square(3, 0)));
+  EXPECT_NEAR(few.square(2, 1), products.square(last, 0), 1e-9 * std::abs(products.square(last, 0)));
+}
+
+/// With nothing added the base's evidence is that of the least squares that fits use, up to a constant.
+TEST(Design, EvidenceOfTheBaseIsThatOfItsLinearFit) {
+  const ExtendedModel model = model_of();
+  const std::vector<MeasuredRun> runs{run_of(3, 200)};
+  const std::vector<LinearisedRun> fitted{linearise(model, std::vector<double>{25.0, 26.0}, runs.front())};
+  const std::vector<DesignRun> designs = design(model.model.network, fitted, runs, {}, {}, {});
+  const ThetaPrior prior = prior_here(model);
+  std::vector<double> difference_nats;
+  for (const double flux_W : {0.02, 0.3, 2.0}) {
+    const LatentFlux flux{{flux_W, flux_W}, 200.0};
+    const DesignRun& one = designs.front();
+    const std::vector<RunEvidence> evidence{run_evidence(one.run, one.columns, Whitening(one.run, flux, one.noise), one.start)};
+    const LinearFit fit = linear_fit(evidence, prior.mean, prior.precision);
+    const Reduced base = reduced(products_of(designs, flux, {}), prior);
+    difference_nats.push_back(base.base_nats - fit.log_evidence);
+    EXPECT_LT((base.theta - fit.coefficients).norm(), 1e-5 * (1.0 + fit.coefficients.norm()));
+  }
+  EXPECT_NEAR(difference_nats[0], difference_nats[1], 1e-4);
+  EXPECT_NEAR(difference_nats[0], difference_nats[2], 1e-4);
+}
+
+TEST(Design, EquationsAboutTheFreeRunAreTheFreeRun) {
+  const ExtendedModel model = model_of();
+  const MeasuredRun run = run_of(4, 200);
+  const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);
+  const LinearisedRun along = linearise_along(model, freely.state_C, run);
+  EXPECT_LT((along.shown_C - freely.shown_C).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((along.by_parameter - freely.by_parameter).cwiseAbs().maxCoeff(), 1e-9 * freely.by_parameter.cwiseAbs().maxCoeff());
+}
+
+/// About a path that is off by e the linear equations foretell the free run from the path's start to e²: copper loss bends, little.
+TEST(Design, EquationsAboutAnotherPathForetellTheFreeRun) {
+  const ExtendedModel model = model_of();
+  const MeasuredRun run = run_of(5, 300);
+  const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);
+  std::vector<double> off_K;
+  for (const double size_K : {4.0, 2.0}) {
+    Eigen::MatrixXd path_C = freely.state_C;
+    for (Eigen::Index k = 1; k < path_C.cols(); ++k) {
+      path_C.col(k).array() += size_K * std::sin(0.05 * static_cast<double>(k));
+    }
+    off_K.push_back((linearise_along(model, path_C, run).shown_C - freely.shown_C).cwiseAbs().maxCoeff());
+  }
+  EXPECT_LT(off_K[0], 0.02);
+  EXPECT_LT(off_K[1], 0.3 * off_K[0] + 1e-6);
+}
+
+/// 2 W that nobody told of, for 100 s of 300: the smoothed path is where the motor was.
+TEST(Design, SmoothedPathFollowsUnknownHeat) {
+  const ExtendedModel model = model_of();
+  MeasuredRun run = run_of(6, 300);
+  ExtendedModel truth = model;
+  truth.model.network.add_effect("lamp", *find_effect("constant_heat"), std::vector<std::string>{"stator"}, std::vector<double>{2.0});
+  truth.model.values = truth.model.network.values();
+  truth.model.free.clear();
+  truth.model.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+  const LinearisedRun real = linearise(truth, std::vector<double>{25.0, 26.0}, run);
+  Random random(9, 0);
+  for (Eigen::Index k = 0; k < run.samples(); ++k) {
+    for (Eigen::Index sensor = 0; sensor < 2; ++sensor) {
+      run.measured_C(k, sensor) = real.shown_C(k, sensor) + 0.2 * (random.uniform() - 0.5);
+    }
+  }
+  const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);
+  const double far_K = (freely.state_C - real.state_C).cwiseAbs().maxCoeff();
+  const double near_K = (smoothed_path_C(freely, {{0.5, 2.0}, 400.0}, {{0.1, 0.1}, {}}) - real.state_C).cwiseAbs().maxCoeff();
+  EXPECT_GT(far_K, 2.0);
+  EXPECT_LT(near_K, 0.15);
+}
+
+TEST(FluxGrid, AscentEndsWhereNoNeighbourIsHigher) {
+  const FluxGrid grid = flux_grid(0.5, 50.0, 2);
+  const FluxPlace top{1, 4, 2, 2, 0};
+  const auto nats = [&](const FluxPlace& place) {
+    double sum = 0.0;
+    for (std::size_t axis = 0; axis < place.size(); ++axis) {
+      sum -= std::pow(place[axis] - top[axis], 2);
+    }
+    return sum;
+  };
+  EXPECT_EQ(most_probable(grid, grid.middle(), nats), top);
+  EXPECT_EQ(most_probable(grid, {0, 0, 0, 0, 1}, nats), top);
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,47 @@
+#include "attribution/refit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/diagnostic.h"
+#include "runs_for_tests.h"
+
+namespace heatsoak {
+namespace {
+
+/// An hour in which the winding of the model gets hotter than anything that is.
+MeasuredRun hour_at(double current_A) {
+  MeasuredRun run;
+  run.name = "hour";
+  run.sensors = {{"winding_C", "winding", 0.15, 0.0}, {"stator_C", "stator", 0.1, 0.0}};
+  run.signals = {Signal::current};
+  constexpr int kSamples = 360;
+  run.measured_C.setConstant(kSamples, 2, 25.0);
+  OperatingPoint<double> at;
+  at.current_rms_A = current_A;
+  for (int k = 0; k < kSamples; ++k) {
+    run.time_s.push_back(10.0 * k);
+    if (k + 1 < kSamples) {
+      run.at.push_back(at);
+    }
+  }
+  return run;
+}
+
+TEST(Refit, a_model_that_runs_away_is_a_failure_and_of_a_trial_no_explanation) {
+  ExtendedModel model;
+  model.model = two_node_model({}, 1.0);
+  RefitOptions options;
+  options.flux = {{0.05, 0.05}, 200.0};
+  options.merged = {1};
+  const std::vector<std::vector<double>> start_C{{25.0, 25.0}};
+  EXPECT_TRUE(std::isfinite(try_refit(model, {hour_at(0.5)}, start_C, options).evidence_nats));
+  EXPECT_THROW(refit(model, {hour_at(1e3)}, start_C, options), Failure);
+  const RefitResult none = try_refit(model, {hour_at(1e3)}, start_C, options);
+  EXPECT_TRUE(std::isinf(none.evidence_nats) && none.evidence_nats < 0.0);
+  EXPECT_EQ(none.flux.rms_W, options.flux.rms_W);
+}
+
+}  // namespace
+}  // namespace heatsoak

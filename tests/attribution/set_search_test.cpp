@@ -1,0 +1,138 @@
+// The evidence of sets of effects against integrals that are done another way: dense covariances, and sums over a fine grid of sizes.
+#include "attribution/set_search.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+
+namespace heatsoak {
+namespace {
+
+struct Problem {
+  Eigen::MatrixXd theta;       ///< n × t
+  Eigen::MatrixXd candidates;  ///< n × e
+  Eigen::VectorXd residual;
+  ThetaPrior prior;
+};
+
+/// White noise of variance 1, so that nothing has to be whitened.
+Problem problem(std::uint32_t seed, double size) {
+  constexpr Eigen::Index kRows = 60;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const auto draw = [&](Eigen::Index rows, Eigen::Index columns) {
+    Eigen::MatrixXd drawn(rows, columns);
+    for (double& each : drawn.reshaped()) {
+      each = normal(random);
+    }
+    return drawn;
+  };
+  Problem out;
+  out.theta = draw(kRows, 2);
+  out.candidates = draw(kRows, 4);
+  out.candidates.col(1) = 0.9 * out.candidates.col(0) + 0.4 * out.candidates.col(1);
+  out.prior.mean = Eigen::Vector2d(0.3, -0.2);
+  out.prior.precision = Eigen::Vector2d(4.0, 1.0).asDiagonal();
+  out.residual = draw(kRows, 1) + size * out.candidates.col(0) + out.theta * Eigen::Vector2d(0.5, -0.4);
+  return out;
+}
+
+Reduced reduced_of(const Problem& of) {
+  Eigen::MatrixXd all(of.residual.size(), of.theta.cols() + of.candidates.cols() + 1);
+  all << of.theta, of.candidates, of.residual;
+  return reduced({all.transpose() * all, 0.0}, of.prior);
+}
+
+/// ln N(residual | mean of θ, 1 + Θ Λ⁻¹ Θᵀ + Z S Zᵀ), the sizes around 0 with covariance S.
+double dense_nats(const Problem& of, const std::vector<int>& members, double sd) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(of.residual.size(), of.residual.size());
+  covariance += of.theta * of.prior.precision.inverse() * of.theta.transpose();
+  for (const int member : members) {
+    covariance += sd * sd * of.candidates.col(member) * of.candidates.col(member).transpose();
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const Eigen::VectorXd off = of.residual - of.theta * of.prior.mean;
+  return -0.5 * off.dot(factor.solve(off)) - factor.matrixLLT().diagonal().array().log().sum();
+}
+
+TEST(SetSearch, EvidenceOfSizesOfEitherSignIsThatOfTheDenseCovariance) {
+  constexpr double kSize_sd = 2.0;
+  const std::vector<CandidateRule> rules(4, CandidateRule{.has_sign = false, .id = "", .family = ""});
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    const Problem one = problem(seed, 0.4);
+    const Reduced point = reduced_of(one);
+    for (const std::vector<int>& members : {std::vector<int>{0}, {1, 2}, {0, 1, 3}}) {
+      const double gain_nats = set_gain_nats(point, columns_of(members, rules, kSize_sd));
+      EXPECT_NEAR(gain_nats, dense_nats(one, members, kSize_sd) - dense_nats(one, {}, kSize_sd), 1e-6);
+    }
+  }
+}
+
+/// Midpoint sum over φ ≥ 0 of 2·N(φ; 0, s²)·N(residual − z·φ), θ integrated out.
+TEST(SetSearch, EvidenceOfASizeWithASignIsTheIntegralOverIt) {
+  constexpr double kSize_sd = 2.0;
+  const std::vector<CandidateRule> rules(4, CandidateRule{.has_sign = true, .id = "", .family = ""});
+  for (const double size : {0.5, 0.1, 0.0, -0.3}) {
+    const Problem one = problem(7, size);
+    const double gain_nats = set_gain_nats(reduced_of(one), columns_of({0}, rules, kSize_sd));
+    constexpr int kSteps = 40000;
+    constexpr double kStep = 12.0 / kSteps;
+    double sum = 0.0;
+    const double none_nats = dense_nats(one, {}, kSize_sd);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(one.residual.size(), one.residual.size());
+    covariance += one.theta * one.prior.precision.inverse() * one.theta.transpose();
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+    const double log_root = factor.matrixLLT().diagonal().array().log().sum();
+    const Eigen::VectorXd off = one.residual - one.theta * one.prior.mean;
+    const Eigen::VectorXd column = one.candidates.col(0);
+    const double a = off.dot(factor.solve(off)), b = off.dot(factor.solve(column)), c = column.dot(factor.solve(column));
+    for (int i = 0; i < kSteps; ++i) {
+      const double phi = (i + 0.5) * kStep;
+      const double prior = 2.0 * std::exp(-0.5 * phi * phi / (kSize_sd * kSize_sd)) / (kSize_sd * std::sqrt(2.0 * M_PI));
+      sum += kStep * prior * std::exp(-0.5 * (a - 2.0 * phi * b + phi * phi * c) - log_root - none_nats);
+    }
+    EXPECT_NEAR(gain_nats, std::log(sum), 1e-3) << size;
+  }
+}
+
+TEST(SetSearch, NamesWhatIsThereAndItsProbabilityAddsUp) {
+  std::vector<CandidateRule> rules;
+  for (const char* const id : {"a", "b", "c", "d"}) {
+    rules.push_back({true, -4.5, id, id, {}, 1.0});
+  }
+  rules[1].family = "a";  // almost the same column
+  const SelectionRules defaults;
+  const SetSearch found({reduced_of(problem(3, 2.0))}, rules, defaults);
+  ASSERT_FALSE(found.sets().front().members.empty());
+  EXPECT_EQ(found.sets().front().members.front(), 0);
+  EXPECT_GT(found.family_probability(found.sets().front(), 0), 0.99);
+  double sum = 0.0;
+  for (const EffectSet& set : found.sets()) {
+    sum += set.probability;
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  const SetSearch nothing({reduced_of(problem(3, 0.0))}, rules, defaults);
+  EXPECT_TRUE(nothing.sets().front().members.empty());
+}
+
+/// Two columns that are nearly the same share what is known of them; the family is still sure.
+TEST(SetSearch, WhatCannotBeToldApartIsSureAsAFamily) {
+  Problem one = problem(5, 1.0);
+  one.candidates.col(1) = one.candidates.col(0);
+  std::vector<CandidateRule> rules;
+  for (const char* const id : {"a", "b", "c", "d"}) {
+    rules.push_back({true, -4.5, id, id, {}, 1.0});
+  }
+  rules[1].family = "a";
+  const SelectionRules defaults;
+  const SetSearch found({reduced_of(one)}, rules, defaults);
+  const EffectSet& best = found.sets().front();
+  ASSERT_EQ(best.members.size(), 1U);
+  EXPECT_GT(found.family_probability(best, 0), 0.99);
+  EXPECT_EQ(found.stand_ins(best, 0, 5.0), std::vector<int>{best.members.front() == 0 ? 1 : 0});
+}
+
+}  // namespace
+}  // namespace heatsoak
