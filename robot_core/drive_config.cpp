@@ -9,7 +9,7 @@ constexpr float kGravity_m_per_s2 = 9.80665F;
 bool is_positive(float x) { return is_finite(x) && x > 0.0F; }
 bool is_not_negative(float x) { return is_finite(x) && x >= 0.0F; }
 
-template <auto holds, int count>
+template <auto holds, unsigned count>
 bool all(const float (&values)[count]) {
   bool all_hold = true;
   for (const float value : values) {

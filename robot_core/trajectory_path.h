@@ -14,8 +14,8 @@ namespace robot_core::detail {
 template <typename Real, int most>
 struct Path {  // NOLINT(cppcoreguidelines-pro-type-member-init): only `count` of the places hold values
   int count = 0;
-  Real duration_s[most];
-  Real jerk[most];
+  Real duration_s[static_cast<unsigned>(most)];
+  Real jerk[static_cast<unsigned>(most)];
 
   void add(Real for_s, Real with_jerk) {
     if (!(for_s > Real(0))) {

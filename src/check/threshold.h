@@ -44,6 +44,7 @@ struct ThresholdType {
   Bound direction = Bound::at_most;
   Range range = {};          ///< of limits
   Room room = Room::share;   ///< of --update
+  double least_size = 0.0;   ///< for --update: a value nearer to its origin gets the room of one that is this far from it
   std::string_view meaning;  ///< what is compared, exactly
   std::string_view example;  ///< a limit that can be pasted
   std::vector<Setting> needs;

@@ -23,12 +23,14 @@ struct CommittedTable {
   std::filesystem::path file;
   std::optional<CurrentTable> table;  ///< of a C header
   std::vector<CommittedRow> rows;     ///< of a CSV table, the full grid of its places
+  std::string motor_id;               ///< that the file names at its beginning; empty where it names none
+  std::string robot_id;               ///< the same
   std::string version;                ///< of the program that wrote the file, "0.1.0"; empty where the file has none
   std::string code;                   ///< of a C header all of its text, else empty
 };
 
-/// Reads a C header or a CSV table of `derate`, whichever the content is. Throws Failure (bad_input): unreadable, neither of the two, an
-/// axis that does not ascend, a value that cannot be, an incomplete grid, with the line where there is one.
+/// Reads a C header or a CSV table of `derate`, whichever the content is. Throws Failure (bad_input): unreadable, neither of the two, a
+/// header that is cut off, an axis that does not ascend, a value that cannot be, an incomplete grid, with the line where there is one.
 CommittedTable read_committed_table(const std::filesystem::path& file);
 
 /// Where two tables are furthest apart.

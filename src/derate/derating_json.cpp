@@ -1,7 +1,10 @@
 #include "derate/derating_json.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "motor/datasheet_network.h"
@@ -15,6 +18,9 @@ Json rounded(double value, int decimals) {
   const double scale = std::pow(10.0, decimals);
   return std::isfinite(value) ? Json(std::round(value * scale) / scale) : Json();
 }
+
+/// To 12 digits, so that a unit's conversion shows no rounding error of its own.
+double short_value(double value) { return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr); }
 
 bool is_datasheet_alone(const Derating& derating) {
   return derating.observer.state_count() == 2 && std::ranges::all_of(derating.effects, [](const ActingEffect& effect) {
@@ -32,16 +38,18 @@ Json observer_json(const Derating& derating) {
       {"winding_K_per_s", "(r*R25*(1+alpha*(T_winding-25))*(k*I)^2 - (T_winding-T_stator)/R_winding_stator)/C_winding"},
       {"stator_K_per_s",
        "(r*torque_constant*no_load_current*|w| + (T_winding-T_stator)/R_winding_stator - (T_stator-T_ambient)/R_stator_ambient)/C_stator"},
-      {"heat_reserve_ratio_r", derating.observer.heat_reserve_ratio()},
-      {"heating_current_ratio_k", derating.heating_current_ratio},
-      {"terminal_resistance_25C_ohm", motor.terminal_resistance_ohm},
-      {"temperature_coefficient_per_K", motor.temperature_coefficient_per_K},
-      {"torque_constant_Nm_per_A", motor.torque_constant_Nm_per_A},
-      {"no_load_current_A", motor.no_load_current_A},
-      {"thermal_resistance_winding_stator_K_per_W", motor.thermal_resistance_winding_stator_K_per_W},
-      {"thermal_resistance_stator_ambient_K_per_W", motor.thermal_resistance_stator_ambient_K_per_W},
-      {"heat_capacity_winding_J_per_K", motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W},
-      {"heat_capacity_stator_J_per_K", motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W}};
+      {"heat_reserve_ratio_r", short_value(derating.observer.heat_reserve_ratio())},
+      {"heating_current_ratio_k", short_value(derating.heating_current_ratio)},
+      {"terminal_resistance_25C_ohm", short_value(motor.terminal_resistance_ohm)},
+      {"temperature_coefficient_per_K", short_value(motor.temperature_coefficient_per_K)},
+      {"torque_constant_Nm_per_A", short_value(motor.torque_constant_Nm_per_A)},
+      {"no_load_current_A", short_value(motor.no_load_current_A)},
+      {"thermal_resistance_winding_stator_K_per_W", short_value(motor.thermal_resistance_winding_stator_K_per_W)},
+      {"thermal_resistance_stator_ambient_K_per_W", short_value(motor.thermal_resistance_stator_ambient_K_per_W)},
+      {"heat_capacity_winding_J_per_K",
+       short_value(motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W)},
+      {"heat_capacity_stator_J_per_K",
+       short_value(motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W)}};
 }
 
 Json default_spreads(const Derating& derating) {

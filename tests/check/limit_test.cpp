@@ -55,7 +55,7 @@ TEST(UpdatedLimit, GivesATemperatureASharesOfItsRise) {
   EXPECT_EQ(updated_limit({4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least 3.6 A");
   EXPECT_EQ(updated_limit({-4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least -4.4 A");
   EXPECT_EQ(updated_limit({3.0, 0.0}, threshold("rank"), "", 0.05), "at most 3");
-  EXPECT_EQ(updated_limit({0.0, 0.0}, threshold("derating_excess"), "A", 0.05), "at most 0 A");
+  EXPECT_EQ(updated_limit({0.0, 0.0}, threshold("derating_excess"), "A", 0.05), "at most 0.05 A");
   EXPECT_EQ(updated_limit({1.0, 0.0}, threshold("probability_over_limit"), "%", 0.05), "at most 100 %");
 }
 

@@ -33,7 +33,7 @@ using testing::SizeIs;
 const std::string kRobot = "roboteam_twente_v2024";
 const std::string kEcx = "maxon_ecx_flat_32l_48v";
 constexpr int kSamples = 60;
-constexpr const char* kStrict = "-Wall -Wextra -Werror -Wdouble-promotion";
+constexpr const char* kStrict = "-Wall -Wextra -Werror -Wconversion -Wsign-conversion -Wdouble-promotion";
 
 /// Lines of a motor file with the effect at its typical size, as `describe` prints them.
 std::string typical(const std::string& effect) {

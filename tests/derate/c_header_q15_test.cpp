@@ -191,7 +191,8 @@ class Q15Header : public testing::Test {
   std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_q15_{}", static_cast<int>(getpid()));
 };
 
-constexpr const char* kWarnings = "-O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Werror -ffp-contract=off";
+constexpr const char* kWarnings =
+    "-O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Werror -ffp-contract=off";
 
 double number_after(const std::string& text, const std::string& pattern) {
   std::smatch found;

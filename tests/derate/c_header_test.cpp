@@ -120,7 +120,7 @@ class CHeader : public testing::TestWithParam<const char*> {
   void build_header(const std::string& header) {
     std::ofstream(folder_ / "guard.h") << header;
     const std::string warnings =
-        " -O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wunused -Werror -ffp-contract=off ";
+        " -O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wunused -Werror -ffp-contract=off ";
     const std::string command = std::string(GetParam()) + warnings + "-o '" + (folder_ / "guard").string() + "' '" +
                                 (folder_ / "main.c").string() + "' -lm 2> '" + (folder_ / "errors").string() + "'";
     std::stringstream errors;

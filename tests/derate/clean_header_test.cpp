@@ -25,7 +25,8 @@ int32_t use(void) {
 }
 )";
 
-constexpr const char* kStrict = "-Wall -Wextra -Wpedantic -pedantic -Wconversion -Wdouble-promotion -Wshadow -Wundef -Wcast-qual -Werror";
+constexpr const char* kStrict =
+    "-Wall -Wextra -Wpedantic -pedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow -Wundef -Wcast-qual -Werror";
 
 /// Advisory rules that are not kept, with reasons in src/derate/README.md.
 const std::set<std::string> kNotKept{"2.5", "8.9", "12.1", "15.5"};

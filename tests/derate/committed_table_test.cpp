@@ -70,6 +70,12 @@ TEST_P(Committed, SaysTheSameAsTheOneThatWroteIt) {
   EXPECT_EQ(found.differing_line, 0) << found.differing_text << "\n" << found.differing_fresh_text;
 }
 
+TEST_P(Committed, NamesItsMotorAndRobot) {
+  const CommittedTable committed = read(exported(*fresh_, GetParam()));
+  EXPECT_EQ(committed.motor_id, fresh_->motor_id);
+  EXPECT_EQ(committed.robot_id, fresh_->robot_id);
+}
+
 TEST_P(Committed, OfABolderReserveIsUnsafe) {
   const TableComparison found = compare(read(exported(derating_of(ecx_32(), 1.2), GetParam())), *fresh_);
   EXPECT_GT(found.excess.difference_A, 0.5);
@@ -152,6 +158,17 @@ TEST_F(Tampered, ObserverIsFoundAtItsLineWhereverCommentsSayOtherThings) {
 }
 
 TEST_F(Tampered, VersionOfTheWriterIsRead) { EXPECT_EQ(read("/* heatsoak 9.8.7 */\n" + exported(*fresh_, "c_header")).version, "9.8.7"); }
+
+// Wherever it is cut, before the table, in it or behind it.
+TEST_F(Tampered, HeaderThatIsCutOffIsNeverTakenForACsvTable) {
+  const std::string header = exported(*fresh_, "c_header");
+  for (const std::string_view last : {"#ifndef", "#include", "_square_A2[", "_advance("}) {
+    const std::size_t cut = header.find('\n', header.find(last));
+    ASSERT_NE(cut, std::string::npos) << last;
+    EXPECT_THAT(message_of(header.substr(0, cut + 1)), HasSubstr("cut off")) << last;
+  }
+  EXPECT_THAT(message_of(header.substr(0, 300)), HasSubstr("cut off"));
+}
 
 // What a compiler reads as more than the number at its beginning is no table entry.
 TEST_F(Tampered, EntriesAreWholeNumbers) {

@@ -198,7 +198,8 @@ std::vector<Row> by_header(const Derating& derating, const std::vector<Record>& 
       .write(reinterpret_cast<const char*>(records.data()), static_cast<std::streamsize>(records.size() * sizeof(Record)));
   const auto quoted = [&](const char* file) { return fmt::format("'{}'", (folder / file).string()); };
   const std::string build = fmt::format(
-      "cc -std=c99 -O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Werror -ffp-contract=off -o {} {} -lm",
+      "cc -std=c99 -O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion "
+      "-Wsign-conversion -Wdouble-promotion -Werror -ffp-contract=off -o {} {} -lm",
       quoted("guard"), quoted("main.c"));
   EXPECT_EQ(std::system(build.c_str()), 0);
   EXPECT_EQ(std::system(fmt::format("{} < {} > {}", quoted("guard"), quoted("asked"), quoted("answered")).c_str()), 0);

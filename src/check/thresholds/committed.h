@@ -10,6 +10,10 @@ namespace heatsoak::thresholds {
 
 inline TableComparison compared(const Check& check, Computations& computations) {
   const CommittedTable committed = read_committed_table(check.table);  // first: a missing file needs no minute of work
+  if (!committed.motor_id.empty() && committed.motor_id != check.motor->id) {
+    throw Failure(ExitCode::limit_exceeded, fmt::format("{}: the table is of another motor, {}; expected one of {}", check.table.string(),
+                                                        committed.motor_id, check.motor->id));
+  }
   return compare(committed, computations.derating(check, check.derate));
 }
 

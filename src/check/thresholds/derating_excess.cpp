@@ -22,16 +22,20 @@ Measured measure(const Check& check, Computations& computations) {
 }  // namespace
 
 ThresholdType derating_excess() {
-  return {.name = {},
-          .unit = "A",
-          .range = Range::between(0.0, 1e3),
-          .meaning =
-              "how much more current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
-              "speed and temperatures where that is most. A C header fails, too, where its observer differs from a fresh one",
-          .example = "at most 0 A",
-          .needs = {Setting::robot, Setting::motor, Setting::table},
-          .takes = {Setting::conditions, Setting::derate},
-          .measure = measure};
+  return {
+      .name = {},
+      .unit = "A",
+      .range = Range::between(0.0, 1e3),
+      .least_size = 1.0,
+      .meaning =
+          "how much more current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
+          "speed and temperatures where that is most. A C header fails, too, where it is of another motor or its observer differs from a "
+          "fresh one. The default of 400 drawn motors takes 5 to 10 s per motor; write and check the table with derate = { samples = "
+          "\"60\" } for 1 s. The limit of --update leaves 0.05 A where the value is 0",
+      .example = "at most 0 A",
+      .needs = {Setting::robot, Setting::motor, Setting::table},
+      .takes = {Setting::conditions, Setting::derate},
+      .measure = measure};
 }
 
 }  // namespace heatsoak::thresholds

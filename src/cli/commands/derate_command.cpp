@@ -130,12 +130,14 @@ Json json(const TablePlace& place) {
           {"stator_C", rounded(place.stator_C, 2)},         {"winding_C", rounded(place.winding_C, 2)}};
 }
 
-/// What changed since the file was written, and whether it is still safe.
-ExitCode tell_comparison(const CommittedTable& committed, const Derating& derating, Session& session, Json& answer) {
-  const TableComparison found = compare(committed, derating);
-  const bool holds = found.excess.difference_A == 0.0 && found.differing_line == 0;
+/// What changed since the file was written: what is unsafe first, then the rest.
+std::string comparison_text(const CommittedTable& committed, const Derating& derating, const TableComparison& found, bool is_other_motor,
+                            bool holds) {
   std::string text =
       fmt::format("\n{}: {}\n", committed.file.string(), holds ? "still holds" : "no longer holds; write it anew with --out");
+  if (is_other_motor) {
+    text += fmt::format("unsafe: it is the table of another motor, {}; expected one of {}\n", committed.motor_id, derating.motor_id);
+  }
   if (found.excess.difference_A > 0.0) {
     text += fmt::format("unsafe: it allows up to {:.3f} A more than a fresh table\n", found.excess.difference_A) + place_text(found.excess);
   }
@@ -145,14 +147,28 @@ ExitCode tell_comparison(const CommittedTable& committed, const Derating& derati
         found.differing_line, found.differing_text, found.differing_fresh_text);
   }
   if (found.lost.difference_A > 0.0) {
-    text += fmt::format("safe, but it allows up to {:.3f} A less than a fresh table\n", found.lost.difference_A) + place_text(found.lost);
+    text += fmt::format("{} it allows up to {:.3f} A less than a fresh table\n", holds ? "safe, but" : "at other places",
+                        found.lost.difference_A) +
+            place_text(found.lost);
+  }
+  if (!committed.robot_id.empty() && committed.robot_id != derating.robot_id) {
+    text += fmt::format("it was written for the robot {}, this is {}\n", committed.robot_id, derating.robot_id);
   }
   if (!holds && !committed.version.empty() && committed.version != program_version()) {
     text += fmt::format("it was written by heatsoak {}, this is {}: an upgrade may explain the difference\n", committed.version,
                         program_version());
   }
-  session.say(text);
+  return text;
+}
+
+ExitCode tell_comparison(const CommittedTable& committed, const Derating& derating, Session& session, Json& answer) {
+  const TableComparison found = compare(committed, derating);
+  const bool is_other_motor = !committed.motor_id.empty() && committed.motor_id != derating.motor_id;
+  const bool holds = !is_other_motor && found.excess.difference_A == 0.0 && found.differing_line == 0;
+  session.say(comparison_text(committed, derating, found, is_other_motor, holds));
   answer["check"] = {{"file", committed.file.string()},
+                     {"motor", committed.motor_id.empty() ? Json() : Json(committed.motor_id)},
+                     {"robot", committed.robot_id.empty() ? Json() : Json(committed.robot_id)},
                      {"written_by", committed.version.empty() ? Json() : Json(committed.version)},
                      {"holds", holds},
                      {"excess", json(found.excess)},

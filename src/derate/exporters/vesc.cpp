@@ -15,9 +15,9 @@ namespace {
 /// VESC gives the full current up to this far beyond the start of its ramp.
 constexpr double kFullBeyond_K = 0.1;
 
-/// A LispBM float: a number without a point would be an integer.
+/// A LispBM float, the shortest decimal that reads back to it. A number without a point would be an integer.
 std::string literal(double value) {
-  std::string text = fmt::format("{:.9g}", static_cast<float>(value));
+  std::string text = fmt::format("{}", static_cast<float>(value));
   const std::size_t exponent = text.find('e');
   return text.find('.') != std::string::npos ? text : text.insert(std::min(exponent, text.size()), ".0");
 }

@@ -1,6 +1,8 @@
-// Makes reports/derate anew: millions of uses and motors against the promise of `derate`. The same bytes on every run but for the time.
-//   heatsoak_worst_use [FOLDER [TRIALS]]
-// FOLDER: reports/derate of the checkout; TRIALS: per class, 1 000 000 unless given.
+// Makes reports/derate anew: millions of uses and motors against the promise of `derate`. The same bytes on every run but for the time,
+// unless MINUTES ends it.
+//   heatsoak_worst_use [FOLDER [TRIALS [MINUTES]]]
+// FOLDER: reports/derate of the checkout; TRIALS: per class, 1 000 000 unless given; MINUTES: for all classes, no end unless given. The
+// files are written anew after every class, with the trials that were made until then; progress goes to stderr.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,9 @@
 #include <cmath>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <span>
 
 #include "adversary.h"
 #include "base/binomial_bound.h"
@@ -153,12 +157,41 @@ class Adversary {
   std::deque<std::pair<double, Script>> best_;  ///< hottest first
 };
 
+/// When a class has to end, and how far it is.
+class Clock {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  explicit Clock(double minutes) : start_(now()), minutes_(minutes) {}
+  [[nodiscard]] double elapsed_min() const { return minutes_between(start_, now()); }
+  /// Shares the time that is left among the classes that are left.
+  void begin_class(int classes_left) { class_end_min_ = elapsed_min() + (minutes_ - elapsed_min()) / classes_left; }
+  [[nodiscard]] bool is_over() const { return elapsed_min() > class_end_min_; }
+  void report(const Tally& tally, std::uint64_t trials) {
+    constexpr double kEvery_min = 0.25;
+    if (elapsed_min() - reported_min_ >= kEvery_min) {
+      reported_min_ = elapsed_min();
+      fmt::print(stderr, "{:.1f} min: {}, {} of {} trials\n", elapsed_min(), tally.name, tally.trials, trials);
+    }
+  }
+
+ private:
+  static Time now() { return std::chrono::steady_clock::now(); }
+  static double minutes_between(Time from, Time to) { return std::chrono::duration<double>(to - from).count() / 60.0; }
+
+  Time start_;
+  double minutes_;
+  double class_end_min_ = 0.0;
+  double reported_min_ = 0.0;
+};
+
 using MakeScript = std::function<Script(Random& random)>;
 /// Every use on motors of its own.
-void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::uint64_t number, const MakeScript& make,
+void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::uint64_t number, Clock& clock, const MakeScript& make,
                const std::function<void(const Script&, const UsePlayed&)>& learn = {}) {
   const std::uint64_t uses = (trials + kMotorsPerUse - 1) / kMotorsPerUse;
-  for (std::uint64_t use = 0; use < uses; ++use) {
+  for (std::uint64_t use = 0; use < uses && !clock.is_over(); ++use) {
+    clock.report(tally, trials);
     const std::uint64_t id = (number << 32U) + use;
     Random random(kSeed, id);
     const Script script = make(random);
@@ -178,7 +211,7 @@ void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::
 }
 
 /// All corners of the tolerances under the hottest uses and random ones.
-void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, const Adversary& adversary) {
+void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, Clock& clock, const Adversary& adversary) {
   const auto values = static_cast<unsigned>(
       std::ranges::count_if(subject.motor.figures, [](const auto& each) { return needs_spread(each.first) && each.second.spread; }));
   const std::uint64_t corners = std::uint64_t{1} << values;
@@ -186,7 +219,8 @@ void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, con
   for (std::uint64_t corner = 0; corner < corners; ++corner) {
     networks.push_back(at_the_ends(subject, corner));
   }
-  for (std::uint64_t use = 0; tally.trials < trials; ++use) {
+  for (std::uint64_t use = 0; tally.trials < trials && !clock.is_over(); ++use) {
+    clock.report(tally, trials);
     Random random(kSeed, (std::uint64_t{7} << 32U) + use);
     const Script script = use == 0 ? adversary.hottest() : bang_bang(subject.derating.rules, random);
     const UsePlayed done = played(subject, script);
@@ -228,7 +262,7 @@ std::string share_text(std::uint64_t over, std::uint64_t of) {
   return fmt::format("{:.3g} % (at most {:.3g} %)", 100.0 * count / all, 100.0 * upper_bound_share(count, all, kCertainty_share));
 }
 
-std::string table_text(const std::vector<Tally>& tallies) {
+std::string table_text(std::span<const Tally> tallies) {
   std::string text =
       "| class of use | uses | trials | over the limit | median °C | 95 % below °C | hottest °C |\n|---|--:|--:|---|--:|--:|--:|\n";
   for (const Tally& each : tallies) {
@@ -244,7 +278,7 @@ std::string table_text(const std::vector<Tally>& tallies) {
   return text;
 }
 
-std::string csv_text(const std::vector<Tally>& tallies) {
+std::string csv_text(std::span<const Tally> tallies) {
   std::string text = "class,winding_peak_below_C,trials\n";
   for (const Tally& each : tallies) {
     for (int cell = 0; cell < Tally::kCells; ++cell) {
@@ -256,7 +290,7 @@ std::string csv_text(const std::vector<Tally>& tallies) {
   return text;
 }
 
-Chart chart_of(const std::vector<Tally>& tallies, double limit_C) {
+Chart chart_of(std::span<const Tally> tallies, double limit_C) {
   Chart chart{
       .title = "How hot windings get when the guard allows and the adversary takes",
       .subtitle = fmt::format("ECX FLAT 32 L in roboteam_twente_v2024, limit {:.0f} °C, {:.1f} million trials, computed", limit_C,
@@ -279,57 +313,75 @@ Chart chart_of(const std::vector<Tally>& tallies, double limit_C) {
   return chart;
 }
 
-std::vector<Tally> run_all(const Subject& subject, std::uint64_t trials, Adversary& adversary) {
+/// `written` gets the classes that are done, after each of them.
+std::vector<Tally> run_all(const Subject& subject, std::uint64_t trials, Clock& clock, Adversary& adversary,
+                           const std::function<void(std::span<const Tally>)>& written) {
   const BarrierRules& rules = subject.derating.rules;
   std::vector<Tally> tallies{{"adversary", "on and off by an adversary that learns"},
                              {"match", "wheels of division A matches, 1 to 3 times the current"},
                              {"ambient", "the same adversary in air that jumps"},
                              {"cold_observer", "observer starts 20 K below the motor"},
                              {"ends", "every value at an end of its tolerance, all combinations"}};
+  int classes_left = static_cast<int>(tallies.size());
+  const auto end_class = [&](std::size_t done) {
+    written(std::span(tallies).first(done));
+    clock.begin_class(std::max(1, --classes_left));
+  };
+  clock.begin_class(classes_left);
   run_class(
-      tallies[0], subject, trials, 1, [&](Random& random) { return adversary.next(random); },
+      tallies[0], subject, trials, 1, clock, [&](Random& random) { return adversary.next(random); },
       [&](const Script& script, const UsePlayed& use) { adversary.learn(script, use); });
+  end_class(1);
   constexpr int kGames = 40;
   const std::vector<WheelDemand> games =
       draw_demands(read_duty(kSource / "duty_profiles/division_a_match.toml"), subject.robot, kSeed, kGames, 1);
-  run_class(tallies[1], subject, trials, 2, [&](Random& random) {
+  run_class(tallies[1], subject, trials, 2, clock, [&](Random& random) {
     const WheelDemand& game = games[static_cast<std::size_t>(random.uniform() * kGames)];
     const double aggressiveness = 1.0 + 2.0 * random.uniform();
     return match(game, subject.motor, subject.robot, rules, aggressiveness, random.uniform());
   });
-  run_class(tallies[2], subject, trials, 3, [&](Random& random) {
+  end_class(2);
+  run_class(tallies[2], subject, trials, 3, clock, [&](Random& random) {
     Script script = adversary.next(random);
     step_ambient(script, subject.options.coldest_ambient_C + 1.0, rules, random);
     return script;
   });
-  run_class(tallies[3], subject, trials, 4, [&](Random& random) {
+  end_class(3);
+  run_class(tallies[3], subject, trials, 4, clock, [&](Random& random) {
     constexpr double kWrong_K = 20.0;
     Script script = adversary.next(random);
     script.motor_start_C = std::lerp(rules.hottest_ambient_C + kWrong_K, rules.limits.winding_C, random.uniform());
     script.observer_start_C = script.motor_start_C - kWrong_K;
     return script;
   });
-  run_corners(tallies[4], subject, trials, adversary);
+  end_class(4);
+  run_corners(tallies[4], subject, trials, clock, adversary);
   return tallies;
 }
 
-void run(const std::filesystem::path& folder, std::uint64_t trials) {
-  const auto start = std::chrono::steady_clock::now();
-  const Subject subject;
-  Adversary adversary(subject);
-  const std::vector<Tally> tallies = run_all(subject, trials, adversary);
-  const Retest again = retest(subject, adversary, 20'000);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const auto share = [&](int over) { return share_text(static_cast<std::uint64_t>(over), static_cast<std::uint64_t>(again.motors)); };
+void write(const std::filesystem::path& folder, const Subject& subject, std::span<const Tally> tallies, double elapsed_min,
+           const std::string& promise) {
   write_file(folder / "worst_use.md",
-             fmt::format("Safety factor on heat {:.2f}, confidence {:.2f}, limit {:.0f} °C. Run time {:.0f} min, one thread.\n\n{}\n"
-                         "The promise on {} fresh motors: over a limit in one of the {} uses of the check {}, in one of those or of the "
-                         "eight hottest that the adversary found {}.\n",
+             fmt::format("Safety factor on heat {:.2f}, confidence {:.2f}, limit {:.0f} °C. Run time {:.0f} min, one thread.\n\n{}\n{}",
                          subject.derating.observer.heat_reserve_ratio(), subject.options.guarantee.confidence,
-                         subject.derating.rules.limits.winding_C, took.count() / 60.0, table_text(tallies), again.motors,
-                         subject.derating.uses.size(), share(again.over_check), share(again.over_all)));
+                         subject.derating.rules.limits.winding_C, elapsed_min, table_text(tallies), promise));
   write_file(folder / "worst_use.csv", csv_text(tallies));
   write_file(folder / "worst_use.svg", draw_svg(chart_of(tallies, subject.derating.rules.limits.winding_C)));
+}
+
+void run(const std::filesystem::path& folder, std::uint64_t trials, double minutes) {
+  Clock clock(minutes);
+  const Subject subject;
+  Adversary adversary(subject);
+  const std::vector<Tally> tallies = run_all(subject, trials, clock, adversary, [&](std::span<const Tally> done) {
+    write(folder, subject, done, clock.elapsed_min(), "The run has not ended: classes are missing.\n");
+  });
+  const Retest again = retest(subject, adversary, 20'000);
+  const auto share = [&](int over) { return share_text(static_cast<std::uint64_t>(over), static_cast<std::uint64_t>(again.motors)); };
+  write(folder, subject, tallies, clock.elapsed_min(),
+        fmt::format("The promise on {} fresh motors: over a limit in one of the {} uses of the check {}, in one of those or of the "
+                    "eight hottest that the adversary found {}.\n",
+                    again.motors, subject.derating.uses.size(), share(again.over_check), share(again.over_all)));
 }
 
 }  // namespace
@@ -343,7 +395,12 @@ int main(int argc, char** argv) {
       const std::string_view text(argv[2]);
       std::from_chars(text.data(), text.data() + text.size(), trials);
     }
-    heatsoak::studies::run(folder, trials);
+    double minutes = std::numeric_limits<double>::infinity();
+    if (argc > 3) {
+      const std::string_view text(argv[3]);
+      std::from_chars(text.data(), text.data() + text.size(), minutes);
+    }
+    heatsoak::studies::run(folder, trials, minutes);
     return 0;
   } catch (const std::exception& problem) {
     fmt::print(stderr, "{}\n", problem.what());
