@@ -16,6 +16,7 @@
 #include "identify/log_columns.h"
 #include "identify/log_rows.h"
 #include "identify/measurement/fingerprint.h"
+#include "identify/training_range.h"
 
 namespace heatsoak {
 namespace {
@@ -144,6 +145,7 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   MotorFit together;
   together.motor = motor.fit ? motor.fit->motor : motor.id;
   together.runs = model.fitted;
+  together.training = model.training;
   for (std::size_t i = 0; i < of_file.size(); ++i) {
     const FittedFigure& each = *of_file[i];
     exponents.row(static_cast<Eigen::Index>(i)) = each.exponents.transpose();
@@ -212,7 +214,9 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   forget_fit(everywhere, recordings, out.notes);
   if (everywhere.fit) {
     out.fitted = everywhere.fit->runs;
+    out.training = everywhere.fit->training;
   }
+  widen(out.training, recordings);
   std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
   MotorModel built = motor_model(everywhere, heat_input_of(everywhere, recordings, false), have(Signal::speed));
   out.how = how_to_read(motor, built.heat);

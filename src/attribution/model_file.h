@@ -15,6 +15,7 @@ struct ModelOfLogs {
   std::vector<FittedFigure> figures;  ///< of the motor's file, as the model's parameters make them
   MeasuredRunOptions how;             ///< what its runs must have and how they are read; but for the ambient temperature
   std::vector<std::string> fitted;    ///< rows that the figures know, as name_and_fingerprint()
+  TrainingRange training;             ///< of the runs that they are rows of
   std::vector<std::string> notes;     ///< what is taken for granted because no log has it
 };
 

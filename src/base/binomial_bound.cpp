@@ -12,6 +12,13 @@ double upper_bound_share(double over_count, double draws_count, double confidenc
   return boost::math::binomial_distribution<>::find_upper_bound_on_p(draws_count, over_count, 1.0 - confidence);
 }
 
+ShareInterval share_interval(double over_share, double draws_count, double error_share) {
+  const bool is_open = over_share <= 0.0 || over_share >= 1.0;
+  const double confidence = 1.0 - (is_open ? error_share : 0.5 * error_share);
+  return {1.0 - upper_bound_share((1.0 - over_share) * draws_count, draws_count, confidence),
+          upper_bound_share(over_share * draws_count, draws_count, confidence)};
+}
+
 std::optional<long> draws_needed(double over_share, double limit_share, double confidence) {
   if (!(over_share < limit_share)) {
     return std::nullopt;

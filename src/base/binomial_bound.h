@@ -9,6 +9,14 @@ namespace heatsoak {
 /// would be over with a chance of less than 1 − `confidence`. `over_count` of them were; it need not be whole. 1 without draws.
 double upper_bound_share(double over_count, double draws_count, double confidence);
 
+/// Two-sided interval of a probability, exact (Clopper and Pearson 1934): it misses the probability with a chance of at most `error_share`.
+/// Where none or all of the draws are over, the whole `error_share` goes to the side that is open.
+struct ShareInterval {
+  double low = 0.0;
+  double high = 1.0;
+};
+ShareInterval share_interval(double over_share, double draws_count, double error_share);
+
 /// The fewest draws with which a limit can be kept if the same share of them is over, "over_share" of each; nothing where no number
 /// suffices because the share itself is at the limit or above it.
 std::optional<long> draws_needed(double over_share, double limit_share, double confidence);

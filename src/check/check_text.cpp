@@ -249,10 +249,12 @@ std::string junit_xml(std::span<const Outcome> outcomes, std::string_view versio
 
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version) {
   const Counts counts = counts_of(outcomes);
-  std::string text = fmt::format("### heatsoak check: {}\n\n",
-                                 counts.exceeded + counts.not_evaluated == 0
-                                     ? counts.all == 1 ? std::string("the limit holds") : fmt::format("all {} limits hold", counts.all)
-                                     : fmt::format("{} of {} limits do not hold", counts.exceeded + counts.not_evaluated, counts.all));
+  std::string text =
+      fmt::format("### heatsoak check: {}\n\n",
+                  counts.exceeded + counts.not_evaluated == 0
+                      ? counts.all == 1 ? std::string("the limit holds") : fmt::format("all {} limits hold", counts.all)
+                  : counts.all == 1 ? std::string("the limit does not hold")
+                                    : fmt::format("{} of {} limits do not hold", counts.exceeded + counts.not_evaluated, counts.all));
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const Outcome& each : outcomes) {
     text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed ? "✅" : "❌", in_markdown(each.check->name),

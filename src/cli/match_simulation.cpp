@@ -304,8 +304,18 @@ std::vector<ChartPanel> comparison(const MatchSimulation& wanted, const std::vec
   return panels;
 }
 
+/// "winding 62 °C of 155 °C, within the limit", of the hottest planner's game.
+std::string verdict_of(const MatchSimulation& wanted, const std::vector<Played>& all) {
+  double peak_C = 0.0;
+  for (const Played& each : all) {
+    peak_C = std::max(peak_C, each.run.score.winding_peak_C);
+  }
+  const double limit_C = wanted.motor.nominal.winding_limit_C;
+  return fmt::format("winding {:.0f} °C, {} the limit of {:.0f} °C", peak_C, peak_C > limit_C ? "over" : "within", limit_C);
+}
+
 Chart picture(const MatchSimulation& wanted, const std::vector<Played>& all) {
-  return {.title = fmt::format("{} with {} on {}", wanted.robot.name, wanted.motor.id, wanted.duty.id),
+  return {.title = fmt::format("{}: {}, {} on {}", wanted.motor.id, verdict_of(wanted, all), wanted.robot.name, wanted.duty.id),
           .subtitle = fmt::format("closed loop, synthetic match, seed {}{}", wanted.seed,
                                   data_quality(wanted.motor) == "estimated" ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",

@@ -220,13 +220,18 @@ void Session::add_json_option(CLI::App& app) {
 void Session::add_text_options(CLI::App& app) {
   app.add_flag("--explain", explains_, "show every note, not only the three most important ones");
   app.add_flag("--quiet", is_quiet_, "show the verdict alone");
-  app.add_option("--report", report_, "write the whole answer as a document, with every column and note")->type_name("FILE.md");
+  app.add_option("--report", report_, "write the whole answer as a document, with every column and note; - is stdout, in place of the text")
+      ->type_name("FILE.md");
 }
 
 void Session::say(std::string_view text) { text_ += printable(text); }
 
 void Session::show(const present::Document& document) {
   const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;
+  if (report_ == "-") {
+    text_ += present::rendered_for("-.md", document);
+    return;
+  }
   text_ += present::terminal_text(
       document,
       {.width = terminal_width(descriptor), .with_colors = takes_colors(descriptor), .explains = explains_, .is_quiet = is_quiet_});

@@ -69,7 +69,7 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
     const bool is_hidden = std::any_of(shown.begin(), shown.begin() + color, [&](const MotorEvaluation* before) {
       return coincide(curves, values_of(curves), before->curves, values_of(before->curves));
     });
-    result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden});
+    result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden, false, true});
     if (!curves.band_time_s.empty() && i < bands_of(shown.size())) {
       result.bands.push_back({"", in_minutes(curves.band_time_s), of_winding ? curves.winding_p05_C : curves.stator_p05_C,
                               of_winding ? curves.winding_p95_C : curves.stator_p95_C, color});

@@ -58,6 +58,7 @@ Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
 namespace {
 
 constexpr double kMostShare = 10.0;
+constexpr double kLargestInput = 1e5;
 
 std::optional<ForecastBand> read_band(Reader& table) {
   const auto share = [&](const char* key, const char* meaning) {
@@ -73,6 +74,42 @@ std::optional<ForecastBand> read_band(Reader& table) {
     return std::nullopt;
   }
   return ForecastBand{{*winding, *stator}, *time_s, *heat, *width};
+}
+
+struct RangeKey {
+  std::string_view key;
+  std::string_view channel;
+  std::string_view unit;
+};
+constexpr std::array kRangeKeys{RangeKey{"trained_ambient", "ambient_C", "degC"}, RangeKey{"trained_speed", "speed_rad_per_s", "rad/s"},
+                                RangeKey{"trained_current", "current_A", "A"}};
+
+TrainingRange read_training(Reader& table) {
+  TrainingRange range;
+  for (const std::string& each : table.texts("trained_conditions", Need::optional)) {
+    range.conditions.insert(each);
+  }
+  for (const RangeKey& each : kRangeKeys) {
+    const std::vector<double> ends = table.quantities(
+        {each.key, each.unit, Range::between(-kLargestInput, kLargestInput), "lowest and highest of the fitted runs"}, Need::optional);
+    if (ends.size() == 2 && ends[0] <= ends[1]) {
+      range.inputs.emplace(each.channel, InputRange{ends[0], ends[1]});
+    } else if (!ends.empty()) {
+      table.problem(each.key, "expected two values, the lowest and the highest of the fitted runs");
+    }
+  }
+  return range;
+}
+
+std::string training_text(const TrainingRange& range) {
+  std::string text = range.conditions.empty() ? "" : fmt::format("trained_conditions = [\"{}\"]\n", fmt::join(range.conditions, "\", \""));
+  for (const RangeKey& each : kRangeKeys) {
+    if (const auto found = range.inputs.find(std::string(each.channel)); found != range.inputs.end()) {
+      text += fmt::format("{0} = [\"{1} {3}\", \"{2} {3}\"]\n", each.key, significant(found->second.low, 3),
+                          significant(found->second.high, 3), each.unit);
+    }
+  }
+  return text.empty() ? "" : "# conditions and ranges of the fitted runs: forecasts outside are extrapolations\n" + text;
 }
 
 std::string band_text(const ForecastBand& band) {
@@ -111,6 +148,7 @@ MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
   fit.free_run_error_K =
       table.quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "of the free runs that decided the figures"}, Need::optional)
           .value_or(0.0);
+  fit.training = read_training(table);
   fit.band = read_band(table);
   table.finish();
   return fit;
@@ -139,6 +177,7 @@ std::string to_toml(const MotorFit& fit) {
   }
   text += fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
   text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", significant(fit.free_run_error_K, 2)) : "";
+  text += training_text(fit.training);
   return text + (fit.band ? band_text(*fit.band) : "");
 }
 

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,6 +23,18 @@ struct ForecastBand {
   double width_ratio = 1.0;                    ///< the band as computed is widened by this
 };
 
+/// In the input's unit.
+struct InputRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// What the fitted runs had; empty in files that do not record it.
+struct TrainingRange {
+  std::set<std::string> conditions = {};          ///< "fan=on"
+  std::map<std::string, InputRange> inputs = {};  ///< by channel: "ambient_C", "speed_rad_per_s", "current_A"
+};
+
 /// The [fit] table of a motor file that a calibration wrote.
 struct MotorFit {
   std::string motor;                                    ///< id of the motor file that the fit began with
@@ -33,6 +47,7 @@ struct MotorFit {
   /// Above 0: whole runs decided the figures, and the model that runs free follows them to this (rms); what follows the load at once
   /// asks for other figures, as in a motor of more parts than the model.
   double free_run_error_K = 0.0;
+  TrainingRange training = {};
   std::optional<ForecastBand> band = {};  ///< of left-out runs, where a calibration has found it
 };
 

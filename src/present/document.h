@@ -51,6 +51,7 @@ struct Document {
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
 
+  /// A note that is there already is not added again.
   void add_note(Severity severity, std::string_view words);
 };
 

@@ -13,9 +13,13 @@
 namespace heatsoak::present {
 namespace {
 
-std::string peak_text(const Spread95& peak) {
-  return std::isfinite(peak.p05) ? fmt::format("{:.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
-                                 : fmt::format("{:.0f}", peak.nominal);
+/// Fewer samples leave the ends of a 90 % range to chance: it may then exclude the nominal value.
+constexpr int kFewestForRange = 20;
+
+std::string peak_text(const MotorEvaluation& motor) {
+  const Spread95& peak = motor.winding_peak_C;
+  return motor.samples >= kFewestForRange ? fmt::format("{:.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
+                                          : fmt::format("{:.0f}", peak.nominal);
 }
 
 std::string percent_range(const Interval95& range) {
@@ -73,7 +77,7 @@ std::vector<Text> row(std::size_t rank, const MotorEvaluation& motor, double amb
   return {{fmt::format("{}", rank)},
           {motor.motor_id},
           verdict_cell(motor),
-          {peak_text(motor.winding_peak_C)},
+          {peak_text(motor)},
           {fmt::format("{:.0f}", motor.winding_limit_C)},
           {fmt::format("{:+.0f}", nearest_margin_K(motor))},
           {sparkline(motor, ambient_C), tone},
@@ -133,10 +137,10 @@ std::vector<Text> headline(std::span<const MotorEvaluation> results, const Evalu
   const auto good =
       std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.verdict == Verdict::pass && !each.samples_needed; });
   const auto undecided = std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.samples_needed.has_value(); });
-  std::vector<Text> sentences{
-      {fmt::format("{} of {} motor{} pass{} {}{}.", good, results.size(), results.size() == 1 ? "" : "s", good == 1 ? "es" : "",
-                   load_words(context.duty), undecided > 0 ? fmt::format("; {} undecided", undecided) : ""),
-       good == 0 ? Tone::bad : Tone::good}};
+  std::vector<Text> sentences{{fmt::format("{} of {} motor{} pass{} {}{}.", good, results.size(), results.size() == 1 ? "" : "s",
+                                           good == 1 || results.size() == 1 ? "es" : "", load_words(context.duty),
+                                           undecided > 0 ? fmt::format("; {} undecided", undecided) : ""),
+                               good == 0 ? Tone::bad : Tone::good}};
   sentences.push_back(sentence(results.front(), results.size() > 1 ? "Best: " : ""));
   const auto own = std::ranges::find(results, context.robot.drive_motor, &MotorEvaluation::motor_id);
   if (own != results.end() && own != results.begin()) {
@@ -159,23 +163,29 @@ std::string sampling_error(std::span<const MotorEvaluation> results) {
       std::isfinite(p95_K) ? fmt::format("within ±{:.0f} K at most", std::ceil(p95_K)) : "anywhere above: take more samples");
 }
 
-std::string undecided_note(const MotorEvaluation& motor, bool is_drawn) {
+std::string undecided_note(const MotorEvaluation& motor) {
+  const bool is_drawn = motor.games > 0;
   const bool is_short = motor.short_probability > motor.probability_over_limit;
-  const auto games = [&](double samples) { return is_drawn ? std::ceil(samples / kLanes) : std::ceil(samples); };
+  const auto number = [&](int samples) { return is_drawn ? samples / kLanes : samples; };
   const std::string_view unit = is_drawn ? "games" : "samples";
-  return fmt::format(
-      "{} is undecided after {:.0f} {}: the share of samples that {} may lie on either side of a threshold. {}{:.0f} more {} needed "
-      "(--samples {}); until then count it as {}.",
-      motor.motor_id, games(motor.samples), unit,
-      is_short ? "miss the demand" : fmt::format("exceed a limit ({} %)", percent_range(*motor.probability_interval)),
-      *motor.samples_needed >= kMostNeeded ? "More than " : "", games(*motor.samples_needed - motor.samples), unit, *motor.samples_needed,
-      to_string(motor.verdict));
+  const std::string so_far =
+      fmt::format("{} is undecided after {} {}: the share of samples that {} may lie on either side of a threshold.", motor.motor_id,
+                  is_drawn ? motor.games : motor.samples, unit,
+                  is_short ? "miss the demand" : fmt::format("exceed a limit ({} %)", percent_range(*motor.probability_interval)));
+  const int most = most_samples_at_all(is_drawn);
+  if (*motor.samples_needed >= most) {
+    return fmt::format("{} If the share stays as it is, over {} more {} needed, and --samples takes {} at most: count it as {}.", so_far,
+                       number(most), unit, most, to_string(motor.verdict));
+  }
+  return fmt::format("{} If the share stays as it is, about {} more {} needed (--samples {}); until then count it as {}.", so_far,
+                     number(*motor.samples_needed) - (is_drawn ? motor.games : motor.samples), unit, *motor.samples_needed,
+                     to_string(motor.verdict));
 }
 
 void add_notes(Document& document, const MotorEvaluation& motor, const EvaluationContext& context) {
   add_lines(document.notes, why_infeasible(motor, context.robot), Severity::warning);
   if (motor.samples_needed) {
-    document.add_note(Severity::warning, undecided_note(motor, context.draws > 0));
+    document.add_note(Severity::warning, undecided_note(motor));
   }
   if (motor.destroyed) {
     document.add_note(Severity::warning, fmt::format("{}: thermal runaway, the calculation ended at 1000 °C", motor.motor_id));
@@ -186,15 +196,28 @@ void add_notes(Document& document, const MotorEvaluation& motor, const Evaluatio
   }
 }
 
-std::vector<std::string> paragraphs(const EvaluationContext& context) {
-  const std::string samples = context.samples > 0 ? fmt::format("{} sample{} of all declared tolerances, seed {}", context.samples,
-                                                                context.samples == 1 ? "" : "s", context.seed)
-                                                  : "nominal values only";
+/// "500 samples", "600 to 9600 samples" where motors needed different numbers of them.
+std::string counted(std::span<const MotorEvaluation> results, int MotorEvaluation::*count, std::string_view unit) {
+  const auto [least, most] = std::ranges::minmax(results, {}, count);
+  const std::string number =
+      least.*count == most.*count ? fmt::format("{}", most.*count) : fmt::format("{} to {}", least.*count, most.*count);
+  return fmt::format("{} {}{}", number, unit, most.*count == 1 ? "" : "s");
+}
+
+std::vector<std::string> paragraphs(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
+  const bool is_sampled = results.front().samples > 0;
   std::string first = fmt::format("{} on {}: {}, ambient {:.0f} °C, {}.", context.robot.id, context.duty.id,
-                                  duration_text(context.demand.duration_s()), context.duty.ambient_C.value, samples);
+                                  duration_text(context.demand.duration_s()), context.duty.ambient_C.value,
+                                  is_sampled ? fmt::format("{} of all declared tolerances, seed {}",
+                                                           counted(results, &MotorEvaluation::samples, "sample"), context.seed)
+                                             : "nominal values only");
   if (context.draws > 0) {
-    first += fmt::format(" {} game{} with other inputs and robot parameters; verdict, range and P over are of all of them.", context.draws,
-                         context.draws == 1 ? "" : "s");
+    first += fmt::format(" {} with other inputs and robot parameters; verdict, range and P over are of all of them.",
+                         counted(results, &MotorEvaluation::games, "game"));
+  }
+  const auto most = std::ranges::max_element(results, {}, &MotorEvaluation::samples);
+  if (most->samples != std::ranges::min(results, {}, &MotorEvaluation::samples).samples) {
+    first += fmt::format(" Near a threshold a verdict takes more: {} took most.", most->motor_id);
   }
   return {first};
 }
@@ -221,10 +244,13 @@ void add_changes(Document& document, std::span<const ChangeEffect> effects, cons
     }
   }
   if (table.rows.empty()) {
-    document.add_note(Severity::note,
-                      "No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game.");
+    document.headline.push_back(
+        {"No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game."});
     return;
   }
+  document.headline.push_back(
+      {fmt::format("Of the robot's changes this one cools {} most: {} from {} to {}, by {} K.", motor_id, table.rows.front()[0].words,
+                   table.rows.front()[1].words, table.rows.front()[2].words, table.rows.front()[3].words)});
   document.tables.push_back(std::move(table));
   document.add_note(
       Severity::background,
@@ -269,7 +295,7 @@ std::string sparkline(const MotorEvaluation& motor, double ambient_C) {
 std::string_view verdict_word(const MotorEvaluation& motor) { return motor.samples_needed ? "undecided" : to_string(motor.verdict); }
 
 Document evaluation_document(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
-  Document document{.headline = headline(results, context), .paragraphs = paragraphs(context)};
+  Document document{.headline = headline(results, context), .paragraphs = paragraphs(results, context)};
   Table table{.columns = columns()};
   for (std::size_t i = 0; i < results.size(); ++i) {
     table.rows.push_back(row(i + 1, results[i], context.duty.ambient_C.value));
@@ -293,7 +319,7 @@ Document evaluation_document(std::span<const MotorEvaluation> results, const Eva
   document.add_note(Severity::background, fmt::format("Load: {}.", context.duty.origin));
   if (context.draws > 0) {
     document.add_note(Severity::background, "The nominal peak, margin, reached, A rms and more A are of one game, that of the seed.");
-  } else if (context.samples > 0) {
+  } else if (results.front().samples > 0) {
     document.add_note(Severity::background, sampling_error(results));
   }
   document.add_note(

@@ -18,7 +18,6 @@ struct EvaluationContext {
   const Robot& robot;
   const Duty& duty;
   const WheelDemand& demand;  ///< nominal, of any wheel
-  int samples = 0;            ///< of the first round
   std::uint64_t seed = 1;
   std::size_t draws = 0;  ///< games that were played; 0 for a duty without draws
 };

@@ -16,6 +16,10 @@ std::string_view leading(std::string_view text, std::size_t count) {
   return text.substr(0, end);
 }
 
+std::string_view trailing(std::string_view text, std::size_t count) {
+  return text.substr(leading(text, width_of(text) - std::min(count, width_of(text))).size());
+}
+
 std::string wrapped(std::string_view text, std::string_view first, std::size_t width) {
   const std::string indent(width_of(first), ' ');
   std::string result;

@@ -14,7 +14,8 @@ struct ChartCurve {
   std::vector<double> y = {};
   int color_index = 0;  ///< place in the palette of eight; the same index is the same colour in every panel
   bool dashed = false;
-  bool dots = false;  ///< a square at every sample in place of the line
+  bool dots = false;        ///< a square at every sample in place of the line
+  bool has_ripple = false;  ///< where it swings up and down every few pixels it is drawn as a light area, else as a line in any case
 };
 
 /// An area between two curves over the same `x`, such as the 5 % to 95 % range of samples.

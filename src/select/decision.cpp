@@ -2,26 +2,57 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <numeric>
 
+#include "base/binomial_bound.h"
 #include "base/lanes.h"
+#include "select/spread.h"
 
 namespace heatsoak {
 namespace {
 
-/// More samples for one threshold: the interval has to shrink until its end on the threshold's side lies at the threshold.
-std::optional<int> needed_for(double threshold_ratio, double probability_ratio, const Interval95& interval, int samples) {
+constexpr int kFirstGames = 75;
+constexpr int kFirstSamples = 500;
+
+/// More samples for one threshold: the smallest number at which the interval around the same share lies on one side of it.
+std::optional<int> needed_for(double threshold_ratio, double probability_ratio, const Interval95& interval, int samples, bool is_drawn) {
   if (interval.low > threshold_ratio || interval.high <= threshold_ratio) {
     return std::nullopt;
   }
-  const double reach = threshold_ratio > probability_ratio ? interval.high - probability_ratio : probability_ratio - interval.low;
-  const double distance = std::abs(threshold_ratio - probability_ratio);
-  const double growth = reach / std::max(distance, 1e-9);
+  const int per_draw = is_drawn ? kLanes : 1;
+  const auto decides = [&](int draws) {
+    const ShareInterval then = share_interval(probability_ratio, draws, error_share(draws, is_drawn));
+    return then.low > threshold_ratio || then.high <= threshold_ratio;
+  };
+  const int now = (samples + per_draw - 1) / per_draw;
+  const int most = most_samples_at_all(is_drawn) / per_draw;
+  const int first = is_drawn ? kFirstGames : kFirstSamples;
   // An interval that just touches the threshold still needs something more.
-  return static_cast<int>(std::ceil(std::clamp(samples * growth * growth, 1.05 * samples, double{kMostNeeded})));
+  int low = now;
+  int high = now + 1 + now / 20;
+  while (!decides(high) && high < most) {
+    low = high;
+    // Up to the first look a smaller number may decide than behind it.
+    high = std::min({most, 2 * high, low < first ? first : most});
+  }
+  while (high - low > 1) {
+    const int middle = std::midpoint(low, high);
+    (decides(middle) ? high : low) = middle;
+  }
+  return std::min(most, high) * per_draw;
 }
 
 }  // namespace
+
+int first_samples(const Duty& duty) { return duty.shape_data->has_unknowns() ? kFirstGames * kLanes : kFirstSamples; }
+
+double error_share(int count, bool is_drawn) {
+  constexpr double kFirst_share = 0.5;
+  constexpr double kLaterLooks = 7.0;
+  return kError_share * (count <= (is_drawn ? kFirstGames : kFirstSamples) ? kFirst_share : (1.0 - kFirst_share) / kLaterLooks);
+}
+
+int most_samples_at_all(bool is_drawn) { return is_drawn ? 80'000 : 1'000'000; }
 
 std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
   const bool is_nominally_bad = motor.verdict == Verdict::fail || motor.verdict == Verdict::infeasible;
@@ -38,7 +69,7 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
                          std::pair(motor.short_probability, short_interval)};
   if (is_drawn) {
     for (const auto& [probability_ratio, interval] : kinds) {
-      take(needed_for(kMajority, probability_ratio, interval, motor.samples));
+      take(needed_for(kMajority, probability_ratio, interval, motor.samples, is_drawn));
     }
   }
   if (!is_nominally_bad) {
@@ -47,7 +78,7 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
         std::ranges::any_of(kinds, [](const auto& kind) { return kind.second.low > kMarginalProbability; });
     for (const auto& [probability_ratio, interval] : kinds) {
       if (!is_marginal_for_certain) {
-        take(needed_for(kMarginalProbability, probability_ratio, interval, motor.samples));
+        take(needed_for(kMarginalProbability, probability_ratio, interval, motor.samples, is_drawn));
       }
     }
   }
@@ -55,8 +86,8 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
 }
 
 int most_samples(const Duty& duty) {
-  constexpr int kMostWithoutDraws = 16000;
-  return duty.shape_data->has_unknowns() ? kMostDraws * kLanes : kMostWithoutDraws;
+  constexpr int kFiveDoublings = 32;
+  return first_samples(duty) * kFiveDoublings;
 }
 
 std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
@@ -71,17 +102,15 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
   std::vector<MotorEvaluation> results = run(motors);
   while (options.samples < most) {
     std::vector<Motor> open;
-    int needed = 0;
     for (const MotorEvaluation& each : results) {
       if (each.samples_needed) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &Motor::id));
-        needed = std::max(needed, *each.samples_needed);
       }
     }
     if (open.empty()) {
       break;
     }
-    options.samples = std::min(most, std::max(2 * options.samples, needed));
+    options.samples = std::min(most, 2 * options.samples);
     for (MotorEvaluation& longer : run(open)) {
       *std::ranges::find(results, longer.motor_id, &MotorEvaluation::motor_id) = std::move(longer);
     }

@@ -376,6 +376,7 @@ void decide_by_majority(MotorEvaluation& result) {
 void conclude(Work& work, const EvaluateOptions& options) {
   MotorEvaluation& result = work.result;
   result.samples = options.samples;
+  result.games = static_cast<int>(options.draws.size());
   result.winding_peak_C = spread(result.winding_peak_C.nominal, work.winding_peak_C);
   result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
   result.probability_over_limit =
@@ -388,9 +389,11 @@ void conclude(Work& work, const EvaluateOptions& options) {
   }
   Interval95 short_interval;
   if (options.samples > 0) {
+    const bool is_drawn = !options.draws.empty();
+    const double wrong = error_share(is_drawn ? result.games : result.samples, is_drawn);
     const auto intervals_of = [&](std::span<const double> peak_C, std::span<const char> flags) {
-      return options.draws.empty() ? sample_intervals(peak_C, flags)
-                                   : draw_intervals(peak_C, flags, {options.draws.size(), kLanes, options.seed});
+      return is_drawn ? draw_intervals(peak_C, flags, {options.draws.size(), kLanes, options.seed}, wrong)
+                      : sample_intervals(peak_C, flags, wrong);
     };
     const DrawIntervals intervals = intervals_of(work.winding_peak_C, work.over_limit);
     result.winding_p95_interval_C = intervals.p95;
@@ -434,9 +437,7 @@ std::string_view to_string(LimitingFactor factor) {
   return kNames.at(static_cast<std::size_t>(factor));
 }
 
-int draw_count(const Duty& duty, int samples) {
-  return duty.shape_data->has_unknowns() ? std::min((samples + kLanes - 1) / kLanes, kMostDraws) : 0;
-}
+int draw_count(const Duty& duty, int samples) { return duty.shape_data->has_unknowns() ? (samples + kLanes - 1) / kLanes : 0; }
 
 std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
                                       const Progress& progress) {

@@ -73,11 +73,12 @@ struct MotorEvaluation {
   Spread95 winding_peak_C;
   Spread95 stator_peak_C;
   int samples = 0;  ///< that this answer rests on
+  int games = 0;    ///< draws of the duty that the samples share; 0 where it has none
   /// Samples that would decide the verdict, as samples_needed() in select/decision.h; nothing where it is decided.
   std::optional<int> samples_needed;
   double probability_over_limit = 0.0;  ///< of any temperature limit; NaN without samples
-  /// Of the 95th percentile and of the probability: what other samples would give or, where a duty is drawn, other draws. Nothing
-  /// without samples.
+  /// Of the 95th percentile and of the probability: what other samples would give or, where a duty is drawn, other draws. The probability's
+  /// holds at every look of error_share() in select/decision.h at once. Nothing without samples.
   std::optional<Interval95> winding_p95_interval_C;
   std::optional<Interval95> stator_p95_interval_C;
   std::optional<Interval95> probability_interval;
@@ -95,7 +96,8 @@ struct MotorEvaluation {
   TemperatureCurves curves;
 };
 
-/// How many draws of a duty's unknowns serve `samples`: one for every eight, because each is as much work as generating the duty once.
+/// How many draws of a duty's unknowns serve `samples`: one for every eight, because playing a game takes some hundred times as long as
+/// evaluating eight samples of it. 0 for a duty without unknowns.
 int draw_count(const Duty& duty, int samples);
 
 /// Of each draw the wheel that works hardest. The same for every number of threads.
@@ -105,8 +107,6 @@ std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std:
 /// The same for draws draws.size() to count - 1, added at the end.
 void add_draws(std::vector<WheelDemand>& draws, const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
                const Progress& progress = {});
-/// Each draw costs as much as playing a game, so samples share at most this many.
-inline constexpr int kMostDraws = 256;
 
 /// To the limit that is nearer.
 double nearest_margin_K(const MotorEvaluation& motor);

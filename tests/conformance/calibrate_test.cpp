@@ -145,7 +145,7 @@ TEST(Calibrate, LogsThatLookWrongAreTakenAsTheyAreWhereAsked) {
   EXPECT_EQ(run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path())).exit_code, 2);
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml", "--as-is"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_THAT(found.out, HasSubstr("note: log: speed_rad_per_s reaches"));
+  EXPECT_THAT(found.out, HasSubstr("log: speed_rad_per_s reaches"));
 }
 
 TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
@@ -212,12 +212,14 @@ TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {
         }));
   const std::string rows = "log: left out: 1 row: time repeated or running backwards; line 12";
   const std::string cells = "log: left out: 1 sample of winding_C: not a number; line 502 (\"nonsense\")";
+  RunOptions wide = in(folder.path());
+  wide.environment.emplace_back("COLUMNS=1000");
   for (const Words& words :
-       {Words{"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml", "--json", "-"},
-        Words{"diagnose", "--model", kMotor, "--train", "log.csv@0-60%", "--holdout", "log.csv@60-100%", "--json", "-"}}) {
-    const ProgramRun found = run(words, in(folder.path()));
+       {Words{"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml", "--json", "-", "--explain"},
+        Words{"diagnose", "--model", kMotor, "--train", "log.csv@0-60%", "--holdout", "log.csv@60-100%", "--json", "-", "--explain"}}) {
+    const ProgramRun found = run(words, wide);
     ASSERT_EQ(found.exit_code, 0) << found.err;
-    EXPECT_THAT(found.err, testing::AllOf(HasSubstr("note: " + rows), HasSubstr("note: " + cells)));
+    EXPECT_THAT(found.err, testing::AllOf(HasSubstr("- " + rows), HasSubstr("- " + cells)));
     const auto notes = found.json()["notes"].get<std::vector<std::string>>();
     EXPECT_EQ(std::ranges::count(notes, rows), 1);
     EXPECT_EQ(std::ranges::count(notes, cells), 1);

@@ -146,9 +146,11 @@ TEST(Diagnose, NamesNothingInPlaceOfASpeedThatNobodyLogged) {
   const auto without_speed = [&](const char* name) {
     return changed_log(folder, name, [](int, std::vector<std::string>& cells) { cells.resize(kCurrent + 1); });
   };
+  RunOptions wide = in(folder);
+  wide.environment.emplace_back("COLUMNS=1000");
   const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", without_speed("match_1.csv"), without_speed("match_2.csv"),
                                without_speed("bench.csv"), "--holdout", without_speed("match_3.csv"), "--json", "-"},
-                              in(folder));
+                              wide);
   EXPECT_THAT(done.err, HasSubstr("the loss at speed, up to 5.5 W, is part of what is unexplained"));
   const nlohmann::json answer = done.json();
   for (const nlohmann::json& effect : answer["effects"]) {

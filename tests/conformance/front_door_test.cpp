@@ -102,6 +102,34 @@ TEST_F(FrontDoor, new_replaces_no_file) {
   EXPECT_EQ(file("mine.toml"), "precious");
 }
 
+TEST_F(FrontDoor, new_prints_a_hint_that_can_be_pasted) {
+  EXPECT_THAT(run_here("heatsoak new motor 'a b.toml'").out, HasSubstr("`heatsoak lint 'a b.toml'`"));
+  EXPECT_THAT(run_here("heatsoak new motor a.toml").out, HasSubstr("`heatsoak lint a.toml`"));
+  const ProgramRun nameless = run_here("heatsoak new robot .toml");
+  EXPECT_EQ(nameless.exit_code, 2);
+  EXPECT_THAT(nameless.err, HasSubstr("what stands before it is the id"));
+}
+
+TEST_F(FrontDoor, one_motor_is_one_motor_and_few_samples_have_no_range) {
+  const std::string line = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors maxon_ecx_flat_32l_48v";
+  EXPECT_THAT(run_here(line + " --quiet").out, StartsWith("0 of 1 motor passes paper_intermittent"));
+  const std::string single = run_here("COLUMNS=200 " + line + " --samples 1").out;
+  EXPECT_THAT(single, AllOf(HasSubstr("1 sample of all"), HasSubstr("  162 "), Not(HasSubstr("162 ["))));
+}
+
+TEST_F(FrontDoor, a_report_can_go_to_stdout) {
+  const ProgramRun done = run_here(kEvaluate + " --report -");
+  EXPECT_THAT(done.out, HasSubstr("| motor |"));
+  EXPECT_THAT(done.out, Not(HasSubstr("--explain")));
+}
+
+TEST_F(FrontDoor, a_suggestion_is_part_of_the_verdict) {
+  const ProgramRun done = run_here(
+      "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors maxon_ecx_flat_42m_24v --samples 8 --suggest "
+      "--quiet");
+  EXPECT_THAT(done.out, testing::AnyOf(HasSubstr("Of the robot's changes"), HasSubstr("No change of the robot")));
+}
+
 TEST_F(FrontDoor, every_kind_of_error_of_a_motor_file_is_reported_at_once) {
   std::string text = content_of(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
   const auto change = [&text](const std::string& from, const std::string& to) {

@@ -64,6 +64,36 @@ TEST(Predict, IsWhereHoldoutErrorsComeFrom) {
   EXPECT_THAT(own.out, HasSubstr("match_1 is among the runs that the model was fitted to"));
 }
 
+std::string mapping_with(const std::string& fan) {
+  return "[conditions]\nfan = \"" + fan +
+         "\"\n[quantities]\ntime_s = { column = \"time_s\" }\nwinding_C = { column = \"winding_C\" }\nstator_C = { column = "
+         "\"stator_C\" }\nambient_C = { column = \"ambient_C\" }\ncurrent_A = { column = \"current_A\" }\nspeed_rad_per_s = { column = "
+         "\"speed_rad_per_s\" }\n";
+}
+
+TEST(Predict, WarnsOfAConditionThatNoFittedRunHad) {
+  const TemporaryFolder folder;
+  write(folder.path() / "off.map.toml", mapping_with("off"));
+  write(folder.path() / "on.map.toml", mapping_with("on"));
+  ASSERT_EQ(run({"calibrate", "--motor", kMotor, log("bench.csv"), "--map", "off.map.toml", "--out", "model.toml"}, in(folder)).exit_code,
+            0);
+  EXPECT_THAT(content_of(folder.path() / "model.toml"), testing::AllOf(HasSubstr("trained_conditions = [\"fan=off\"]"),
+                                                                       HasSubstr("trained_ambient = ["), HasSubstr("trained_speed = [")));
+  const ProgramRun same = run({"predict", "--model", "model.toml", log("match_1.csv"), "--map", "off.map.toml"}, in(folder));
+  ASSERT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.out, testing::Not(HasSubstr("may be far off")));
+  const ProgramRun other = run({"predict", "--model", "model.toml", log("match_1.csv"), "--map", "on.map.toml"}, in(folder));
+  ASSERT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_THAT(other.out, HasSubstr("warning: The forecast of match_1 may be far off: its run has fan=on"));
+}
+
+TEST(Predict, QuietIsTheVerdictAlone) {
+  const TemporaryFolder folder;
+  const ProgramRun done = run({"predict", "--model", kMotor, log("match_1.csv"), "--quiet"}, in(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, testing::AllOf(HasSubstr("forecasts 1 run"), testing::Not(HasSubstr("samples")), testing::Not(HasSubstr("- "))));
+}
+
 TEST(Predict, SaysWhatALogLacks) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "cold.csv") << "time_s,winding_C,ambient_C\n0,25,25\n1,25.1,25\n2,25.2,25\n";

@@ -342,6 +342,27 @@ TEST(Match, same_seed_same_demand_and_another_seed_another) {
   EXPECT_NE(one, rms(8));
 }
 
+// A drawn game takes steps four times as long and another course: over many games the heat is the same.
+TEST(Match, drawn_games_have_the_heat_of_games_in_finer_steps) {
+  const auto heat = [](std::uint64_t seed, double step_s) {
+    double sum_Nm2_s = 0.0;
+    for (const WheelDemand& wheel :
+         play_match(division_a(), division_a().nominal(), twente(), seed, Planner::jerk_limited, kBin_s, {}, step_s).wheels) {
+      for (const LoadBin& bin : wheel.bins) {
+        sum_Nm2_s += bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
+      }
+    }
+    return sum_Nm2_s;
+  };
+  double fine_Nm2_s = 0.0;
+  double coarse_Nm2_s = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    fine_Nm2_s += heat(seed, kGameStep_s);
+    coarse_Nm2_s += heat(seed, kDrawnGameStep_s);
+  }
+  EXPECT_NEAR(coarse_Nm2_s / fine_Nm2_s, 1.0, 0.02);
+}
+
 // The script is what another way of driving is asked: it covers the game without gaps, phase by phase.
 TEST(Match, the_script_is_the_game) {
   const MatchLoad load = play_match(division_a(), division_a().nominal(), twente(), 4, Planner::jerk_limited);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/binomial_bound.h"
 #include "present/verdict_topic.h"
 #include "select/decision.h"
 
@@ -43,10 +44,37 @@ TEST(SamplesNeeded, nothing_where_the_interval_covers_no_threshold) {
   EXPECT_FALSE(samples_needed(sampled(0.04, {0.02, 0.06}, 0), {0.0, 0.01}, false)) << "nominal values alone decide";
 }
 
-// The half width falls with the root of the number of samples: to shrink 0.02 to 0.01 takes four times as many.
-TEST(SamplesNeeded, follows_the_root_of_the_number_of_samples) {
-  EXPECT_NEAR(*samples_needed(sampled(0.04, {0.02, 0.06}, 500), {0.0, 0.01}, false), 2000, 1);
-  EXPECT_NEAR(*samples_needed(sampled(0.07, {0.03, 0.11}, 500), {0.0, 0.01}, false), 2000, 1);
+// A number that is asked for and drawn decides, one less does not: with the same share, at the error of that look.
+TEST(SamplesNeeded, is_the_smallest_number_that_decides) {
+  for (const auto& [share, is_drawn] : {std::pair(0.04, false), std::pair(0.07, false), std::pair(0.03, true), std::pair(0.08, true)}) {
+    const int per_draw = is_drawn ? 8 : 1;
+    const std::optional<int> needed = samples_needed(sampled(share, {0.02, 0.11}, 600), {0.0, 0.01}, is_drawn);
+    ASSERT_TRUE(needed);
+    EXPECT_EQ(*needed % per_draw, 0);
+    const auto decides = [&, share = share, is_drawn = is_drawn](int draws) {
+      const ShareInterval then = share_interval(share, draws, error_share(draws, is_drawn));
+      return then.low > kMarginalProbability || then.high <= kMarginalProbability;
+    };
+    EXPECT_TRUE(decides(*needed / per_draw)) << share;
+    EXPECT_FALSE(decides(*needed / per_draw - 1)) << share;
+  }
+}
+
+// (1 - 0.05)^n is at most the error of the first look, 0.025, from n = 72 on.
+TEST(SamplesNeeded, without_a_hit_it_is_that_of_the_binomial_law) {
+  EXPECT_EQ(*samples_needed(sampled(0.0, {0.0, 0.31}, 80), {0.0, 0.0}, true), 72 * 8);
+}
+
+// The program doubles the first number five times at most; that leaves two looks for who asks for more.
+TEST(SamplesNeeded, all_looks_together_err_with_5_percent_at_most) {
+  for (const auto& [first, is_drawn] : {std::pair(75, true), std::pair(500, false)}) {
+    double total = 0.0;
+    for (int look = 0; look < 8; ++look) {
+      total += error_share(first << look, is_drawn);
+    }
+    EXPECT_LE(total, 0.05 + 1e-12);
+    EXPECT_GE(total, 0.049);
+  }
 }
 
 TEST(SamplesNeeded, majority_counts_where_the_duty_is_drawn) {

@@ -10,6 +10,7 @@
 
 #include "given_demand.h"
 #include "motor/datasheet_network.h"
+#include "select/decision.h"
 #include "select/drive_profile.h"
 #include "select/spread.h"
 #include "support/source_folder.h"
@@ -531,7 +532,7 @@ TEST(Evaluate, nearer_limit_decides_margins) {
   EXPECT_NEAR(at_limit.stator_peak_C.nominal, motor.nominal.stator_limit_C, 0.05);
 }
 
-// Wilson's interval of 10 of 100: 0.0552 to 0.1744 (Brown, Cai, DasGupta 2001); the percentile's places of 100 are those of the binomial.
+// Clopper and Pearson's interval of 10 of 100: 0.0490 to 0.1762; the percentile's places of 100 are those of the binomial.
 TEST(Spread, sampling_error_is_that_of_the_textbook) {
   std::vector<double> samples_C(100);
   std::vector<char> over(100, 0);
@@ -540,8 +541,8 @@ TEST(Spread, sampling_error_is_that_of_the_textbook) {
     over[i] = i < 10 ? 1 : 0;
   }
   const DrawIntervals intervals = sample_intervals(samples_C, over);
-  EXPECT_NEAR(intervals.probability.low, 0.0552, 5e-5);
-  EXPECT_NEAR(intervals.probability.high, 0.1744, 5e-5);
+  EXPECT_NEAR(intervals.probability.low, 0.0490, 5e-5);
+  EXPECT_NEAR(intervals.probability.high, 0.1762, 5e-5);
   EXPECT_GE(intervals.p95.low, 88.0);
   EXPECT_LE(intervals.p95.low, 91.0);
   EXPECT_GE(intervals.p95.high, 98.0);
@@ -599,6 +600,49 @@ TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
   const MotorEvaluation again = evaluate(robot, duty, nominal, std::span(&motor, 1), options).front();
   EXPECT_EQ(again.winding_peak_C.p50, result.winding_peak_C.p50);
   EXPECT_EQ(again.curves.winding_p95_C, result.curves.winding_p95_C);
+}
+
+/// Motors whose limit is below the given peak in a share of the samples that lies near the 5 % of a verdict, or far from it.
+Motor limited_between(double low_C, double high_C) {
+  Motor motor = simple_motor();
+  Figure limit;
+  limit.value = 155.0;
+  limit.spread = Spread{Spread::Kind::range, low_C, high_C, false};
+  give(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
+  return motor;
+}
+
+TEST(UntilDecided, takes_more_samples_only_near_a_threshold) {
+  const Duty duty = constant_current(std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0), 60.0);
+  Motor near = limited_between(105.0, 165.0);
+  near.id = "near";
+  const double peak_C = evaluate_one(near, simple_robot(), duty).winding_peak_C.nominal;
+  // Half of the draws lie between the lower end and the nominal limit, evenly: 6.5 % of all below the peak.
+  near = limited_between(peak_C - 0.13 / 0.87 * (155.0 - peak_C), 165.0);
+  near.id = "near";
+  Motor far = simple_motor();
+  far.id = "far";
+  const std::vector<Motor> motors{near, far};
+  std::vector<WheelDemand> draws;
+  const std::vector<MotorEvaluation> results = evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), motors,
+                                                                      {.samples = first_samples(duty)}, most_samples(duty), draws);
+  const auto of = [&](std::string_view id) { return *std::ranges::find(results, id, &MotorEvaluation::motor_id); };
+  EXPECT_EQ(of("far").samples, 500);
+  EXPECT_EQ(of("far").verdict, Verdict::pass);
+  EXPECT_GT(of("near").samples, 500);
+  EXPECT_FALSE(of("near").samples_needed);
+  EXPECT_EQ(of("near").verdict, Verdict::marginal);
+  // The same number asked for at once gives the same answer.
+  const MotorEvaluation at_once = evaluate_one(near, simple_robot(), duty, {.samples = of("near").samples});
+  EXPECT_EQ(at_once.verdict, of("near").verdict);
+  EXPECT_EQ(at_once.probability_over_limit, of("near").probability_over_limit);
+  EXPECT_FALSE(at_once.samples_needed);
+}
+
+TEST(UntilDecided, as_many_games_are_played_as_are_asked_for) {
+  const Duty duty = duty_of_file("division_b_match");
+  EXPECT_EQ(draw_count(duty, 4074), 510);
+  EXPECT_EQ(draw_count(duty, most_samples_at_all(true)), most_samples_at_all(true) / 8);
 }
 
 TEST(Evaluate, draws_are_the_same_for_every_number_of_threads) {

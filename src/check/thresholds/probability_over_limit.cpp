@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "base/binomial_bound.h"
 #include "base/quantity.h"
@@ -19,10 +18,6 @@ std::string what_would_do(const Check& check, double over_share, double limit_sh
     return "no number of samples keeps the limit with this share";
   }
   const bool is_drawn = draws != check.samples;
-  const long most_games = draw_count(*check.duty, std::numeric_limits<int>::max() / 2);
-  if (is_drawn && *needed > most_games) {
-    return fmt::format("{} games would be needed, and no more than {} are drawn: expected a limit that is less tight", *needed, most_games);
-  }
   const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
   return fmt::format("{} samples or more could keep {} % with this share", *needed * per_draw, significant(100.0 * limit_share, 3));
 }

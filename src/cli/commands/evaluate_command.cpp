@@ -35,8 +35,6 @@ namespace {
 /// From the verdict that is named on, exit 1: those behind it are worse. In the order of Verdict, without pass.
 const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
 
-constexpr int kFirstSamples = 500;
-
 struct Options {
   std::string robot;
   std::string duty;
@@ -46,7 +44,7 @@ struct Options {
   std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
   bool suggests = false;
-  std::optional<int> samples;  ///< nothing: kFirstSamples, and more until the verdicts are decided
+  std::optional<int> samples;  ///< nothing: first_samples(), and more until the verdicts are decided
   bool is_closed_loop = false;
   int games = 3;
   std::string guard = "shadow";
@@ -157,9 +155,13 @@ ExitCode run(Options& options, Session& session) {
   if (!options.is_closed_loop && options.guard != Options{}.guard) {
     throw Failure(ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
+  if (const int most = most_samples_at_all(duty.shape_data->has_unknowns()); options.samples.value_or(0) > most) {
+    throw Failure(ExitCode::bad_input, fmt::format("--samples {}: a game is played for every eight samples on {}; expected at most {}",
+                                                   *options.samples, duty.id, most));
+  }
   options.evaluate.with_curves = true;
   options.evaluate.with_bands = !options.plot.empty();
-  options.evaluate.samples = options.samples.value_or(kFirstSamples);
+  options.evaluate.samples = options.samples.value_or(first_samples(duty));
   const int most = options.samples.value_or(most_samples(duty));
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.evaluate.seed);
   std::vector<WheelDemand> draws;
@@ -172,8 +174,7 @@ ExitCode run(Options& options, Session& session) {
         false,         options.evaluate.threads};
     ranks = rank_closed_loop(drive_games(robot, match->inputs(), motors, drive, progress_bar("driving games")), results);
   }
-  present::Document document =
-      present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.samples, options.evaluate.seed, draws.size()});
+  present::Document document = present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.seed, draws.size()});
   present::add_lines(document.notes, silent_effects(motors), present::Severity::note);
   present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
   std::vector<ChangeEffect> changes;
@@ -236,7 +237,7 @@ Command evaluate_command() {
       .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
       .example =
           "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors "
-          "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v --samples 80 --plot verdict.svg",
+          "maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
@@ -246,9 +247,10 @@ Command evaluate_command() {
                        "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
             ->type_name("FILE.toml");
         add_conditions(app, options->conditions);
-        app.add_option(
-               "--samples", options->samples,
-               "draws of every declared tolerance and range; 0: nominal only; without it 500, and more until the verdicts are decided")
+        app.add_option("--samples", options->samples,
+                       "draws of every declared tolerance and range, one game for every eight on a match; 0: nominal only; without it some "
+                       "hundred, "
+                       "and more until the verdicts are decided")
             ->check(whole_number(1'000'000))
             ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,

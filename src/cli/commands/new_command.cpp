@@ -17,6 +17,19 @@ struct Options {
   std::string file;
 };
 
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
+  if (word.find_first_not_of(kPlain) == std::string::npos) {
+    return word;
+  }
+  std::string result = "'";
+  for (const char each : word) {
+    result += each == '\'' ? "'\\''" : std::string(1, each);
+  }
+  return result + "'";
+}
+
 ExitCode run(const Options& options, Session& session) {
   std::error_code unreadable;
   if (std::filesystem::exists(options.file, unreadable)) {
@@ -26,7 +39,7 @@ ExitCode run(const Options& options, Session& session) {
   const auto found =
       std::ranges::find_if(texts, [&](const embedded::Text& each) { return each.path.ends_with("/" + options.kind + ".toml"); });
   session.write(options.file, std::string(found->text));
-  session.say(fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`\n", options.file, options.file));
+  session.say(fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`\n", options.file, quoted(options.file)));
   session.answer({{"schema", "heatsoak.new/1"}, {"kind", options.kind}, {"file", options.file}});
   return ExitCode::done;
 }
@@ -41,7 +54,8 @@ Command new_command() {
             const auto options = std::make_shared<Options>();
             app.add_option("kind", options->kind, "motor or robot")->required()->check(CLI::IsMember({"motor", "robot"}));
             app.add_option("file", options->file, "name of the new file, which is the id")->required()->check([](const std::string& file) {
-              return file.ends_with(".toml") ? "" : "expected a name that ends in .toml";
+              const bool is_named = file.ends_with(".toml") && !std::filesystem::path(file).stem().string().starts_with(".");
+              return is_named ? "" : "expected a name that ends in .toml; what stands before it is the id";
             });
             session.add_json_option(app);
             return [options, &session] { return run(*options, session); };

@@ -42,7 +42,7 @@ void append(const PredictedRun& before, const PredictedRun& after, Curve shown_a
 
 std::string title_of(const Calibration& calibration, const ErrorBeforeAfter& error, const std::string& what) {
   std::string title =
-      fmt::format("{}: {:.2f} K rms with the file's figures, {:.2f} K fitted", what, error.before.rmse_K, error.after.rmse_K);
+      fmt::format("{}: {:.2f} K rms with the file's values, {:.2f} K fitted", what, error.before.rmse_K, error.after.rmse_K);
   const auto unseen = std::ranges::find(calibration.holdout_error, error.signal, &ErrorBeforeAfter::signal);
   if (unseen != calibration.holdout_error.end()) {
     title += fmt::format("; held out {:.2f} K and {:.2f} K", unseen->before.rmse_K, unseen->after.rmse_K);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.h"
@@ -14,20 +15,47 @@ std::string what_of(const PredictedSignal& signal) { return signal.signal.substr
 
 }  // namespace
 
-std::string prediction_text(const Motor& motor, const Prediction& prediction) {
-  std::string text = fmt::format("{}: predicted from the first temperatures and the measured inputs of each run\n\n", motor.id);
-  text +=
-      fmt::format("  {:24} {:10} {:>10} {:>12} {:>18} {:>9}\n", "run", "signal", "rms error", "max. error", "within 90 % band", "samples");
+present::Document prediction_document(const Motor& motor, const Prediction& prediction, std::span<const std::string> warnings,
+                                      std::span<const std::string> of_logs) {
+  present::Document document;
+  const PredictedSignal* worst = nullptr;
+  const PredictedRun* worst_run = nullptr;
+  present::Table table{.columns = {{"run", "", 0, present::Alignment::left},
+                                   {"signal", "", 0, present::Alignment::left},
+                                   {"rms error", "K", 0},
+                                   {"max. error", "K", 0},
+                                   {"within 90 % band", "%", 0},
+                                   {"samples", "", 1}},
+                       .rows = {}};
   for (const PredictedRun& run : prediction.runs) {
     for (const PredictedSignal& each : run.signals) {
-      text += fmt::format("  {:24} {:10} {:>8.2f} K {:>10.2f} K {:>16.0f} % {:>9}\n", run.name, what_of(each), each.rmse_K, each.max_abs_K,
-                          100.0 * each.coverage_share, each.samples);
+      table.rows.push_back({{run.name},
+                            {what_of(each)},
+                            {fmt::format("{:.2f}", each.rmse_K)},
+                            {fmt::format("{:.2f}", each.max_abs_K)},
+                            {fmt::format("{:.0f}", 100.0 * each.coverage_share)},
+                            {fmt::format("{}", each.samples)}});
+      if (worst == nullptr || each.rmse_K > worst->rmse_K) {
+        worst = &each;
+        worst_run = &run;
+      }
     }
   }
-  for (const std::string& note : prediction.notes) {
-    text += fmt::format("note: {}\n", note);
+  if (worst != nullptr) {
+    document.headline.push_back(
+        {fmt::format("{} forecasts {} run{}; the largest error is {} K rms, of the {} in {}.", motor.id, prediction.runs.size(),
+                     prediction.runs.size() == 1 ? "" : "s", significant(worst->rmse_K, 2), what_of(*worst), worst_run->name)});
   }
-  return text;
+  document.paragraphs.emplace_back("Each run is predicted from its first temperatures and its measured inputs.");
+  document.tables.push_back(std::move(table));
+  for (const std::string& each : warnings) {
+    document.add_note(present::Severity::warning, each);
+  }
+  for (const std::string& each : prediction.notes) {
+    const bool is_of_logs = std::ranges::find(of_logs, each) != of_logs.end();
+    document.add_note(is_of_logs ? present::Severity::background : present::Severity::note, each);
+  }
+  return document;
 }
 
 nlohmann::ordered_json runs_json(const std::vector<PredictedRun>& runs) {

@@ -12,7 +12,6 @@
 namespace heatsoak {
 namespace {
 
-constexpr double kStep_s = 1e-3;
 /// 2 % of the nominal torque of a 50 W motor, 0.1 m/s at the rim: finer than any verdict.
 constexpr DemandGatherer::Grid kGrid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0};
 
@@ -108,8 +107,9 @@ class IdealTracking final : public Follower {
 class Match {
  public:
   Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, double bin_s,
-        const MatchObserver& observer)
-      : random_(seed, 0),
+        const MatchObserver& observer, double step_s)
+      : step_s_(step_s),
+        random_(seed, 0),
         game_(generate_game(inputs.division, inputs.overtime, values, random_)),
         behaviour_(inputs, values, random_),
         body_(make_body(robot, without_rotor())),
@@ -124,7 +124,7 @@ class Match {
     for (const MatchPhase& span : game_) {
       load_.play_s += rule_of(span.phase).clock_runs ? span.duration_s : 0.0;
       double into_s = 0.0;
-      while (span.duration_s - into_s > 0.5 * kStep_s) {
+      while (span.duration_s - into_s > 0.5 * step_s_) {
         const Pose now = motion_->pose();
         const MotionCommand command = behaviour_.next(span.phase, into_s, span.duration_s - into_s, {now.x_m, now.y_m, now.yaw_rad});
         into_s += follow(span.phase, command, span.duration_s - into_s);
@@ -154,19 +154,19 @@ class Match {
     motion_->take(command);
     load_.script.push_back({load_.duration_s, phase, command});
     double done_s = 0.0;
-    double length_s = std::max(command.duration_s, kStep_s);
+    double length_s = std::max(command.duration_s, step_s_);
     if (command.duel) {
-      length_s = std::max(left_s, kStep_s);
-      while (!motion_->at_rest() && length_s - done_s > 0.5 * kStep_s) {
-        motion_->advance(kStep_s);
-        moment(phase, command, kStep_s, false);
-        done_s += kStep_s;
+      length_s = std::max(left_s, step_s_);
+      while (!motion_->at_rest() && length_s - done_s > 0.5 * step_s_) {
+        motion_->advance(step_s_);
+        moment(phase, command, step_s_, false);
+        done_s += step_s_;
       }
       length_s = std::min(length_s, done_s + command.duration_s);
     }
-    while (length_s - done_s > 0.5 * kStep_s) {
+    while (length_s - done_s > 0.5 * step_s_) {
       const bool still = motion_->at_rest();
-      const double step_s = still ? length_s - done_s : kStep_s;
+      const double step_s = still ? length_s - done_s : step_s_;
       motion_->advance(step_s);
       moment(phase, command, step_s, command.duel && still);
       done_s += step_s;
@@ -201,6 +201,7 @@ class Match {
     }
   }
 
+  double step_s_;
   Random random_;
   std::vector<MatchPhase> game_;
   Behaviour behaviour_;
@@ -218,8 +219,8 @@ std::unique_ptr<Follower> ideal_tracking(const Robot& robot, double aggressivene
 }
 
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
-                     double bin_s, const MatchObserver& observer) {
-  return Match(inputs, values, robot, seed, planner, bin_s, observer).play();
+                     double bin_s, const MatchObserver& observer, double step_s) {
+  return Match(inputs, values, robot, seed, planner, bin_s, observer, step_s).play();
 }
 
 }  // namespace heatsoak

@@ -72,9 +72,15 @@ struct MatchLoad {
 
 using MatchObserver = std::function<void(const MatchMoment&)>;
 
-/// Runs one game at 1 kHz into bins of `bin_s`. The rotor's inertia is left out, so that the
+/// Step of a single game.
+inline constexpr double kGameStep_s = 1e-3;
+/// Step of a game that is one of many draws, because playing games takes nearly all of the time of a verdict. Rounded times let the game
+/// take another course than in steps of 1 ms; its mean copper heat is the same.
+inline constexpr double kDrawnGameStep_s = 4e-3;
+
+/// Runs one game in steps of `step_s` into bins of `bin_s`. The rotor's inertia is left out, so that the
 /// demand is the same for every motor. Throws Failure (bad_input) where the robot's file lacks what motion needs.
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
-                     double bin_s = kBin_s, const MatchObserver& observer = {});
+                     double bin_s = kBin_s, const MatchObserver& observer = {}, double step_s = kGameStep_s);
 
 }  // namespace heatsoak

@@ -23,7 +23,9 @@ class MatchDuty final : public DutyShape {
     constexpr std::uint64_t kBehindTheSamples = std::uint64_t{1} << 32;
     Random random(seed, kBehindTheSamples + draw);
     const MatchValues values = inputs_.draw(random);
-    return play_match(inputs_, values, draw_sample(robot, random), seed + kBehindTheSamples * (draw + 1), Planner::jerk_limited).wheels;
+    return play_match(inputs_, values, draw_sample(robot, random), seed + kBehindTheSamples * (draw + 1), Planner::jerk_limited, kBin_s, {},
+                      kDrawnGameStep_s)
+        .wheels;
   }
 
  private:

@@ -19,6 +19,7 @@
 #include "identify/log_columns.h"
 #include "identify/measurement/fingerprint.h"
 #include "identify/measurement/quality.h"
+#include "identify/training_range.h"
 #include "identify/turning_rows.h"
 #include "thermal/copper.h"
 
@@ -73,6 +74,8 @@ class Calibrating {
     how.ambient_C = options_.ambient_C;
     all_.runs = runs_of(recordings_, how, all_.notes);
     std::ranges::transform(recordings_, std::back_inserter(all_.fitted), name_and_fingerprint);
+    all_.training = motor.fit ? motor.fit->training : TrainingRange{};
+    widen(all_.training, recordings_);
     if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
       open_loss_at_speed(all_.motor_model, motor);
       setup_.opens_loss_at_speed = true;
@@ -301,10 +304,11 @@ class Calibrating {
       constexpr double kLeast_K = 0.1;
       if (each.after.rmse_K > kWorse_ratio * each.before.rmse_K + kLeast_K) {
         all_.worse.push_back(fmt::format(
-            "{} of {} is foretold worse than with the figures of the file, {} K rms instead of {} K: do not forecast such runs with this "
-            "model; {}two temperatures with constant figures do not describe this motor (`heatsoak diagnose` looks for what is missing)",
+            "do not forecast such runs with this model: {} of {} is predicted worse than with the values of the file, {} K rms instead of "
+            "{} "
+            "K; {}{} (`heatsoak diagnose` looks for what is missing)",
             each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3),
-            &errors == &all_.holdout_error ? "they show something that the fitted ones do not, or " : ""));
+            &errors == &all_.holdout_error ? "they show something that the fitted ones do not, or " : "", what_does_not_describe(all_)));
       }
     }
   }
@@ -452,6 +456,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   // What the file knew before, this one knows too.
   fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
+  fit.training = calibration.training;
   result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names_of(calibration.runs), ", "));
   for (const CalibratedFigure& each : calibration.figures) {
     if (!each.is_of_file) {

@@ -50,6 +50,7 @@ struct Calibration {
   MotorModel motor_model;
   std::vector<MeasuredRun> runs;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
+  TrainingRange training;           ///< of them
   std::vector<CalibratedFigure> figures;
   Eigen::MatrixXd correlation;  ///< of the logarithms of the figures of the file, in their order
   std::vector<OpenDirection> open;

@@ -84,9 +84,19 @@ void write_forecast(Calibration& calibration) {
   calibration.is_forecast_written = true;
 }
 
+std::string what_does_not_describe(const Calibration& calibration) {
+  const bool is_extended = calibration.is_forecast_written && !calibration.forecast->accepted.empty();
+  return fmt::format("{} constant values do not describe this motor", is_extended ? "the extended network and its" : "two temperatures with");
+}
+
 std::vector<std::string> forecast_in_words(const Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
   std::vector<std::string> words;
+  if (calibration.is_forecast_written && !std::ranges::all_of(calibration.figures, &CalibratedFigure::is_identifiable)) {
+    words.emplace_back(
+        "values that are not identifiable are written too: the forecast depends on all values together, so take none of these for a "
+        "measurement");
+  }
   if (forecast.rivals.empty()) {
     words.push_back(
         fmt::format("{} of these runs can be left out with heat of their own, at least {} are needed: the network stays as it is, and the "

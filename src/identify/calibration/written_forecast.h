@@ -19,6 +19,9 @@ void keep_untold(std::span<const CalibratedFigure> before, std::vector<Calibrate
 /// Puts the forecast's model, parameters and intervals in place of those of the innovations fit.
 void write_forecast(Calibration& calibration);
 
+/// The network that is written and its values, as what a motor is not described by.
+std::string what_does_not_describe(const Calibration& calibration);
+
 /// What was compared and taken, in sentences.
 std::vector<std::string> forecast_in_words(const Calibration& calibration);
 

@@ -19,6 +19,7 @@ using present::Severity;
 using present::Table;
 using present::Text;
 using present::Tone;
+using present::trailing;
 using present::width_of;
 using present::wrapped;
 
@@ -74,11 +75,11 @@ std::vector<std::size_t> shown_columns(const Table& table, const std::vector<std
   return shown;
 }
 
-/// A cell at its width. One that is too long, such as the name of a user's file, keeps its beginning.
+/// A cell at its width. One that is too long is cut in the middle: names of one family differ at their ends.
 std::string padded(const std::string& text, std::size_t width, Alignment alignment) {
   const std::size_t own = width_of(text);
   if (own > width) {
-    return fmt::format("{}…", leading(text, width - 1));
+    return fmt::format("{}…{}", leading(text, width / 2), trailing(text, width - width / 2 - 1));
   }
   const std::string blanks(width - own, ' ');
   return alignment == Alignment::left ? text + blanks : blanks + text;

@@ -22,9 +22,11 @@
 #include <vtkXMLDataElement.h>
 #include <vtkXMLUtilities.h>
 
+#include <algorithm>
 #include <array>
 #include <exception>
 #include <initializer_list>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -51,7 +53,8 @@ constexpr std::array<Color, 8> palette{{{0x00, 0x72, 0xB2},
                                         {0x00, 0x00, 0x00},
                                         {0xD5, 0x5E, 0x00},
                                         {0xF0, 0xE4, 0x42}}};
-constexpr unsigned char band_opacity = 51;  // 20 %
+constexpr unsigned char band_opacity = 51;     // 20 %
+constexpr unsigned char ripple_opacity = 115;  // 45 %
 constexpr float curve_width_px = 2.0F;
 
 Color palette_color(int index) { return palette[static_cast<unsigned>(index) % palette.size()]; }
@@ -87,7 +90,7 @@ void add_line(vtkChartXY* chart, const std::vector<CurvePoint>& points, const Co
 }
 
 /// One plot per unbroken piece: vtkPlotArea itself writes "nan" where a band is broken.
-void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Color& color) {
+void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Color& color, unsigned char opacity) {
   std::vector<double> x_px, low_px, high_px;
   for (const BandPoint& point : points) {
     x_px.push_back(point.x_px);
@@ -109,8 +112,23 @@ void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Col
   area->SetInputArray(0, "x");
   area->SetInputArray(1, "low");
   area->SetInputArray(2, "high");
-  area->GetBrush()->SetColor(color[0], color[1], color[2], band_opacity);
+  area->GetBrush()->SetColor(color[0], color[1], color[2], opacity);
   chart->AddPlot(area);
+}
+
+/// Ripple as a light area between thin edges, the rest as a line.
+void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color, bool is_dashed) {
+  for (const std::vector<BandPoint>& ripple : piece.envelopes) {
+    add_area(chart, ripple, color, ripple_opacity);
+    for (double BandPoint::*edge : {&BandPoint::low_px, &BandPoint::high_px}) {
+      std::vector<CurvePoint> line;
+      std::ranges::transform(ripple, std::back_inserter(line), [edge](const BandPoint& at) { return CurvePoint{at.x_px, at.*edge}; });
+      add_line(chart, line, color, 1.0F, is_dashed);
+    }
+  }
+  for (const std::vector<CurvePoint>& line : piece.lines) {
+    add_line(chart, line, color, curve_width_px, is_dashed);
+  }
 }
 
 /// The axis itself counts pixels, so that VTK's transform of the plots is the identity; an SVG matrix with
@@ -146,13 +164,19 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
   set_axis(chart->GetAxis(vtkAxis::LEFT), up, place.y_ticks);
   for (const ChartBand& band : panel.bands) {
     for (const std::vector<BandPoint>& piece : reduce(band, across, up)) {
-      add_area(chart, piece, palette_color(band.color_index));
+      add_area(chart, piece, palette_color(band.color_index), band_opacity);
     }
   }
   for (const ChartCurve& curve : panel.curves) {
-    const float width_px = curve.dots ? static_cast<float>(marker_px) : curve_width_px;
-    for (const std::vector<CurvePoint>& piece : curve.dots ? markers(curve, across, up, marker_px) : reduce(curve, across, up)) {
-      add_line(chart, piece, palette_color(curve.color_index), width_px, curve.dashed);
+    if (curve.dots) {
+      for (const std::vector<CurvePoint>& piece : markers(curve, across, up, marker_px)) {
+        add_line(chart, piece, palette_color(curve.color_index), static_cast<float>(marker_px), false);
+      }
+      continue;
+    }
+    for (const std::vector<CurvePoint>& piece : reduce(curve, across, up)) {
+      add_curve(chart, curve.has_ripple ? without_ripple(piece) : RippledPiece{{piece}, {}}, palette_color(curve.color_index),
+                curve.dashed);
     }
   }
   for (const ChartLevel& level : panel.levels) {

@@ -149,16 +149,21 @@ class PageBuilder {
   Page build() {
     add_heading();
     find_margins();
+    if (is_legend_on_top_) {
+      add_legend_rows();
+    }
     const double legend_top_px = y_px_ + panel_title_height_px(chart_.panels.empty() ? "" : chart_.panels[0].title);
     legend_bottom_px_ = legend_top_px;
-    for (const LegendEntry& entry : entries_) {
+    for (const LegendEntry& entry : is_legend_on_top_ ? std::vector<LegendEntry>{} : entries_) {
       legend_bottom_px_ += static_cast<double>(legend_lines(entry).size()) * label_line_px + legend_gap_px;
     }
     for (const ChartPanel& panel : chart_.panels) {
       add_panel(panel);
     }
     add_x_label();
-    add_legend(legend_top_px);
+    if (!is_legend_on_top_) {
+      add_legend(legend_top_px);
+    }
     return finished();
   }
 
@@ -198,7 +203,10 @@ class PageBuilder {
       }
     }
     right_px_ = page_.width_px - margin_px;
-    if (!entries_.empty()) {
+    // Beside several panels a broad legend would leave most of its column empty.
+    constexpr double kBroad_share = 0.27;
+    is_legend_on_top_ = chart_.panels.size() > 1 && legend_px + swatch_width_px > kBroad_share * page_.width_px;
+    if (!entries_.empty() && !is_legend_on_top_) {
       legend_x_px_ = std::floor(right_px_ - legend_px - swatch_width_px - 8.0);
       right_px_ = legend_x_px_ - 22.0;
     }
@@ -316,6 +324,28 @@ class PageBuilder {
     }
   }
 
+  /// Above the panels, as many entries in a row as fit.
+  void add_legend_rows() {
+    constexpr double kBetween_px = 24.0;
+    double x_px = left_px_;
+    double baseline_px = y_px_ + label_line_px;
+    for (const LegendEntry& entry : entries_) {
+      const std::string name = printable(entry.name);
+      const double width_px = swatch_width_px + 8.0 + text_width_px(name, label_style);
+      if (x_px > left_px_ && x_px + width_px > right_px_) {
+        x_px = left_px_;
+        baseline_px += label_line_px + legend_gap_px;
+      }
+      LegendSwatch swatch = entry.swatch;
+      swatch.x_px = x_px;
+      swatch.y_px = std::round(baseline_px - label_style.size_px * 0.36);
+      page_.swatches.push_back(swatch);
+      add({.text = name, .x_px = x_px + swatch_width_px + 8.0, .y_px = baseline_px, .style = label_style});
+      x_px += width_px + kBetween_px;
+    }
+    y_px_ = baseline_px + legend_gap_px;
+  }
+
   void add_legend(double top_px) {
     double baseline_px = top_px + 12.0;
     for (const LegendEntry& entry : entries_) {
@@ -370,6 +400,7 @@ class PageBuilder {
   double y_px_ = 0.0;
   double left_px_ = 0.0;
   double right_px_ = 0.0;
+  bool is_legend_on_top_ = false;
   double legend_x_px_ = 0.0;
   double legend_bottom_px_ = 0.0;
   double y_label_x_px_ = 0.0;

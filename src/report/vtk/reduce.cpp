@@ -45,7 +45,83 @@ std::vector<PixelColumn> pixel_columns(const std::vector<double>& x, const AxisS
   return columns;
 }
 
+constexpr double window_px = 8.0;
+
+/// Points [begin, end) of a piece within one window of the page's width.
+struct Window {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  double low_px = 0.0;
+  double high_px = 0.0;
+  bool is_ripple = false;  ///< up and down more than once, and by more than a line is wide
+};
+
+std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
+  constexpr double kSwings = 2.5;
+  constexpr double kLeast_px = 5.0;
+  std::vector<Window> windows;
+  for (std::size_t i = 0; i < piece.size();) {
+    Window window{.begin = i, .end = i, .low_px = piece[i].y_px, .high_px = piece[i].y_px};
+    double travel_px = 0.0;
+    const double place = std::floor(piece[i].x_px / window_px);
+    for (; i < piece.size() && std::floor(piece[i].x_px / window_px) == place; ++i) {
+      travel_px += i > window.begin ? std::abs(piece[i].y_px - piece[i - 1].y_px) : 0.0;
+      window.low_px = std::min(window.low_px, piece[i].y_px);
+      window.high_px = std::max(window.high_px, piece[i].y_px);
+    }
+    window.end = i;
+    const double range_px = window.high_px - window.low_px;
+    window.is_ripple = range_px > kLeast_px && travel_px > kSwings * range_px;
+    windows.push_back(window);
+  }
+  // Single windows are noise or a peak: ripple goes on.
+  constexpr std::ptrdiff_t kLeastWindows = 6;
+  for (auto first = windows.begin(); first != windows.end();) {
+    const auto last = std::find_if(first, windows.end(), [&](const Window& each) { return each.is_ripple != first->is_ripple; });
+    if (last - first < kLeastWindows) {
+      std::for_each(first, last, [](Window& each) { each.is_ripple = false; });
+    }
+    first = last;
+  }
+  return windows;
+}
+
 }  // namespace
+
+RippledPiece without_ripple(const std::vector<CurvePoint>& piece) {
+  RippledPiece result;
+  bool was_ripple = true;
+  bool is_first = true;
+  for (const Window& window : windows_of(piece)) {
+    const double begin_px = piece[window.begin].x_px;
+    const double end_px = piece[window.end - 1].x_px;
+    if (window.is_ripple) {
+      if (is_first || !was_ripple) {
+        result.envelopes.push_back({{begin_px, window.low_px, window.high_px}});
+      }
+      result.envelopes.back().push_back({0.5 * (begin_px + end_px), window.low_px, window.high_px});
+      if (window.end == piece.size()) {
+        result.envelopes.back().push_back({end_px, window.low_px, window.high_px});
+      }
+    } else {
+      if (is_first || was_ripple) {
+        result.lines.emplace_back();
+        if (window.begin > 0) {
+          // The envelope ends where the line goes on.
+          BandPoint end = result.envelopes.back().back();
+          end.x_px = piece[window.begin - 1].x_px;
+          result.envelopes.back().push_back(end);
+          result.lines.back().push_back(piece[window.begin - 1]);
+        }
+      }
+      result.lines.back().insert(result.lines.back().end(), piece.begin() + static_cast<std::ptrdiff_t>(window.begin),
+                                 piece.begin() + static_cast<std::ptrdiff_t>(window.end));
+    }
+    was_ripple = window.is_ripple;
+    is_first = false;
+  }
+  return result;
+}
 
 std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical,
                                              double marker_px) {

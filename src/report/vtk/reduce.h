@@ -27,4 +27,11 @@ std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const Axis
 std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical);
 std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal, const AxisScale& vertical);
 
+/// A piece of a curve, apart where it swings up and down every few pixels: a line there would be a solid block.
+struct RippledPiece {
+  std::vector<std::vector<CurvePoint>> lines;
+  std::vector<std::vector<BandPoint>> envelopes;  ///< lowest and highest of the ripple
+};
+RippledPiece without_ripple(const std::vector<CurvePoint>& piece);
+
 }  // namespace heatsoak

@@ -199,6 +199,9 @@ ChartPanel panel(std::string title, std::string label) {
   return {.title = std::move(title), .y_label = std::move(label), .curves = {}, .bands = {}, .levels = {}};
 }
 
+constexpr const char* kGuardOfBench = "guard from bench data";
+constexpr const char* kGuardOfFile = "guard from the file's estimates";
+
 /// First match, nominal motor.
 Chart time_picture(const Study& study) {
   const Group& file = study.file;
@@ -213,8 +216,8 @@ Chart time_picture(const Study& study) {
               .panel_height_px = 280};
   ChartPanel heat = panel("Hottest winding", "temperature / °C");
   heat.curves = {curve_of("no guard", seconds_of(bench, 0), &Second::winding_C, 0),
-                 curve_of("guard from bench data", seconds_of(bench, 1), &Second::winding_C, 2),
-                 curve_of("guard from the file's estimates", seconds_of(file, 1), &Second::winding_C, 1)};
+                 curve_of(kGuardOfBench, seconds_of(bench, 1), &Second::winding_C, 2),
+                 curve_of(kGuardOfFile, seconds_of(file, 1), &Second::winding_C, 1)};
   heat.levels = {{fmt::format("limit {:.0f} °C", limit_C), limit_C}};
   ChartPanel observer = panel("Winding of the guard's observer, which adds the safety factor on heat", "temperature / °C");
   observer.curves = {curve_of("", seconds_of(bench, 1), &Second::observer_C, 2), curve_of("", seconds_of(file, 1), &Second::observer_C, 1)};
@@ -233,9 +236,13 @@ Chart time_picture(const Study& study) {
 /// Peak over distance, one point per drawn motor.
 Chart motor_picture(const Study& study) {
   const Group& file = study.file;
-  Chart chart{.title = fmt::format("Over the limit: {} of {} motors unguarded, {} with the nominal cap, {} with guard", over_limit(file, 0),
-                                   kMotors, over_limit(file, 2), over_limit(file, 1)),
-              .subtitle = fmt::format("hard match, seed 1, {} motors drawn within their tolerances; each point is one motor", kMotors),
+  const Group& bench = study.bench;
+  Chart chart{.title = fmt::format("Over the limit: {} + {} of {} + {} motors unguarded, {} + {} with the nominal cap, {} + {} with guard",
+                                   over_limit(file, 0), over_limit(bench, 0), kMotors, kMotors, over_limit(file, 2), over_limit(bench, 2),
+                                   over_limit(file, 1), over_limit(bench, 1)),
+              .subtitle =
+                  "hard match, seed 1; motors known from their file + motors known from a bench test, drawn within their tolerances; "
+                  "each point is one motor",
               .x_label = "distance driven in the match / m",
               .panels = {},
               .panel_height_px = 400};
@@ -247,16 +254,18 @@ Chart motor_picture(const Study& study) {
     }
   }
   const auto add = [&](const char* title, const Group& group) {
-    constexpr const char* kNames[] = {"no guard", "guard, current and air sensed", "cap for the nominal motor", "cap for the hottest motor",
-                                      "guard, nothing sensed"};
-    constexpr int kColors[] = {0, 2, 3, 5, 1};
+    const bool is_file = &group == &study.file;
+    // Colours and names of what time_picture() shows too are the same there.
+    const char* const names[] = {"no guard", is_file ? kGuardOfFile : kGuardOfBench, "cap for the nominal motor",
+                                 is_file ? "file: cap for the hottest motor" : "bench: cap for the hottest motor", "guard, nothing sensed"};
+    const int colors[] = {0, is_file ? 1 : 2, 4, is_file ? 5 : 3, 6};
     const auto [least, most] = std::ranges::minmax(driven_m);
     ChartPanel one = panel(title, "winding peak / °C");
     for (std::size_t w = 0; w < group.ways.size(); ++w) {
-      one.curves.push_back({.name = chart.panels.empty() ? kNames[w] : "",
+      one.curves.push_back({.name = names[w],
                             .x = values_of(group.by_motor[w], kDistance),
                             .y = values_of(group.by_motor[w], kPeak),
-                            .color_index = kColors[w],
+                            .color_index = colors[w],
                             .dots = true});
     }
     // Room beside the outermost points.

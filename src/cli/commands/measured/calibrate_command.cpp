@@ -41,50 +41,89 @@ std::string with_digits(double value, double half) {
   return significant(value, std::clamp(digits, 1, 6));
 }
 
-std::string figure_row(const CalibratedFigure& each) {
-  const double half = 0.5 * (each.high - each.low);
-  return fmt::format("  {:36} {:>9} → {:>9}   [{} … {}] {}{}\n", each.name, significant(each.before, 3), with_digits(each.value, half),
-                     with_digits(each.low, half), with_digits(each.high, half), unit_for_display(each.unit),
-                     each.is_identifiable ? "" : "   not identifiable");
-}
-
-std::string error_rows(const std::string& what, const std::vector<ErrorBeforeAfter>& errors) {
-  std::string text;
-  for (const ErrorBeforeAfter& each : errors) {
-    text += fmt::format("  {:14} {:12} rms {:6.2f} K → {:5.2f} K   largest {:6.2f} K → {:5.2f} K   ({} samples)\n", what, each.signal,
-                        each.before.rmse_K, each.after.rmse_K, each.before.max_abs_K, each.after.max_abs_K, each.after.samples);
-  }
-  return text;
-}
-
-std::string text_of(const Motor& motor, const Calibration& result) {
-  std::string text = fmt::format("{} from {} run{}\n\nfigure, file → fit, 95 % interval\n", motor.id, result.runs.size(),
-                                 result.runs.size() == 1 ? "" : "s");
+present::Table figure_table(const Calibration& result) {
+  present::Table table{.columns = {{"value", "", 0, present::Alignment::left},
+                                   {"file", "", 0},
+                                   {"fit", "", 0},
+                                   {"95 % interval", "", 0},
+                                   {"unit", "", 0, present::Alignment::left},
+                                   {"identifiable", "", 1, present::Alignment::left}},
+                       .rows = {}};
   for (const CalibratedFigure& each : result.figures) {
-    text += figure_row(each);
+    const double half = 0.5 * (each.high - each.low);
+    table.rows.push_back({{each.name},
+                          {significant(each.before, 3)},
+                          {with_digits(each.value, half)},
+                          {fmt::format("{}…{}", with_digits(each.low, half), with_digits(each.high, half))},
+                          {std::string(unit_for_display(each.unit))},
+                          {each.is_identifiable ? "yes" : "no"}});
   }
-  text += "\nerror of the free-running model, file → fit\n" + error_rows("fit", result.fit_error) +
-          error_rows(result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
-  for (const std::string& worse : result.worse) {
-    text += fmt::format("warning: {}\n", worse);
+  return table;
+}
+
+void add_errors(present::Table& table, const std::string& what, const std::vector<ErrorBeforeAfter>& errors) {
+  for (const ErrorBeforeAfter& each : errors) {
+    table.rows.push_back({{what},
+                          {each.signal},
+                          {fmt::format("{:.2f}", each.before.rmse_K)},
+                          {fmt::format("{:.2f}", each.after.rmse_K)},
+                          {fmt::format("{:.2f}", each.before.max_abs_K)},
+                          {fmt::format("{:.2f}", each.after.max_abs_K)},
+                          {fmt::format("{}", each.after.samples)}});
   }
-  text += fmt::format("\nheat that no term of the model explains: winding {} W rms, stator {} W rms, over some {} s\n",
-                      significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
-                      significant(result.fit.flux.time_scale_s, 1));
-  if (result.fit.rejected_share > 0.0) {
-    text += fmt::format("{} % of the samples were left out as outliers\n", significant(100.0 * result.fit.rejected_share, 2));
-  }
-  if (!result.open.empty()) {
-    text += "\nwhat these runs do not tell\n";
-    for (const OpenDirection& each : result.open) {
-      text += fmt::format("  {}\n    {}\n    would settle it: {}\n", each.what, each.why, each.experiment);
+}
+
+std::vector<present::Text> headline_of(const Motor& motor, const Calibration& result) {
+  std::vector<std::string> open;
+  for (const CalibratedFigure& each : result.figures) {
+    if (!each.is_identifiable) {
+      open.push_back(each.name);
     }
   }
-  text += result.next_experiment.empty() ? "" : fmt::format("next experiment: {}\n", result.next_experiment);
-  for (const std::string& note : result.notes) {
-    text += fmt::format("note: {}\n", note);
+  std::vector<present::Text> sentences{{fmt::format(
+      "{} of {} values of {} are identifiable from {} run{}{}{}.", result.figures.size() - open.size(), result.figures.size(), motor.id,
+      result.runs.size(), result.runs.size() == 1 ? "" : "s", open.empty() ? "" : ", all but ", fmt::join(open, ", "))}};
+  if (!result.next_experiment.empty()) {
+    sentences.push_back({fmt::format("Next experiment: {}.", result.next_experiment)});
   }
-  return text;
+  return sentences;
+}
+
+present::Document document_of(const Motor& motor, const Calibration& result, std::span<const std::string> of_logs) {
+  present::Document document{.headline = headline_of(motor, result)};
+  document.paragraphs.push_back(fmt::format("Heat that no term of the model explains: winding {} W rms, stator {} W rms, over some {} s.",
+                                            significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
+                                            significant(result.fit.flux.time_scale_s, 1)));
+  if (result.fit.rejected_share > 0.0) {
+    document.paragraphs.back() +=
+        fmt::format(" {} % of the samples were left out as outliers.", significant(100.0 * result.fit.rejected_share, 2));
+  }
+  document.tables.push_back(figure_table(result));
+  present::Table errors{.title = "Error of the free-running model in K",
+                        .columns = {{"runs", "", 0, present::Alignment::left},
+                                    {"signal", "", 0, present::Alignment::left},
+                                    {"rms: file", "", 0},
+                                    {"fit", "", 0},
+                                    {"largest: file", "", 0},
+                                    {"fit", "", 0},
+                                    {"samples", "", 1}},
+                        .rows = {}};
+  add_errors(errors, "fit", result.fit_error);
+  add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
+  document.tables.push_back(std::move(errors));
+  for (const std::string& worse : result.worse) {
+    document.add_note(present::Severity::warning, worse);
+  }
+  for (const OpenDirection& each : result.open) {
+    document.add_note(present::Severity::note,
+                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why, each.experiment));
+  }
+  // What was left out of the logs stands behind what limits the answer.
+  for (const std::string& note : result.notes) {
+    const bool is_of_logs = std::ranges::find(of_logs, note) != of_logs.end();
+    document.add_note(is_of_logs ? present::Severity::background : present::Severity::note, note);
+  }
+  return document;
 }
 
 nlohmann::ordered_json error_json(const std::vector<ErrorBeforeAfter>& errors, bool after) {
@@ -182,6 +221,7 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<std::string> notes;
   std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, notes);
   std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.how, notes);
+  const std::vector<std::string> of_logs = notes;
   tell_apart(logs, holdout);
   if (!options.how.takes_logs_as_they_are) {
     refuse_runs_of_the_file(motor, logs, holdout);
@@ -195,7 +235,7 @@ ExitCode run(const Options& options, Session& session) {
   if (!options.plot.empty()) {
     session.write(options.plot, draw_picture(calibration_chart(motor, result), options.plot));
   }
-  session.say(text_of(motor, result));
+  session.show(document_of(motor, result, of_logs));
   session.say(fmt::format("written: {}\n", options.out));
   session.say(options.plot.empty() ? "" : fmt::format("written: {}\n", options.plot));
   session.answer(json_of(motor, result, options.out));
@@ -229,6 +269,7 @@ Command calibrate_command() {
             ->check(whole_number(1024))
             ->capture_default_str();
         session.add_data_option(app);
+        session.add_text_options(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
       }};

@@ -76,6 +76,7 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<std::string> notes;
   std::vector<Recording> train = read_logs(session.folders(), options.train, options.logs, notes);
   std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.logs, notes);
+  const std::vector<std::string> of_logs = notes;
   tell_apart(train, holdout);
   std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C).notes,
                     std::back_inserter(notes));
@@ -106,10 +107,12 @@ ExitCode run(const Options& options, Session& session) {
     notes.push_back(std::move(lacking));
   }
   diagnosis.notes = notes;
-  session.say(fmt::format("{}\n\n{}\n", to_string(diagnosis.verdict), fmt::join(diagnosis.words, "\n")));
+  present::Document document{.headline = {{std::string(to_string(diagnosis.verdict))}}, .paragraphs = diagnosis.words};
   for (const std::string& note : notes) {
-    session.say(fmt::format("note: {}\n", note));
+    const bool is_of_logs = std::ranges::find(of_logs, note) != of_logs.end();
+    document.add_note(is_of_logs ? present::Severity::background : present::Severity::note, note);
   }
+  session.show(document);
   if (!options.out.empty()) {
     hand_out(options, extended, diagnosis, input, score, session);
     session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
@@ -140,6 +143,7 @@ Command diagnose_command() {
         app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
         add_log_options(app, options->logs);
         session.add_data_option(app);
+        session.add_text_options(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
       },

@@ -11,6 +11,7 @@
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "identify/admission.h"
+#include "identify/training_range.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -26,12 +27,18 @@ ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.model);
   std::vector<std::string> notes;
   std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, notes);
+  const std::vector<std::string> of_logs = notes;
   std::vector<Recording> none;
   tell_apart(logs, none);
   std::ranges::move(admit(motor, none, logs, options.how.takes_logs_as_they_are, options.how.ambient_C).notes, std::back_inserter(notes));
+  std::vector<std::string> warnings;
   for (const Recording& log : logs) {
+    if (motor.fit) {
+      std::ranges::move(outside(motor.fit->training, log), std::back_inserter(warnings));
+    }
     if (motor.fit && was_fitted_to(*motor.fit, log)) {
-      notes.push_back(fmt::format("{} is among the runs that the model was fitted to: its error says nothing about forecasts", log.name));
+      warnings.push_back(
+          fmt::format("{} is among the runs that the model was fitted to: its error says nothing about forecasts", log.name));
     }
   }
   Prediction prediction = predict(motor, logs, {.ambient_C = options.how.ambient_C});
@@ -39,8 +46,9 @@ ExitCode run(const Options& options, Session& session) {
   if (!options.plot.empty()) {
     session.write(options.plot, draw_picture(prediction_chart(motor, prediction), options.plot));
   }
-  session.say(prediction_text(motor, prediction));
+  session.show(prediction_document(motor, prediction, warnings, of_logs));
   session.say(options.plot.empty() ? "" : fmt::format("written: {}\n", options.plot));
+  prediction.notes.insert(prediction.notes.begin(), warnings.begin(), warnings.end());
   session.answer(prediction_json(motor, prediction));
   return ExitCode::done;
 }
@@ -65,6 +73,7 @@ Command predict_command() {
         add_picture(app, options->plot, "picture of measured and predicted temperatures with the band");
         add_log_options(app, options->how);
         session.add_data_option(app);
+        session.add_text_options(app);
         session.add_json_option(app);
         return [options, &session] { return run(*options, session); };
       }};
