@@ -169,10 +169,12 @@ std::string render(const Document& document, const RenderOptions& given) {
     text += wrapped(printable(paragraph), "", options.width) + "\n";
   }
   for (const Table& table : document.tables) {
-    text += "\n" + text_of(table, options);
+    text += '\n';
+    text += text_of(table, options);
   }
   if (!document.notes.empty()) {
-    text += "\n" + text_of(document.notes, options);
+    text += '\n';
+    text += text_of(document.notes, options);
   }
   return text;
 }
