@@ -72,7 +72,10 @@ class Selector : Rounds {
 
   void refuse(int member, const std::string& why) {
     const std::string& id = set_rules_[static_cast<std::size_t>(member)].id;
-    out_.refused.push_back({id, fmt::format("{}: {}", id, why)});
+    std::string words = fmt::format("{}: {}", id, why);
+    if (std::ranges::find(out_.refused, words, &Refusal::words) == out_.refused.end()) {
+      out_.refused.push_back({id, std::move(words)});
+    }
   }
 
   void add_changed(const EffectSet& best, std::size_t place) {
@@ -254,8 +257,8 @@ class Selector : Rounds {
         return;
       }
       // A part of what is missing predicts no better than the model without it.
-      for (const AcceptedTerm& term : out_.terms) {
-        out_.refused.push_back({term.candidate->id, fmt::format("{}: more heat remains than what every model leaves", term.candidate->id)});
+      for (const std::size_t m : named) {
+        refuse(best.members[m], "more heat remains than what every model leaves");
       }
       out_.terms.clear();
       out_.after = out_.own;

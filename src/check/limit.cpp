@@ -81,7 +81,7 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
     return text_of(in_unit(measured.value, type.unit, unit));
   }
   // A value at its origin would have no room at all: it gets that of one of its smallest sensible size.
-  const double room = margin_share * std::max(std::abs(measured.value - measured.origin_value), type.least_size);
+  const double room = margin_share * std::max(std::abs(measured.value - measured.origin_value), type.least_size_ratio);
   const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
   const double step = step_of(limit - in_unit(measured.origin_value, type.unit, unit));
   const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();

@@ -42,9 +42,10 @@ struct ThresholdType {
   bool is_share = false;  ///< a pure number that people read in per cent
   bool is_whole = false;  ///< counts something: a limit with a fraction is a mistake
   Bound direction = Bound::at_most;
-  Range range = {};          ///< of limits
-  Room room = Room::share;   ///< of --update
-  double least_size = 0.0;   ///< for --update: a value nearer to its origin gets the room of one that is this far from it
+  Range range = {};         ///< of limits
+  Room room = Room::share;  ///< of --update
+  double least_size_ratio =
+      0.0;  ///< in the unit of the threshold, for --update: a value nearer to its origin gets the room of one that is this far from it
   std::string_view meaning;  ///< what is compared, exactly
   std::string_view example;  ///< a limit that can be pasted
   std::vector<Setting> needs;

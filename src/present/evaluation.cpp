@@ -327,7 +327,7 @@ Document evaluation_document(std::span<const MotorEvaluation> results, const Eva
       "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from ambient to limit; "
       "P over, share of samples over a limit; reached, time until the first limit; more A, rms current that is left; P interval and p95 "
       "interval, what other samples "
-      "would give (95 %). `heatsoak describe "
+      "would give (P: 95 % for all looks at the games together, 97.5 % or more for each). `heatsoak describe "
       "verdict` defines the verdicts.");
   return document;
 }

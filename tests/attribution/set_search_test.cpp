@@ -134,5 +134,29 @@ TEST(SetSearch, WhatCannotBeToldApartIsSureAsAFamily) {
   EXPECT_EQ(found.stand_ins(best, 0, 5.0), std::vector<int>{best.members.front() == 0 ? 1 : 0});
 }
 
+/// The linear evidence of the best set was too good: the one that keeps its own is the best then, and what was not fitted moves with it.
+TEST(SetSearch, FitsDecideAmongTheBestSets) {
+  std::vector<CandidateRule> rules;
+  for (const char* const id : {"a", "b", "c", "d"}) {
+    rules.push_back({true, -4.5, id, id, {}, 1.0});
+  }
+  const SelectionRules defaults;
+  SetSearch found({reduced_of(problem(3, 2.0))}, rules, defaults);
+  const std::vector<EffectSet> before = found.sets();
+  ASSERT_GT(before.size(), 5U);
+  int fits = 0;
+  found.reconsider(
+      [&](const std::vector<int>& members, const SetSearch::AtBest& at) {
+        ++fits;
+        return at.evidence_nats + (members == before[1].members ? 2.0 : -60.0);
+      },
+      6);
+  EXPECT_EQ(fits, 2) << "the second one kept what it promised";
+  EXPECT_EQ(found.sets().front().members, before[1].members);
+  EXPECT_NEAR(found.sets().front().log_probability_nats, before[1].log_probability_nats + 2.0, 1e-9);
+  EXPECT_EQ(found.sets()[1].members, before[2].members);
+  EXPECT_NEAR(found.sets()[1].log_probability_nats, before[2].log_probability_nats + 2.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace heatsoak

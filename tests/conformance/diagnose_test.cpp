@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -50,6 +51,22 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
                                "found/maxon_ec45_flat_70w_24v.toml", "--samples", "0"},
                               in(folder));
   EXPECT_LE(used.exit_code, 1) << used.err;
+}
+
+// A held-out file of the same name as a fitted one, in another folder.
+TEST(Diagnose, NamesOfHeldOutFilesDoNotChangeTheModel) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "other");
+  std::filesystem::copy_file(kSoak / "match_3.csv", folder.path() / "other/match_1.csv");
+  std::vector<std::string> models;
+  for (const std::string& holdout : {log("match_3.csv"), (folder.path() / "other/match_1.csv").string()}) {
+    const std::string out = "found" + std::to_string(models.size());
+    const ProgramRun done = run(
+        {"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), "--holdout", holdout, "--out", out}, in(folder));
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    models.push_back(content_of(folder.path() / out / (std::string(kMotor) + ".toml")));
+  }
+  EXPECT_EQ(models[0], models[1]);
 }
 
 // Too few samples for any curve over a signal: that is an answer, not a crash.

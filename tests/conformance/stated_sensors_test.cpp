@@ -61,7 +61,7 @@ TEST_P(SensorLines, are_held_in_a_calibration) {
   RunOptions here;
   here.folder = folder_.path();
   const ProgramRun done =
-      run({"calibrate", "--motor", "motor.toml", (kSoak / "bench.csv").string() + "@0-20%", "--out", "fitted.toml"}, here);
+      run({"calibrate", "--motor", "motor.toml", (kSoak / "bench.csv").string() + "@0-20%", "--out", "fitted.toml", "--explain"}, here);
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_NE((done.out + done.err).find("effects.my_" + GetParam()), std::string::npos) << done.out << done.err;
   EXPECT_NE(content_of(folder_.path() / "fitted.toml").find("[effects.my_" + GetParam() + "]"), std::string::npos);

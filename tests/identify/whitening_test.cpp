@@ -327,6 +327,18 @@ TEST(Evidence, one_more_column_gains_what_the_projected_score_says) {
   EXPECT_NEAR(misfit(3) - misfit(4), gain, 1e-8 * misfit(3));
 }
 
+TEST(Evidence, slow_errors_of_all_sensors_at_once_are_those_of_each) {
+  const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(12, 200));
+  const Whitening at_once(run, {{0.2, 0.3}, 100.0, 0.4, 7.0}, {{0.15, 0.1}, {}});
+  const Whitening each(run, {{0.2, 0.3}, 100.0}, {{0.15, 0.1}, {}, {0.4, 0.4}, 7.0});
+  EXPECT_DOUBLE_EQ(at_once.log_determinant(), each.log_determinant());
+  Columns one = run.by_start;
+  Columns other = run.by_start;
+  at_once.apply(one);
+  each.apply(other);
+  EXPECT_EQ(one, other);
+}
+
 TEST(Evidence, many_runs_say_what_one_long_least_squares_says) {
   const Model model = two_node_model({}, 1.0);
   const StartPrior start{Eigen::VectorXd::Constant(2, 0.3), Eigen::VectorXd::Constant(2, 5.0)};

@@ -26,7 +26,7 @@ ThresholdType derating_excess() {
       .name = {},
       .unit = "A",
       .range = Range::between(0.0, 1e3),
-      .least_size = 1.0,
+      .least_size_ratio = 1.0,
       .meaning =
           "how much more current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
           "speed and temperatures where that is most. A C header fails, too, where it is of another motor or its observer differs from a "

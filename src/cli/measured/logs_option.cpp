@@ -85,31 +85,42 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
   return all;
 }
 
-void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out) {
-  std::map<std::string, std::set<std::filesystem::path>> files;
-  const auto for_each = [&](const auto& visit) {
-    std::ranges::for_each(fitted, visit);
-    std::ranges::for_each(held_out, visit);
-  };
-  for_each([&](const Recording& each) { files[each.name].insert(std::filesystem::weakly_canonical(each.file)); });
-  for_each([&](Recording& each) {
-    const std::set<std::filesystem::path>& of_name = files[each.name];
-    if (of_name.size() < 2) {
-      return;
-    }
-    // The shortest tail of the path that no other has.
+namespace {
+
+/// Names of files, each with the files that have it.
+using FilesOfName = std::map<std::string, std::set<std::filesystem::path>>;
+
+void add_files(const std::vector<Recording>& recordings, FilesOfName& files) {
+  for (const Recording& each : recordings) {
+    files[each.name].insert(std::filesystem::weakly_canonical(each.file));
+  }
+}
+
+/// Recordings that share their name with another file get the shortest tail of the path that no other has.
+void tell_apart(std::vector<Recording>& recordings, const FilesOfName& files) {
+  for (Recording& each : recordings) {
+    const std::set<std::filesystem::path>& of_name = files.at(each.name);
     const std::filesystem::path own = std::filesystem::weakly_canonical(each.file);
     std::string name = each.name;
-    for (std::filesystem::path folder = own.parent_path(); !folder.filename().empty(); folder = folder.parent_path()) {
+    auto same = static_cast<std::ptrdiff_t>(of_name.size());
+    for (std::filesystem::path folder = own.parent_path(); same > 1 && !folder.filename().empty(); folder = folder.parent_path()) {
       name = folder.filename().string() + "/" + name;
-      const auto same = std::ranges::count_if(
+      same = std::ranges::count_if(
           of_name, [&](const std::filesystem::path& other) { return (other.parent_path() / other.stem()).string().ends_with("/" + name); });
-      if (same < 2) {
-        break;
-      }
     }
     each.name = std::move(name);
-  });
+  }
+}
+
+}  // namespace
+
+void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out) {
+  FilesOfName files;
+  add_files(fitted, files);
+  const FilesOfName of_fitted = files;
+  add_files(held_out, files);
+  tell_apart(held_out, files);
+  tell_apart(fitted, of_fitted);
 }
 
 }  // namespace heatsoak

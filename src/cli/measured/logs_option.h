@@ -26,7 +26,7 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
                                  std::vector<std::string>& notes);
 
 /// Files of one name in different folders are no parts of one run: where there are such, all of the name get that of their folder, too
-/// ("monday/run").
+/// ("monday/run"). Names of fitted logs do not depend on the held-out ones.
 void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out);
 
 }  // namespace heatsoak

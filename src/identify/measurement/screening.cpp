@@ -279,6 +279,15 @@ bool is_spike(std::span<const double> values, std::span<const std::size_t> rows,
   const bool has_after = k + kSide < rows.size();
   const Side before = has_before ? side_of(values, rows.subspan(k - kSide, kSide)) : side_of(values, rows.subspan(k + 1, kSide));
   const Side after = has_after ? side_of(values, rows.subspan(k + 1, kSide)) : before;
+  if (!has_before || !has_after) {
+    // A change that goes on at a like rate is the motor's own: copper warms by kelvins per second.
+    constexpr double kAlone_ratio = 3.0;
+    const double next = values[rows[has_after ? k + 1 : k - 1]];
+    const double second = values[rows[has_after ? k + 2 : k - 2]];
+    if (std::abs(value - next) < kAlone_ratio * std::abs(next - second)) {
+      return false;
+    }
+  }
   const double distance = std::min(std::abs(value - before.median), std::abs(value - after.median));
   return distance > std::max(least, kOfSlope_ratio * std::max(before.deviation, after.deviation)) &&
          (value > before.median) == (value > after.median) && std::abs(before.median - after.median) <= kAgree_share * distance;
