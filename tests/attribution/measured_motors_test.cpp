@@ -270,7 +270,7 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
       diagnosed(motor, {stall, part_of(no_load, 0.0, 0.6)}, {part_of(no_load, 0.6, 1.0)}, kAmbient_C);
   EXPECT_LE(score.after.at("winding_C").rmse_K, 0.4) << diagnosis.description;
   EXPECT_LE(score.after.at("stator_C").rmse_K, 0.2) << diagnosis.description;
-  EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.6 * diagnosis.before_train.at("winding_C").rmse_K);
+  EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.7 * diagnosis.before_train.at("winding_C").rmse_K);
   // Of 37 samples at steps of 1 K.
   EXPECT_THAT(diagnosis.effects, testing::Each(testing::Field(&FoundEffect::p_value, testing::Gt(1e-60))));
 }
