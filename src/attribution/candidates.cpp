@@ -238,7 +238,7 @@ Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
 struct Extended {
   Network network;
   std::vector<int> wanted;           ///< sizes; where an effect brings nodes of its own, their capacities behind the size
-  std::vector<double> slope;         ///< what each of them counts in its candidate's column
+  std::vector<double> slope;         ///< weight of each of them in its candidate's column
   std::vector<std::size_t> own;      ///< which candidate it belongs to
   std::vector<double> state_C;       ///< at the start of an interval; nodes of their own behind the network's
   std::vector<Eigen::Index> bodies;  ///< those nodes
@@ -300,7 +300,7 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
   std::ranges::copy(parameters, values.begin());
   const auto bodies = static_cast<Eigen::Index>(extended.bodies.size());
   Linearised slope;
-  // How far the states go with what is wanted, with the bodies' starts, and by themselves in this interval.
+  // Step of the sensitivities over this interval: to the candidates, to the start temperatures of added bodies, and the transition.
   Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(states, wanted + bodies + 1), moved = rate, next = rate;
   for (Eigen::Index body = 0; body < bodies; ++body) {
     moved(extended.bodies[static_cast<std::size_t>(body)], wanted + body) = 1.0;

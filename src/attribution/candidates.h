@@ -22,8 +22,8 @@ struct Candidate {
   std::vector<std::string> nodes;  ///< as the type's roles
   std::vector<double> parameters;  ///< at the typical size, in declared order
   int variant = 0;
-  double column_at_share = 1.0;  ///< of a sensor's fault: size in typical sizes at which its column is taken
-  Condition condition;           ///< where it acts; empty: everywhere
+  double column_at_share = 1.0;  ///< sensor errors only: the column is linearised at this size, in typical sizes
+  Condition condition;           ///< the candidate acts only in runs with this condition; empty: in all runs
 
   /// Named for unmistakable evidence only: what few runs have, and laws at another node than their usual one.
   [[nodiscard]] bool is_rare() const;

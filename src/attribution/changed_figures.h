@@ -14,7 +14,7 @@ struct ChangedFigure {
   Eigen::Index coordinate = 0;  ///< of θ
   std::string name;             ///< of the network's parameter, "stator_ambient.thermal_resistance"
   std::string unit;
-  double gain_nats = 0.0;  ///< of the uncertainty, beside the file's own prior
+  double gain_nats = 0.0;  ///< ln evidence with a wide prior for this parameter, minus that with the file's prior
   double before = 0.0;
   double value = 0.0;  ///< of the final fit, with its 95 % interval
   double low = 0.0;

@@ -41,10 +41,10 @@ struct Products {
   double log_determinant = 0.0;  ///< ln|V| + ln|posterior precision of the starts| − ln|prior precision of the starts|
 };
 
-/// Of the columns at `columns`, in that order; empty: of all.
+/// Uses the columns with these indices, in this order; empty: all columns.
 Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns);
 
-/// What the runs say of candidates once θ has absorbed what it can.
+/// Least squares of the candidates after θ, the model's own parameters, has been eliminated.
 struct Reduced {
   double base_nats = 0.0;         ///< ln evidence of the model without any candidate, up to a constant
   Eigen::MatrixXd products;       ///< e × e

@@ -16,10 +16,11 @@ namespace {
 
 /// All hats of a driver and what rounds them up to what is whitened at once.
 using HatColumns = Eigen::Matrix<double, Eigen::Dynamic, kKnots + 1, Eigen::RowMajor>;
-/// Of the heat that the prior takes for usual, as a share of the mean heat.
+/// Standard deviation that the prior gives to a curve's heat, as a share of the mean heat.
 constexpr double kUsual_share = 0.3;
 
-/// How the sensors answer to heats held over the intervals: `heat_W` (intervals × hats) into the node with place `flux`, out of `other`.
+/// Response of the sensors to heats that are constant over each interval: `heat_W` (intervals × hats) into the node with place `flux`, out
+/// of `other`.
 HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
   HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
   HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
@@ -43,7 +44,7 @@ HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux
 }
 
 /// Losses go with two signals of the operation; what goes with a temperature besides is cooling. A temperature alone makes no heat: it says
-/// how much moves, or how much of the copper's there is.
+/// how strong a loss of the current or of the copper is.
 bool goes_with(const Driver& driver, Multiplier multiplier) {
   if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
     return false;
@@ -70,11 +71,11 @@ struct Family {
   Scored scored;
 };
 
-/// What all curves share in one run under one supposition.
+/// Data of one run that all curves use, under one assumed unknown heat.
 struct SharedRun {
   Whitening whitening;
   Columns columns;           ///< whitened: start temperatures, θ, members, residual
-  Eigen::MatrixXd products;  ///< of the columns, the prior of the start temperatures included
+  Eigen::MatrixXd products;  ///< whitened columns times themselves, with the prior of the start temperatures
 };
 
 class Scanner {
@@ -320,7 +321,8 @@ class Scanner {
     return members;
   }
 
-  /// Of a subset of the members, with or without the hats; ln evidence above nothing. The curve is what `curve` and `covariance` become.
+  /// ln evidence of a subset of the members, with or without the curve, minus that of no member. Writes the curve to `curve` and its
+  /// covariance to `covariance`.
   [[nodiscard]] double gain_of(const Reduced& all, std::size_t subset, bool with_curve, Eigen::VectorXd* sizes = nullptr,
                                Eigen::MatrixXd* precision_of = nullptr) const {
     std::vector<Eigen::Index> places = members_of(subset);

@@ -24,7 +24,7 @@ struct FoundEffect {
   std::string node;
   std::string description;  ///< one line in words
   std::vector<FittedParameter> parameters;
-  std::map<std::string, std::string> condition;  ///< where it acts; empty: everywhere
+  std::map<std::string, std::string> condition;  ///< the effect acts only in runs with this condition; empty: in all runs
   std::vector<std::string> drivers;              ///< of a curve
   double mean_W = 0.0;                           ///< of the magnitude over the time of the runs in which it acts
   double peak_W = 0.0;                           ///< 99 % of the magnitude

@@ -18,6 +18,9 @@
 namespace heatsoak {
 namespace {
 
+/// Explanations whose ln probability differs by less than this cannot be distinguished.
+constexpr double kAmbiguous_nats = 5.0;
+
 /// What the rounds found becomes names, a curve, heat that nothing explains, or nothing.
 class Selector : Rounds {
  public:
@@ -266,7 +269,6 @@ class Selector : Rounds {
   }
 
   void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
-    constexpr double kAmbiguous_nats = 5.0;
     // Instances stand in the network in the order in which they were added.
     const std::size_t first = input_.model.model.network.effects().size();
     std::map<int, std::string> names;
@@ -344,7 +346,6 @@ class Selector : Rounds {
     term.loss_without_nats = out_.open_curve->gain_nats;
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
-      constexpr double kAmbiguous_nats = 5.0;
       const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
       if (each.gain_nats > out_.open_curve->gain_nats - kAmbiguous_nats && other != driver.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {

@@ -15,13 +15,13 @@
 namespace heatsoak {
 
 /// Of the unknown heat: stationary standard deviation per node that it may reach, and the time over which it forgets.
-/// And of what every sensor shows for a while though nothing is heated: of bodies that the network does not have. A sensor whose noise has
-/// a slow error of its own has that instead.
+/// Every sensor may also have a slow error that heats nothing: it stands for bodies that the network does not have. Where SensorNoise
+/// states slow errors, those are used instead.
 struct LatentFlux {
   std::vector<double> rms_W;
   double time_scale_s = 300.0;
-  double wander_K = 0.0;
-  double wander_time_scale_s = 40.0;
+  double wander_K = 0.0;              ///< standard deviation of the slow error of every sensor; 0: none
+  double wander_time_scale_s = 40.0;  ///< its correlation time
 };
 
 /// Per sensor and sample: standard deviation of the noise in K is noise_K[sensor] / √weight.
