@@ -36,7 +36,7 @@ struct BlockText {
 };
 
 inline constexpr BlockText kBlocks[] = {
-    {Block::validate_input, "validate_input", "input_validation.cpp, sensor_comparison.cpp", "1", "Input validation",
+    {Block::validate_input, "validate_input", "input_validation.cpp, sensor_comparison.cpp, speed_range.cpp", "1", "Input validation",
      "Decides which samples are believed, replaces the others by estimates, and recognises faults of sensors, time and command.",
      BlockRate::every_period},
     {Block::run_guards, "run_guards", "guards.cpp, thermal_guard.cpp", "G", "Thermal guard",
@@ -101,7 +101,8 @@ inline constexpr SignalText kSignals[] = {
     {"Input", "command.wheel_torque_Nm", "N m", firmware, validate_input | feed_forward},
     {"Input", "command.pose", "m, rad", firmware, validate_input | plan_to_pose},
     {"Believed", "wheel.speed_rad_per_s", "rad/s", validate_input, run_guards | feed_forward | control_wheel_speeds | apply_limits},
-    {"Believed", "wheel.implied_rad_per_s", "rad/s", validate_input, only(apply_limits)},
+    {"Believed", "spread_V", "V", validate_input, only(apply_limits)},
+    {"Believed", "is_checked", "flag", validate_input, only(apply_limits)},
     {"Believed", "wheel.current_A", "A", validate_input, run_guards | apply_limits},
     {"Believed", "wheel.is_speed_known", "flag", validate_input, run_guards | apply_limits},
     {"Believed", "wheel.is_speed_sensed", "flag", validate_input, control_wheel_speeds | apply_limits},
@@ -114,7 +115,7 @@ inline constexpr SignalText kSignals[] = {
     {"Believed", "elapsed_s", "s", validate_input, run_guards | control_body_velocity | control_wheel_speeds | apply_limits},
     {"Believed", "guard_periods", "count", validate_input, only(run_guards)},
     {"Believed", "mode", "code", validate_input, control_body_velocity | feed_forward | control_wheel_speeds},
-    {"Believed", "command_fault", "code", validate_input, control_body_velocity | make_output},
+    {"Believed", "command_fault", "code", validate_input, control_body_velocity | apply_limits | make_output},
     {"Believed", "robot_fault", "code", validate_input,
      run_guards | control_body_velocity | control_wheel_speeds | apply_limits | make_output},
     {"State", "wheel.speed_fault", "code", validate_input, only(apply_limits)},

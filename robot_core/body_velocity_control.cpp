@@ -8,6 +8,8 @@ constexpr float kStanding_m_per_s = 0.03F;
 constexpr float kStanding_rad_per_s = 0.3F;
 // A command that jumps is approached with this multiple of the acceleration limit: more than a planned motion needs.
 constexpr float kApproach_ratio = 2.0F;
+// The same where the command is at fault and the robot stops: a planned motion brakes no less.
+constexpr float kFaultyApproach_ratio = 1.0F;
 constexpr float kMostYawIntegral_rad = 0.5F;
 // How fast the reference follows a robot that its limits hold back, and how far ahead of it the reference stays.
 constexpr float kHoldBack_s = 0.1F;
@@ -81,14 +83,19 @@ void hold_back(State& state, const Vector3& wanted, const Believed& believed, fl
   }
 }
 
+float approach_ratio_of(const Believed& believed) {
+  return believed.command_fault == Reason::none ? kApproach_ratio : kFaultyApproach_ratio;
+}
+
 /// The last reference seen from the robot's present heading, moved towards the wanted one.
 void approach(const Config& config, const State& state, const Believed& believed, float since_s, BodyReference& body) {
   // Within a period the robot turns by a tenth of a radian at most, in a gap the reference has been set anew.
   const float angle_rad = clamped(-believed.yaw_rate_rad_per_s * since_s, -0.3F, 0.3F);
   const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
   Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
-  const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * since_s;
-  const float most_rad_per_s = kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2 * since_s;
+  const float approach_ratio = approach_ratio_of(believed);
+  const float most_m_per_s = approach_ratio * config.acceleration_limit_m_per_s2 * since_s;
+  const float most_rad_per_s = approach_ratio * config.yaw_acceleration_limit_rad_per_s2 * since_s;
   if (limit(change, most_m_per_s, most_rad_per_s)) {
     body.velocity = {last.x + change.x, last.y + change.y, last.yaw + change.yaw};
     const float rate_per_s = 1.0F / (kApproach_ratio * since_s);
@@ -106,8 +113,9 @@ void close_loop(const Config& config, State& state, const Believed& believed, fl
   body.acceleration.x += config.body_gain_per_s * (body.velocity.x - believed.velocity.x);
   body.acceleration.y += config.body_gain_per_s * (body.velocity.y - believed.velocity.y);
   body.acceleration.yaw += config.yaw_gain_per_s * yaw_error_rad_per_s + config.yaw_integral_per_s2 * state.yaw_integral_rad;
-  const float most_m_per_s2 = kApproach_ratio * config.acceleration_limit_m_per_s2;
-  limit(body.acceleration, most_m_per_s2, kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2);
+  const float approach_ratio = approach_ratio_of(believed);
+  const float most_m_per_s2 = approach_ratio * config.acceleration_limit_m_per_s2;
+  limit(body.acceleration, most_m_per_s2, approach_ratio * config.yaw_acceleration_limit_rad_per_s2);
   // Every packet corrects the velocity a little at once: as a force that would be a blow.
   const float share = smaller(1.0F, since_s / kForce_s);
   Vector3& smoothed = state.acceleration_reference;

@@ -1,5 +1,5 @@
 // Checks a Config, and fills in the values that follow from others.
-#include "robot_core/drive_core.h"
+#include "robot_core/drive_stages.h"
 
 namespace robot_core {
 namespace {
@@ -80,6 +80,45 @@ bool all(const float (&values)[count]) {
   return possible && (config.guard == nullptr || is_possible(*config.guard, config.period_s));
 }
 
+namespace {
+
+/// Speeds of wheels with one motion of the body fulfil Σ c·r = 0 for each three wheels with the gyro, and for all four without: an
+/// estimate of one of these speeds is off by at most Σ|c|/|c_i| times the largest residual.
+float most_ratio(const float (&share)[kMostWheels], float least) {
+  float sum = 0.0F;
+  float smallest = std::numeric_limits<float>::max();
+  for (const float each : share) {
+    sum += absolute(each);
+    // Speeds are not estimated by smaller shares.
+    smallest = absolute(each) < least ? smallest : smaller(smallest, absolute(each));
+  }
+  return sum / smallest;
+}
+
+[[gnu::cold]] float spread_V_s_per_m(const Config& config) {
+  constexpr float kLeastArea = 0.14F;  // as in speed_range.cpp
+  const WheelConfig* const wheel = config.wheel;
+  float most = 0.0F;
+  float speed_per_rim_per_m = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    speed_per_rim_per_m = larger(speed_per_rim_per_m, wheel[i].speed_per_rim_per_m);
+    for (int j = i + 1; j < config.wheel_count; ++j) {
+      for (int k = j + 1; k < config.wheel_count; ++k) {
+        const float pairs[kMostWheels] = {cross(wheel[j], wheel[k]), cross(wheel[k], wheel[i]), cross(wheel[i], wheel[j])};
+        most = larger(most, most_ratio(pairs, kLeastArea));
+      }
+    }
+  }
+  if (config.wheel_count == kMostWheels) {
+    const float all[kMostWheels] = {area(wheel[1], wheel[2], wheel[3]), area(wheel[0], wheel[2], wheel[3]),
+                                    area(wheel[0], wheel[1], wheel[3]), area(wheel[0], wheel[1], wheel[2])};
+    most = larger(most, most_ratio(all, kLeastArea));
+  }
+  return most * speed_per_rim_per_m * config.derived.geared_constant_V_s_per_rad;
+}
+
+}  // namespace
+
 [[gnu::cold]] void complete(Config& config) {
   DerivedConfig& derived = config.derived;
   derived = {};
@@ -128,6 +167,7 @@ bool all(const float (&values)[count]) {
     // A robot without a driver limit still has a current that it drives with.
     derived.current_margin_A = larger(derived.current_margin_A, kCurrent_share * wheel.body_limit_A);
   }
+  derived.spread_V_s_per_m = spread_V_s_per_m(config);
   config.check_sum = config_check_sum(config);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "robot_core/drive_core.h"
+#include "robot_core/math.h"
 
 namespace robot_core {
 
@@ -11,7 +12,7 @@ namespace robot_core {
 /// Stage 1: what is believed of one wheel.
 struct BelievedWheel {
   float speed_rad_per_s;    ///< sensed, else implied, else 0
-  float implied_rad_per_s;  ///< by the other wheels and the gyro; the sensed speed where they say nothing
+  float implied_rad_per_s;  ///< by the other wheels and the gyro; the sensed speed where they say nothing. Of stage 1 alone
   float current_A;          ///< sensed, else estimated from voltage and speed
   bool is_speed_known;      ///< sensed or implied
   bool is_speed_sensed;
@@ -27,6 +28,8 @@ struct Believed {
   float ambient_C = 0.0F;
   float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
   int guard_periods = 1;   ///< the same as periods, and one more as often as small delays add up to one
+  float spread_V = 0.0F;   ///< by which estimates of a back-EMF from different sensors can differ; infinite: see speed_range()
+  bool is_checked = true;  ///< sensors are left that would show that another one lies
   bool are_all_sensed = true;
   bool are_samples_compared = false;  ///< too few are believed: implied speeds are those of all samples
   Mode mode = Mode::coast;            ///< after faults of the command
@@ -92,6 +95,30 @@ inline float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_
 
 /// Yaw rate that the sensed wheel speeds imply.
 float yaw_rate_of_wheels(const Config& config, const Believed& believed);
+
+/// Speeds that a wheel has by every smallest set of sensors that determines it: its own, two others and the gyro, or three others. Of
+/// four wheels and a gyro any two may lie: one of these speeds is true, as long as the wheels roll.
+struct SpeedRange {
+  float slowest_rad_per_s = std::numeric_limits<float>::infinity();
+  float fastest_rad_per_s = -std::numeric_limits<float>::infinity();
+
+  void add(float speed_rad_per_s) {
+    slowest_rad_per_s = smaller(slowest_rad_per_s, speed_rad_per_s);
+    fastest_rad_per_s = larger(fastest_rad_per_s, speed_rad_per_s);
+  }
+  bool is_known() const { return slowest_rad_per_s <= fastest_rad_per_s; }
+};
+/// In speed_range.cpp. Empty where no such set is believed.
+SpeedRange speed_range(const Config& config, const State& state, const Believed& believed, int wheel);
+
+/// The signed area that three unit vectors along rolling directions span, doubled.
+inline float area(const WheelConfig& a, const WheelConfig& b, const WheelConfig& c) {
+  return (b.rolling_x_share - a.rolling_x_share) * (c.rolling_y_share - a.rolling_y_share) -
+         (b.rolling_y_share - a.rolling_y_share) * (c.rolling_x_share - a.rolling_x_share);
+}
+inline float cross(const WheelConfig& a, const WheelConfig& b) {
+  return a.rolling_x_share * b.rolling_y_share - a.rolling_y_share * b.rolling_x_share;
+}
 
 /// Compares sensors with each other: stuck and swapped ones, and those that are believed again.
 void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed);

@@ -180,6 +180,7 @@ void find_from_all(const Config& config, Believed& believed) {
   }
   believed.velocity = {derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s,
                        derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s, believed.yaw_rate_rad_per_s};
+  float most_m_per_s = 0.0F;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
@@ -187,7 +188,22 @@ void find_from_all(const Config& config, Believed& believed) {
     believed.wheel[i].implied_rad_per_s =
         believed.wheel[i].speed_rad_per_s - residual_m_per_s * config.wheel[i].others_factor * config.wheel[i].speed_per_rim_per_m;
     believed.wheel[i].is_speed_known = true;
+    most_m_per_s = larger(most_m_per_s, absolute(residual_m_per_s));
   }
+  believed.spread_V = derived.spread_V_s_per_m * most_m_per_s;
+}
+
+constexpr float kUnknown = std::numeric_limits<float>::infinity();
+
+/// With three wheels, or without the gyro, no two sensors may lie: see speed_range().
+[[gnu::cold, gnu::noinline]] void check_redundancy(const Config& config, const State& state, Believed& believed) {
+  const bool is_gyro_believed = state.yaw_fault == 0;
+  int spare = is_gyro_believed ? -2 : -3;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    spare += believed.wheel[i].is_speed_sensed ? 1 : 0;
+  }
+  believed.is_checked = spare > 0;
+  believed.spread_V = kUnknown;
 }
 
 /// Too few sensors are left: every sample is compared with all the others, although none of them is believed. So sensors come back that
@@ -239,8 +255,14 @@ void find_from_all(const Config& config, Believed& believed) {
       is_implied = rest.solve(others.x, others.y);
     }
     const float implied_m_per_s = wheel.rolling_x_share * others.x + wheel.rolling_y_share * others.y + turning_m_per_s;
-    believed.wheel[i].implied_rad_per_s =
-        is_implied ? implied_m_per_s * config.wheel[i].speed_per_rim_per_m : believed.wheel[i].speed_rad_per_s;
+    float& implied_rad_per_s = believed.wheel[i].implied_rad_per_s;
+    implied_rad_per_s = is_implied ? implied_m_per_s * config.wheel[i].speed_per_rim_per_m : believed.wheel[i].speed_rad_per_s;
+    if (!believed.wheel[i].is_speed_sensed) {
+      // Without the gyro three wheels still determine the fourth, two do not.
+      const SpeedRange range = speed_range(config, state, believed, i);
+      is_implied = range.is_known();
+      implied_rad_per_s = is_implied ? clamped(implied_rad_per_s, range.slowest_rad_per_s, range.fastest_rad_per_s) : implied_rad_per_s;
+    }
     believed.wheel[i].is_speed_known = believed.wheel[i].is_speed_sensed || is_implied;
     if (!believed.wheel[i].is_speed_sensed) {
       believed.wheel[i].speed_rad_per_s = is_implied ? believed.wheel[i].implied_rad_per_s : 0.0F;
@@ -368,6 +390,9 @@ Believed validate_input(const Config& config, State& state, const Input& input) 
     find_from_all(config, believed);
   } else {
     find_from_some(config, state, believed);
+  }
+  if (!believed.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
+    check_redundancy(config, state, believed);
   }
   compare_sensors(config, state, input, believed);
   validate_currents(config, state, input, believed);

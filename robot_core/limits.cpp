@@ -2,8 +2,8 @@
 //
 // A limit works on currents: I = (V − K_e·n·ω)/R with the lowest R that the motor can have, so that the true current is not larger. One
 // factor scales the currents of all wheels, and with them the force on the body, so that its direction is kept. At last each voltage has
-// to keep the wheel's current within its limit for two speeds: that of its sensor and that which the other wheels and the gyro imply.
-// Where no voltage does, the bridge is opened.
+// to keep the wheel's current within its limit for every speed that the wheel may have, by its own sensor and by the others
+// (speed_range()). Where no voltage does, the bridge is opened.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
@@ -14,6 +14,7 @@ constexpr float kOvercurrent_ratio = 1.3F;
 constexpr float kBoundDecay = 0.8F;  // of the bound's memory, per period: sampling and actuation are late by one or two
 
 constexpr float kRounding = 1.0001F;
+constexpr float kSlip_V = 1e-3F;             // a smaller change of a voltage has no reason of its own
 constexpr float kSensedSlack_share = 0.05F;  // of the driver's limit
 
 /// What one wheel wants and may have.
@@ -27,11 +28,11 @@ struct WheelDemand {
 
 // What is seldom needed stands in functions of its own: the loops over the wheels are unrolled.
 
-/// Of a wheel without speed sensor.
+/// Of a wheel without speed sensor, or of all wheels if no sensor is left that would show that another one lies.
 [[gnu::cold, gnu::noinline]] void limit_to_limp(const Config& config, const WheelState& state, WheelDemand& demand) {
   if (config.limp_current_A < demand.most_A) {
     demand.most_A = config.limp_current_A;
-    demand.reason = static_cast<Reason>(state.speed_fault);
+    demand.reason = state.speed_fault != 0 ? static_cast<Reason>(state.speed_fault) : Reason::unchecked;
   }
 }
 
@@ -44,7 +45,7 @@ void limit_demand(const Config& config, const WheelState& state, const Believed&
     demand.most_A = config.current_limit_A;
     demand.reason = Reason::driver_current;
   }
-  if (!believed.wheel[i].is_speed_sensed) {
+  if (!believed.wheel[i].is_speed_sensed || !believed.is_checked) {
     limit_to_limp(config, state, demand);
   }
 }
@@ -94,23 +95,28 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   return room_V * config.derived.per_lowest_resistance_A_per_V;
 }
 
-[[gnu::cold, gnu::noinline]] bool move_into_window(const WheelDemand& demand, float implied_V, float band_V, float most_V, float& voltage_V,
-                                                   Reason& reason) {
-  if (!(demand.most_A > 0.0F)) {
+[[gnu::cold, gnu::noinline]] bool move_into_window(const Config& config, const State& state, const Believed& believed,
+                                                   const WheelDemand& demand, int i, float most_V, float& voltage_V, Reason& reason) {
+  const float band_V = config.lowest_resistance_ohm * demand.most_A;
+  const SpeedRange range = speed_range(config, state, believed, i);
+  const float low_V = config.derived.geared_constant_V_s_per_rad * range.fastest_rad_per_s - band_V;
+  const float high_V = config.derived.geared_constant_V_s_per_rad * range.slowest_rad_per_s + band_V;
+  if (!(demand.most_A > 0.0F) || !(low_V <= high_V)) {
     return false;
   }
-  reason = reason == Reason::none ? Reason::slip : reason;
-  voltage_V = clamped(voltage_V, implied_V - band_V, implied_V + band_V);
-  return absolute(voltage_V) <= kRounding * most_V && absolute(voltage_V - demand.back_V) <= kRounding * band_V;
+  const float asked_V = voltage_V;
+  voltage_V = clamped(voltage_V, low_V, high_V);
+  reason = reason == Reason::none && absolute(voltage_V - asked_V) > kSlip_V ? Reason::slip : reason;
+  return absolute(voltage_V) <= kRounding * most_V;
 }
 
-/// Holds a voltage within the current limit for the implied speed too; for the sensed one it is. False where no voltage does, or where the
-/// voltage is no number.
-bool hold_window(const Config& config, const Believed& believed, const WheelDemand& demand, int i, float most_V, float& voltage_V,
-                 Reason& reason) {
+/// Holds a voltage within the current limit for every speed that the wheel may have. False where no voltage does, or where the voltage is
+/// no number. As long as sensors agree about as well as the voltage is within its limit, no single estimate is needed.
+bool hold_window(const Config& config, const State& state, const Believed& believed, const WheelDemand& demand, int i, float most_V,
+                 float& voltage_V, Reason& reason) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  const float implied_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].implied_rad_per_s;
-  return absolute(voltage_V - implied_V) < band_V || move_into_window(demand, implied_V, band_V, most_V, voltage_V, reason);
+  return absolute(voltage_V - demand.back_V) + believed.spread_V < band_V ||
+         move_into_window(config, state, believed, demand, i, most_V, voltage_V, reason);
 }
 
 /// Voltage of a wheel of unknown speed: at most the limp current, or the guard's limit if that is smaller, into a standing motor.
@@ -122,12 +128,15 @@ bool hold_window(const Config& config, const Believed& believed, const WheelDema
 }
 
 /// Holds a voltage within the current limit by what the sensor shows: the current that flowed, changed by the change of the voltage. True
-/// whatever the speed is. The slack is for noise, where two speeds hold the limit already.
-void hold_sensed_current(const Config& config, const BelievedWheel& believed, const WheelState& wheel, float most_A, float& voltage_V) {
+/// whatever the speed is. The slack is for noise, where the
+/// speeds agree and hold the limit already.
+void hold_sensed_current(const Config& config, const Believed& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
+  const BelievedWheel& believed = all.wheel[i];
   if (wheel.is_open != 0) {
     return;
   }
-  const float slack_A = believed.is_speed_sensed ? kSensedSlack_share * config.current_limit_A : 0.0F;
+  const float agreed_A = kSensedSlack_share * config.current_limit_A - all.spread_V * config.derived.per_lowest_resistance_A_per_V;
+  const float slack_A = believed.is_speed_sensed ? larger(0.0F, agreed_A) : 0.0F;
   const float room_V = config.lowest_resistance_ohm * (most_A + slack_A);
   const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * believed.current_A;
   voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
@@ -166,7 +175,8 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
-    const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
+    // Nobody asked for the stop that follows a fault of the command: it gets no reserve.
+    const float allowed_A = brakes && believed.command_fault == Reason::none ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     would_limit = apply_guard(config, state, allowed_A, believed.elapsed_s, demand[i]) || would_limit;
     if (are_speeds_dead && config.limp_current_A < demand[i].most_A) {
       demand[i].most_A = config.limp_current_A;
@@ -228,40 +238,37 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 }
 
 /// Of a wheel with a current sensor, or without a speed: what is left of the wanted voltage; false if its bridge has to be opened.
-[[gnu::noinline]] bool hold_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i,
+[[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Believed& believed, const WheelDemand& demand, int i,
                                   float most_V, float& voltage_V, Reason& reason) {
+  WheelState& wheel = state.wheel[i];
   const BelievedWheel& sensed = believed.wheel[i];
-  const float band_V = kRounding * config.lowest_resistance_ohm * demand.most_A;
-  if (sensed.is_current_sensed && sensed.is_speed_sensed) {
-    const float asked_V = voltage_V;
-    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
-    if (voltage_V != asked_V && reason == Reason::none) {
-      reason = reason_of(config.wheel[i], demand);
-    }
-    // A current sensor may lie too: it never takes the voltage out of the window of the sensed speed.
-    voltage_V = clamped(voltage_V, demand.back_V - band_V, demand.back_V + band_V);
-  }
-  bool is_held = sensed.is_speed_known ? hold_window(config, believed, demand, i, most_V, voltage_V, reason)
+  bool is_held = sensed.is_speed_known ? hold_window(config, state, believed, demand, i, most_V, voltage_V, reason)
                                        : limp_blindly(config, believed, demand, i, most_V, voltage_V);
-  if (sensed.is_current_sensed && !sensed.is_speed_sensed) {
-    // Better evidence than a speed that others imply, but it may lie: where both leave no voltage the bridge is opened.
-    hold_sensed_current(config, sensed, wheel, demand.most_A, voltage_V);
-    is_held = is_held && !(sensed.is_speed_known && absolute(voltage_V - demand.back_V) > band_V);
+  if (sensed.is_current_sensed) {
+    const float asked_V = voltage_V;
+    hold_sensed_current(config, believed, i, wheel, demand.most_A, voltage_V);
+    if (voltage_V != asked_V) {
+      reason = reason == Reason::none ? reason_of(config.wheel[i], demand) : reason;
+      // A current sensor may lie too: where it and the speeds leave no voltage the bridge is opened.
+      const float held_V = voltage_V;
+      is_held = is_held && !(sensed.is_speed_known && (!hold_window(config, state, believed, demand, i, most_V, voltage_V, reason) ||
+                                                       absolute(voltage_V - held_V) > kSlip_V));
+    }
   }
   wheel.current_bound_A = larger(demand.most_A, kBoundDecay * wheel.current_bound_A);
   return is_held && is_finite(voltage_V) && !(sensed.is_current_sensed && is_overcurrent(config, sensed, wheel));
 }
 
 /// What is left of the wanted voltage of one wheel; true if its bridge has to be opened.
-bool finish_wheel(const Config& config, WheelState& wheel, const Believed& believed, const WheelDemand& demand, int i, float most_V,
+bool finish_wheel(const Config& config, State& state, const Believed& believed, const WheelDemand& demand, int i, float most_V,
                   float& voltage_V, Reason& reason) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
   const BelievedWheel& sensed = believed.wheel[i];
   if (sensed.is_speed_known && !sensed.is_current_sensed) {
-    wheel.current_bound_A = demand.most_A;
-    return !hold_window(config, believed, demand, i, most_V, voltage_V, reason);
+    state.wheel[i].current_bound_A = demand.most_A;
+    return !hold_window(config, state, believed, demand, i, most_V, voltage_V, reason);
   }
-  return !hold_wheel(config, wheel, believed, demand, i, most_V, voltage_V, reason);
+  return !hold_wheel(config, state, believed, demand, i, most_V, voltage_V, reason);
 }
 
 }  // namespace
@@ -282,7 +289,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
     end.allowed_A = demand[i].most_A;
-    end.is_open = finish_wheel(config, wheel, believed, demand[i], i, most_V, end.voltage_V, end.reason) || is_all_open;
+    end.is_open = finish_wheel(config, state, believed, demand[i], i, most_V, end.voltage_V, end.reason) || is_all_open;
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;

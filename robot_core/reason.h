@@ -46,18 +46,26 @@
 //   - A current sensor that reads too little hides no heat from the guard, which compares it with voltage and speed.
 //   - An air temperature that falls is followed by 0.02 K/s at most.
 //
+//   - Each voltage keeps the current limit for every speed that the wheel may have: by its own sensor, by two other wheels and the gyro,
+//   and
+//     by three other wheels. Of four wheels and a gyro any two may lie without more current as long as the wheels roll. With one of these
+//     sensors less (three wheels, or after a fault) any single one may lie, and swapped wheel sensors until they would have been found.
+//     With none to spare the current of every wheel is limited to limp_current_A (limit 17).
+//   - Where current sensor and speeds leave no common voltage, the wheel's bridge is opened.
+//   - The stop after a fault of the command (104 to 106) uses the acceleration limit and no braking reserve of the guard.
+//
 // Not recognised (tests/robot_core/adversarial_test.cpp has the sizes); current limits and guard hold unless stated:
 //   - Swapped wheel sensors until they are found, after 0.1 to 0.4 s of driving on average. Swapped samples of opposite wheels, or of any
-//     two of three, fit a different motion of the robot equally well; only the reaction to currents shows the swap. Until then the current
-//     may be above its limit.
+//     two of three, fit a different motion of the robot equally well; only the reaction to currents shows the swap.
 //   - One wheel sensor with a wrong scale, sign or offset, or one that is stuck with noise: the robot turns and its wheels work against
-//     each other. Sliding wheels look the same. A slipping wheel whose own sensor lies and whose current is not sensed may exceed its limit.
-//   - Two or more speed sensors (wheels, gyro) that lie at once: current limits may be exceeded. If all show 0 the robot accelerates for
-//     kStanding_s before it is held to the limp current (115).
+//     each other. Sliding wheels look the same. A slipping wheel whose own sensor lies and whose current is not sensed may exceed its
+//     limit.
+//   - More lies about speeds at once than the sensors to spare bear: the current may exceed its limit for some periods. If all wheel
+//   sensors
+//     show 0 the robot accelerates for kStanding_s before it is held to the limp current (115).
 //   - A gyro with a wrong sign, scale or offset: the robot turns wrongly.
 //   - A battery sensor that is wrong by the same factor since the start or since a fault, or sinks more slowly than 0.4 % of the full
 //     battery per second: the current may exceed its limit by that factor.
-//   - Combinations of three faults: on three wheels some exceed the current limit for a few periods.
 //   - A command that is wrong but possible.
 // Faults 111, 112 and 121 are found later, or not at all, if the robot's file has no current limit of the driver.
 #pragma once
@@ -77,6 +85,7 @@ enum class Reason : std::uint8_t {
   guard = 14,           ///< allowed current of the thermal guard
   other_wheel = 15,     ///< scaled with a limited wheel, so that the direction of travel is kept
   slip = 16,            ///< the current is within its limit for the wheel's speed, but not for the speed that the other wheels imply
+  unchecked = 17,       ///< too few sensors are left to show that another one lies: Config::limp_current_A
   // Faults.
   config_invalid = 100,
   state_corrupted = 101,

@@ -131,7 +131,7 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
 }
 
 /// All speeds at once: sensors that are dead together agree with each other.
-[[gnu::cold]] void compare_standing(const Config& config, State& state, float since_s) {
+[[gnu::cold]] void compare_standing(const Config& config, State& state, const Believed& believed, float since_s) {
   bool is_driven = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelState& wheel = state.wheel[i];
@@ -140,7 +140,9 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
       return;
     }
     const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
-    is_driven = is_driven || absolute(driven_V) > config.lowest_resistance_ohm * config.limp_current_A;
+    // Where the gyro contradicts wheels that seem to stand, the limits may leave less than the limp current.
+    const float evidence_V = larger(absolute(driven_V), believed.mode == Mode::coast ? 0.0F : believed.spread_V);
+    is_driven = is_driven || evidence_V > config.lowest_resistance_ohm * config.limp_current_A;
   }
   // Up to twice the threshold is counted: limited to the limp current, a wheel stays below it.
   float& standing_s = state.comparison.standing_s;
@@ -203,6 +205,8 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
   const bool is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
   const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
+  const float least = most;
+  bool is_decided = true;
   // The body couples its wheels, so a current may well slow its wheel down. Four samples then still fit one motion of the body.
   float& residual_m2_per_s2 = comparison.residual_m2_per_s2;
   residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, believed) - residual_m2_per_s2);
@@ -223,6 +227,7 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
       float& against = comparison.against_V_rad_per_s[pair];
       with = is_wheelwise ? kWheelwise_ratio * most : keep * with + larger(0.0F, product);
       against = is_wheelwise ? 0.0F : keep * against + (grows ? larger(0.0F, -product) : 0.0F);
+      is_decided = is_decided && !is_wheelwise && with + against > least;
       if (is_contradiction && against > kMuchMore_ratio * with && against > most) {
         most = against;
         worst[0] = i;
@@ -230,6 +235,8 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
       }
     }
   }
+  const int checked = comparison.checked_comparisons + (is_decided && comparison.checked_comparisons < kMostChecked ? 1 : 0);
+  comparison.checked_comparisons = static_cast<std::uint16_t>(worst[0] >= 0 ? 0 : checked);
   for (const int i : worst) {
     if (i >= 0) {
       state.wheel[i].speed_fault = code(Reason::wheel_speed_swapped);
@@ -301,7 +308,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
       compare_heat(config, state, believed, input.motor_current_A[i], i, since_s);
     }
     if (turn == 8) {
-      compare_standing(config, state, since_s);
+      compare_standing(config, state, believed, since_s);
       compare_yaw_rate(config, state, believed, since_s);
     }
   }

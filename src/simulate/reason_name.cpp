@@ -20,6 +20,8 @@ constexpr NamedReason kNames[] = {
     {Reason::traction, "traction"},
     {Reason::guard, "guard"},
     {Reason::other_wheel, "other_wheel"},
+    {Reason::slip, "slip"},
+    {Reason::unchecked, "unchecked"},
     {Reason::config_invalid, "config_invalid"},
     {Reason::state_corrupted, "state_corrupted"},
     {Reason::period_invalid, "period_invalid"},

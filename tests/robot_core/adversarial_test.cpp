@@ -5,12 +5,13 @@
 // K_t·n/R. Excluded, because in principle nobody can know it:
 //   - a wheel that slips while its own sensor lies, without a current sensor: wheels and gyro know a wheel that rolls only. The excess is
 //     at most K_t·n·(speed − implied speed)/R, which slip_A() calculates from the truth and the test takes off;
-//   - two or more speed sensors (wheels, gyro) that lie at once, swapped ones among them until they are found: measured, not limited. See
-//     swapped_sensors_test.cpp for the time and the current until swapped sensors are found;
+//   - more speed sensors (wheels, gyro) that lie at once than the core has to spare: measured, not limited. Two swapped ones are two lies;
+//     three wheels have one sensor to spare, but the core counts on swapped ones until they would have been found;
 //   - a battery sensor that is wrong by the same factor since the start, or sinks slower than a battery does (0.4 %/s);
 //   - a command that is wrong but possible: the twin gets it too.
-// With HEATSOAK_HOSTILE_FACTOR=30 (7e7 inputs) no single lie exceeds the limits, and of the combinations with at most one lie about a speed
-// three drives on three wheels do: two lies about the battery (107 wheels and steps, up to 1.2 A), and two single steps, up to 0.8 A.
+// With HEATSOAK_HOSTILE_FACTOR=10 (2.4e7 inputs) no single lie exceeds the limits, nor does any combination with at most one lie about a
+// speed. Of combinations of any three lies 5 in 3600 do: up to 0.16 A on four wheels, 0.08 A on three, and 2.1 A for five steps where a
+// stuck gyro lies beside a missing wheel on three.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -260,9 +261,7 @@ TEST(Adversarial, SingleLiesDriveNoMoreCurrentThanTheTruthAllows) {
         print(std::string(name_of(lie)), wheels, are_currents_fitted, tally);
         EXPECT_EQ(tally.non_finite, 0) << name_of(lie);
         EXPECT_LT(tally.hottest_C, kWindingLimit_C) << name_of(lie);
-        if (lie != Lie::wheel_swapped) {
-          EXPECT_EQ(tally.unexplained, 0) << name_of(lie) << ", worst in episode " << tally.worst_episode;
-        }
+        EXPECT_EQ(tally.unexplained, 0) << name_of(lie) << ", worst in episode " << tally.worst_episode;
         if (lie == Lie::none) {
           EXPECT_EQ(tally.violations, 0);
           EXPECT_EQ(tally.alarms_of_twin, 0);
@@ -273,6 +272,14 @@ TEST(Adversarial, SingleLiesDriveNoMoreCurrentThanTheTruthAllows) {
 }
 
 bool is_of_speed(Lie lie) { return (lie >= Lie::wheel_nan && lie <= Lie::wheel_biased) || (lie >= Lie::yaw_nan && lie <= Lie::yaw_biased); }
+
+void print_excess(const std::vector<Lie>& lies, const Tally& tally) {
+  if (tally.unexplained > 0) {
+    std::printf("  %s, %s, %s: %ld, up to %.2f A, in episode %u\n", std::string(name_of(lies[0])).c_str(),
+                std::string(name_of(lies[1])).c_str(), std::string(name_of(lies[2])).c_str(), tally.unexplained,
+                tally.largest_unexplained_A, tally.worst_episode);
+  }
+}
 
 /// Two or three lies; with `is_covered` at most one of them concerns a speed.
 TEST(Adversarial, CombinationsOfLies) {
@@ -294,7 +301,9 @@ TEST(Adversarial, CombinationsOfLies) {
               lies.push_back(lie);
             }
           }
-          tally.add(run_all(config, lies, 1, are_currents_fitted, 5000U + 2U * static_cast<unsigned>(e)));
+          const Tally one = run_all(config, lies, 1, are_currents_fitted, 5000U + 2U * static_cast<unsigned>(e));
+          print_excess(lies, one);
+          tally.add(one);
         }
         print(is_covered ? "three, at most one of speed" : "three of any kind", wheels, are_currents_fitted, tally);
         EXPECT_EQ(tally.non_finite, 0);

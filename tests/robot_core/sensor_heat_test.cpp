@@ -64,7 +64,7 @@ Heat push(const Config& config, const std::function<void(Input&)>& spoil, double
     input.ambient_C = static_cast<float>(air_C);
     input.command.mode = Mode::wheel_torque;
     for (std::size_t i = 0; i < 4; ++i) {
-      input.command.wheel_torque_Nm[i] = 0.2F * torque.at(i);
+      input.command.wheel_torque_Nm[i] = 0.21F * torque.at(i);
     }
     if (k > 5000) {
       spoil(input);

@@ -1,0 +1,82 @@
+// Stage 1, third part: the speeds that a wheel may have if some of its robot's sensors lie. Called where a wheel is near its current limit.
+#include "robot_core/drive_stages.h"
+
+// For size: few steps need it.
+#pragma GCC optimize("Os")
+
+namespace robot_core {
+namespace {
+
+// Of rolling directions: two wheels that are closer to parallel than 8 degrees, or three of which one adds nothing, determine no speed.
+constexpr float kLeastArea = 0.14F;
+
+/// Rim speeds of the believed wheels; a wheel without a sensor is left out.
+struct Rims {
+  float rim_m_per_s[kMostWheels] = {};
+  bool is_sensed[kMostWheels] = {};
+};
+
+/// From two other wheels and the gyro.
+void add_pair(const Config& config, const Rims& rims, int i, int j, int k, float turning_m_per_s, SpeedRange& range) {
+  const float determinant = cross(config.wheel[j], config.wheel[k]);
+  if (!rims.is_sensed[j] || !rims.is_sensed[k] || absolute(determinant) < kLeastArea) {
+    return;
+  }
+  const float of_j = cross(config.wheel[i], config.wheel[k]) * (rims.rim_m_per_s[j] - turning_m_per_s);
+  const float of_k = cross(config.wheel[j], config.wheel[i]) * (rims.rim_m_per_s[k] - turning_m_per_s);
+  range.add(((of_j + of_k) / determinant + turning_m_per_s) * config.wheel[i].speed_per_rim_per_m);
+}
+
+/// From three other wheels without the gyro: barycentric coordinates.
+void add_triple(const Config& config, const Rims& rims, int i, SpeedRange& range) {
+  const int j = (i + 1) % kMostWheels;
+  const int k = (i + 2) % kMostWheels;
+  const int l = (i + 3) % kMostWheels;
+  const WheelConfig* const wheel = config.wheel;
+  const float determinant = area(wheel[j], wheel[k], wheel[l]);
+  if (!rims.is_sensed[j] || !rims.is_sensed[k] || !rims.is_sensed[l] || absolute(determinant) < kLeastArea) {
+    return;
+  }
+  const float sum = area(wheel[i], wheel[k], wheel[l]) * rims.rim_m_per_s[j] + area(wheel[j], wheel[i], wheel[l]) * rims.rim_m_per_s[k] +
+                    area(wheel[j], wheel[k], wheel[i]) * rims.rim_m_per_s[l];
+  range.add(sum / determinant * wheel[i].speed_per_rim_per_m);
+}
+
+}  // namespace
+
+[[gnu::cold]] SpeedRange speed_range(const Config& config, const State& state, const Believed& believed, int wheel) {
+  SpeedRange range;
+  Rims rims;
+  const bool is_gyro_believed = state.yaw_fault == 0;
+  int sensed = is_gyro_believed ? 1 : 0;
+  for (int j = 0; j < config.wheel_count; ++j) {
+    rims.is_sensed[j] = believed.wheel[j].is_speed_sensed;
+    rims.rim_m_per_s[j] = rim_speed_m_per_s(config, j, believed.wheel[j].speed_rad_per_s);
+    sensed += rims.is_sensed[j] ? 1 : 0;
+  }
+  // With one sensor to spare, two swapped ones may go unnoticed: until they would have been found, every sample may be this wheel's.
+  // Without one, the current is a safe one anyway.
+  const bool is_any_possible = sensed == 4 && state.comparison.checked_comparisons < kMostChecked;
+  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  for (int j = 0; j < config.wheel_count; ++j) {
+    if (rims.is_sensed[j] && j == wheel) {
+      range.add(believed.wheel[j].speed_rad_per_s);
+    }
+    for (int k = j + 1; k < config.wheel_count && is_gyro_believed && j != wheel; ++k) {
+      if (k != wheel) {
+        add_pair(config, rims, wheel, j, k, turning_m_per_s, range);
+      }
+    }
+  }
+  if (config.wheel_count == kMostWheels) {
+    add_triple(config, rims, wheel, range);
+  }
+  for (int j = 0; j < config.wheel_count && is_any_possible && range.is_known(); ++j) {
+    if (rims.is_sensed[j]) {
+      range.add(believed.wheel[j].speed_rad_per_s);
+    }
+  }
+  return range;
+}
+
+}  // namespace robot_core
