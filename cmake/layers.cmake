@@ -66,6 +66,8 @@ function(add_core name)
   add_library(heatsoak_${name} STATIC ${sources})
   target_include_directories(heatsoak_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
   target_compile_options(heatsoak_${name} PRIVATE ${HEATSOAK_CORE_OPTIONS})
+  # File by file as on the controller: files choose their own optimisation.
+  set_target_properties(heatsoak_${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(heatsoak_${name} PRIVATE heatsoak_settings)
   set_property(GLOBAL APPEND PROPERTY heatsoak_layers ${name})
 endfunction()

@@ -18,7 +18,7 @@ typedef struct {
   heatsoak_axis speed_rad_per_s;
   heatsoak_axis stator_C;
   heatsoak_axis winding_C;
-  const float *square_A2;           /* [speed][stator][winding]; negative: no current is too much already */
+  const float *square_A2; /* [speed][stator][winding]; negative: no current is too much already */
   float most_current_A;
   float straight_below_A;           /* a smaller current is square/straight_below, so that it falls to 0 with a finite slope */
   float most_speed_rad_per_s;       /* from here on the current falls in a straight line */
@@ -33,8 +33,8 @@ typedef struct {
   int32_t next_speed;
   float stator_share; /* 0 to 1, place in the cell */
   float speed_share;
-  float hotter_K; /* that the winding counts hotter, for the stator */
-  float fade_ratio;     /* 0 to 1, current that a speed above the highest leaves */
+  float hotter_K;   /* that the winding counts hotter, for the stator */
+  float fade_ratio; /* 0 to 1, current that a speed above the highest leaves */
 } heatsoak_row;
 
 /* Segment of an axis, from 0, and the place in it, 0 to 1; the ends for what lies outside. */
@@ -68,8 +68,8 @@ static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table
       row.hotter_K = table->winding_per_stator_K * (stator_C - last_stator_C);
     }
     if (speed_rad_per_s > table->most_speed_rad_per_s) {
-      row.fade_ratio = (table->no_current_speed_rad_per_s - speed_rad_per_s) /
-                 (table->no_current_speed_rad_per_s - table->most_speed_rad_per_s);
+      row.fade_ratio =
+          (table->no_current_speed_rad_per_s - speed_rad_per_s) / (table->no_current_speed_rad_per_s - table->most_speed_rad_per_s);
     }
   }
   return row;

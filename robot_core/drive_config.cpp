@@ -33,7 +33,8 @@ bool all(const float (&values)[count]) {
   return guard.node_count >= 2 && guard.node_count <= kMostGuardNodes && is_positive(guard.period_s) && whole >= 1.0F &&
          absolute(periods - whole) < 1e-3F * whole && guard.rates != nullptr && guard.table.square_A2 != nullptr &&
          guard.table.speed_rad_per_s.count >= 1 && guard.table.stator_C.count >= 1 && guard.table.winding_C.count >= 2 &&
-         is_finite(guard.winding_limit_C) && is_finite(guard.coldest_ambient_C) && guard.hottest_ambient_C < guard.winding_limit_C;
+         guard.heat_ratio >= 1.0F && is_finite(guard.winding_limit_C) && is_finite(guard.coldest_ambient_C) &&
+         guard.hottest_ambient_C < guard.winding_limit_C;
 }
 
 }  // namespace
@@ -82,21 +83,20 @@ bool all(const float (&values)[count]) {
 
 namespace {
 
-/// Speeds of wheels with one motion of the body fulfil Σ c·r = 0 for each three wheels with the gyro, and for all four without: an
-/// estimate of one of these speeds is off by at most Σ|c|/|c_i| times the largest residual.
-float most_ratio(const float (&share)[kMostWheels], float least) {
-  float sum = 0.0F;
+/// Rim speeds of one motion of the body fulfil Σ c·r = 0, for each three wheels with the gyro and for all four without. An estimate of
+/// r_i from the others is therefore off by |Σ c·residual|/|c_i|, at most the largest |c|/|c_i| times the sum of the residuals' sizes.
+/// Coefficients below `least` determine no speed.
+float most_ratio(const float (&coefficient)[kMostWheels], float least) {
+  float largest = 0.0F;
   float smallest = std::numeric_limits<float>::max();
-  for (const float each : share) {
-    sum += absolute(each);
-    // Speeds are not estimated by smaller shares.
+  for (const float each : coefficient) {
+    largest = larger(largest, absolute(each));
     smallest = absolute(each) < least ? smallest : smaller(smallest, absolute(each));
   }
-  return sum / smallest;
+  return largest / smallest;
 }
 
 [[gnu::cold]] float spread_V_s_per_m(const Config& config) {
-  constexpr float kLeastArea = 0.14F;  // as in speed_range.cpp
   const WheelConfig* const wheel = config.wheel;
   float most = 0.0F;
   float speed_per_rim_per_m = 0.0F;
@@ -168,6 +168,8 @@ float most_ratio(const float (&share)[kMostWheels], float least) {
     derived.current_margin_A = larger(derived.current_margin_A, kCurrent_share * wheel.body_limit_A);
   }
   derived.spread_V_s_per_m = spread_V_s_per_m(config);
+  constexpr float kSensedSlack_share = 0.05F;  // of the driver's limit
+  derived.sensed_slack_V = kSensedSlack_share * config.current_limit_A * config.lowest_resistance_ohm;
   config.check_sum = config_check_sum(config);
 }
 

@@ -76,8 +76,9 @@ struct DerivedConfig {
   float jump_rad_per_s = 0.0F;    ///< largest change of a wheel speed per period that is believed
   float current_margin_A = 0.0F;  ///< by which current sensor and motor equation may differ
   float most_sensed_A = 0.0F;     ///< more no battery can drive
-  /// Largest ratio of a voltage's uncertainty to the residuals of all speeds: how far apart any estimates of one back-EMF can be.
+  /// Largest difference between two estimates of one back-EMF, per sum of the sizes of the rim speeds' residuals.
   float spread_V_s_per_m = 0.0F;
+  float sensed_slack_V = 0.0F;  ///< noise of a current sensor that does not take voltage away, while the speeds agree
 };
 
 /// What does not change while the robot runs. Written by `heatsoak generate core`, or by make_core_config() on the host.

@@ -28,8 +28,9 @@ struct Believed {
   float ambient_C = 0.0F;
   float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
   int guard_periods = 1;   ///< the same as periods, and one more as often as small delays add up to one
-  float spread_V = 0.0F;   ///< by which estimates of a back-EMF from different sensors can differ; infinite: see speed_range()
-  bool is_checked = true;  ///< sensors are left that would show that another one lies
+  float spread_V = 0.0F;  ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: use speed_range()
+  bool is_redundancy_reduced = false;  ///< three wheels, or a speed sensor or the gyro is not believed
+  bool is_checked = true;              ///< enough sensors are left that a wrong one contradicts the others
   bool are_all_sensed = true;
   bool are_samples_compared = false;  ///< too few are believed: implied speeds are those of all samples
   Mode mode = Mode::coast;            ///< after faults of the command
@@ -111,11 +112,14 @@ struct SpeedRange {
 /// In speed_range.cpp. Empty where no such set is believed.
 SpeedRange speed_range(const Config& config, const State& state, const Believed& believed, int wheel);
 
-/// The signed area that three unit vectors along rolling directions span, doubled.
+/// Two wheels whose rolling directions differ by less than 8 degrees (sine), or three that span a smaller doubled area, determine no speed.
+inline constexpr float kLeastArea = 0.14F;
+/// Twice the signed area of the triangle between the ends of three unit vectors along rolling directions.
 inline float area(const WheelConfig& a, const WheelConfig& b, const WheelConfig& c) {
   return (b.rolling_x_share - a.rolling_x_share) * (c.rolling_y_share - a.rolling_y_share) -
          (b.rolling_y_share - a.rolling_y_share) * (c.rolling_x_share - a.rolling_x_share);
 }
+/// Sine of the angle from the rolling direction of `a` to that of `b`.
 inline float cross(const WheelConfig& a, const WheelConfig& b) {
   return a.rolling_x_share * b.rolling_y_share - a.rolling_y_share * b.rolling_x_share;
 }

@@ -180,7 +180,7 @@ void find_from_all(const Config& config, Believed& believed) {
   }
   believed.velocity = {derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s,
                        derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s, believed.yaw_rate_rad_per_s};
-  float most_m_per_s = 0.0F;
+  float disagreement_m_per_s = 0.0F;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
@@ -188,20 +188,21 @@ void find_from_all(const Config& config, Believed& believed) {
     believed.wheel[i].implied_rad_per_s =
         believed.wheel[i].speed_rad_per_s - residual_m_per_s * config.wheel[i].others_factor * config.wheel[i].speed_per_rim_per_m;
     believed.wheel[i].is_speed_known = true;
-    most_m_per_s = larger(most_m_per_s, absolute(residual_m_per_s));
+    disagreement_m_per_s += absolute(residual_m_per_s);
   }
-  believed.spread_V = derived.spread_V_s_per_m * most_m_per_s;
+  believed.spread_V = derived.spread_V_s_per_m * disagreement_m_per_s;
 }
 
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
-/// With three wheels, or without the gyro, no two sensors may lie: see speed_range().
+/// Three wheels, or a sensor that is not believed: at most one more may lie. Each wheel then needs its speed_range().
 [[gnu::cold, gnu::noinline]] void check_redundancy(const Config& config, const State& state, Believed& believed) {
   const bool is_gyro_believed = state.yaw_fault == 0;
   int spare = is_gyro_believed ? -2 : -3;
   for (int i = 0; i < config.wheel_count; ++i) {
     spare += believed.wheel[i].is_speed_sensed ? 1 : 0;
   }
+  believed.is_redundancy_reduced = true;
   believed.is_checked = spare > 0;
   believed.spread_V = kUnknown;
 }
@@ -339,8 +340,10 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
   }
 }
 
-/// Where no sensor tells: what the last voltage drives through the nominal resistance at the guard's winding temperature. That heat of a
-/// motor with another resistance differs by as much as at a sensed current, the other way round, so the guard's safety factor covers it.
+/// Current that the last voltage drives through the nominal resistance at the nominal winding temperature, for a wheel without a current
+/// sensor. The observer counts heat_ratio times the heat, so the nominal winding rises above the coldest air by at most 1/heat_ratio of
+/// what the observer rises. The heat of a motor with another resistance differs by as much as at a sensed current, with the opposite
+/// sign, so the safety factor covers it.
 float estimated_current_A(const Config& config, const State& state, int i, float speed_rad_per_s) {
   const WheelState& wheel = state.wheel[i];
   if (wheel.is_open != 0) {
@@ -348,7 +351,11 @@ float estimated_current_A(const Config& config, const State& state, int i, float
   }
   constexpr float kReference_C = 25.0F;
   const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s;
-  const float warm_K = config.guard != nullptr ? larger(0.0F, state.guard[i].state_C[0] - kReference_C) : 0.0F;
+  float warm_K = 0.0F;
+  if (config.guard != nullptr) {
+    const float coldest_C = config.guard->coldest_ambient_C;
+    warm_K = coldest_C + (state.guard[i].state_C[0] - coldest_C) / config.guard->heat_ratio - kReference_C;
+  }
   return driven_V * config.derived.per_resistance_A_per_V / (1.0F + config.resistance_rise_per_K * warm_K);
 }
 

@@ -14,8 +14,7 @@ constexpr float kOvercurrent_ratio = 1.3F;
 constexpr float kBoundDecay = 0.8F;  // of the bound's memory, per period: sampling and actuation are late by one or two
 
 constexpr float kRounding = 1.0001F;
-constexpr float kSlip_V = 1e-3F;             // a smaller change of a voltage has no reason of its own
-constexpr float kSensedSlack_share = 0.05F;  // of the driver's limit
+constexpr float kSlip_V = 1e-3F;  // a smaller change of a voltage has no reason of its own
 
 /// What one wheel wants and may have.
 struct WheelDemand {
@@ -45,7 +44,7 @@ void limit_demand(const Config& config, const WheelState& state, const Believed&
     demand.most_A = config.current_limit_A;
     demand.reason = Reason::driver_current;
   }
-  if (!believed.wheel[i].is_speed_sensed || !believed.is_checked) {
+  if (believed.is_redundancy_reduced && (!believed.wheel[i].is_speed_sensed || !believed.is_checked)) {
     limit_to_limp(config, state, demand);
   }
 }
@@ -128,16 +127,14 @@ bool hold_window(const Config& config, const State& state, const Believed& belie
 }
 
 /// Holds a voltage within the current limit by what the sensor shows: the current that flowed, changed by the change of the voltage. True
-/// whatever the speed is. The slack is for noise, where the
-/// speeds agree and hold the limit already.
+/// whatever the speed is. The slack is for noise, where the speeds agree and hold the limit already.
 void hold_sensed_current(const Config& config, const Believed& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
   const BelievedWheel& believed = all.wheel[i];
   if (wheel.is_open != 0) {
     return;
   }
-  const float agreed_A = kSensedSlack_share * config.current_limit_A - all.spread_V * config.derived.per_lowest_resistance_A_per_V;
-  const float slack_A = believed.is_speed_sensed ? larger(0.0F, agreed_A) : 0.0F;
-  const float room_V = config.lowest_resistance_ohm * (most_A + slack_A);
+  const float slack_V = believed.is_speed_sensed ? larger(0.0F, config.derived.sensed_slack_V - all.spread_V) : 0.0F;
+  const float room_V = config.lowest_resistance_ohm * most_A + slack_V;
   const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * believed.current_A;
   voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
 }

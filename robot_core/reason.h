@@ -44,25 +44,22 @@
 // Without a code:
 //   - A low battery sample is no fault: a kicker may be charging. Limits use the sample. The PWM ratio uses the last voltage without load.
 //   - A current sensor that reads too little hides no heat from the guard, which compares it with voltage and speed.
-//   - An air temperature that falls is followed by 0.02 K/s at most.
-//
-//   - Each voltage keeps the current limit for every speed that the wheel may have: by its own sensor, by two other wheels and the gyro,
-//   and
-//     by three other wheels. Of four wheels and a gyro any two may lie without more current as long as the wheels roll. With one of these
-//     sensors less (three wheels, or after a fault) any single one may lie, and swapped wheel sensors until they would have been found.
-//     With none to spare the current of every wheel is limited to limp_current_A (limit 17).
-//   - Where current sensor and speeds leave no common voltage, the wheel's bridge is opened.
-//   - The stop after a fault of the command (104 to 106) uses the acceleration limit and no braking reserve of the guard.
+//   - The core follows an air temperature that falls by at most 0.02 K/s.
+//   - Each voltage keeps the current limit for every speed that the wheel may have: the speed of its own sensor, the speeds that each two
+//     other wheels imply with the gyro, and the speed that three other wheels imply. Any two sensors of four wheels and a gyro may be
+//     wrong without more current as long as the wheels roll. With one sensor less (three wheels, or after a fault) any single one may be
+//     wrong; swapped wheel sensors are assumed until enough driving has shown that none are swapped. If no sensor is to spare, every
+//     current is limited to limp_current_A (limit 17).
+//   - The bridge opens if the current sensor and the speeds leave no common voltage.
+//   - The stop after a fault of the command (104 to 106) keeps the acceleration limit and uses no braking reserve of the guard.
 //
 // Not recognised (tests/robot_core/adversarial_test.cpp has the sizes); current limits and guard hold unless stated:
 //   - Swapped wheel sensors until they are found, after 0.1 to 0.4 s of driving on average. Swapped samples of opposite wheels, or of any
 //     two of three, fit a different motion of the robot equally well; only the reaction to currents shows the swap.
 //   - One wheel sensor with a wrong scale, sign or offset, or one that is stuck with noise: the robot turns and its wheels work against
-//     each other. Sliding wheels look the same. A slipping wheel whose own sensor lies and whose current is not sensed may exceed its
-//     limit.
-//   - More lies about speeds at once than the sensors to spare bear: the current may exceed its limit for some periods. If all wheel
-//   sensors
-//     show 0 the robot accelerates for kStanding_s before it is held to the limp current (115).
+//     each other. Sliding wheels look the same. A slipping wheel with a wrong speed sensor and no current sensor may exceed its limit.
+//   - More wrong speed sensors than are to spare: the current may exceed its limit for some periods. If all wheel sensors show 0 the robot
+//     accelerates for kStanding_s before it is held to the limp current (115).
 //   - A gyro with a wrong sign, scale or offset: the robot turns wrongly.
 //   - A battery sensor that is wrong by the same factor since the start or since a fault, or sinks more slowly than 0.4 % of the full
 //     battery per second: the current may exceed its limit by that factor.

@@ -7,9 +7,6 @@
 namespace robot_core {
 namespace {
 
-// Of rolling directions: two wheels that are closer to parallel than 8 degrees, or three of which one adds nothing, determine no speed.
-constexpr float kLeastArea = 0.14F;
-
 /// Rim speeds of the believed wheels; a wheel without a sensor is left out.
 struct Rims {
   float rim_m_per_s[kMostWheels] = {};

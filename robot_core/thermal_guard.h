@@ -44,6 +44,7 @@ struct GuardModel {
   float hottest_ambient_C = 0.0F;
   float most_current_A = 0.0F;  ///< current limit of the motor driver
   float cold_current_A = 0.0F;  ///< allowed to a cold motor that stands
+  float heat_ratio = 1.0F;      ///< safety factor on heat, at least 1: the observer heats this many times as much as the nominal motor
   heatsoak_current_table table{};
   GuardBelief belief[kGuardSignals];
   /// dT/dt of every node in K/s. `context` is handed through.

@@ -52,6 +52,7 @@ HostGuard::HostGuard(const Derating& derating)
   model_.most_current_A = static_cast<float>(derating.rules.most_current_A);
   const CurrentTable& table = derating.table;
   model_.cold_current_A = table.allowed_A(0.0F, static_cast<float>(table.stator_C.front()), static_cast<float>(table.winding_C.front()));
+  model_.heat_ratio = static_cast<float>(derating.observer.heat_reserve_ratio());
   model_.table.most_current_A = static_cast<float>(table.most_current_A);
   model_.table.straight_below_A = static_cast<float>(table.straight_below_A);
   model_.table.most_speed_rad_per_s = static_cast<float>(table.most_speed_rad_per_s);

@@ -77,6 +77,7 @@ struct GuardData {
     model.coldest_ambient_C = static_cast<float>(kColdest_C);
     model.hottest_ambient_C = static_cast<float>(kHottestAir_C);
     model.most_current_A = static_cast<float>(kMostCurrent_A);
+    model.heat_ratio = static_cast<float>(kSafetyFactor);
     model.cold_current_A = static_cast<float>(formula_current_A(0.0, 25.0, 25.0));
     model.table = {.speed_rad_per_s = {speed_rad_per_s.data(), kSpeeds},
                    .stator_C = {stator_C.data(), kStators},

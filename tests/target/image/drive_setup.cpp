@@ -38,9 +38,10 @@ constexpr Numbers<kCandidates> kPossibleCurrent_A = spread(kMostCurrent_A);
 constexpr Numbers<kCandidates> kPossibleSpeed_rad_per_s = spread(kMostSpeed_rad_per_s);
 constexpr float kPossibleAmbient_C[] = {40.0F};
 
+constexpr float kSafetyFactor = 2.12109375F;
+
 /// Winding and stator with the heat counted 2.12 times.
 void rates(const void*, const float* signal, const float* state_C, float* rate_K_per_s) {
-  constexpr float kSafetyFactor = 2.12109375F;
   const float speed_rad_per_s = robot_core::absolute(signal[robot_core::guard_speed_rad_per_s]);
   const float current_A = signal[robot_core::guard_current_A];
   const float copper_W = current_A * current_A * (1.07F * (1.0F + 0.0039F * (state_C[0] - 25.0F)));
@@ -57,6 +58,7 @@ constexpr robot_core::GuardModel make_guard() {
   guard.hottest_ambient_C = 40.0F;
   guard.most_current_A = kMostCurrent_A;
   guard.cold_current_A = 17.2919F;
+  guard.heat_ratio = kSafetyFactor;
   guard.table = {.speed_rad_per_s = {kSpeed_rad_per_s, 1},
                  .stator_C = {kStator_C, kStators},
                  .winding_C = {kWinding_C, kWindings},
