@@ -30,6 +30,7 @@ void spread_guards(const Config& config, State& state) {
   state = {};
   for (WheelState& wheel : state.wheel) {
     wheel.allowed_A = wheel.allowed_braking_A = std::numeric_limits<float>::max();
+    wheel.conductance_A_per_V = config.derived.per_resistance_A_per_V;
   }
   for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
     WheelState& wheel = state.wheel[i];

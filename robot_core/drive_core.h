@@ -173,15 +173,16 @@ struct Input {
 struct WheelState {
   float raw_speed_rad_per_s = 0.0F;  ///< last sample
   float integral_V = 0.0F;
-  float voltage_V = 0.0F;           ///< applied over the last period
-  float earlier_V = 0.0F;           ///< and over the period before
-  float current_squared_A2 = 0.0F;  ///< sum since the guard's last step
-  float allowed_A = 0.0F;           ///< by the guard, as the current of a motor with the lowest resistance
-  float allowed_braking_A = 0.0F;   ///< the same where the current brakes
-  float current_bound_A = 0.0F;     ///< recent current limit, decaying; a sensed current of 1.3 times this and a margin opens the bridge
-  std::uint16_t guard_steps = 0;    ///< periods since the guard's last step
-  std::uint16_t same_steps = 0;     ///< periods in which the speed sample has not changed by a bit, up to kMostSameSteps
-  std::uint8_t speed_fault = 0;     ///< Reason, or 0
+  float voltage_V = 0.0F;            ///< applied over the last period
+  float earlier_V = 0.0F;            ///< and over the period before
+  float current_squared_A2 = 0.0F;   ///< sum since the guard's last step
+  float allowed_A = 0.0F;            ///< by the guard, as the current of a motor with the lowest resistance
+  float allowed_braking_A = 0.0F;    ///< the same where the current brakes
+  float conductance_A_per_V = 0.0F;  ///< of the nominal motor at the guard's last step
+  float current_bound_A = 0.0F;      ///< recent current limit, decaying; a sensed current of 1.3 times this and a margin opens the bridge
+  std::uint16_t guard_steps = 0;     ///< periods since the guard's last step
+  std::uint16_t same_steps = 0;      ///< periods in which the speed sample has not changed by a bit, up to kMostSameSteps
+  std::uint8_t speed_fault = 0;      ///< Reason, or 0
   std::uint8_t current_fault = 0;
   std::uint8_t guard_fault = 0;
   std::uint8_t is_open = 1;             ///< the bridge was open over the last period
@@ -210,7 +211,7 @@ struct alignas(8) ComparisonState {
   float with_V_rad_per_s[6] = {};           ///< per pair of wheels: leaky sum of how much its currents accelerate its difference of speeds
   float against_V_rad_per_s[6] = {};        ///< and of how much they seem to decelerate it
   float driven_V2[kMostWheels] = {};        ///< leaky mean square of the voltage less the back-EMF
-  float sensed_A2[kMostWheels] = {};        ///< and of the sensed current; both 0 while the sensor is not believed
+  float counted_A2[kMostWheels] = {};       ///< the same of the current that the guard has counted: sensed, else calculated
   float residual_m2_per_s2 = 0.0F;          ///< leaky mean square by which the samples contradict each other as speeds of one body
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;

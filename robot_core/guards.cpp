@@ -31,10 +31,23 @@ float cold_current_ratio(const Config& config, float winding_C) {
                 config.resistance_ohm * (1.0F + config.resistance_rise_per_K * warm_K) * config.derived.per_lowest_resistance_A_per_V);
 }
 
-/// Mean square of the current that voltage and speed explain through a winding as warm as the observer's, beyond what the sensor shows.
-float missing_A2(const Config& config, const State& state, int i) {
-  const float per_ohm = config.derived.per_lowest_resistance_A_per_V / cold_current_ratio(config, state.guard[i].state_C[0]);
-  return larger(0.0F, state.comparison.driven_V2[i] * per_ohm * per_ohm - state.comparison.sensed_A2[i]);
+/// Reciprocal of the nominal motor's terminal resistance at its winding temperature, which follows from the observer's: the observer counts
+/// heat_ratio times the heat. Without an air temperature the rise is above the coldest air, which gives the larger current.
+float nominal_conductance_A_per_V(const Config& config, const GuardState& guard, float ambient_C) {
+  constexpr float kReference_C = 25.0F;
+  const GuardModel& model = *config.guard;
+  const float air_C = ambient_C == ambient_C ? ambient_C : model.coldest_ambient_C;
+  const float observed_K = guard.state_C[0] - air_C;
+  // Steady state at one current: both rises are proportional to heat and to 1 + α·rise.
+  const float feedback = config.resistance_rise_per_K * observed_K * (model.heat_ratio - 1.0F);
+  const float warm_K = air_C + observed_K / (model.heat_ratio + feedback) - kReference_C;
+  return config.derived.per_resistance_A_per_V / (1.0F + config.resistance_rise_per_K * warm_K);
+}
+
+/// Mean square of the current that voltage and speed drive through the nominal motor, beyond what has been counted.
+float missing_A2(const State& state, int i) {
+  const float per_ohm = state.wheel[i].conductance_A_per_V;
+  return larger(0.0F, state.comparison.driven_V2[i] * per_ohm * per_ohm - state.comparison.counted_A2[i]);
 }
 
 /// `periods`: that current_squared_A2 is the sum of.
@@ -42,7 +55,7 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   WheelState& wheel = state.wheel[i];
   const GuardModel& model = *config.guard;
   const BelievedWheel& sensed = believed.wheel[i];
-  const float rms_A = square_root(wheel.current_squared_A2 / periods + missing_A2(config, state, i));
+  const float rms_A = square_root(wheel.current_squared_A2 / periods + missing_A2(state, i));
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
   float signal[kGuardSignals];
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;
@@ -55,6 +68,7 @@ void step_wheel_guard(const Config& config, State& state, const Believed& believ
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
+  wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], believed.ambient_C);
   const float cold_ratio = cold_current_ratio(config, guard.winding_C);
   // A winding bears the limp current for good, but not where it is at its limit already.
   const float limp_A = guard.winding_C + config.braking_reserve_K < model.winding_limit_C ? config.limp_current_A : 0.0F;

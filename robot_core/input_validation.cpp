@@ -340,23 +340,13 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
   }
 }
 
-/// Current that the last voltage drives through the nominal resistance at the nominal winding temperature, for a wheel without a current
-/// sensor. The observer counts heat_ratio times the heat, so the nominal winding rises above the coldest air by at most 1/heat_ratio of
-/// what the observer rises. The heat of a motor with another resistance differs by as much as at a sensed current, with the opposite
-/// sign, so the safety factor covers it.
-float estimated_current_A(const Config& config, const State& state, int i, float speed_rad_per_s) {
-  const WheelState& wheel = state.wheel[i];
+/// Current that the last voltage drives through the nominal motor, for a wheel without a current sensor. The heat of a motor with another
+/// resistance differs by as much as at a sensed current, with the opposite sign, so the safety factor on heat covers it.
+float estimated_current_A(const Config& config, const WheelState& wheel, float speed_rad_per_s) {
   if (wheel.is_open != 0) {
     return 0.0F;
   }
-  constexpr float kReference_C = 25.0F;
-  const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s;
-  float warm_K = 0.0F;
-  if (config.guard != nullptr) {
-    const float coldest_C = config.guard->coldest_ambient_C;
-    warm_K = coldest_C + (state.guard[i].state_C[0] - coldest_C) / config.guard->heat_ratio - kReference_C;
-  }
-  return driven_V * config.derived.per_resistance_A_per_V / (1.0F + config.resistance_rise_per_K * warm_K);
+  return (wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * wheel.conductance_A_per_V;
 }
 
 void validate_currents(const Config& config, State& state, const Input& input, Believed& believed) {
@@ -377,7 +367,7 @@ void validate_currents(const Config& config, State& state, const Input& input, B
     } else if (wheel.has_current != 0) {
       wheel.current_fault = code(Reason::current_missing);
     }
-    const float estimate_A = estimated_current_A(config, state, i, believed.wheel[i].speed_rad_per_s);
+    const float estimate_A = estimated_current_A(config, wheel, believed.wheel[i].speed_rad_per_s);
     believed.wheel[i].is_current_sensed = false;
     believed.wheel[i].current_A = is_sample && absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
   }

@@ -175,12 +175,14 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
     // Nobody asked for the stop that follows a fault of the command: it gets no reserve.
     const float allowed_A = brakes && believed.command_fault == Reason::none ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     would_limit = apply_guard(config, state, allowed_A, believed.elapsed_s, demand[i]) || would_limit;
-    if (are_speeds_dead && config.limp_current_A < demand[i].most_A) {
-      demand[i].most_A = config.limp_current_A;
-      demand[i].reason = Reason::wheel_speeds_dead;
+    if (are_speeds_dead) {
+      demand[i].most_A = smaller(demand[i].most_A, config.limp_current_A);
     }
     if (believed.wheel[i].is_speed_known) {
       least = share_of_wheel(config, i, most_V, demand[i], limited.wheel[i].reason, least);
+    }
+    if (are_speeds_dead) {
+      limited.wheel[i].reason = demand[i].reason = Reason::wheel_speeds_dead;
     }
   }
   state.shadow_steps += would_limit ? 1U : 0U;

@@ -76,12 +76,11 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
   ComparisonState& comparison = state.comparison;
   const float back_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].speed_rad_per_s;
   const float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - back_V;
+  const bool is_counted = absolute(sensed_A) <= config.derived.most_sensed_A && wheel.is_current_doubted == 0;
+  const float counted_A = is_counted ? sensed_A : driven_V * wheel.conductance_A_per_V;
   const float share = smaller(1.0F, since_s / kHeat_s);
   comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);
-  comparison.sensed_A2[i] += share * (sensed_A * sensed_A - comparison.sensed_A2[i]);
-  if (!(absolute(sensed_A) <= config.derived.most_sensed_A) || wheel.is_current_doubted != 0) {
-    comparison.driven_V2[i] = comparison.sensed_A2[i] = 0.0F;
-  }
+  comparison.counted_A2[i] += share * (counted_A * counted_A - comparison.counted_A2[i]);
 }
 
 /// Speed and current sensor of one wheel against the other wheels and the motor's equation.

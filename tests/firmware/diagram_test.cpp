@@ -149,7 +149,8 @@ Names split(const std::string& numbers) {
 }
 
 std::string unit_in_name(const std::string& name) {
-  static const std::vector<std::pair<std::string, std::string>> kUnits{{"_rad_per_s2", "rad/s2"},
+  static const std::vector<std::pair<std::string, std::string>> kUnits{{"_A_per_V", "A/V"},
+                                                                       {"_rad_per_s2", "rad/s2"},
                                                                        {"_rad_per_s", "rad/s"},
                                                                        {"_Nm", "N m"},
                                                                        {"_A", "A"},

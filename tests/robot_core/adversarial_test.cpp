@@ -9,9 +9,9 @@
 //     three wheels have one sensor to spare, but the core counts on swapped ones until they would have been found;
 //   - a battery sensor that is wrong by the same factor since the start, or sinks slower than a battery does (0.4 %/s);
 //   - a command that is wrong but possible: the twin gets it too.
-// With HEATSOAK_HOSTILE_FACTOR=10 (2.4e7 inputs) no single lie exceeds the limits, nor does any combination with at most one lie about a
-// speed. Of combinations of any three lies 5 in 3600 do: up to 0.16 A on four wheels, 0.08 A on three, and 2.1 A for five steps where a
-// stuck gyro lies beside a missing wheel on three.
+// Plays 1.2e7 hostile inputs. With HEATSOAK_HOSTILE_FACTOR=10 (2.4e7) no single lie exceeds the limits, nor does any combination with at
+// most one lie about a speed. Of combinations of any three lies 4 in 3600 do: up to 0.15 A on four wheels, 0.08 A on three, and 2.1 A for
+// five steps where a stuck gyro lies beside a jumping wheel on three.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -247,7 +247,7 @@ void print_head() {
 
 int episodes_per_kind() {
   const char* const factor = std::getenv("HEATSOAK_HOSTILE_FACTOR");
-  return 3 * (factor != nullptr ? std::atoi(factor) : 1);
+  return 3 * (factor != nullptr ? std::atoi(factor) : 5);
 }
 
 TEST(Adversarial, SingleLiesDriveNoMoreCurrentThanTheTruthAllows) {

@@ -48,7 +48,7 @@ struct Heat {
   double limited_s = 0.0;  ///< time in which the guard limits a wheel
 };
 
-/// Wheels on rubber that hold each other back with up to 0.2 N m, for two minutes.
+/// Wheels on rubber that hold each other back with up to 0.21 N m, for two minutes.
 Heat push(const Config& config, const std::function<void(Input&)>& spoil, double air_C = 25.0) {
   Truth truth;
   truth.air_C = air_C;
