@@ -14,7 +14,7 @@ enum class ForecastSource { file, ordinary, tempered };
 
 struct AcceptedExtension {
   std::string name;
-  double gain_nats = 0.0;  ///< decrease of the score of the left-out pieces, less the penalty for its parameters
+  double gain_nats = 0.0;  ///< decrease of the score of the left-out pieces
 };
 
 /// Score of one alternative on the left-out pieces.
