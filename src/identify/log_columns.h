@@ -20,8 +20,8 @@ std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording,
 /// Returns a sentence for the user if the model has a curve over `column` and not all logs have that column; else an empty string.
 std::string column_lacking(const std::string& column, std::span<const Recording> recordings);
 
-/// Removes the columns that not all runs have, except `of_model`, over which the model already has a curve. Such a column could only
-/// distinguish runs, not explain heat. Returns the names of the removed columns.
+/// Removes the columns that not all runs have, except `of_model`, over which the model already has a curve. Their effect would be
+/// confounded with other differences between the runs. Returns the names of the removed columns.
 std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::string_view of_model);
 
 /// Copies one of a run's columns into its operating points. Gaps take the nearest known value. If the run has no such column, the points

@@ -37,7 +37,7 @@ struct Model {
   [[nodiscard]] Eigen::VectorXd theta() const;
   [[nodiscard]] double theta_of(Eigen::Index parameter, double value) const;
   [[nodiscard]] double value_of(Eigen::Index parameter, double theta_value) const;
-  /// d value / dθ.
+  /// Derivative d(value) / dθ at θ = `theta_value`.
   [[nodiscard]] double slope_of(Eigen::Index parameter, double theta_value) const;
   /// Returns `values` with the free parameters set from θ.
   [[nodiscard]] std::vector<double> values_at(const Eigen::VectorXd& theta) const;

@@ -14,7 +14,7 @@ namespace heatsoak {
 
 /// Start temperatures of a run, per state node. prior_sd_K states how well the first samples determine them.
 struct RunStart {
-  Eigen::VectorXd state_C;  ///< fitted
+  Eigen::VectorXd state_C;  ///< fitted start
   Eigen::VectorXd prior_C;  ///< from the first samples
   Eigen::VectorXd prior_sd_K;
 };

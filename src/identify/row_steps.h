@@ -6,7 +6,7 @@
 namespace heatsoak {
 
 struct RowSteps {
-  double usual_s = 0.0;  ///< median
+  double usual_s = 0.0;  ///< median time between rows
   /// True if nearly all steps are integer multiples of the usual one (longer steps lack rows); false if rows were written on changes.
   bool is_regular = false;
 };

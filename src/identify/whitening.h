@@ -53,7 +53,7 @@ class Whitening {
 
   /// Whitens any number of columns in place. Rows as in LinearisedRun; masked samples may be NaN.
   void apply(Eigen::Ref<Columns> columns) const;
-  /// ln|V|.
+  /// ln|V|, with V in K².
   [[nodiscard]] double log_determinant() const { return log_determinant_; }
   /// Number of samples that are not masked.
   [[nodiscard]] Eigen::Index count() const { return count_; }
@@ -96,8 +96,8 @@ class Whitening {
   Eigen::Index size_ = 0;                    ///< size of the filter's state: temperatures, fluxes, sensor drifts
   std::vector<double> forget_ratio_;         ///< per interval: autocorrelation of a flux
   std::vector<double> wander_forget_ratio_;  ///< per interval: autocorrelation of a sensor's drift
-  std::vector<double> gain_;                 ///< per row: size_ numbers
-  std::vector<double> inverse_sd_per_K_;     ///< per row; 0 where masked
+  std::vector<double> gain_;                 ///< Kalman gains: size_ numbers per row
+  std::vector<double> inverse_sd_per_K_;     ///< per row: 1 / standard deviation of the innovation; 0 if masked
   std::vector<double> expected_K2_;          ///< per row: variance of the prediction without sensor noise
   std::vector<double> noise_K_;              ///< per sensor, at weight 1
   double log_determinant_ = 0.0;

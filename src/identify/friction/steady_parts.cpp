@@ -77,7 +77,7 @@ std::vector<Leg> legs_of(const std::vector<Block>& blocks) {
   return legs;
 }
 
-/// Marks return legs: they end at less than half the distance from the previous start at which they began.
+/// Marks return legs: at their end the robot is less than half as far from where it came from as at their begin.
 void mark_returns(std::vector<Leg>& legs, const std::vector<Block>& blocks, const BlockMedians& medians, const FrictionLog& log) {
   double x_m = 0.0;
   double y_m = 0.0;

@@ -12,8 +12,8 @@
 
 namespace heatsoak {
 
-/// Supports + − * / ^, comparisons, && ||, c ? a : b, and the functions listed by functions(). Column names that are not single words must
-/// be in single quotes.
+/// Supports + − * / ^, comparisons, && ||, c ? a : b, and the functions listed in expression.cpp. Column names that are not single words
+/// must be in single quotes.
 class Expression {
  public:
   /// Parses the text. `at` is its position in the mapping. On an error, adds to `problems` and sets ok() to false.

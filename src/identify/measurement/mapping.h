@@ -23,7 +23,7 @@ struct GapFill {
 struct QuantityMapping {
   Quantity quantity;
   std::string column;      ///< name in the header; empty if there is an expression
-  std::string expression;  ///< of columns
+  std::string expression;  ///< expression of columns; empty if there is a column
   /// Unit and sign: canonical value = value + scale_factor · file value.
   double scale_factor = 1.0;
   double value = 0.0;
@@ -42,7 +42,7 @@ struct QuantityMapping {
 struct Mapping {
   std::filesystem::path file;  ///< empty for the canonical form
   TableFormat format;
-  std::vector<QuantityMapping> quantities;  ///< empty: the header names quantities itself
+  std::vector<QuantityMapping> quantities;  ///< empty: the column names are quantities
   std::string valid;                        ///< expression: rows for which it is 0 are omitted; empty: all count
   Location valid_at;
   std::string run_column;  ///< column whose changes begin a new run; may be empty

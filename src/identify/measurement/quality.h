@@ -17,7 +17,7 @@ namespace heatsoak {
 
 struct Sampling {
   double duration_s = 0.0;
-  double usual_period_s = 0.0;  ///< median
+  double usual_period_s = 0.0;  ///< median time between rows
   double jitter_s = 0.0;        ///< 1.4826 · median absolute deviation of the periods
   double longest_gap_s = 0.0;
 };
