@@ -17,10 +17,11 @@
 namespace heatsoak {
 namespace {
 
-/// Beyond this multiple of what the nominal voltage can do a figure has another unit.
+/// Ratio to the value that the nominal voltage can produce. A larger current or speed is probably in another unit.
 constexpr double kMost_ratio = 3.0;
 
-/// A run that counts twice makes intervals narrower than they are; one held out that was fitted tests nothing.
+/// Throws Failure (bad_input) if two logs share rows. A run that counts twice makes the confidence intervals too narrow; a fitted run
+/// cannot serve as hold-out run.
 void refuse_repeated(std::span<const Recording> fitted, std::span<const Recording> held_out) {
   std::vector<std::pair<std::string, const Recording*>> seen;
   std::vector<Diagnostic> repeated;
@@ -43,8 +44,8 @@ void refuse_repeated(std::span<const Recording> fitted, std::span<const Recordin
 
 struct Reached {
   double usual = 0.0;    ///< top_of_sizes()
-  double largest = 0.0;  ///< of any row
-  int line = 0;          ///< of that row
+  double largest = 0.0;  ///< largest magnitude of all rows
+  int line = 0;          ///< line of that row in the file
 };
 
 Reached reached(const Recording& recording, std::string_view key) {
@@ -63,7 +64,7 @@ Reached reached(const Recording& recording, std::string_view key) {
   return found;
 }
 
-/// Most rows are as they should be: no unit is wrong.
+/// Reports single outlying rows. The unit is right if the usual magnitude is possible and only the largest one is not.
 void single_rows_beyond(const char* key, const char* unit, const char* other_unit, const Reached& reached, double most,
                         std::vector<std::string>& wrong) {
   if (reached.largest > most && !(reached.usual > most)) {
@@ -74,7 +75,7 @@ void single_rows_beyond(const char* key, const char* unit, const char* other_uni
   }
 }
 
-/// What this motor cannot do at three times its voltage.
+/// Reports currents and speeds that this motor cannot reach at three times its nominal voltage.
 void beyond_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
   const MotorValues& nominal = motor.nominal;
   const double most_A = kMost_ratio * nominal.nominal_voltage_V / nominal.terminal_resistance_ohm;
@@ -97,7 +98,8 @@ void beyond_the_motor(const Motor& motor, const Recording& recording, std::vecto
   }
 }
 
-/// Copper loss and the loss at speed of a row's interval, and more of the latter than the sheet says.
+/// Upper estimate of the heat of a row's interval in W: copper loss plus twice the no-load loss of the data sheet, or the input power if
+/// that is larger. NaN if neither is known.
 double generous_heat_W(const MotorValues& nominal, const Recording& recording, std::size_t row) {
   constexpr double kSpeedLoss_ratio = 2.0;
   const auto value = [&](std::string_view key) {
@@ -114,7 +116,8 @@ double generous_heat_W(const MotorValues& nominal, const Recording& recording, s
   return std::isnan(of_current_W) ? power_W : std::max(of_current_W, known_or(power_W, 0.0));
 }
 
-/// How many times the heat that goes in it takes for a temperature to rise as it does, where most heat goes in; 0 where nothing tells.
+/// Returns the heat that the observed temperature rises need, divided by the heat supplied: the median over rises of 10 K or more with at
+/// least a quarter of the largest mean heat. 0 if there is no such rise.
 double heat_ratio_of_rises(const Recording& recording, const Channel& channel, double capacity_J_per_K, std::span<const double> heat_W) {
   constexpr double kRise_K = 10.0;
   constexpr double kMuchHeat_share = 0.25;
@@ -154,9 +157,10 @@ double heat_ratio_of_rises(const Recording& recording, const Channel& channel, d
   return ratios.empty() ? 0.0 : middle_of(ratios);
 }
 
-/// Temperatures that rise faster than the motor's losses can heat them, though all of these went there and nothing were lost.
+/// Reports temperatures that rise faster than possible even if all losses heated this one body and none of the heat flowed away.
 void faster_than_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
-  constexpr double kTooFast_ratio = 8.0;  // beyond a sheet's error of its heat capacities and another convention for the current
+  constexpr double kTooFast_ratio =
+      8.0;  // more than errors of the data sheet's heat capacities and another convention for the current explain
   constexpr double kHours_ratio = 300.0;
   const MotorValues& nominal = motor.nominal;
   std::vector<double> heat_W;
@@ -181,7 +185,8 @@ void faster_than_the_motor(const Motor& motor, const Recording& recording, std::
   }
 }
 
-/// Real sensors lag, and a fit goes on with them: it is only said, where the motor's file does not state it.
+/// Adds a note for each temperature that lags, unless the motor file states the lag. It is not an error: real sensors lag, and a fit can
+/// still use them.
 void late_answers(const Motor& motor, const Recording& recording, const DataQuality& quality, Admission& admission) {
   for (const ClockOffset& offset : quality.clock_offsets) {
     const std::string late = late_answer(offset, quality.sampling.usual_period_s);

@@ -1,4 +1,4 @@
-// Which logs may be fitted to a motor: read before any equation is solved.
+// Checks whether a log can be used to fit a motor. Runs before any simulation.
 #pragma once
 
 #include <span>
@@ -12,21 +12,22 @@
 namespace heatsoak {
 
 struct Admission {
-  std::vector<std::string> notes;       ///< sentences for the user about what looks odd but may be right
-  std::vector<std::string> next_steps;  ///< what to do before more runs are taken
+  std::vector<std::string> notes;       ///< sentences for the user: properties of the logs that look wrong but may be right
+  std::vector<std::string> next_steps;  ///< sentences for the user: what to change before recording more runs
 };
 
-/// Throws Failure with every log's finding at once:
-/// bad_input where rows are given twice or are both fitted and held out, where units, signs or sensors look wrong by
-/// themselves or for this motor (with `takes_logs_as_they_are` these are only said); cannot_answer where a fitted log
-/// can tell nothing about heat. `ambient_C`: of the air where a log has none, as the user states it.
+/// Checks all logs and returns notes. Throws one Failure that lists the findings of every log:
+/// - bad_input if rows are given twice, or are both fitted and held out;
+/// - bad_input if units, signs or sensors look wrong in themselves or for this motor (only notes if `takes_logs_as_they_are`);
+/// - cannot_answer if a fitted log contains no information about heat.
+/// `ambient_C` is the user's air temperature for logs without one; NaN if not stated.
 Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out, bool takes_logs_as_they_are,
                 double ambient_C = Assessment::kNotStated_C);
 
-/// Whether rows of the recording were fitted: by their content, in files of fits that kept only names by the name.
+/// Returns true if the fit used rows of this recording. Compares fingerprints of the content; older fit files stored only the name.
 bool was_fitted_to(const MotorFit& fit, const Recording& recording);
 
-/// Throws Failure (bad_input) where the file was fitted to rows of a log: its figures know already what they tell.
+/// Throws Failure (bad_input) if the motor file was already fitted to rows of one of the logs: that run would count twice.
 void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out);
 
 }  // namespace heatsoak

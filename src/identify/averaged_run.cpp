@@ -8,7 +8,7 @@ namespace heatsoak {
 namespace {
 
 constexpr double kSharesOfTimeConstant = 5.0;
-/// Sensors lag by some seconds, and that must stay to be seen.
+/// Short enough to keep the lag of sensors, which is a few seconds, visible.
 constexpr double kLongestStretch_s = 3.0;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

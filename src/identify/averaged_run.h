@@ -1,6 +1,6 @@
-// A linearised run with neighbouring samples averaged. Averages are linear in the samples, so residual and columns stay exact; only the
-// filter takes a stretch for its middle. Temperatures that change over tens of seconds lose nothing, and there are fewer rows to go
-// through.
+// Averages neighbouring samples of a linearised run, so that filters process fewer rows. Averages are linear in the samples, so residuals
+// and sensitivities stay exact. The only approximation: the filter places each average at the middle of its segment, which is harmless
+// for temperatures that change over tens of seconds.
 #pragma once
 
 #include <vector>
@@ -9,21 +9,24 @@
 
 namespace heatsoak {
 
-/// How many samples of a run may become one: they span at most a fifth of the fastest node's time constant and at most 3 s.
+/// Returns how many consecutive samples may be averaged into one (at least 1). Together they span at most a fifth of the fastest node's
+/// time constant and at most 3 s.
 int mergeable_samples(const LinearisedRun& run);
 
 class Averaging {
  public:
-  /// `weight` per sample as SensorNoise has it, or empty.
+  /// Averages `merged` samples at a time. `weight` is SensorNoise::weight (n·s) or empty. `run` must outlive this object.
   Averaging(const LinearisedRun& run, const Eigen::VectorXd& weight, int merged);
 
-  /// Rows are averages; transition and injection go from the middle of one stretch to that of the next. Without by_parameter.
+  /// The run whose rows are averages. Transition and injection lead from the middle of one segment to the middle of the next. shown_C and
+  /// by_parameter are empty.
   [[nodiscard]] LinearisedRun run() const;
-  /// Sum of the weights behind each row: an average of w samples has 1/w of the noise's variance.
+  /// Sum of the sample weights in each row. An average with weight sum w has 1/w of the noise variance of one sample.
   [[nodiscard]] const Eigen::VectorXd& weight() const { return weight_; }
-  /// Of columns that belong to the run.
+  /// Averages columns with the rows of the original run (n·s) in the same way.
   [[nodiscard]] Columns average(const Columns& columns) const;
-  /// Per interval of the run the interval between middles that it is part of; -1 before the first and after the last.
+  /// For each interval of the original run, the index of the averaged interval that contains it. -1 before the middle of the first segment
+  /// and after the middle of the last.
   [[nodiscard]] std::vector<Eigen::Index> interval_of() const;
 
  private:
@@ -32,7 +35,7 @@ class Averaging {
   const LinearisedRun& run_;
   Eigen::Index merged_;
   Eigen::Index stretches_;
-  Eigen::VectorXd sample_weight_;  ///< n·s; 0 where nothing counts
+  Eigen::VectorXd sample_weight_;  ///< n·s; 0 for samples without a measurement
   Eigen::VectorXd weight_;
 };
 

@@ -7,7 +7,7 @@
 namespace heatsoak {
 namespace {
 
-/// R of a QR decomposition of a tall matrix.
+/// Returns the square factor R of a QR decomposition. A matrix with fewer rows than columns is padded with zeros.
 Eigen::MatrixXd triangle_of(Eigen::MatrixXd&& tall) {
   const Eigen::Index count = tall.cols();
   if (tall.rows() < count) {
@@ -17,7 +17,7 @@ Eigen::MatrixXd triangle_of(Eigen::MatrixXd&& tall) {
   return decomposition.matrixQR().topRows(count).triangularView<Eigen::Upper>();
 }
 
-/// Whitened [start, columns, residual] with the prior of the start temperatures as rows on top.
+/// Whitened [by_start, columns, residual], with the prior of the start temperatures as additional rows on top.
 Columns whitened(const LinearisedRun& run, const Eigen::Ref<const Columns>& columns, const Whitening& whitening, const StartPrior& start) {
   const Eigen::Index x = run.states;
   const Eigen::Index count = columns.cols();
@@ -70,7 +70,7 @@ LinearFit linear_fit(std::span<const RunEvidence> runs, const Eigen::VectorXd& p
   for (const RunEvidence& run : runs) {
     log_determinant += run.log_determinant;
   }
-  // Λ = Q·D·Qᵀ; its root gives rows of data that say the same. Directions of D = 0 know nothing.
+  // Λ = Q·D·Qᵀ, so √D·Qᵀ as additional data rows is equivalent to the prior. Directions with D = 0 have no prior.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> prior(prior_precision);
   const Eigen::VectorXd root = prior.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(2 * count + 1, count + 1);
@@ -82,7 +82,7 @@ LinearFit linear_fit(std::span<const RunEvidence> runs, const Eigen::VectorXd& p
   double log_root = 0.0;
   const Eigen::MatrixXd inverse =
       triangle.topLeftCorner(count, count).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(count, count));
-  // Its norm bounds the smallest singular value: mostly every direction is known, and nobody has to ask which.
+  // The norm of R⁻¹ bounds the smallest singular value: the slow SVD is needed only if some direction may be undetermined.
   if (inverse.squaredNorm() < kUnknownVariance) {
     fit.coefficients = inverse * triangle.topRightCorner(count, 1);
     fit.covariance = inverse * inverse.transpose();

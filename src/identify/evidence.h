@@ -1,4 +1,5 @@
-// What whitened runs say together: least squares through triangles (TSQR), and how probable the supposed noise and flux are.
+// Combines whitened runs: linear least squares by stacked triangular factors (TSQR), and the evidence (log marginal likelihood, in nats)
+// of the assumed noise and heat flux.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,48 +11,49 @@
 
 namespace heatsoak {
 
-/// What one run says about c columns, its start temperatures taken out.
+/// Information of one run about the coefficients of c columns, with its start temperatures eliminated.
 struct RunEvidence {
-  /// (c + 1) × (c + 1), upper: R of [columns, residual]; its square holds every product of whitened columns.
+  /// (c + 1) × (c + 1), upper triangular: the factor R of the whitened [columns, residual]. RᵀR contains all products of these columns.
   Eigen::MatrixXd triangle;
-  /// ln|V| + ln|posterior precision of the start| − ln|prior precision of the start|.
+  /// ln|V| + ln|posterior precision of the start temperatures| − ln|their prior precision|.
   double log_determinant = 0.0;
-  Eigen::Index count = 0;  ///< samples
+  Eigen::Index count = 0;  ///< samples used
 };
 
-/// Knowledge of the start temperatures before the run, per state node. `mean_K` is relative to the linearisation's start.
+/// Gaussian prior of the start temperatures, per state node. `mean_K` is relative to the start of the linearisation.
 struct StartPrior {
   Eigen::VectorXd mean_K;
   Eigen::VectorXd sd_K;
 };
 
-/// `columns` (n·s × c) are not changed.
+/// Whitens `columns` (n·s × c) and the run's residual, and eliminates the start temperatures. The arguments are not changed.
 RunEvidence run_evidence(const LinearisedRun& run, const Eigen::Ref<const Columns>& columns, const Whitening& whitening,
                          const StartPrior& start);
 
-/// The best correction of the start temperatures in K, given the correction of the c columns' coefficients.
+/// Returns the most probable correction of the start temperatures in K, given the coefficients of the c columns.
 Eigen::VectorXd start_correction_K(const LinearisedRun& run, const Columns& columns, const Eigen::VectorXd& coefficients,
                                    const Whitening& whitening, const StartPrior& start);
 
-/// All runs over each other: again (c + 1) × (c + 1).
+/// Stacks the factors of all runs and triangularises them again: (c + 1) × (c + 1).
 Eigen::MatrixXd stacked(std::span<const RunEvidence> runs);
 
-/// Least squares with a Gaussian prior of the coefficients, in the units of the columns.
+/// Result of least squares with a Gaussian prior on the coefficients. Coefficients are relative to the linearisation point, in the units
+/// of the columns.
 struct LinearFit {
   Eigen::VectorXd coefficients;
   Eigen::MatrixXd covariance;
-  /// −½ [ misfit + ln|V| + ln|H| − ln|Λ| ], up to a constant that depends on the number of samples only; a column without prior
-  /// counts as if |Λ| were 1 (§ REML).
+  /// −½ [ misfit + ln|V| + ln|H| − ln|Λ| ] in nats, up to a constant that depends only on the number of samples. H is the posterior and Λ
+  /// the prior precision; directions without a prior contribute 1 to |Λ| (§ REML).
   double log_evidence = 0.0;
-  double misfit = 0.0;  ///< whitened squares that are left, those of the prior included
+  double misfit = 0.0;  ///< sum of the squared whitened residuals, those of the priors included
 };
 
-/// `prior_mean` is relative to where the columns were taken. Directions that neither data nor prior know have a covariance of
-/// `kUnknownVariance`.
+/// `prior_mean` is relative to the linearisation point. Directions that neither the data nor the prior determine get a coefficient of 0
+/// and a variance of `kUnknownVariance`.
 LinearFit linear_fit(std::span<const RunEvidence> runs, const Eigen::VectorXd& prior_mean, const Eigen::MatrixXd& prior_precision);
 inline constexpr double kUnknownVariance = 1e6;
 
-/// ∂/∂θ from ∂/∂value, for the free parameters of a model at θ.
+/// Converts sensitivities ∂/∂value of the free parameters (columns) to ∂/∂θ at `theta`.
 Columns by_theta(const Model& model, const Eigen::VectorXd& theta, const Columns& by_value);
 
 }  // namespace heatsoak

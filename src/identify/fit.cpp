@@ -15,12 +15,12 @@
 namespace heatsoak {
 namespace {
 
-/// Innovations beyond this many standard deviations count less, beyond the next not at all.
+/// Innovations beyond kSuspect standard deviations are down-weighted, those beyond kHopeless are rejected.
 constexpr double kSuspect = 2.5;
 constexpr double kHopeless = 6.0;
-/// More than this cannot all be outliers: then the model or the flux is wrong, and every sample keeps a say.
+/// If more samples than this would be rejected, the model or the flux is wrong rather than the samples, and none is rejected.
 constexpr double kMostRejected_share = 0.1;
-/// Mean square of a standard normal number that is known to lie within ±3.
+/// Mean square (kInsideSquare) of a standard normal variable truncated to ±kInside.
 constexpr double kInside = 3.0;
 constexpr double kInsideSquare = 0.9733;
 
@@ -40,7 +40,7 @@ std::size_t place_of(const std::vector<std::string>& nodes, const std::string& n
   return static_cast<std::size_t>(std::ranges::find(nodes, node) - nodes.begin());
 }
 
-/// `ratio` and `wander_K` per place in `nodes`.
+/// Noise model of a run's sensors. `ratio` (to the model-free noise) and `wander_K` have one entry per entry of `nodes`.
 SensorNoise noise_with(const MeasuredRun& run, const std::vector<std::string>& nodes, std::span<const double> ratio,
                        std::span<const double> wander_K, double wander_time_scale_s, const Eigen::VectorXd& weight) {
   SensorNoise noise;
@@ -56,7 +56,7 @@ SensorNoise noise_with(const MeasuredRun& run, const std::vector<std::string>& n
   return noise;
 }
 
-/// How far the temperatures of each kind of sensor move.
+/// Range (maximum − minimum over all runs) of the readings at each node in K, at least 1 K.
 std::vector<double> travel_K(const std::vector<std::string>& nodes, std::span<const MeasuredRun> runs) {
   std::vector<double> low_C(nodes.size(), std::numeric_limits<double>::infinity());
   std::vector<double> high_C(nodes.size(), -std::numeric_limits<double>::infinity());
@@ -76,7 +76,7 @@ std::vector<double> travel_K(const std::vector<std::string>& nodes, std::span<co
   return high_C;
 }
 
-/// Mean over time of the heat that the model makes or leads away, whichever is more: what unknown heat is measured by.
+/// Mean over time of the heat that the model generates or dissipates, whichever is larger, in W. It is the unit of the unknown heat.
 double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const std::vector<RunStart>& starts) {
   const Network& network = model.network;
   const auto nodes = static_cast<std::size_t>(network.node_count());
@@ -107,7 +107,7 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
   return std::max({kLeast_W, made_J / duration_s, led_away_J / duration_s});
 }
 
-/// Samples of weight 0 are not known.
+/// Returns the runs with samples of weight 0 replaced by NaN.
 std::vector<MeasuredRun> without(std::span<const MeasuredRun> runs, const std::vector<Eigen::VectorXd>& weights) {
   std::vector<MeasuredRun> all(runs.begin(), runs.end());
   for (std::size_t r = 0; r < all.size(); ++r) {
@@ -134,7 +134,7 @@ class Fitting {
     range_.fluxes = model.flux_nodes.size();
     range_.wander_unit_K = travel_K(fit_.sensor_nodes, runs);
     range_.least_W = model.least_flux_W;
-    // What is known to come and go does so over minutes: short heat would average out.
+    // Unknown heat that is certain to exist varies over minutes; a faster one would average out.
     constexpr double kComesAndGoes_s = 160.0;
     range_.shortest_s = std::max(range_.least_W.empty() ? 20.0 : kComesAndGoes_s, 4.0 * usual_step_s);
     range_.longest_s = std::max(4.0 * range_.shortest_s, longest_s);
@@ -150,7 +150,7 @@ class Fitting {
     range_.unit_W = usual_heat_W(model_, runs_, starts_);
     linearise_all();
     constexpr int kMostRounds = 10;
-    // The level of the noise first, under a flux that is not absurd: what is taken for flux hangs on it.
+    // Estimate the noise level first, with a plausible flux, because the flux estimate depends on it.
     best_.flux = {std::vector<double>(range_.fluxes, options_.with_flux ? 0.02 * range_.unit_W : 0.0), std::max(range_.shortest_s, 160.0)};
     for (std::size_t i = 0; options_.with_flux && i < range_.least_W.size(); ++i) {
       best_.flux.rms_W[i] = std::max(best_.flux.rms_W[i], range_.least_W[i]);
@@ -172,10 +172,11 @@ class Fitting {
   }
 
  private:
-  /// The least squares of a few points of a Latin hypercube, on merged rows and with white noise; the best one goes on.
+  /// Sets θ and the start temperatures to the best of several least-squares fits, which start from the points of a Latin hypercube and
+  /// use merged rows and white noise.
   void find_start() {
     const std::vector<MeasuredRun> rough = roughly(runs_);
-    // Misfit of a model that lacks something is some kelvins: with the sensors' own noise every start would look hopeless.
+    // 1 K, because an incomplete model misses by some kelvins: with the sensors' own noise every start would look impossible.
     LeastSquaresProblem problem{.model = &model_, .runs = rough, .whitening = {}, .white_noise_K = 1.0, .threads = options_.threads};
     struct Candidate {
       Eigen::VectorXd theta;
@@ -186,7 +187,7 @@ class Fitting {
     for (const Eigen::VectorXd& point : points(theta_)) {
       candidates.push_back({point, starts_});
     }
-    // All of them a few steps, the two best to the end.
+    // Three steps from every point, then up to 30 from the best two.
     for (const auto& [steps, kept] : {std::pair(3, 2), std::pair(30, 1)}) {
       problem.most_iterations = steps;
       for (Candidate& each : candidates) {
@@ -203,7 +204,7 @@ class Fitting {
     starts_ = candidates.front().starts;
   }
 
-  /// The model's own values, and a Latin hypercube around them.
+  /// Starting points in θ: `centre`, then a Latin hypercube around it within the parameters' bounds.
   [[nodiscard]] std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& centre) const {
     std::vector<Eigen::VectorXd> all(static_cast<std::size_t>(options_.starts) + 1, centre);
     Random random(options_.seed, 0);
@@ -214,7 +215,7 @@ class Fitting {
       for (std::size_t k = cell.size(); k > 1; --k) {
         std::swap(cell[k - 1], cell[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
       }
-      // No further than what was known before allows.
+      // Stay within two standard deviations of the prior.
       const double prior_sd = 1.0 / std::sqrt(std::max(model_.prior.precision(i, i), 1e-6));
       const double reach = std::min(options_.start_spread, 2.0 * prior_sd);
       for (std::size_t k = 0; k < cell.size(); ++k) {
@@ -244,7 +245,7 @@ class Fitting {
   }
   [[nodiscard]] StartPrior start_prior(std::size_t r) const { return {starts_[r].prior_C - starts_[r].state_C, starts_[r].prior_sd_K}; }
 
-  /// Every supposition with every run is a job of its own.
+  /// Linear fit for each supposition at the present linearisation. Each pair of supposition and run is one parallel job.
   std::vector<LinearFit> fits(const std::vector<Supposition>& suppositions) const {
     std::vector<RunEvidence> all(suppositions.size() * runs_.size());
     in_parallel(all.size(), options_.threads, [&](std::size_t job) {
@@ -265,7 +266,8 @@ class Fitting {
     return all;
   }
 
-  /// Sensors are supposed to wander where the heat to explain it otherwise would be much, and the data clearly prefer it.
+  /// Sets best_ to the most probable supposition. Adds sensor drift if the unknown heat is otherwise large and the evidence clearly prefers
+  /// drift.
   void seek_supposition() {
     if (!options_.with_flux) {
       best_.flux = {std::vector<double>(range_.fluxes, 0.0), range_.longest_s};
@@ -287,7 +289,7 @@ class Fitting {
     }
   }
 
-  /// The noise level of each kind of sensor, and which samples are outliers, from the innovations of the best linear correction.
+  /// Updates the noise level of each kind of sensor and the outlier weights from the innovations after the best linear correction.
   void look_at_innovations() {
     const Eigen::VectorXd coefficients = fits({best_}).front().coefficients;
     std::vector<double> weight_sum(fit_.sensor_nodes.size(), 0.0);
@@ -331,7 +333,8 @@ class Fitting {
     fit_.rejected_share = counted > 0 ? static_cast<double>(rejected) / static_cast<double>(counted) : 0.0;
   }
 
-  /// To the minimum under the present whitening: by Ceres first, with the linear steps that are known anyway once they are small.
+  /// Moves θ and the start temperatures to the minimum for the present whitening. Uses Ceres while steps are large, then the linear steps,
+  /// which cost nothing more.
   void move() {
     const LinearFit linear = fits({best_}).front();
     const double size = linear.coefficients.cwiseQuotient(linear.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
@@ -358,8 +361,8 @@ class Fitting {
     fit_.has_converged = fit_.iterations >= 2 && size < kSmall;
   }
 
-  /// A motor of more parts than the model misleads what follows the load at once, and slow unknown heat hides it. Where other figures
-  /// let the model follow the whole runs plainly better, and well, and by more than chance, those are the ones to foretell with.
+  /// Replaces θ by the result of the free-run fit if that predicts whole runs clearly better, accurately, and by more than chance. If the
+  /// motor has more bodies than the model, slow unknown heat hides the misfit and biases the parameters; the free-run fit predicts better.
   void prefer_free_runs() {
     if (!options_.with_flux || fit_.sensor_nodes.size() < model_.flux_nodes.size()) {
       return;
@@ -368,7 +371,7 @@ class Fitting {
     constexpr double kWell_share = 0.02;
     const double now_K = free_run_rmse_K(linearised_);
     const double least_K = std::ranges::min(runs_.front().sensors, {}, &Sensor::noise_K).noise_K;
-    // No figures follow better than to the sensors' noise.
+    // No parameters can predict better than the sensors' noise allows.
     if (now_K < kPlainly_ratio * least_K) {
       return;
     }
@@ -381,8 +384,8 @@ class Fitting {
       return;
     }
     const FreeRunFit& found = *search;
-    // Of one truth both are estimates, which differ as their covariances allow (after Hausman 1978, the covariances added, for neither
-    // is the best one where the model is not right).
+    // Test whether the two estimates differ more than their covariances allow (after Hausman 1978). The covariances are added, because
+    // neither estimate is efficient if the model is wrong.
     constexpr double kBeyondChance = 8.0;
     const Eigen::VectorXd apart = found.theta - theta_;
     const LinearFit here = fits({best_}).front();
@@ -390,7 +393,7 @@ class Fitting {
     if (apart.dot(allowed.ldlt().solve(apart)) < kBeyondChance * static_cast<double>(apart.size())) {
       return;
     }
-    // Figures bend to what one run holds and others do not: they must do as well in runs that they have not seen.
+    // Guards against overfitting a single run: the parameters must predict left-out runs equally well.
     if (const double unseen_K = left_out_rmse_K(model_, counted, found, options_.threads); !(now_K > kPlainly_ratio * unseen_K)) {
       return;
     }
@@ -398,19 +401,19 @@ class Fitting {
     fit_.log_evidence = here.log_evidence;
     theta_ = found.theta;
     starts_ = found.starts;
-    // Which of them is right for a run depends on what it asks for.
+    // Either estimate may be right for a new run, so their difference adds to the prior's uncertainty.
     prior_ = {theta_, (found.covariance + 0.25 * apart * apart.transpose()).inverse()};
     linearise_all();
     best_ = {};
     seek_supposition();
-    // No more unknown heat than moves free runs as far as they are off.
+    // Limit the unknown heat so that its effect on free runs is not larger than their error.
     const double most_share = found.rmse_K / std::sqrt(mean_square_by_flux_K2());
     for (double& rms_W : best_.flux.rms_W) {
       rms_W *= std::min(1.0, most_share);
     }
   }
 
-  /// What the supposed heat does to free runs, mean over all samples.
+  /// Variance that the assumed heat flux causes in the sensors of free runs, mean over all samples.
   [[nodiscard]] double mean_square_by_flux_K2() const {
     double sum_K2 = 0.0;
     double count = 0.0;

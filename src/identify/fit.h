@@ -1,4 +1,4 @@
-// A model fitted to any number of runs at once, in the presence of unknown heat.
+// Fits the free parameters of a model to one or more runs at once, in the presence of an unknown heat flux.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,49 +16,49 @@
 namespace heatsoak {
 
 struct FitOptions {
-  int starts = 8;             ///< Latin hypercube points besides the model's own values; 0: only those
-  double start_spread = 1.1;  ///< ± of a point in θ: ln 3
-  std::uint64_t seed = 1;     ///< of the points
+  int starts = 8;             ///< Latin hypercube points in addition to the model's own values; 0: only the latter
+  double start_spread = 1.1;  ///< half width of the hypercube in θ; 1.1 = ln 3
+  std::uint64_t seed = 1;     ///< of the random hypercube points
   int threads = 0;            ///< 0: all cores; the result does not depend on it
-  bool is_robust = true;      ///< outliers count less or not at all
-  bool with_flux = true;      ///< false: the heat is all known, for comparison
-  bool with_wander = true;    ///< false: sensors have no slow errors of their own
+  bool is_robust = true;      ///< true: outliers are down-weighted or rejected
+  bool with_flux = true;      ///< false: assumes no unknown heat flux (for comparison)
+  bool with_wander = true;    ///< false: assumes that sensors do not drift
 };
 
-/// One supposition about what is not known, how probable it is, and what follows from it.
+/// One setting of the unknown heat flux and sensor drift, with its probability and the resulting fit.
 struct Hypothesis {
   Supposition supposition;
-  double weight = 0.0;  ///< sum over all is 1
+  double weight = 0.0;  ///< posterior probability; the sum over all hypotheses is 1
   Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;
 };
 
 struct Fit {
   Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;    ///< of θ, over all hypotheses
-  LatentFlux flux;               ///< the most probable
-  std::vector<double> wander_K;  ///< per place in sensor_nodes, the most probable; empty: no sensor wanders
+  Eigen::MatrixXd covariance;    ///< of θ, averaged over all hypotheses
+  LatentFlux flux;               ///< most probable value
+  std::vector<double> wander_K;  ///< most probable drift (standard deviation) per entry of sensor_nodes; empty: no sensor drifts
   double wander_time_scale_s = 0.0;
-  double usual_heat_W = 0.0;        ///< mean over the runs of what the model makes or leads away, whichever is more
-  std::vector<double> noise_ratio;  ///< per place in sensor_nodes: noise that the fit finds over the model-free one
+  double usual_heat_W = 0.0;        ///< mean over time of the heat that the model generates or dissipates, whichever is larger
+  std::vector<double> noise_ratio;  ///< per entry of sensor_nodes: noise found by the fit divided by the model-free estimate
   std::vector<std::string> sensor_nodes;
   std::vector<Hypothesis> hypotheses;
   std::vector<RunStart> starts;          ///< per run
-  std::vector<Eigen::VectorXd> weights;  ///< per run: of each sample, 1 unless it is an outlier
-  double rejected_share = 0.0;           ///< of the samples
-  double log_evidence = 0.0;             ///< at the most probable flux and the figures that are most probable with it
+  std::vector<Eigen::VectorXd> weights;  ///< per run and sample (n·s): 1, less for an outlier, 0 if rejected
+  double rejected_share = 0.0;           ///< fraction of the samples with weight 0
+  double log_evidence = 0.0;             ///< in nats, at the most probable flux and the parameters that are most probable with it
   int iterations = 0;
   bool has_converged = false;
-  double free_run_error_K = 0.0;  ///< above 0: θ is what follows the whole runs best, to this (rms); other figures do far worse
-  /// R of the whitened [∂/∂θ, residual] of all runs without the prior, at θ: what the data alone say.
+  double free_run_error_K = 0.0;  ///< RMS error if θ was taken from the free-run fit, which predicts whole runs far better; else 0
+  /// Factor R of the whitened [∂/∂θ, residual] of all runs at θ, without the prior: the information in the data alone.
   Eigen::MatrixXd data_triangle;
 };
 
-/// Maximum of the posterior in θ for the most probable flux and noise. Throws Failure (cannot_answer) where no start leads to a
-/// model that can be run.
+/// Returns the maximum of the posterior in θ for the most probable flux and noise. Throws Failure (cannot_answer) if the simulation
+/// diverges from every starting point.
 Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options);
 
-/// Noise of a run's sensors as a fit has it.
+/// Returns the noise, drift and sample weights that the fit found for the sensors of one of its runs.
 SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index);
 
 }  // namespace heatsoak

@@ -14,12 +14,11 @@ constexpr double kLeastWander_share = 1e-4;
 constexpr double kMostWander_share = 0.2;
 constexpr double kReference_s = 160.0;
 constexpr double kWanderReference_s = 10.0;
-/// Beyond this a coordinate is not told by the data, and a standard deviation says nothing.
+/// Upper limit of a standard deviation (in logarithms). With a larger one the data do not determine the coordinate.
 constexpr double kWidest = 1.2;
 
-/// Coordinates: for each flux the logarithm of its size, in units of the mean heat, over the root of the time scale in kReference_s, then
-/// that of the time scale in s: what a flux does within a time that is short against its own scale hangs on this ratio alone. Then the
-/// same for the wander of each kind of sensor, where they wander.
+/// Coordinates of the search: ln(rms / mean heat / √(time scale / kReference_s)) for each flux, then ln(time scale in s). Over times that
+/// are short against the time scale, the effect of a flux depends on this ratio alone. If sensors drift, the same follows for the drift.
 class Space {
  public:
   Space(const SuppositionRange& range, bool wanders)
@@ -33,7 +32,7 @@ class Space {
     const double half = shift(x[fluxes_], kReference_s);
     for (std::size_t i = 0; i < range_.least_W.size(); ++i) {
       if (const double least = std::log(range_.least_W[i] / range_.unit_W); std::isfinite(least)) {
-        // As a whole it can be more than what is granted to the unknown elsewhere.
+        // Heat that is certain to exist may exceed the limit for other unknown heat.
         x[static_cast<Eigen::Index>(i)] = std::max(x[static_cast<Eigen::Index>(i)], least - half);
       }
     }
@@ -79,7 +78,7 @@ class Space {
 
  private:
   static double shift(double log_time_scale, double reference_s) { return 0.5 * (log_time_scale - std::log(reference_s)); }
-  /// Sizes first, the time scale last.
+  /// Clamps `x`, which holds the sizes first and the time scale last.
   static void clamp(Eigen::Ref<Eigen::VectorXd> x, std::pair<double, double> share, std::pair<double, double> time_scale_s,
                     double reference_s) {
     double& time_scale = x[x.size() - 1];
@@ -103,7 +102,8 @@ std::vector<double> at(const Evidence& evidence, const Space& space, const std::
   return evidence(all);
 }
 
-/// Steps of ±width along one coordinate at a time, all tried at once, the best one taken; together with it the best of the others.
+/// Hill climbing. Tries steps of ±`width` along every coordinate, then all improving steps together, and takes the best. Moves `x` and
+/// returns its evidence.
 double ascend(const Evidence& evidence, const Space& space, double width, double value, Eigen::VectorXd& x) {
   constexpr int kMostMoves = 20;
   for (int move = 0; move < kMostMoves; ++move) {
@@ -116,7 +116,7 @@ double ascend(const Evidence& evidence, const Space& space, double width, double
       }
     }
     const std::vector<double> values = at(evidence, space, tried);
-    // All coordinates that gain move together; where that does not help, the best one alone.
+    // All improving coordinates move together; if that is not better, only the best one moves.
     Eigen::VectorXd together = x;
     for (Eigen::Index i = 0; i < space.size(); ++i) {
       const auto low = static_cast<std::size_t>(2 * i);
@@ -142,10 +142,10 @@ double ascend(const Evidence& evidence, const Space& space, double width, double
 
 struct Curvature {
   Eigen::VectorXd slope;
-  Eigen::MatrixXd bend;  ///< of minus the logarithm of the evidence
+  Eigen::MatrixXd bend;  ///< Hessian of −ln(evidence)
 };
 
-/// By differences of `width`.
+/// Gradient and Hessian at `x` by finite differences with step `width`.
 Curvature curvature(const Evidence& evidence, const Space& space, double width, double value, const Eigen::VectorXd& x) {
   const Eigen::Index n = space.size();
   std::vector<Eigen::VectorXd> points;
@@ -183,8 +183,8 @@ Curvature curvature(const Evidence& evidence, const Space& space, double width, 
   return all;
 }
 
-/// Of a cube; of cubes beyond four dimensions the fraction in which no pair of coordinates is another coordinate's copy (resolution IV
-/// and more: the fifth is the product of the first four or three, the sixth of the second to fourth).
+/// Corners of the n-dimensional cube ±1. Above four dimensions, a fractional factorial design of resolution IV or more: coordinate five
+/// is the product of the first four (n = 5) or three (n = 6), coordinate six that of the second to fourth.
 std::vector<Eigen::VectorXd> corners(Eigen::Index n) {
   std::vector<Eigen::VectorXd> all;
   const Eigen::Index full = std::min<Eigen::Index>(n, 4);
@@ -257,7 +257,7 @@ std::vector<WeightedSupposition> suppositions_around(const Evidence& evidence, c
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(here.bend);
   const Eigen::VectorXd sd = solver.eigenvalues().cwiseMax(1.0 / (kWidest * kWidest)).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd axes = solver.eigenvectors() * sd.asDiagonal();
-  // Corners of a cube and ends of its axes, all on a sphere of radius f·√n.
+  // Corners of a cube and ends of the axes, all on a sphere of radius kReach·√n.
   constexpr double kReach = 1.1;
   const double radius = kReach * std::sqrt(static_cast<double>(n));
   std::vector<Eigen::VectorXd> points{centre};
@@ -272,7 +272,7 @@ std::vector<WeightedSupposition> suppositions_around(const Evidence& evidence, c
   const std::vector<double> values = at(evidence, space, points);
   const double most = *std::ranges::max_element(values);
   const auto outer = static_cast<double>(points.size() - 1);
-  // So that a Gaussian keeps its mass and its variances; the centre weighs 1.
+  // These weights reproduce the mass and the variances of a Gaussian; the centre has weight 1.
   const double outer_weight = std::exp(0.5 * radius * radius) / (outer * (kReach * kReach - 1.0));
   std::vector<WeightedSupposition> all;
   double sum = 0.0;

@@ -1,4 +1,5 @@
-// How much there is that the model does not know: the most probable flux and wander of the sensors, and others around with their weights.
+// Estimates the unmodelled part of the measurements: the most probable unknown heat flux and sensor drift, and weighted alternatives
+// around that maximum.
 #pragma once
 
 #include <functional>
@@ -8,43 +9,44 @@
 
 namespace heatsoak {
 
-/// One supposition about what is not known: heat at the nodes, slow errors of the sensors.
+/// One setting of the unmodelled part: unknown heat flux at the nodes and drift of the sensors.
 struct Supposition {
   LatentFlux flux;
-  std::vector<double> wander_K;  ///< per kind of sensor; empty: none wanders
+  std::vector<double> wander_K;  ///< standard deviation of the drift per kind of sensor; empty: no drift
   double wander_time_scale_s = 10.0;
 };
 
-/// Of the mean heat. With more than this granted a model that is wrong at every turn would still fit, and its figures say nothing.
+/// Largest unknown heat as a fraction of the mean heat. With more than this even a wrong model would fit, and its parameters would mean
+/// nothing.
 inline constexpr double kMostFlux_share = 0.2;
 
 struct SuppositionRange {
-  double unit_W = 1.0;       ///< mean heat of the runs: sizes are sought from 1/1000 of it, which is as good as none
-  double shortest_s = 10.0;  ///< of the flux's time scale
+  double unit_W = 1.0;       ///< mean heat of the runs; the search starts at 1/1000 of it, which is negligible
+  double shortest_s = 10.0;  ///< lower limit of the flux's time scale
   double longest_s = 3000.0;
   std::size_t fluxes = 2;
-  std::vector<double> least_W;        ///< per flux: rms that there is for certain; empty: none
-  std::vector<double> wander_unit_K;  ///< per kind of sensor: how far temperatures move; sizes are sought from 1/10000 of it to 1/5
+  std::vector<double> least_W;        ///< per flux: lower limit of its RMS, for heat that is certain to exist; empty: none
+  std::vector<double> wander_unit_K;  ///< per kind of sensor: range of its readings; the drift is searched from 1/10000 to 1/5 of it
   double wander_shortest_s = 4.0;
   double wander_longest_s = 100.0;
 };
 
-/// The logarithm of the evidence, for many suppositions at once so that they can run side by side.
+/// Returns the log evidence in nats of each supposition. Takes many at once so that they can be evaluated in parallel.
 using Evidence = std::function<std::vector<double>(const std::vector<Supposition>&)>;
 
-/// Ascent on a lattice of logarithms, first coarse, then fine, then a parabola through the finest. From `start`, or from the
-/// lattice's middle where it has no sizes. Sensors wander in the answer where they do in the start.
+/// Returns the supposition with the largest evidence. Climbs on a lattice of logarithms, first coarse, then fine, and finally fits a
+/// parabola. Begins at `start`, or at default sizes if `start` has no flux. The result has sensor drift only if `start` has.
 Supposition most_probable(const Evidence& evidence, const SuppositionRange& range, const Supposition& start);
-/// With sensors that wander by a hundredth of how far temperatures move, and no more heat than `start` has.
+/// Returns `start` with sensor drift of a hundredth of the range of the readings, and with each flux limited to 2 % of the mean heat.
 Supposition with_wander(const SuppositionRange& range, const Supposition& start);
 
 struct WeightedSupposition {
   Supposition supposition;
-  double weight = 0.0;  ///< of the integral over the suppositions; their sum is 1
+  double weight = 0.0;  ///< share of the posterior probability; the sum of all weights is 1
 };
 
-/// Points and weights that stand for the evidence around its maximum: a central composite design in the directions of its curvature
-/// (Rue, Martino and Chopin 2009, section 6.5).
+/// Returns points and weights that approximate the evidence around its maximum `best`: a central composite design along the principal
+/// axes of its curvature (Rue, Martino and Chopin 2009, section 6.5).
 std::vector<WeightedSupposition> suppositions_around(const Evidence& evidence, const SuppositionRange& range, const Supposition& best);
 
 }  // namespace heatsoak

@@ -11,7 +11,7 @@
 namespace heatsoak {
 namespace {
 
-/// Per run, of all sensors together; 0 where nothing was measured.
+/// Sum of the errors of all sensors for each sample, per run; missing samples count as 0.
 std::vector<Eigen::VectorXd> errors_K(std::span<const LinearisedRun> paths) {
   std::vector<Eigen::VectorXd> all;
   for (const LinearisedRun& path : paths) {
@@ -30,7 +30,8 @@ double product_K2(std::span<const Eigen::VectorXd> errors, Eigen::Index apart) {
   return sum_K2;
 }
 
-/// How many samples say no more than one that is independent. Each lag is a pass over the runs, as far as errors hang together.
+/// Returns how many correlated samples carry as much information as one independent sample, at least 1. Each lag is one pass over the
+/// runs; the loop ends at the first pair of lags without positive correlation.
 double samples_alike(std::span<const LinearisedRun> paths, double squares_K2) {
   const std::vector<Eigen::VectorXd> errors = errors_K(paths);
   Eigen::Index longest = 0;

@@ -1,4 +1,4 @@
-// The figures with which a model follows whole runs best when it runs free: ordinary least squares of its errors in K.
+// Fits parameters so that a free-running simulation follows whole runs best: ordinary least squares of its errors in K.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,21 +16,22 @@ namespace heatsoak {
 struct FreeRunFit {
   Eigen::VectorXd theta;
   std::vector<RunStart> starts;  ///< per run
-  /// Of θ: errors that hang together, over time or from sensor to sensor, count as often as they are independent (initial positive
+  /// Covariance of θ. Errors correlated in time or between sensors count only as many times as they are independent (initial positive
   /// sequence, Geyer 1992).
   Eigen::MatrixXd covariance;
-  double rmse_K = 0.0;  ///< all sensors alike
+  double rmse_K = 0.0;  ///< over all samples, all sensors weighted equally
 };
 
-/// From `theta` and `starts`; every row counts, for averages over rows would follow a load that repeats like them. Nothing where the search
-/// does not come to rest.
+/// Searches from `theta` and `starts` (one per run). Uses every row, because averages over rows could alias with a periodic load. Returns
+/// nullopt if the search does not converge.
 std::optional<FreeRunFit> fit_free_runs(const Model& model, std::span<const MeasuredRun> runs, Eigen::VectorXd theta,
                                         std::vector<RunStart> starts, int threads);
 
-/// The same of each run under figures that are fitted to the others, from `found`. NaN where there is but one, or a search fails.
+/// Leave-one-out cross-validation: RMS error in K of each run, simulated with the parameters fitted to the other runs. The searches start
+/// from `found`. NaN if there is only one run or a search does not converge.
 double left_out_rmse_K(const Model& model, std::span<const MeasuredRun> runs, const FreeRunFit& found, int threads);
 
-/// Of models that run free.
+/// RMS of residual_K over all samples of all paths, without NaN.
 double free_run_rmse_K(std::span<const LinearisedRun> paths);
 
 }  // namespace heatsoak

@@ -7,7 +7,7 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kLongest = 60;
-/// Fewer windows tell no habit.
+/// Fewer windows do not determine the two values.
 constexpr double kFewest = 20.0;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a quantity does over rows that nobody logged, told by what it does over as many rows that somebody did.
+// Estimates how a quantity behaves over rows that are missing from a log, from windows of equally many logged rows.
 #pragma once
 
 #include <cstddef>
@@ -8,20 +8,21 @@
 
 namespace heatsoak {
 
-/// How far the mean over a gap lies from the middle between the values at its ends: variance = step_share² · (difference of the ends)² +
-/// beyond_sd², from all windows of that length by least squares. A quantity that changes once within the gap has a step_share of a half
-/// where the gap is one row; one that comes and goes within it lies far off even where the ends are equal.
+/// Deviation of the mean over a gap from the midpoint of the values at its ends: variance = step_share² · (difference of the ends)² +
+/// beyond_sd². Fitted to all windows of that length by least squares. A quantity that changes once within a gap of one row has a
+/// step_share of 0.5. Short pulses give a large beyond_sd even if the ends are equal.
 struct GapHabit {
   double step_share = 0.5;
-  double beyond_sd = 0.0;  ///< in the quantity's unit
+  double beyond_sd = 0.0;  ///< in the unit of the values
 };
 
 class GapHabits {
  public:
-  /// `values` by row, NaN where they are not known; `usual_s` between rows.
+  /// `values` has one entry per row, NaN if unknown; `usual_s` is the usual time between rows. The times must outlive this object.
   GapHabits(std::span<const double> time_s, std::vector<double> values, double usual_s);
 
-  /// For gaps that lack `rows` rows, at least one; long ones as the longest that there are windows of.
+  /// Returns the behaviour over gaps of `rows` missing rows (0 counts as 1). Long gaps use the longest length with enough windows; a log
+  /// with too few windows gives the default.
   const GapHabit& over(std::size_t rows);
 
  private:
@@ -29,8 +30,8 @@ class GapHabits {
 
   std::span<const double> time_s_;
   std::vector<double> values_;
-  std::vector<double> sum_;           ///< of the rows before
-  std::vector<std::size_t> unknown_;  ///< of the rows before
+  std::vector<double> sum_;           ///< cumulative sum of the values before each row
+  std::vector<std::size_t> unknown_;  ///< number of unknown values before each row
   double usual_s_;
   std::map<std::size_t, GapHabit> told_;
 };

@@ -1,9 +1,9 @@
-// How wide the intervals are that everything learned from measurements is given with.
+// Width of the reported confidence intervals.
 #pragma once
 
 namespace heatsoak {
 
-/// Standard deviations to either side of a normal distribution's mean that enclose 95 % of it.
+/// Half width of the 95 % interval of a normal distribution, in standard deviations.
 inline constexpr double kInterval_sd = 1.959964;
 
 }  // namespace heatsoak

@@ -13,9 +13,9 @@
 namespace heatsoak {
 namespace {
 
-/// What Ceres asks of one run, worked out for all runs side by side before it asks.
+/// Whitened residual and Jacobian of one run. Computed for all runs in parallel before Ceres evaluates the cost functions.
 struct RunAnswer {
-  Columns whitened;  ///< by θ, by start, residual
+  Columns whitened;  ///< columns: ∂/∂θ, ∂/∂start, residual
   bool is_valid = false;
 };
 
@@ -28,7 +28,7 @@ class AllRuns final : public ceres::EvaluationCallback {
     }
   }
 
-  /// Jacobians come along at no extra price, and most points need them.
+  /// Always computes the Jacobians: they cost little more, and most points need them.
   void PrepareForEvaluation(bool /*with_jacobians*/, bool is_new_point) override {
     if (is_new_point) {
       in_parallel(answers_.size(), problem_.threads, [&](std::size_t r) { answers_[r] = answer(r); });
@@ -78,7 +78,7 @@ class AllRuns final : public ceres::EvaluationCallback {
 
 using RowMajorMap = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-/// Whitened residuals of one run; the residual is measured − predicted, so slopes change sign.
+/// Whitened residuals of one run. The residual is measured − predicted, so the Jacobian is minus the sensitivity.
 class RunCost final : public ceres::CostFunction {
  public:
   RunCost(const AllRuns& all, std::size_t run, Eigen::Index rows, Eigen::Index free, Eigen::Index states) : all_(all), run_(run) {
@@ -110,7 +110,7 @@ class RunCost final : public ceres::CostFunction {
   std::size_t run_;
 };
 
-/// root · (x − mean), a Gaussian prior.
+/// Gaussian prior with the residual root · (x − mean).
 class PriorCost final : public ceres::CostFunction {
  public:
   PriorCost(Eigen::MatrixXd root, Eigen::VectorXd mean) : root_(std::move(root)), mean_(std::move(mean)) {
@@ -170,7 +170,7 @@ LeastSquaresResult minimise(const LeastSquaresProblem& problem, Eigen::VectorXd&
   options.parameter_tolerance = 1e-7;
   options.logging_type = ceres::SILENT;
   options.minimizer_progress_to_stdout = false;
-  // A start that cannot be run is an answer here, no event for the log of Ceres.
+  // A failed simulation is a valid result here; Ceres should not log it as an error.
   FLAGS_minloglevel = google::GLOG_FATAL;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);

@@ -12,7 +12,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 class Recorder {
  public:
-  /// `path_C`: null where the network runs freely.
+  /// `path_C` is null if the network runs freely.
   Recorder(LinearisedRun& out, const MeasuredRun& run, Eigen::Index wanted, const Eigen::MatrixXd* path_C)
       : out_(out),
         run_(run),
@@ -71,7 +71,7 @@ class Recorder {
   LinearisedRun& out_;
   const MeasuredRun& run_;
   const Eigen::MatrixXd* path_C_;
-  Eigen::VectorXd off_K_, next_off_K_;  ///< of the linear equations from the path
+  Eigen::VectorXd off_K_, next_off_K_;  ///< solution of the linear equations minus the path
   Eigen::MatrixXd by_start_, next_by_start_;
   Eigen::MatrixXd by_parameter_, next_by_parameter_;
 };
@@ -134,7 +134,7 @@ LinearisedRun linearise_unnamed(const Network& network, std::span<const double> 
   return out;
 }
 
-/// Failures name the run.
+/// Calls `make`; adds the name of the run to the message of any Failure.
 template <class Make>
 LinearisedRun named(const MeasuredRun& run, const Make& make) {
   try {

@@ -1,4 +1,4 @@
-// A network run along a measured run: what the sensors should have shown, and how that moves with everything unknown.
+// Simulates a network along a measured run and linearises it: predicted sensor readings and their sensitivities.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,44 +10,45 @@
 
 namespace heatsoak {
 
-/// Row = sample · sensors + sensor. Stored row by row, for filters go through time.
+/// Row index = sample · number of sensors + sensor. Row-major, because filters proceed in time.
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Of inputs that nobody logged: covariance that the state gains by the end of the interval, x × x.
+/// Uncertainty from inputs that were not logged: covariance (x × x) added to the state at the end of an interval.
 struct StateDoubt {
   Eigen::Index interval = 0;
   Eigen::MatrixXd covariance_K2;
 };
 
-/// n samples, s sensors, x state nodes, q nodes that unknown heat may reach, w wanted parameters.
+/// Dimensions: n samples, s sensors, x state nodes, q nodes with unknown heat flux, w requested parameters.
 struct LinearisedRun {
   Eigen::Index states = 0;
   Eigen::Index fluxes = 0;
-  std::vector<int> sensor_node;    ///< of each sensor
+  std::vector<int> sensor_node;    ///< state node of each sensor
   Eigen::MatrixXd state_C;         ///< x × n
-  Eigen::MatrixXd shown_C;         ///< n × s: what the sensors should have shown
-  Eigen::VectorXd residual_K;      ///< n·s: measured − shown_C; NaN where nothing was measured
-  Columns by_start;                ///< n·s × x: of the prediction, by the temperatures at the start
-  Columns by_parameter;            ///< n·s × w, per unit of the parameter
-  std::vector<double> transition;  ///< per interval x × x, row by row: d state(k+1) / d state(k)
-  std::vector<double> injection;   ///< per interval x × q, row by row, K/W: response to 1 W held over the interval
+  Eigen::MatrixXd shown_C;         ///< n × s: predicted sensor readings
+  Eigen::VectorXd residual_K;      ///< n·s: measured − shown_C; NaN if not measured
+  Columns by_start;                ///< n·s × x: sensitivity of shown_C to the start temperatures
+  Columns by_parameter;            ///< n·s × w: sensitivity of shown_C in K per unit of the parameter
+  std::vector<double> transition;  ///< per interval x × x, row-major: d state(k+1) / d state(k)
+  std::vector<double> injection;   ///< per interval x × q, row-major, in K/W: response to 1 W held over the interval
   std::vector<double> duration_s;  ///< per interval
-  std::vector<StateDoubt> doubts;  ///< by interval, ascending
+  std::vector<StateDoubt> doubts;  ///< in ascending order of the interval
 
   [[nodiscard]] Eigen::Index samples() const { return state_C.cols(); }
   [[nodiscard]] Eigen::Index sensors() const { return static_cast<Eigen::Index>(sensor_node.size()); }
 };
 
-/// One fault more of a sensor, upon what `out` foretells of it and how that moves.
+/// Applies one more sensor fault to the predicted readings, residuals and sensitivities of `sensor` in `out`.
 void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out);
 
-/// The sensors have the faults that the run states for them. `parameters` as the network lists them; `wanted` and `flux_nodes` are places
-/// in its lists. Throws Failure (numerics_failed) where the temperatures run away. Allocates for the whole run, not per sample.
+/// Simulates from `start_C` (°C, per state node) and linearises along the result. Includes the sensor faults stated in the run.
+/// `parameters` are in the network's order; `wanted` and `flux_nodes` are indices into its lists of parameters and nodes. Throws Failure
+/// (numerics_failed) if the temperatures diverge. Allocates memory once per run, not per sample.
 LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run);
 
-/// The same about a path (states × samples, in °C) that the network need not follow by itself: the equations are linearised along it, and
-/// shown_C is what the linear equations make of the path's own start.
+/// Same as linearise(), but linearises along a given path (states × samples, in °C), which the network need not follow by itself. shown_C
+/// is the solution of these linear equations from the start of the path.
 LinearisedRun linearise_along(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                               std::span<const int> flux_nodes, const Eigen::MatrixXd& path_C, const MeasuredRun& run);
 

@@ -29,7 +29,7 @@ Eigen::VectorXd means_along(const Channel& channel, const std::vector<double>& r
   return means;
 }
 
-/// Each unknown value as the nearest that is known; all unknown where none is.
+/// Replaces each NaN by the nearest known value; all stay NaN if none is known.
 Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
   Eigen::Index last = -1;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -64,7 +64,7 @@ std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording,
       "current_A", "speed_rad_per_s", "bus_V", "power_in_W", "duty_ratio", "vehicle_speed_m_per_s", "neighbour_C", "ambient_C", "age_h"};
   std::map<std::string, Eigen::VectorXd> columns;
   for (const Channel& channel : recording.channels) {
-    // The network's laws see the current's magnitude; which way it flows, only the log knows.
+    // The network's laws use the current's magnitude; its sign is only available from the log.
     const bool has_both_signs = channel.quantity.key == "current_A" &&
                                 std::ranges::any_of(channel.values, [](double a) { return a < 0.0; }) &&
                                 std::ranges::any_of(channel.values, [](double a) { return a > 0.0; });

@@ -47,7 +47,7 @@ const std::vector<double>* values(std::string_view key, const Recording& recordi
   const Channel* const channel = recording.find(key);
   return has_values(channel) ? &channel->values : nullptr;
 }
-/// Air and coolant change slowly: between two samples less than a minute apart a straight line is what they did.
+/// Fills gaps shorter than 60 s by linear interpolation, at the ends by the nearest value. Air and coolant change slowly enough for that.
 std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s) {
   constexpr double kSlow_s = 60.0;
   std::vector<double> all = values ? *values : std::vector<double>();
@@ -69,7 +69,7 @@ std::vector<double> bridged(const std::vector<double>* values, const std::vector
   }
   return all;
 }
-/// 0 where there is no such channel: what the model needs is checked beforehand.
+/// Value of a row, or 0 if there is no such channel. The signals that a model needs are checked beforehand.
 double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
 
 }  // namespace

@@ -20,7 +20,7 @@ OperatingPoint<double> rooted(OperatingPoint<double> at) {
   return at;
 }
 
-/// A motor may push hard and stand, or turn fast and push little: what moves is no part of what drives.
+/// Copies the motion of `from`. Motion and torque are independent: a motor may push hard at standstill, or turn fast with little torque.
 void set_motion(OperatingPoint<double>& at, const OperatingPoint<double>& from) {
   at.speed_mean_rad_per_s = from.speed_mean_rad_per_s;
   at.speed_rms_rad_per_s = from.speed_rms_rad_per_s;

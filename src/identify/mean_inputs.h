@@ -1,18 +1,19 @@
-// Heat inputs of neighbouring intervals as one, with the same heat.
+// Merges the heat inputs of neighbouring intervals into one interval with the same heat.
 #pragma once
 
 #include "identify/measured_run.h"
 
 namespace heatsoak {
 
-/// Squares are averaged for currents and the rms speed. What is not known of one interval is independent of what is not known of another.
+/// Time averages of operating points; current and RMS speed are averaged as squares. Uncertainties of different intervals are independent.
 class MeanInputs {
  public:
   void add(const OperatingPoint<double>& at, double duration_s);
-  /// Over `duration_s` of what was added the inputs may have been `other` in place of `at`, or as far on the other side.
+  /// Adds uncertainty: for `duration_s` of the added time the inputs may have been `other` instead of `at`, or equally far in the other
+  /// direction.
   void doubt(const OperatingPoint<double>& at, const OperatingPoint<double>& other, double duration_s);
   [[nodiscard]] double duration_s() const { return duration_s_; }
-  /// The next interval of a run; begins anew.
+  /// Appends the mean and its uncertainty to the run as the next interval, then resets.
   void take(MeasuredRun& run);
 
  private:

@@ -19,12 +19,12 @@
 namespace heatsoak {
 namespace {
 
-/// A stretch with fewer samples has nothing to say about thermal time constants.
+/// A segment with fewer samples contains no information about thermal time constants.
 constexpr std::size_t kLeastSamples = 10;
-/// A little more than ten seconds, so that rounding splits nothing.
+/// 10 s plus a margin for rounding errors of the time stamps.
 constexpr double kLongestPause_s = 10.0 * (1.0 + 1e-6);
 
-/// Where temperatures of a recording sit in the network; of two for one node the first that the recording has counts.
+/// Assigns temperatures of a recording to nodes. If a recording has two for one node, the first is used.
 struct SensorPlace {
   std::string_view key;
   std::string_view node;
@@ -42,7 +42,7 @@ bool is_stuck(const Channel& channel) {
   return low == high;
 }
 
-/// The mean of the samples within `reach_s` of the row, moved along their own slope to the row's time.
+/// Mean of the samples within ±`reach_s` around a row. NaN if the row itself has no sample.
 double sample_at(const std::vector<double>& time_s, const std::vector<double>& value_C, std::size_t begin, std::size_t end, std::size_t row,
                  double reach_s) {
   if (std::isnan(value_C[row])) {
@@ -50,7 +50,7 @@ double sample_at(const std::vector<double>& time_s, const std::vector<double>& v
   }
   double sum_C = value_C[row];
   double count = 1.0;
-  // Pairs on both sides only, so that a slope cancels.
+  // Only symmetric pairs, so that a constant slope cancels.
   for (std::size_t away = 1; row >= begin + away && row + away < end; ++away) {
     if (time_s[row] - time_s[row - away] > reach_s || time_s[row + away] - time_s[row] > reach_s) {
       break;
@@ -118,8 +118,8 @@ class Builder {
   }
 
  private:
-  /// The recording's runs, those as one between which there was no more than a pause: what happened in it is unknown, but little beside a
-  /// motor's time constants, while every run would take up anew what is not known of the heat.
+  /// Row ranges of the recording's runs, joined across short pauses. A pause is short compared with a motor's time constants, whereas each
+  /// separate run would have its own unknown start temperatures and heat.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> stretches() const {
     const double usual_s = usual_period_s(recording_.time_s);
     std::vector<std::pair<std::size_t, std::size_t>> all;
@@ -190,7 +190,7 @@ class Builder {
     return reasons;
   }
 
-  /// The first row from this one on of which everything is known, or `end`.
+  /// First row at or after `row` with all inputs known, or `end`.
   [[nodiscard]] std::size_t known_from(std::size_t row, std::size_t end) const {
     while (row < end && !rows_.is_known(row)) {
       ++row;
@@ -206,7 +206,7 @@ class Builder {
     return std::ranges::any_of(sensor_values_, [&](const auto* values) { return !std::isnan((*values)[row]); });
   }
 
-  /// Rows first … last, between which everything is known.
+  /// Appends rows first … last as one run; skips it if fewer than kLeastSamples remain.
   void take(std::size_t first, std::size_t last) {
     while (first < last && (!is_sampled(first) || !rows_.is_known(first))) {
       ++first;
@@ -232,7 +232,7 @@ class Builder {
       }
     };
     for (std::size_t row = first; row < last;) {
-      // What nobody logged is one thing from the row before to the row after.
+      // Consecutive rows with unknown inputs are one gap.
       const std::size_t next = known_from(row + 1, last);
       inputs.add(row, next, mean, ends);
       row = next;
@@ -257,7 +257,7 @@ class Builder {
     }
   }
 
-  /// One level per sensor, from all runs of the recording as they were merged.
+  /// Sets one noise level per sensor, estimated from the merged samples of all runs.
   void set_noise() {
     for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
       std::vector<double> all_C;
@@ -268,7 +268,7 @@ class Builder {
         all_C.insert(all_C.end(), column.begin(), column.end());
         runs.emplace_back(begin, all_C.size());
       }
-      // Far below any contact resistance's doing: a sensor that claims less repeats itself.
+      // No real sensor is better than this; a lower estimate means that the sensor repeats values.
       constexpr double kLeastNoise_K = 0.01;
       const NoiseLevel level = noise_level(all_C, runs);
       for (MeasuredRun& run : all_.runs) {

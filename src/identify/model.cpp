@@ -37,7 +37,7 @@ std::vector<double> Model::values_at(const Eigen::VectorXd& theta) const {
     const FreeParameter& which = free[static_cast<std::size_t>(i)];
     double& value = all[static_cast<std::size_t>(which.place)];
     value = value_of(i, theta[i]);
-    // e^(log 3) is a little more than 3: a bound of the search is one of the figure.
+    // exp(log(3)) is slightly more than 3: keep the value within its bounds despite rounding.
     if (value > which.high && theta[i] <= theta_of(i, which.high)) {
       value = which.high;
     } else if (value < which.low && theta[i] >= theta_of(i, which.low)) {

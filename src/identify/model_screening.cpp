@@ -10,14 +10,14 @@
 namespace heatsoak {
 namespace {
 
-/// Samples of a sensor, by their place in the run.
+/// Sequence of equal readings of one sensor; `samples` are indices in the run.
 struct EqualReadings {
   Eigen::Index sensor = 0;
   std::vector<Eigen::Index> samples;
 };
 
 std::vector<EqualReadings> equal_readings(const MeasuredRun& run, int least) {
-  // Means of equal numbers differ in their last digits.
+  // Averages of equal values may differ by rounding.
   constexpr double kEqual_K = 1e-9;
   std::vector<EqualReadings> all;
   for (Eigen::Index sensor = 0; sensor < run.measured_C.cols(); ++sensor) {
@@ -45,7 +45,7 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, int least) {
   return all;
 }
 
-/// What the sensors should have shown, n × s: what they would of the free run, moved as their nodes are.
+/// Expected readings (n × s, in °C): those of the free run, shifted by the smoother's correction of their nodes.
 Eigen::MatrixXd smoothed_C(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
   const Eigen::MatrixXd path_C = smoothed_path_C(run, flux, noise);
   Eigen::MatrixXd shown_C = run.shown_C;
@@ -59,13 +59,13 @@ Eigen::MatrixXd smoothed_C(const LinearisedRun& run, const LatentFlux& flux, con
 double log_normal_between(double low, double high) {
   constexpr double kLeast = 1e-300;
   const double root = std::sqrt(0.5);
-  // From the nearer tail, where the difference keeps its digits.
+  // Use the nearer tail to avoid cancellation.
   const double probability =
       low > 0.0 ? 0.5 * (std::erfc(low * root) - std::erfc(high * root)) : 0.5 * (std::erfc(-high * root) - std::erfc(-low * root));
   return std::log(std::max(kLeast, probability));
 }
 
-/// ln P of these readings to be one value, the prediction shifted as suits it best.
+/// ln P that all these readings are one value, maximised over a shift of the prediction with standard deviation `shift_sd_K`.
 double equal_nats(const EqualReadings& equal, const MeasuredRun& run, const Eigen::MatrixXd& shown_C, double shift_sd_K) {
   constexpr double kSmallest_K = 1e-3;
   constexpr int kShifts = 30;
@@ -92,7 +92,7 @@ void hide(const EqualReadings& equal, Eigen::Index sensors, double weight, Eigen
   }
 }
 
-/// Those that the filter did not expect and that the next reading does not confirm.
+/// Sets the weight of outliers to 0: samples beyond the gate of the filter that the next sample does not confirm.
 void hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, const ModelScreeningRules& rules,
                    SensorNoise& noise) {
   constexpr double kConfirms_share = 0.5;

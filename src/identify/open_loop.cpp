@@ -11,7 +11,7 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
   const Eigen::Index states = network.state_count();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kSensed_K = 5.0;
-  /// All of two or more sensors this close to the surroundings: everything rests, what is unseen too.
+  /// If two or more sensors are all this close to ambient, the motor is at ambient temperature, nodes without sensors included.
   constexpr double kRest_K = 2.0;
   const double ambient_C = run.at.front().ambient_C;
   RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
@@ -35,7 +35,7 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
   }
   for (Eigen::Index node = 0; node < states; ++node) {
     if (std::isnan(start.state_C[node])) {
-      // Unseen and perhaps just used: it may be as far from what is seen as that is from the surroundings.
+      // The motor may just have been used: an unmeasured node may differ from the sensors as much as these differ from ambient.
       start.state_C[node] = seen > 0 ? sum_C / seen : ambient_C;
       start.prior_sd_K[node] = (rests ? 1.0 : kSensed_K) + std::abs(start.state_C[node] - ambient_C);
     }
@@ -46,7 +46,7 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
 
 namespace {
 
-/// Five, where every node that stores heat is sensed; how hot another one is shows only after a while.
+/// Returns the number of samples that determine the start: five, or more if a state node has no sensor, since its temperature shows later.
 Eigen::Index deciding_samples(const Network& network, const MeasuredRun& run) {
   constexpr Eigen::Index kFew = 5;
   bool all_are_sensed = true;
@@ -62,7 +62,6 @@ Eigen::Index deciding_samples(const Network& network, const MeasuredRun& run) {
   return std::max<Eigen::Index>(kFew, std::ranges::upper_bound(run.time_s, until_s) - run.time_s.begin());
 }
 
-/// The first samples of a run.
 MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
   MeasuredRun part = run;
   part.time_s.resize(static_cast<std::size_t>(samples));
@@ -74,7 +73,7 @@ MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
 }  // namespace
 
 DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
-  // No model follows the first seconds better than this, and a node that is not sensed must not pay for it.
+  // No model predicts the first seconds better than this; with less noise, its error would distort unmeasured nodes.
   constexpr double kLeastNoise_K = 0.3;
   const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
   const LinearisedRun path = along({start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, beginning);

@@ -1,4 +1,4 @@
-// A model that runs free through measured inputs, and how far off it is.
+// Free-running (open-loop) simulation with measured inputs, its start temperatures and its error.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,29 +12,30 @@
 
 namespace heatsoak {
 
-/// Where a run starts; the standard deviation says how well its first samples tell.
+/// Start temperatures of a run, per state node. prior_sd_K states how well the first samples determine them.
 struct RunStart {
-  Eigen::VectorXd state_C;  ///< fitted
-  Eigen::VectorXd prior_C;  ///< first samples
+  Eigen::VectorXd state_C;  ///< fitted start
+  Eigen::VectorXd prior_C;  ///< from the first samples
   Eigen::VectorXd prior_sd_K;
 };
 
-/// Temperatures at the start that serve best without any fit: first samples, and where a node has no sensor, what its neighbour shows.
+/// Estimates the start temperatures without a fit: the first sample of each sensor; for other nodes the mean of the sensors, or the ambient
+/// temperature if there are none.
 RunStart start_of(const Network& network, const MeasuredRun& run);
 
-/// The model along a run from start temperatures.
+/// Simulates and linearises the model along a run from given start temperatures.
 using RunFrom = std::function<LinearisedRun(std::span<const double> start_C, const MeasuredRun& run)>;
 struct DecidedStart {
   Eigen::VectorXd state_C;
   Eigen::MatrixXd covariance_K2;
 };
-/// The start that the first five samples decide, or the first minute (at most a tenth of the run) where a node has no sensor, around what
-/// `start` has for probable.
+/// Estimates the start temperatures from the first five samples, or from the first minute (at most a tenth of the run) if a node has no
+/// sensor. The prior is that of `start`.
 DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
 Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
 
-/// What the sensors would show (n × sensors) if the model ran free from the run's start. The start is decided by the first five samples
-/// only, or the first minute (at most a tenth of the run) where a node has no sensor: a model that lacks heat must not hide it there.
+/// Returns the predicted readings (n × sensors, in °C) of a free-running simulation. The start temperatures come from decided_start(), that
+/// is, only from the first samples: otherwise they could compensate for heat that the model lacks.
 Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run);
 
 struct SignalError {
@@ -44,7 +45,7 @@ struct SignalError {
   Eigen::Index samples = 0;
 };
 
-/// Of all that a sensor showed; how far a model that says nothing is off.
+/// Standard deviation of all readings of a sensor in all runs. It is the RMS error of a constant prediction.
 double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal);
 
 }  // namespace heatsoak

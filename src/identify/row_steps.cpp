@@ -17,7 +17,7 @@ RowSteps row_steps(std::span<const double> time_s) {
     return {};
   }
   const double usual_s = middle_of(steps_s);
-  // Jitter of a logger with other things to do, and a third of the rows lost, are still regular.
+  // Timing jitter and the loss of a third of the rows still count as regular.
   constexpr double kJitter_ratio = 0.25;
   constexpr double kUsual_share = 0.6;
   constexpr double kMultiples_share = 0.9;

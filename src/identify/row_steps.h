@@ -1,4 +1,4 @@
-// How a log was sampled: whether a longer step between rows lacks rows, or is how that logger writes.
+// Sampling of a log: distinguishes missing rows from a logger that writes at irregular times.
 #pragma once
 
 #include <span>
@@ -6,8 +6,8 @@
 namespace heatsoak {
 
 struct RowSteps {
-  double usual_s = 0.0;  ///< median
-  /// Steps are the usual one, or a whole multiple of it where rows were lost; otherwise rows came when something changed.
+  double usual_s = 0.0;  ///< median time between rows
+  /// True if nearly all steps are integer multiples of the usual one (longer steps lack rows); false if rows were written on changes.
   bool is_regular = false;
 };
 

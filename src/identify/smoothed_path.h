@@ -1,4 +1,4 @@
-// Where the states of a run most probably were, given all readings and an unknown heat.
+// Most probable node temperatures of a run, given all readings and an unknown heat flux.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace heatsoak {
 
-/// States × samples in °C: the run's own path, corrected by the start temperatures and the unknown heat that are most probable.
+/// Returns the path (states × samples, in °C): the simulated path plus the effect of the most probable start temperatures and heat flux.
 Eigen::MatrixXd smoothed_path_C(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise);
 
 }  // namespace heatsoak

@@ -8,7 +8,7 @@
 namespace heatsoak {
 namespace {
 
-/// Of the usual step: a longer one lacks a row.
+/// Ratio to the usual step above which a row is missing.
 constexpr double kLostRow_ratio = 1.5;
 
 double square_A2(const OperatingPoint<double>& at) { return at.current_rms_A * at.current_rms_A; }
@@ -27,7 +27,7 @@ OperatingPoint<double> nowhere() {
   return none;
 }
 
-/// What is known of a row's cells in place of what is supposed.
+/// Replaces assumed quantities by the logged cells of a row, where these are not NaN.
 OperatingPoint<double> with_cells(OperatingPoint<double> supposed, const OperatingPoint<double>& cells) {
   const double unlogged_share = supposed.unlogged_speed_share;
   for_each_quantity([](double& value, const double& cell) { value = std::isnan(cell) ? value : cell; }, supposed, cells);
@@ -95,7 +95,7 @@ void StretchInputs::add_middle(const Gap& gap, const Point& cells, double middle
   mean.add(with_cells(second_half, cells), 0.5 * middle_s);
 }
 
-/// They change at any time, or more often than the rows on both sides show.
+/// Adds the uncertainty of a gap: the inputs may change at any time within it, or more often than the rows around it show.
 void StretchInputs::doubt(const Gap& gap, const Point& cells, double doubted_s, MeanInputs& mean) {
   const auto lost_rows = static_cast<std::size_t>(std::lround(gap.unknown_s / steps_.usual_s));
   const GapHabit& of_current = square_A2_.over(lost_rows);

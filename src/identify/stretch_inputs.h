@@ -1,4 +1,4 @@
-// Heat inputs of a stretch of a recording from row to row, and what is supposed where nobody logged them.
+// Heat inputs of a segment of a recording, from row to row, with assumptions and their uncertainty where rows or values are missing.
 #pragma once
 
 #include <functional>
@@ -12,32 +12,33 @@ namespace heatsoak {
 
 class StretchInputs {
  public:
-  /// Rows first … last; recording and rows outlive it.
+  /// Uses rows first … last. Recording and rows must outlive this object.
   StretchInputs(const Recording& recording, const LogRows& rows, std::size_t first, std::size_t last);
 
-  /// Told every row at which an interval may end.
+  /// Called for every row at which an interval may end.
   using Ends = std::function<void(std::size_t row)>;
-  /// From `row` to `next`, the next one whose inputs are known: they are its own to the row behind it, or for a usual step, at that end of
-  /// a longer one which its samples speak of; what they were in the rest nobody logged, but for the cells that are there.
-  /// Rows whose heat is known but for what the speed brings stay rows of their own.
+  /// Adds the inputs from `row` to `next`, the next row with known inputs. The inputs of `row` hold until the row after it, or for one
+  /// usual step if rows are missing there (for logs of the previous interval, at the end of that step). The rest is unknown: it gets the
+  /// values before and after the gap in equal parts, replaced by single cells that were logged, and an uncertainty. Rows that lack only the
+  /// speed are not merged into the gap.
   void add(std::size_t row, std::size_t next, MeanInputs& mean, const Ends& ends);
 
  private:
   using Point = OperatingPoint<double>;
-  /// Between two rows whose inputs are known.
+  /// Gap between two rows with known inputs.
   struct Gap {
     std::size_t row, next;
-    bool lacks_rows;  ///< right behind `row`
-    double own_s;     ///< to the row behind
+    bool lacks_rows;  ///< rows are missing directly after `row`
+    double own_s;     ///< time from `row` to the row after it
     double unknown_s;
     Point before, after;
   };
   void add_gap(const Gap& gap, MeanInputs& mean, const Ends& ends);
   void add_middle(const Gap& gap, const Point& cells, double middle_s, MeanInputs& mean) const;
   void doubt(const Gap& gap, const Point& cells, double doubted_s, MeanInputs& mean);
-  /// What all rows of a gap hold; NaN where one of them does not.
+  /// Quantities that every row of a gap has; NaN for those that at least one row lacks.
   [[nodiscard]] Point always_known(const Gap& gap) const;
-  /// A quantity that is not needed and not known becomes 0, so that means stay numbers.
+  /// Operating point of a row with 0 for unknown quantities (the model does not need them), so that means are not NaN.
   [[nodiscard]] Point filled(std::size_t row) const;
 
   const Recording& recording_;

@@ -13,12 +13,12 @@
 namespace heatsoak {
 namespace {
 
-/// An input whose range matters, and how far beyond it a forecast still holds.
+/// Input whose range limits the validity of a forecast.
 struct RangedInput {
   std::string_view channel;
   std::string_view words;
   std::string_view unit;
-  bool is_size = false;  ///< of either sign: the size counts, and 20 % more than the largest is within
+  bool is_size = false;  ///< true: the magnitude counts, and up to 20 % above the largest is in range
 };
 constexpr std::array kInputs{RangedInput{"ambient_C", "an ambient temperature", "°C"},
                              RangedInput{"speed_rad_per_s", "a speed", "rad/s", true}, RangedInput{"current_A", "a current", "A", true}};

@@ -1,4 +1,4 @@
-// Conditions and ranges of the runs that a model was fitted to, and what a log has outside of them.
+// Conditions and input ranges of the runs that a model was fitted to, and a check whether a log is outside them.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace heatsoak {
 
-/// Adds the conditions, ambient temperatures, speeds and currents of the recordings. Percentiles 1 and 99 stand for a range, so that
-/// single wild samples do not widen it.
+/// Adds the conditions, ambient temperatures, speeds and currents of the recordings to `range`. The limits are the 1st and 99th percentile,
+/// so that single outliers do not widen the range.
 void widen(TrainingRange& range, std::span<const Recording> recordings);
 
-/// One sentence for each condition of the recording that no fitted run had, and for each input that leaves the range of the fitted runs.
-/// Empty where the model file records nothing.
+/// Returns one sentence for each condition of the recording that no fitted run had, and for each input outside the range of the fitted
+/// runs. Empty if `range` is empty.
 std::vector<std::string> outside(const TrainingRange& range, const Recording& recording);
 
 }  // namespace heatsoak

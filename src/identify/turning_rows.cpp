@@ -6,10 +6,11 @@
 namespace heatsoak {
 namespace {
 
-/// How near a row's ends are to the neighbours' means. Ramps shorter than a row between pauses of random length have no bias with it.
+/// Weight of the neighbours' means in the speed at the ends of a row. This value gives no bias for ramps shorter than a row that are
+/// separated by pauses of random length.
 constexpr double kTowardsNeighbour_share = 0.85;
 
-/// Of |ω| where ω goes straight from one value to the other.
+/// Mean of |ω| for a linear change of ω.
 double mean_magnitude(double from, double to) {
   return from * to < 0.0 ? (from * from + to * to) / (2.0 * (std::abs(from) + std::abs(to))) : 0.5 * std::abs(from + to);
 }
@@ -20,7 +21,7 @@ struct Neighbours {
   double before_rad_per_s, own_rad_per_s, behind_rad_per_s;
 };
 
-/// Those of an interval that is one row of the log.
+/// Calls `visit` for each interval that is one row of the log and in which the motor may reverse.
 template <class Visit>
 void each_turning(const MeasuredRun& run, const Visit& visit) {
   for (std::size_t k = 1; k + 1 < run.at.size(); ++k) {

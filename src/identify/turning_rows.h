@@ -1,4 +1,4 @@
-// Rows in which a motor turns round: the mean of a speed with its sign is less than what bearings and iron feel.
+// Rows in which a motor reverses. There, the mean of the signed speed is smaller than the mean magnitude, which determines the losses.
 #pragma once
 
 #include <string_view>
@@ -7,11 +7,11 @@
 
 namespace heatsoak {
 
-/// Some row's speed may hide that the motor turned round in it: it or a neighbour turns the other way.
+/// True if the motor may reverse within a row: the speeds of the row and its two neighbours have both signs.
 bool may_turn_within_rows(const MeasuredRun& run);
 
-/// The run as it was if the speed of such rows went straight from near the row before through their mean to near the row behind, where
-/// the log as it stands says that it was held. Rows that are means of finer ones know better and stay.
+/// Returns the run with the mean and RMS speed of such rows recomputed for a speed that varies linearly from the row before to the row
+/// after, instead of a constant speed. Rows that are means of finer rows are not changed.
 MeasuredRun turning_within_rows(MeasuredRun run);
 
 inline constexpr std::string_view kTurningRowsTold =

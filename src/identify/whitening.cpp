@@ -8,11 +8,11 @@
 namespace heatsoak {
 namespace {
 
-/// Most nodes that a network has, each with a flux and a sensor.
+/// Largest filter state: every state node of the largest network has a flux and a drifting sensor.
 constexpr int kMostSize = 3 * (Network::kMostNodes - 1);
 constexpr Eigen::Index kStrip = 8;
 
-/// How many temperatures, fluxes and slow errors of sensors a filter's state has, in this order.
+/// Layout of the filter's state: X temperatures, Q fluxes, W sensor drifts, in this order.
 template <int X, int Q, int W>
 struct Fixed {
   static constexpr int kMost = X + Q + W;
@@ -31,7 +31,7 @@ struct Counted {
   [[nodiscard]] Eigen::Index size() const { return x + q + w; }
 };
 
-/// Of a filter's state, no room asked for.
+/// Square matrix of the size of the filter's state; does not allocate memory on the heap.
 using SquareOfState = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostSize, kMostSize>;
 
 using ConstRowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
@@ -82,7 +82,7 @@ Whitening::Step Whitening::step_of(Eigen::Index interval) const {
           forget_ratio_[place], wanders_ ? wander_forget_ratio_[place] : 1.0};
 }
 
-/// F = [[Φ, Γ, 0], [0, ρ, 0], [0, 0, ρ']] of one interval.
+/// Sets the transition matrix of one interval, F = [[Φ, Γ, 0], [0, ρ, 0], [0, 0, ρ']].
 template <class Matrix>
 void Whitening::set_transition(Eigen::Index interval, Matrix& transition) const {
   const Eigen::Index x = run_->states;
@@ -95,13 +95,13 @@ void Whitening::set_transition(Eigen::Index interval, Matrix& transition) const 
   transition.diagonal().tail(size_ - x - q).setConstant(step.wander_forget_ratio);
 }
 
-/// F·P·Fᵀ, most of F being zero. `moved` is room for F·P.
+/// Replaces the covariance P by F·P·Fᵀ; exploits that most of F is zero. `moved` is workspace for F·P.
 template <class Layout, class Matrix>
 void Whitening::predict(const Layout& layout, const Step& step, Matrix& covariance, Matrix& moved) {
   const Eigen::Index x = layout.states();
   const Eigen::Index q = layout.fluxes();
   const auto forget_ratio = [&](Eigen::Index i) { return i < x + q ? step.forget_ratio : step.wander_forget_ratio; };
-  // Row after row, which the compiler does several columns at once.
+  // Row by row, so that the compiler can vectorise over the columns.
   const auto add_row = [&](Eigen::Index i, double share, Eigen::Index j) {
     for (Eigen::Index c = 0; c < layout.size(); ++c) {
       moved(i, c) += share * covariance(j, c);
@@ -172,7 +172,7 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
   Matrix moved = Matrix::Zero();
   std::array<double, Layout::kMost> learnt_K{};
   add_unknown(-1, covariance);
-  // Logarithms take time: one for many factors, as long as their product can be represented.
+  // Logarithms are slow: take one of the product of many factors, as long as it neither overflows nor underflows.
   constexpr double kSmall = 1e-100;
   double determinant = 1.0;
   for (Eigen::Index k = 0; k < run_->samples(); ++k) {
@@ -219,7 +219,7 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
   log_determinant_ += std::log(determinant);
 }
 
-/// `kStrip` columns.
+/// Whitens `kStrip` columns in place.
 template <class Layout>
 void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns) const {
   using Row = Eigen::Array<double, 1, kStrip>;
@@ -272,7 +272,7 @@ void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns
 
 void Whitening::apply(Eigen::Ref<Columns> columns) const {
   const auto strip_by_strip = [this](Eigen::Ref<Columns> strip) { for_layout([&](const auto& layout) { apply_to_strip(layout, strip); }); };
-  // Eight columns at a time: their filter state stays in the innermost cache while the run goes by.
+  // Eight columns at a time, so that their filter states stay in the first-level cache.
   for (Eigen::Index first = 0; first < columns.cols(); first += kStrip) {
     if (first + kStrip <= columns.cols()) {
       strip_by_strip(columns.middleCols(first, kStrip));
@@ -345,7 +345,7 @@ FluxEstimate Whitening::smoothed_flux(const Eigen::VectorXd& residual_K) const {
   }
   Eigen::MatrixXd sd_W(q, samples);
   Eigen::VectorXd adjoint = Eigen::VectorXd::Zero(size_);
-  Dynamic information = Dynamic::Zero(size_, size_);  // about the state, from this sample on
+  Dynamic information = Dynamic::Zero(size_, size_);  // information about the state from this sample to the last
   for (Eigen::Index k = samples - 1; k >= 0; --k) {
     for (Eigen::Index sensor = run_->sensors() - 1; sensor >= 0; --sensor) {
       const Eigen::Index row = k * run_->sensors() + sensor;

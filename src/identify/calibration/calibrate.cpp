@@ -26,7 +26,7 @@
 namespace heatsoak {
 namespace {
 
-/// Beyond this standard deviation of a logarithm the parabola at the optimum is no picture of the likelihood.
+/// Largest standard deviation of a logarithm for which the curvature at the optimum describes the likelihood well.
 constexpr double kCurvatureHolds_sd = 0.1;
 
 bool has_speed(const Recording& recording) {
@@ -34,8 +34,8 @@ bool has_speed(const Recording& recording) {
   return std::ranges::find(signals, Signal::speed) != signals.end();
 }
 
-/// Where heat is reckoned from the current, a log that has a speed must tell it in every row that something is learned from; one that is
-/// held out may have none.
+/// Reads the runs of all recordings. If the heat follows from the current, a log with a speed column needs a speed in every row; a log
+/// without that column is accepted.
 std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const MeasuredRunOptions& options,
                                  std::vector<std::string>& notes) {
   std::vector<MeasuredRun> all;
@@ -107,7 +107,7 @@ class Calibrating {
   }
 
  private:
-  /// Of the whole runs, and what of it is written.
+  /// Runs the forecast fit to whole runs, and writes its parameters if asked for.
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
@@ -115,7 +115,7 @@ class Calibrating {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
-      // The forecast fit has no unknown heat: what the runs do not tell beside such heat, they do not tell.
+      // The forecast fit assumes no unknown heat; parameters that are not identifiable beside such heat stay so.
       const std::vector<CalibratedFigure> before = std::exchange(all_.figures, {});
       figures();
       keep_untold(before, all_.figures);
@@ -123,7 +123,7 @@ class Calibrating {
     std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
   }
 
-  /// Of the file and of what is written, over the fitted runs.
+  /// Errors of the original and of the written file over the fitted runs.
   std::vector<ErrorBeforeAfter> errors() {
     const ForecastModel base = setup_.model();
     const ForecastModel model = all_.is_forecast_written ? all_.forecast->model() : base;
@@ -136,7 +136,7 @@ class Calibrating {
     return errors_over_runs(all_.fitted_before, all_.fitted_after);
   }
 
-  /// Nothing of the calibration depends on it.
+  /// Predicts the hold-out runs. The calibration does not depend on the result.
   void score_holdout(const Motor& motor) {
     if (holdout_.empty()) {
       return;
@@ -149,7 +149,7 @@ class Calibrating {
     tell_what_got_worse("the runs held out", all_.holdout_error);
   }
 
-  /// Where the motor may have turned round within rows: once more from there with the speed that it then had.
+  /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
   void settle_turning_rows() {
     if (std::ranges::none_of(all_.runs, may_turn_within_rows)) {
       return;
@@ -170,10 +170,10 @@ class Calibrating {
     all_.notes.emplace_back(kTurningRowsTold);
   }
 
-  /// What the fit says about itself.
+  /// Adds warnings about the fit to the notes.
   void warn() {
     const Fit& fit = all_.fit;
-    // What is known to be there is said elsewhere.
+    // Unknown heat that is certain to exist is reported elsewhere.
     double most_W = 0.0;
     const std::vector<double>& certain_W = all_.motor_model.model.least_flux_W;
     for (std::size_t i = 0; i < fit.flux.rms_W.size(); ++i) {
@@ -213,7 +213,7 @@ class Calibrating {
     }
   }
 
-  /// What the load did inside a row is not in its mean: where it drifted or jumped, τ_w seems smaller by up to h²/(12·τ_w²) of it.
+  /// Adds the uncertainty from load changes within a row (length h): they make τ_w appear smaller by a fraction of up to h²/(12·τ_w²).
   void widen_by_rows() {
     double time_s = 0.0;
     double cubes_s3 = 0.0;
@@ -231,7 +231,7 @@ class Calibrating {
     all_.fit.covariance += sd_share * sd_share * capacity * capacity.transpose();
   }
 
-  /// All heat wrong by one factor leaves temperatures as they are and moves every figure alike.
+  /// Adds a note if all parameters moved by one common factor, which is the effect of wrong heat: it changes no temperature.
   void tell_common_factor() {
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
@@ -243,7 +243,7 @@ class Calibrating {
       least = std::min(least, moved);
       most = std::max(most, moved);
     }
-    // Plainly more than what was known before lets expect.
+    // Clearly more than the prior makes plausible.
     const auto across = std::ranges::find(all_.motor_model.figures, "thermal_resistance_winding_stator", &FittedFigure::name);
     const double plain = std::max(0.22, 1.5 * across->prior_sd);
     if (least > plain || most < -plain) {
@@ -257,7 +257,7 @@ class Calibrating {
     }
   }
 
-  /// What V = R·I + K·ω makes of the resistance, where the logs hold all three and follow it.
+  /// Adds a note if V = R·I + K·ω gives another terminal resistance than the file. Needs logs with all three signals that follow this law.
   void tell_terminal_resistance(const Motor& motor) {
     Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
     Eigen::Vector2d with_voltage = Eigen::Vector2d::Zero();
@@ -282,7 +282,7 @@ class Calibrating {
     }
     const Eigen::Vector2d found = products.completeOrthogonalDecomposition().solve(with_voltage);
     const double stated_ohm = motor.nominal.terminal_resistance_ohm;
-    // Means over rows in which the load jumps do not follow the law: what it leaves must be small beside the voltage of the current.
+    // Means over rows with load steps do not follow the law, so require residuals that are small against R·I.
     constexpr double kFollows_share = 0.02;
     if (!(squares_V2 - found.dot(with_voltage) < kFollows_share * stated_ohm * stated_ohm * products(0, 0)) || !(found[0] > 0.0)) {
       return;
@@ -297,7 +297,8 @@ class Calibrating {
     }
   }
 
-  /// Figures that are right for what follows the heat at once may foretell a whole run worse, where the model lacks something.
+  /// Lists signals that are predicted worse than before: with an incomplete model, parameters of the fast response may predict whole runs
+  /// worse.
   void tell_what_got_worse(const char* runs, const std::vector<ErrorBeforeAfter>& errors) {
     for (const ErrorBeforeAfter& each : errors) {
       constexpr double kWorse_ratio = 1.1;
@@ -345,7 +346,7 @@ class Calibrating {
       if (fit.free_run_error_K == 0.0 && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
           each.exponents.cwiseAbs().sum() == 1.0) {
         const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only), options_.fit.threads);
-        // The profile holds the flux; what the flux leaves open widens it as it widens the curvature.
+        // The profile keeps the flux fixed; widen it for the uncertainty of the flux by the same factor as the curvature.
         const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
         below = (fit.theta[only] - low) * std::max(1.0, widened);
         above = (high - fit.theta[only]) * std::max(1.0, widened);
@@ -353,7 +354,7 @@ class Calibrating {
       }
       figure.low = figure.value * std::exp(-below);
       figure.high = figure.value * std::exp(above);
-      // Without heat the watts are those of the file, however well the time constants are told.
+      // Without heat in the runs, values in watts rest on the file, however well the data determine the time constants.
       const bool has_watts = each.origin == Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
       figure.is_identifiable = has_watts && is_told(sd, each);
       all_.figures.push_back(std::move(figure));
@@ -376,14 +377,14 @@ class Calibrating {
     for (const OpenDirection& each : all_.open) {
       why += fmt::format("\n  open: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
     }
-    // A current in kiloamperes, say, looks like none at all.
+    // A current in the wrong unit, such as kiloamperes, looks like no current.
     if (std::ranges::any_of(recordings_, [](const Recording& each) { return heat_input_of(each) != nullptr; })) {
       why += "\n  or is a heat input in another unit (kiloamperes, kilowatts)? `heatsoak log inspect` shows each channel";
     }
     throw Failure(ExitCode::cannot_answer, why);
   }
 
-  /// Figures of a model that does not follow the runs mean nothing, however narrow their intervals.
+  /// Throws Failure (cannot_answer) if the model does not follow the runs: its parameters would mean nothing.
   void refuse_where_nothing_is_explained() const {
     constexpr double kFar_K = 20.0;
     constexpr double kFar_share = 0.4;
@@ -453,7 +454,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   add_extensions(calibration, kSource, result);
   MotorFit& fit = result.fit.emplace();
   fit.motor = motor.id;
-  // What the file knew before, this one knows too.
+  // The runs of earlier fits still count.
   fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
   fit.training = calibration.training;
@@ -471,7 +472,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
       figure->source = kSource;
       figure->derivation = "fit to measured temperatures";
     } else {
-      // Moved along with the others, but what it is worth is still what was known before.
+      // The value changed together with the others, but its origin is still the earlier one.
       figure->source += figure->source.empty() ? kSource : fmt::format(", {}", kSource);
       figure->derivation +=
           fmt::format("{}fit to measured temperatures, which do not tell it alone", figure->derivation.empty() ? "" : "; ");

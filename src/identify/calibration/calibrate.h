@@ -1,4 +1,4 @@
-// The figures of a motor from measured runs: values, how sure they are, what the data cannot tell and what would.
+// Calibrates a motor from measured runs: parameter values with intervals, what the data do not determine, and which experiment would.
 #pragma once
 
 #include <filesystem>
@@ -19,30 +19,30 @@ namespace heatsoak {
 
 struct CalibrationOptions {
   FitOptions fit;
-  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
-  /// The parameters are those of the fit to whole runs, with which left-out pieces are predicted best; else those of the innovations fit.
+  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< ambient temperature of logs without one
+  /// true: writes the parameters of the forecast fit, which predicts left-out pieces best; false: those of the innovations fit.
   bool is_for_forecasts = false;
 };
 
 struct CalibratedFigure {
-  std::string name;  ///< as in the motor file; heat capacities besides
+  std::string name;  ///< key in the motor file, or the name of a heat capacity
   std::string unit;
   bool is_of_file = true;
   double before = 0.0;
   double value = 0.0;
-  double low = 0.0;  ///< of the 95 % interval
+  double low = 0.0;  ///< limits of the 95 % interval
   double high = 0.0;
-  bool is_identifiable = false;  ///< the data, not only what was known before, tell it to a factor of two or better
-  bool by_profile = false;       ///< the interval is that of the profile likelihood, else of the curvature
+  bool is_identifiable = false;  ///< the data, not only the prior, determine it to a factor of two or better
+  bool by_profile = false;       ///< true: interval from the profile likelihood; false: from the curvature
 };
 
-/// A combination of parameters that the data leave open.
+/// Combination of parameters that the data do not determine.
 struct OpenDirection {
-  std::string what;             ///< in words, with the parameters
-  std::string why;              ///< in words
-  std::string experiment;       ///< the cheapest that would settle it
-  double experiment_min = 0.0;  ///< rough time of work that it takes, minutes
-  double left_sd = 0.0;         ///< how open: of the logarithms together
+  std::string what;             ///< names of the parameters, in words
+  std::string why;              ///< reason, in words
+  std::string experiment;       ///< cheapest experiment that would determine it
+  double experiment_min = 0.0;  ///< approximate working time in minutes
+  double left_sd = 0.0;         ///< remaining standard deviation along the direction, in logarithms
 };
 
 struct Calibration {
@@ -50,30 +50,31 @@ struct Calibration {
   MotorModel motor_model;
   std::vector<MeasuredRun> runs;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
-  TrainingRange training;           ///< of them
+  TrainingRange training;           ///< their conditions and input ranges
   std::vector<CalibratedFigure> figures;
-  Eigen::MatrixXd correlation;  ///< of the logarithms of the figures of the file, in their order
+  Eigen::MatrixXd correlation;  ///< of the logarithms of the motor file's parameters, in the order of `figures`
   std::vector<OpenDirection> open;
-  std::string next_experiment;  ///< empty where nothing is open
+  std::string next_experiment;  ///< empty if nothing is open
   std::vector<ErrorBeforeAfter> fit_error;
-  std::optional<Forecast> forecast;                       ///< fit to whole runs, its rivals and its band
-  bool is_forecast_written = false;                       ///< its parameters are those above; else the innovations fit's
-  std::vector<MotorEffect> effects;                       ///< of the written file
-  std::vector<PredictedRun> fitted_before, fitted_after;  ///< the fitted runs by the file and by what is written; their bands count nothing
-  /// Predictions of the hold-out runs by the file and by what is written, made after everything is decided.
+  std::optional<Forecast> forecast;  ///< forecast fit, its rivals and its error band
+  bool is_forecast_written = false;  ///< true: `figures` are from the forecast fit; false: from the innovations fit
+  std::vector<MotorEffect> effects;  ///< effects of the written file
+  std::vector<PredictedRun> fitted_before,
+      fitted_after;  ///< fitted runs, predicted by the original and by the written file; bands not valid
+  /// Hold-out runs, predicted by the original and by the written file. Computed last, so that they influence nothing.
   std::vector<PredictedRun> holdout_before, holdout_after;
-  std::vector<ErrorBeforeAfter> holdout_error;  ///< per signal, of the hold-out run that it is worst in after the fit
-  std::vector<std::string> worse;               ///< signals that the fit foretells worse than the file it began with, in sentences
-  std::vector<std::string> notes;               ///< what was taken for granted or left out, in sentences
+  std::vector<ErrorBeforeAfter> holdout_error;  ///< per signal: errors in the hold-out run with the largest error after the fit
+  std::vector<std::string> worse;               ///< sentences: signals that the fit predicts worse than the original file
+  std::vector<std::string> notes;               ///< sentences: assumptions and omitted data
 };
 
-/// Of logs that admit() (identify/admission.h) let pass. Throws Failure: bad_input where the logs lack what is needed, cannot_answer where
-/// nothing can be learned from them (with the reason) or no fit succeeds.
+/// Calibrates the motor. The logs must have passed admit() (identify/admission.h). Throws Failure: bad_input if the logs lack a needed
+/// column; cannot_answer (with the reason) if the logs determine nothing or no fit succeeds.
 Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
                       const CalibrationOptions& options);
 
-/// The motor with what was learned: figures that the data tell carry the origin "measured" and the interval, the file's
-/// other figures stay. `source_id` names the runs among the file's sources.
+/// Returns the motor with the calibrated values and intervals. Identifiable parameters get the origin "measured"; the others keep their
+/// origin. The source "calibration" names the runs.
 Motor calibrated_motor(const Motor& motor, const Calibration& calibration);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// Errors of two predictions of the same runs side by side: by the file, and by what a fit made of it.
+// Compares the errors of two predictions of the same runs: by the original file and by the fitted one.
 #pragma once
 
 #include <string>
@@ -15,10 +15,10 @@ struct ErrorBeforeAfter {
   SignalError after;
 };
 
-/// Per signal, pooled over the runs: for runs that one fit was made to.
+/// Returns the errors per signal, pooled over all runs. For the runs of one fit.
 std::vector<ErrorBeforeAfter> errors_over_runs(const std::vector<PredictedRun>& before, const std::vector<PredictedRun>& after);
 
-/// Per signal, of the run in which it is worst after the fit: runs under different conditions are not pooled.
+/// Returns the errors per signal in the run with the largest error after the fit. For hold-out runs: different conditions are not pooled.
 std::vector<ErrorBeforeAfter> worst_errors(const std::vector<PredictedRun>& before, const std::vector<PredictedRun>& after);
 
 }  // namespace heatsoak

@@ -14,7 +14,7 @@
 namespace heatsoak {
 namespace {
 
-/// Data that halve the variance at least have told something.
+/// A direction is open if the data leave more than this fraction of its prior variance.
 constexpr double kToldShare = 0.5;
 
 struct Look {
@@ -39,7 +39,7 @@ Look look(const MotorModel& motor, std::span<const MeasuredRun> runs) {
   return seen;
 }
 
-/// Places of free parameters by role; −1 where not free.
+/// Indices of the free parameters by role; −1 if not free.
 struct Roles {
   int winding_capacity = -1;
   int winding_stator = -1;
@@ -66,7 +66,7 @@ Roles roles_of(const Model& model) {
           std::max(find("no_load_loss.drag_torque"), find(kDragAtStator))};
 }
 
-/// Why something is open, and the cheapest experiment that would settle it.
+/// Reason why something is open, and the cheapest experiment that would determine it.
 struct Answer {
   std::string why;
   std::string experiment;
@@ -117,7 +117,8 @@ OpenDirection open_direction(std::string what, Answer answer) {
 
 double component(const Eigen::VectorXd& direction, int place) { return place >= 0 ? direction[place] : 0.0; }
 
-/// All heat capacities up, all thermal resistances down, all heat up by one factor: no temperature changes.
+/// Returns |cos| of the angle between `direction` and the scale direction: one factor on all heat and heat capacities, its inverse on all
+/// thermal resistances. Along the scale direction no temperature changes.
 double likeness_to_scale(const Eigen::VectorXd& direction, const Roles& roles) {
   Eigen::VectorXd scale = Eigen::VectorXd::Zero(direction.size());
   for (const auto& [place, sign] :
@@ -153,7 +154,7 @@ Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, cons
   const double in_winding = std::hypot(component(direction, roles.winding_capacity), component(direction, roles.winding_stator));
   const double in_stator = std::hypot(component(direction, roles.stator_capacity), component(direction, roles.stator_ambient));
   constexpr double kMostly = 0.7;
-  // Capacities and resistances against each other at the same time constants: what is missing is heat.
+  // If capacities and resistances change oppositely, at constant time constants, the runs lack heat.
   constexpr double kSame = 0.3;
   const double winding_moves = component(direction, roles.winding_capacity) + component(direction, roles.winding_stator);
   const double stator_moves = component(direction, roles.stator_capacity) + component(direction, roles.stator_ambient);
@@ -174,7 +175,7 @@ bool is_of_stator(const MotorModel& motor, const FittedFigure& figure) {
   return component(figure.exponents, roles.stator_capacity) != 0.0 || component(figure.exponents, roles.stator_ambient) != 0.0;
 }
 
-/// Why a single figure is not told where no direction as a whole is open.
+/// Reason why a single parameter is not identifiable although no open direction contains it.
 Answer answer_to(const MotorModel& motor, const FittedFigure& figure, const Fit& fit, const Look& seen) {
   const Roles roles = roles_of(motor.model);
   const auto holds = [&](int place) { return component(figure.exponents, place) != 0.0; };
@@ -207,7 +208,8 @@ Answer answer_to(const MotorModel& motor, const FittedFigure& figure, const Fit&
   return not_excited();
 }
 
-/// Every figure that is flagged gets its reason, also where the directions that are open leave it alone.
+/// Adds a reason for every parameter that is not identifiable and that the open directions do not explain. `told` has these directions as
+/// columns.
 void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedFigure> figures,
                    const Eigen::MatrixXd& told, std::vector<OpenDirection>& open) {
   const bool has_unlogged_speed = !motor.nuisances.empty();
@@ -234,7 +236,7 @@ void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, st
 }  // namespace
 
 bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
-  // A current sensor that does not show 0 A where there is none heats nothing.
+  // The offset of a current sensor must not count as heat.
   constexpr double kNothing_K = 1.0;
   const auto value = [&](std::string_view name) {
     const auto parameters = motor.model.network.parameters();
@@ -243,7 +245,7 @@ bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
   const double across_K_per_W = value("winding_stator.thermal_resistance") + value("stator_ambient.thermal_resistance");
   const double slowest_s = across_K_per_W * value("winding.heat_capacity");
   const double by_current_ohm = motor.heat != HeatInput::input_power ? value("copper_loss.terminal_resistance") : 0.0;
-  // The winding by itself, all the way to the air: it warms by no more than that.
+  // Upper bound of the temperature rise: the winding alone, with the whole resistance to ambient.
   return std::ranges::any_of(runs, [&](const MeasuredRun& run) {
     double rise_K = 0.0;
     for (std::size_t k = 0; k < run.at.size() && rise_K < kNothing_K; ++k) {
@@ -271,7 +273,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
   const Eigen::MatrixXd known = motor.model.prior.precision.inverse();
   std::vector<Eigen::Index> asked;
   for (Eigen::Index i = 0; i < count; ++i) {
-    // What no run moves at all would mix at will with every other direction that is not told.
+    // A parameter without any sensitivity would mix arbitrarily with the other undetermined directions.
     constexpr double kNothing = 1e-9;
     const bool is_nuisance = std::ranges::find(motor.nuisances, static_cast<int>(i)) != motor.nuisances.end();
     if (is_nuisance) {
@@ -289,13 +291,13 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
   std::vector<OpenDirection> open;
   if (!motor.nuisances.empty()) {
     open.push_back(open_direction(std::string(kLossAtUnloggedSpeed), speed_unlogged()));
-    // Before anything else: what the other runs would tell hangs on it too.
+    // Rank this first, because the information in the other runs depends on it.
     open.back().left_sd = std::numeric_limits<double>::infinity();
   }
   Eigen::MatrixXd told(count, 0);
   for (Eigen::Index i = 0; i < solver.eigenvalues().size(); ++i) {
     const double information = std::max(0.0, solver.eigenvalues()[i]);
-    // By how much parameters may still move together: a fit before this one can have told what these runs do not.
+    // Remaining uncertainty along this direction. An earlier fit may have determined what these runs do not.
     Eigen::VectorXd left = Eigen::VectorXd::Zero(count);
     left(asked) = root * solver.eigenvectors().col(i) / std::sqrt(1.0 + information);
     constexpr double kWellKnown = 0.03;
@@ -312,7 +314,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
 }
 
 std::string next_experiment(std::span<const OpenDirection> open) {
-  // The cheapest that answers what weighs, not what is open by a little.
+  // Ignore directions that are open by much less than the most uncertain one.
   constexpr double kWeighs_share = 0.5;
   double most_sd = 0.0;
   for (const OpenDirection& each : open) {

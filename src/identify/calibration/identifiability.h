@@ -1,4 +1,4 @@
-// What the data leave open, in words, and the cheapest experiment that would settle it.
+// Identifiability: which parameter combinations the data do not determine, in words, and the cheapest experiment that would.
 #pragma once
 
 #include <span>
@@ -9,18 +9,18 @@
 
 namespace heatsoak {
 
-/// Whether any heat goes in that the logs tell of.
+/// Returns true if the logged heat inputs of any run can warm the winding by at least 1 K.
 bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs);
 
-/// Whether the figure changes with a common factor on all heat, as K/W and J/K do and time constants do not.
+/// Returns true if the parameter scales with a common factor on all heat. True for K/W and J/K, false for time constants.
 bool rests_on_watts(const MotorModel& motor, const FittedFigure& figure);
 
-/// Combinations of the parameters that the data tell worse than what was known before, and the figures that are not told for another
-/// reason; `figures` as the model has them.
+/// Returns the combinations of parameters that the data determine less well than the prior, and parameters that are not identifiable for
+/// another reason. `figures` must be in the order of motor.figures.
 std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
                                            std::span<const CalibratedFigure> figures);
 
-/// The cheapest that answers what is most open; empty where nothing is.
+/// Returns the cheapest experiment for the most uncertain directions; empty if nothing is open.
 std::string next_experiment(std::span<const OpenDirection> open);
 
 }  // namespace heatsoak

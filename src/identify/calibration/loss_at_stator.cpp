@@ -16,7 +16,7 @@ struct LossAtStator {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S drag_W = x.parameter(drag_torque) * x.at.speed_mean_rad_per_s;
-    // No more than there is: where less is lost than the data sheet says, the winding would be cooled.
+    // At most the total loss: otherwise, with less loss than in the data sheet, the winding would be cooled.
     heat.flow(winding, stator, drag_W - positive_part(drag_W - positive_part(x.at.input_power_W - x.at.shaft_power_W)));
   }
 };

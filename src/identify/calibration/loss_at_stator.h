@@ -1,4 +1,4 @@
-// Where lost power is measured as a whole: the part of it that arises at the stator.
+// Loss at the stator for models whose total loss is measured as input power minus shaft power.
 #pragma once
 
 #include <string_view>
@@ -7,10 +7,10 @@
 
 namespace heatsoak {
 
-/// Its drag torque, as a parameter of the network.
+/// Name of its drag torque among the network's parameters.
 inline constexpr std::string_view kDragAtStator = "loss_at_stator.drag_torque";
 
-/// Moves the no-load loss from the winding, where an input_power_loss has all of it, to the stator.
+/// Adds an effect that moves the no-load loss from the winding to the stator. An input_power_loss puts all loss into the winding.
 void add_loss_at_stator(Network& network, double drag_torque_Nm);
 
 }  // namespace heatsoak

@@ -18,8 +18,8 @@
 namespace heatsoak {
 namespace {
 
-/// Of the logarithm, where the file states no spread; and by how much a stated one is widened: sheets hold for the mounting on which
-/// they were measured, and the others' guesses for still less.
+/// Prior standard deviation of a logarithm by origin, if the file states no spread, and the factor that widens a stated spread. Data sheet
+/// values hold only for the mounting in which they were measured; estimates are less certain still.
 struct Trust {
   Origin origin;
   double unstated_sd;
@@ -28,8 +28,8 @@ struct Trust {
 constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, kSheet_sd, 1.5},
                             Trust{Origin::third_party, 0.5, 1.5}, Trust{Origin::derived, 0.5, 1.5}, Trust{Origin::estimated, 0.9, 2.0}};
 
-/// Mean of what motors are made of (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and how well a motor's mass tells its
-/// heat capacity: part of the mass hangs loosely on the stator.
+/// Mean specific heat of motor materials (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and the standard deviation of the
+/// logarithm of the heat capacity that follows from the mass: part of the mass is only weakly coupled to the stator.
 constexpr double kSpecificHeat_J_per_kg_K = 440.0;
 constexpr double kMassTells_sd = 0.25;
 
@@ -39,7 +39,7 @@ int place_of(const Network& network, std::string_view parameter) {
   return found == all.end() ? -1 : static_cast<int>(found - all.begin());
 }
 
-/// Of the input power, into the winding: what the effects of the file leave of it.
+/// Share of the input power that heats the winding: 1 minus the shares of the file's input_power_loss effects, at least 0.
 double implicit_power_share(const Motor& motor) {
   double share = 1.0;
   for (const MotorEffect& effect : motor.effects) {
@@ -61,10 +61,10 @@ class ModelBuilder {
     all_.heat = heat;
     all_.model.network = datasheet_network(motor, nominal_sample(motor));
     if (heat == HeatInput::input_power) {
-      // Beside it the copper loss is 0, for no log has a current, and the no-load loss is asked to stay silent.
+      // This is the only loss: the copper loss is 0 without a current, and the no-load loss is set to 0 below.
       all_.model.network.add_effect(std::string(kImplicitPowerLoss), *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
                                     std::vector<double>{implicit_power_share(motor)});
-      // A guessed no-load current tells of no loss.
+      // An estimated no-load current is too uncertain for this split.
       if (with_speed && motor.nominal.no_load_current_A > 0.0 &&
           motor.figures.find("no_load_current")->second.origin != Origin::estimated) {
         add_loss_at_stator(all_.model.network, drag_torque_Nm(motor.nominal));
@@ -104,7 +104,7 @@ class ModelBuilder {
   }
 
  private:
-  /// Returns the place among the free ones.
+  /// Frees a parameter within a factor of 30 of its value. Returns its index among the free ones.
   int free(const std::string& parameter) {
     const int place = place_of(all_.model.network, parameter);
     const double value = all_.model.values[static_cast<std::size_t>(place)];
@@ -120,7 +120,7 @@ class ModelBuilder {
     add(std::string(key), std::string(spec->spec.unit), figure, exponents);
   }
   void add(std::string name, std::string unit, const Figure& figure, const std::vector<std::pair<int, double>>& exponents) {
-    // What a fit of this motor found needs no doubt about mountings.
+    // A result of an earlier fit holds for this mounting, so it is not widened.
     const double prior_sd = is_of_fit(name) && figure.spread ? prior_sd_of_spread(figure) : prior_sd_of(figure);
     FittedFigure fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), figure.value, prior_sd, figure.origin};
     for (const auto& [place, exponent] : exponents) {
@@ -131,10 +131,10 @@ class ModelBuilder {
 
   void heat_of_current() {
     const Figure& resistance = motor_.figures.find("terminal_resistance")->second;
-    // Published or measured, a bare figure is as good as the scale gets; a guess is not.
+    // A published or measured resistance sets the scale of all heat and is held; an estimate is fitted.
     if (resistance.spread || resistance.origin == Origin::estimated) {
       figure("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
-      // A stated resistance does not depend on the mounting: its own spread is all that there is.
+      // A resistance does not depend on the mounting, so its spread is not widened.
       if (resistance.spread) {
         all_.figures.back().prior_sd = std::min(all_.figures.back().prior_sd, prior_sd_of_spread(resistance));
       }
@@ -172,7 +172,7 @@ class ModelBuilder {
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
         const ParameterSpec& spec = effect.type->parameters[i];
         const std::string name = fmt::format("{}.{}", effect.name, spec.key);
-        // Cooling under a condition of which nobody says that it holds is not in the network.
+        // An effect whose condition does not hold is not in the network.
         if (place_of(all_.model.network, name) < 0) {
           continue;
         }
@@ -207,7 +207,8 @@ class ModelBuilder {
     return motor_.fit && std::ranges::find(motor_.fit->figures, name) != motor_.fit->figures.end();
   }
 
-  /// Of the logarithms of the file's figures, which are known independently of each other but for those that one fit found together.
+  /// Prior precision of the logarithms of the file's parameters. They are independent, except for those from one earlier fit, which have
+  /// its correlation.
   [[nodiscard]] Eigen::MatrixXd precision_of_figures(Eigen::Index count) const {
     Eigen::VectorXd inverse_sd(count);
     Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
@@ -226,7 +227,7 @@ class ModelBuilder {
         correlation(i, j) = correlation(j, i) = a >= 0 && b >= 0 ? motor_.fit->correlation(a, b) : 0.0;
       }
     }
-    // The file has five digits: what lies below says nothing.
+    // The file has five digits, so smaller eigenvalues are rounding errors.
     constexpr double kRounding = 5e-5;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
     const Eigen::MatrixXd inverse =
@@ -234,7 +235,7 @@ class ModelBuilder {
     return inverse_sd.asDiagonal() * inverse * inverse_sd.asDiagonal();
   }
 
-  /// The figures' prior in terms of the model's parameters.
+  /// Converts the prior of the file's parameters to the parameters of the model.
   void set_prior(std::size_t file_figures, int winding, int stator) {
     Model& model = all_.model;
     const Eigen::Index count = model.free_count();
@@ -247,7 +248,7 @@ class ModelBuilder {
       exponents.row(static_cast<Eigen::Index>(i)) = all_.figures[i].exponents.transpose();
     }
     model.prior.precision = exponents.transpose() * precision_of_figures(exponents.rows()) * exponents;
-    // A fit has heard of the mass already.
+    // An earlier fit has already used the mass.
     if (const double mass_kg = motor_.nominal.mass_kg; !std::isnan(mass_kg) && !motor_.fit) {
       const double winding_J_per_K = std::exp(model.prior.mean[winding]);
       const double stator_J_per_K = std::exp(model.prior.mean[stator]);
@@ -277,7 +278,7 @@ class ModelBuilder {
 }  // namespace
 
 bool is_told(double sd_share, const FittedFigure& figure) {
-  // An interval of a factor of two to each side is no answer, and less than a third off the former uncertainty is no news.
+  // Not identifiable: an interval of a factor of two to each side, or less than 30 % reduction of the prior standard deviation.
   constexpr double kIdentifiable_sd = 0.35;
   constexpr double kNews_share = 0.7;
   return sd_share < kIdentifiable_sd && (figure.origin == Origin::measured || sd_share < kNews_share * figure.prior_sd);
@@ -288,7 +289,7 @@ double prior_sd_of(const Figure& figure) {
   if (!figure.spread || !(figure.spread->low > 0.0) || !(figure.spread->high > figure.spread->low)) {
     return trust->unstated_sd;
   }
-  // Both kinds of spread hold for some 95 %: ± 2 standard deviations.
+  // Both kinds of spread are taken as 95 % intervals, ±2 standard deviations.
   return trust->widening * 0.25 * std::log(figure.spread->high / figure.spread->low);
 }
 
@@ -299,12 +300,12 @@ static ShaftTorque shaft_torque_of(const Motor& motor) {
 }
 
 MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat) {
-  // However short the sheet says that the time constant is.
+  // Limits of the step, whatever time constant the data sheet states.
   constexpr double kShortest_s = 0.05;
   constexpr double kLongest_s = 2.0;
   MeasuredRunOptions how;
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
-  // The input power holds the copper loss: a current from the torque would heat the winding a second time.
+  // The input power contains the copper loss; a current from the torque would count it twice.
   if (heat != HeatInput::input_power) {
     how.torque = shaft_torque_of(motor);
   }

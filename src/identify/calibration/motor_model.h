@@ -1,4 +1,4 @@
-// From a motor's file and what its logs can tell to a model that can be fitted, and back to figures.
+// Builds a model that can be fitted from a motor file and the signals of its logs, and maps its parameters to those of the file.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,31 +13,32 @@
 
 namespace heatsoak {
 
-/// Effect with the loss at a speed that no log tells, where it is open.
+/// Name of the effect with the unknown loss of a motor whose speed was not logged.
 inline constexpr std::string_view kLossAtUnloggedSpeed = "loss_at_unlogged_speed";
 
-/// Effect that takes the input power of a log into the winding, as far as no effect of the file does.
+/// Name of the effect that puts the logged input power into the winding, less the shares of the file's own effects.
 inline constexpr std::string_view kImplicitPowerLoss = "input_power_loss";
 
-/// How well a data sheet's bare figure is known: standard deviation of its logarithm.
+/// Prior standard deviation of the logarithm of a data sheet value without a stated spread.
 inline constexpr double kSheet_sd = 0.4;
 
-/// What the heat of a model is computed from. `power_balance`: copper loss by current and resistance, all other loss as input power less
-/// shaft power less copper loss, by the motor's effect remaining_loss; its no-load loss is then 0.
+/// Signal from which the heat of a model is computed. `power_balance`: copper loss from current and resistance; all other loss is input
+/// power − shaft power − copper loss, by the motor's effect remaining_loss, and the no-load loss is 0.
 enum class HeatInput { current, input_power, power_balance };
 
-/// A figure of the file, or a heat capacity made of two of them: its logarithm is linear in θ.
+/// Parameter of the motor file, or a heat capacity computed from two of them. Its logarithm is linear in θ.
 struct FittedFigure {
-  std::string name;  ///< as in the file: "thermal_time_constant_winding", "effects.fan.conductance"
+  std::string name;  ///< key in the file, for example "thermal_time_constant_winding" or "effects.fan.conductance"
   std::string unit;
-  bool is_of_file = true;     ///< false: a heat capacity, which files give as time constants
-  Eigen::VectorXd exponents;  ///< figure = Π parameter^exponent · constant
-  double before = 0.0;        ///< value of the file
-  double prior_sd = 0.0;      ///< of the logarithm, by spread and origin
+  bool is_of_file = true;     ///< false: a heat capacity; files contain time constants instead
+  Eigen::VectorXd exponents;  ///< value = constant · Π parameter^exponent
+  double before = 0.0;        ///< value in the file
+  double prior_sd = 0.0;      ///< of the logarithm, from spread and origin
   Origin origin = Origin::estimated;
 };
 
-/// Data, not only what was known before, tell the figure to a factor of two or better; the standard deviation is of its logarithm.
+/// Returns true if the data, not only the prior, determine the parameter to a factor of two or better. `sd_share` is the standard deviation
+/// of its logarithm.
 bool is_told(double sd_share, const FittedFigure& figure);
 
 struct MotorModel {
@@ -45,35 +46,35 @@ struct MotorModel {
   HeatInput heat = HeatInput::current;
   std::vector<Signal> needed;
   std::vector<FittedFigure> figures;
-  std::vector<int> nuisances;     ///< free parameters that are no figure of the motor
-  std::vector<std::string> held;  ///< what was not fitted and why, in sentences
+  std::vector<int> nuisances;     ///< indices of free parameters that are not parameters of the motor
+  std::vector<std::string> held;  ///< sentences: parameters that are not fitted, and why
 };
 
-/// How logs of the motor are read, but for what its model needs of them and the air. Rows are merged up to a tenth of the winding's time
-/// constant, no finer: what real windings do within less no network of two bodies follows. Where a log has no torque, torque constant and
-/// no-load current tell it, except where the input power is the heat: that has the copper loss in it. Sensors have the faults that the file
-/// states.
+/// Returns the options for reading logs of the motor; the caller sets `needed` and `ambient_C`. Rows are merged up to a tenth of the
+/// winding's time constant (0.05 to 2 s), because a network of two bodies does not describe faster changes of a real winding. A missing
+/// torque follows from torque constant and no-load current, except if the input power is the heat, which contains the copper loss. Sensors
+/// have the faults stated in the file.
 MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat);
 
-/// What is said of the file's faults of sensors, in sentences: they are taken as stated.
+/// Returns sentences about the sensor faults stated in the file, which are not fitted.
 std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);
 
-/// What all of the recordings can drive: the copper loss where each has a current, else the input power, else the copper loss of the
-/// current that `torque` makes of their torque. Throws Failure (bad_input) where they have none of these.
+/// Returns the heat input that all recordings have: current (copper loss), else input power, else a current computed from the torque with
+/// `torque`. Throws Failure (bad_input) if they have none of these.
 HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque = {});
 
-/// Whether the file takes its losses from a measured power balance: it has a remaining_loss.
+/// Returns true if the motor has a remaining_loss effect, that is, takes its losses from a measured power balance.
 bool has_remaining_loss(const Motor& motor);
 
-/// As heat_input_for(), but the power balance where all recordings have current, input power, torque and speed, and the motor either has
-/// a remaining_loss or, where `may_add_remaining_loss`, no effects and no fit that stand for its losses already.
+/// Same as heat_input_for(), but prefers the power balance if all recordings have current, input power, torque and speed. The motor must
+/// then have a remaining_loss, or (with `may_add_remaining_loss`) no effects and no fit that already describe its losses.
 HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss);
 
-/// `with_speed`: all logs have a speed, so that the no-load loss can be told.
+/// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable.
 MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);
 
-/// Standard deviation of a figure's logarithm before any data: by its spread where it has one, widened by how far its origin
-/// is to be trusted for this motor in this mounting.
+/// Returns the prior standard deviation of a parameter's logarithm: from its spread, widened according to its origin, or a default for the
+/// origin if it has no spread.
 double prior_sd_of(const Figure& figure);
 
 }  // namespace heatsoak

@@ -32,7 +32,7 @@ std::pair<double, double> profile_interval(const Model& model, std::span<const M
   const double sd = std::sqrt(fit.covariance(parameter, parameter));
   const Eigen::VectorXd direction = fit.covariance.col(parameter) / fit.covariance(parameter, parameter);
   const auto cost = [&](double moved) {
-    // The others start where the curvature puts them.
+    // Start the other parameters at the values that the curvature predicts.
     Eigen::VectorXd theta = fit.theta + moved * direction;
     std::vector<RunStart> starts = fit.starts;
     return minimise(problem, theta, starts).cost;

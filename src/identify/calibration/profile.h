@@ -1,4 +1,4 @@
-// Intervals where the curvature at the optimum says too little: the profile likelihood.
+// Confidence intervals from the profile likelihood, for parameters whose likelihood is not a parabola.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace heatsoak {
 
-/// The interval of θ in which the penalised misfit, minimised over everything else, stays within 1.92 of its minimum (95 %), for the flux
-/// and noise of the fit. An end that is not reached before the parameter's bounds is the bound.
+/// Returns the 95 % interval of one component of θ: the cost, minimised over everything else, stays within 1.92 of its minimum. Flux and
+/// noise are those of the fit. An end beyond the parameter's bounds is set to the bound.
 std::pair<double, double> profile_interval(const Model& model, std::span<const MeasuredRun> runs, const Fit& fit, int parameter,
                                            int threads);
 

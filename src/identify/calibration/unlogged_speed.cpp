@@ -11,13 +11,13 @@
 namespace heatsoak {
 namespace {
 
-/// Of the loss at no-load speed: the part of it that is there throughout, and what comes with the current. Standing still and turning
-/// at no-load speed, at all times or whenever current flows, are all within reach.
+/// Prior mean and standard deviation of both shares of the loss at no-load speed (at all times, and additionally while current flows). The
+/// prior allows standstill and no-load speed, at all times or only while current flows.
 constexpr double kMean_share = 0.2;
 constexpr double kMean_sd_share = 0.3;
-/// How far it comes and goes besides, within a run and from run to run.
+/// RMS variation of the loss within a run and between runs, as a share of the loss at no-load speed.
 constexpr double kComesAndGoes_share = 0.25;
-/// Less than this share of the no-load current turns no motor.
+/// Smallest current that turns the motor, as a share of the no-load current.
 constexpr double kDrives_share = 0.5;
 constexpr double kStepsPerCurrent = 20.0;
 
@@ -78,7 +78,7 @@ void open_loss_at_speed(MotorModel& model, const Motor& motor) {
   opened.values.insert(opened.values.end(), values.begin(), values.end());
   for (const int share : {LossAtUnloggedSpeed::share, LossAtUnloggedSpeed::share_with_current}) {
     model.nuisances.push_back(static_cast<int>(opened.free.size()));
-    // Below 0 too: a bound would push what it cannot take onto the figures.
+    // Negative values are allowed: a bound at 0 would bias the other parameters.
     constexpr double kFar = 10.0;
     opened.set_free({.place = static_cast<int>(first) + share, .by_log = false, .scale = 1.0, .low = -kFar, .high = kFar}, kMean_sd_share);
   }

@@ -1,4 +1,4 @@
-// The loss at a speed that no log tells: anything from none, where the motor stood still, to what it is at no-load speed.
+// Speed-dependent loss of a motor whose speed was not logged: from 0 at standstill to the loss at no-load speed.
 #pragma once
 
 #include "identify/calibration/motor_model.h"
@@ -7,19 +7,19 @@
 
 namespace heatsoak {
 
-/// The loss of a motor that turns at its no-load speed; 0 where it has none or its file does not tell.
+/// Returns the loss at no-load speed in W; 0 if the motor file does not determine it.
 double most_loss_at_speed_W(const Motor& motor);
 
-/// What of it is expected where no run tells, throughout or while current flows.
+/// Returns the prior mean of that loss in W; with `is_driven` while current flows, else at other times.
 double expected_loss_at_speed_W(const Motor& motor, bool is_driven);
 
-/// Less turns no motor.
+/// Returns the smallest current that can turn the motor, in A: half of the no-load current, or 0 if that is unknown.
 double least_driving_current_A(const Motor& motor);
 
-/// Whether the motor may turn while its speed is not known.
+/// Returns true if the motor may turn at any time without a logged speed.
 bool turns_unseen(const MeasuredRun& run);
 
-/// Lets the runs tell how much of that loss there is, throughout and while current flows; what is left comes and goes as unknown heat.
+/// Adds two free parameters for that loss, one for all times and one while current flows. Its variation is part of the unknown heat flux.
 void open_loss_at_speed(MotorModel& model, const Motor& motor);
 
 }  // namespace heatsoak

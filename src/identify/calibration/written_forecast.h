@@ -1,4 +1,4 @@
-// Which parameters a calibration writes: those of the innovations fit, or on demand those of the forecast fit.
+// Selects the parameters that a calibration writes: those of the innovations fit or, on request, those of the forecast fit.
 #pragma once
 
 #include <span>
@@ -16,19 +16,20 @@ std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<c
 /// Marks a value as not identifiable if it was not identifiable in `before`.
 void keep_untold(std::span<const CalibratedFigure> before, std::vector<CalibratedFigure>& figures);
 
-/// Puts the forecast's model, parameters and intervals in place of those of the innovations fit.
+/// Replaces model, parameters and covariance of the innovations fit by those of the forecast fit. Needs calibration.forecast.
 void write_forecast(Calibration& calibration);
 
-/// The network that is written and its values, as what a motor is not described by.
+/// Returns the end of a warning: the written network with constant values does not describe this motor.
 std::string what_does_not_describe(const Calibration& calibration);
 
-/// What was compared and taken, in sentences.
+/// Returns sentences about the compared fits and the chosen one.
 std::vector<std::string> forecast_in_words(const Calibration& calibration);
 
-/// Adds to the motor the effects and sensor faults that the forecast has beside those of the file.
+/// Adds the effects and sensor faults of the calibration that the motor file does not have.
 void add_extensions(const Calibration& calibration, const std::string& source, Motor& motor);
 
-/// Of a figure of the motor, by its key ("effects.fan.conductance"), in the figure's unit.
+/// Returns the allowed range of a motor parameter by its key (for example "effects.fan.conductance"), in the parameter's unit. Positive
+/// numbers if the key is unknown.
 Range declared_range(const Motor& motor, std::string_view key);
 
 }  // namespace heatsoak

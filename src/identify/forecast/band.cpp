@@ -15,7 +15,7 @@ constexpr Eigen::Index kSlots = 20;
 constexpr Eigen::Index kSamples = 30;
 constexpr double kUsual_share = 0.03;
 
-/// What the sensors show of 1 W into a node during one slot of the run: rows × slots. The nodes are the model's flux nodes.
+/// Sensor response in K to 1 W into a flux node during one time slot of the run: per flux node, rows × slots.
 std::vector<Eigen::MatrixXd> responses_K_per_W(const LinearisedRun& path, const MeasuredRun& run) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Index x = path.states;
@@ -40,7 +40,7 @@ std::vector<Eigen::MatrixXd> responses_K_per_W(const LinearisedRun& path, const 
   return all;
 }
 
-/// Correlation of the unknown heat of the slots.
+/// Correlation matrix of the unknown heat between time slots.
 Eigen::MatrixXd slot_correlation(double slot_s, double time_scale_s) {
   Eigen::MatrixXd all(kSlots, kSlots);
   for (Eigen::Index i = 0; i < kSlots; ++i) {
@@ -53,12 +53,12 @@ Eigen::MatrixXd slot_correlation(double slot_s, double time_scale_s) {
 
 double duration_s(const MeasuredRun& run) { return run.time_s.back() - run.time_s.front(); }
 
-/// The parts of a piece's covariance, for some of its rows.
+/// Contributions to the covariance of a piece's errors, for a subset of its rows.
 struct Sampled {
   Eigen::VectorXd error_K;
   Eigen::MatrixXd of_parameters_K2;
   Eigen::VectorXd by_heat_K;
-  std::vector<Eigen::MatrixXd> by_flux_K;  ///< per flux node: rows × slots, at the run's rms heat
+  std::vector<Eigen::MatrixXd> by_flux_K;  ///< per flux node: rows × slots, response to the run's RMS heat
   Eigen::VectorXd noise_K;
   double slot_s = 0.0;
 };
@@ -74,7 +74,7 @@ Sampled sampled(const ForecastModel& model, const MeasuredRun& run, const Predic
   const auto most = kSamples * path.sensors();
   std::vector<Eigen::Index> rows;
   const auto stride = std::max<std::size_t>(1, known.size() / static_cast<std::size_t>(most));
-  // An odd stride visits the rows of two sensors in turns.
+  // An odd stride alternates between the rows of two sensors.
   for (std::size_t i = 0; i < known.size(); i += stride % 2 == 0 ? stride + 1 : stride) {
     rows.push_back(known[i]);
   }
@@ -95,7 +95,7 @@ Sampled sampled(const ForecastModel& model, const MeasuredRun& run, const Predic
   return out;
 }
 
-/// ln of: share of unknown heat at each flux node, time scale, standard deviation of the heat factor.
+/// Logarithms of: share of unknown heat at each of the two flux nodes, its time scale in s, standard deviation of the heat factor.
 using Coordinates = std::array<double, 4>;
 
 struct KnownBefore {
@@ -121,7 +121,7 @@ double log_posterior(const std::vector<Sampled>& pieces, const Coordinates& at, 
   return nats;
 }
 
-/// Coordinate by coordinate, with shorter steps where none helps.
+/// Maximises the posterior by coordinate search; halves the step when no coordinate improves.
 Coordinates most_probable(const std::vector<Sampled>& pieces, const KnownBefore& before) {
   Coordinates at = before.mean;
   double best = log_posterior(pieces, at, before);
@@ -199,7 +199,7 @@ ForecastBand fit_band(const ForecastModel& model, std::span<const MeasuredRun> r
     std::nth_element(sizes.begin(), at_90, sizes.end());
     ratio += *at_90 / kBand_sd / static_cast<double>(pieces.size());
   }
-  // Few pieces know little of how far the next run is off.
+  // With few pieces the spread of the next run's error is uncertain.
   const boost::math::students_t student(static_cast<double>(left_out));
   band.width_ratio = ratio * boost::math::quantile(student, 0.95) / kBand_sd;
   return band;

@@ -1,4 +1,4 @@
-// How far a forecast may be off: parameters, heat of the run, slow unknown heat, sensor noise.
+// Uncertainty band of a forecast: from parameters, heat factor of the run, slow unknown heat and sensor noise.
 #pragma once
 
 #include <span>
@@ -9,19 +9,19 @@
 
 namespace heatsoak {
 
-/// Two-sided 90 % of a normal distribution, in standard deviations.
+/// Half width of the two-sided 90 % interval of a normal distribution, in standard deviations.
 inline constexpr double kBand_sd = 1.645;
 
-/// Standard deviation of each row (sample · sensors + sensor) of a forecast along `path`, in K; noise of the sensors included.
-/// `covariance`: of θ; `start_K2`: of the start temperatures; `heat_W`: rms heat of the run.
+/// Returns the standard deviation in K of each row (sample · sensors + sensor) of a forecast along `path`, sensor noise included.
+/// `covariance` is that of θ, `start_K2` that of the start temperatures; `heat_W` is the RMS heat of the run.
 Eigen::VectorXd forecast_sd_K(const LinearisedRun& path, const MeasuredRun& run, const Eigen::MatrixXd& covariance,
                               const Eigen::MatrixXd& start_K2, double heat_W, const ForecastBand& band);
 
-/// What is taken where no left-out piece tells; its time scale is a third of `duration_s`.
+/// Returns the default band, for use without left-out pieces. Its time scale is a third of `duration_s`.
 ForecastBand usual_band(double duration_s);
 
-/// The band under which the errors of the pieces are most probable, widened until it holds 90 % of them and, as so few were left out
-/// (`left_out`, at least 1), by Student's distribution.
+/// Fits the band to the errors of the left-out pieces: the most probable parameters of the band, then a factor so that it contains 90 % of
+/// the errors. Student's distribution with `left_out` (at least 1) degrees of freedom accounts for the small number of pieces.
 ForecastBand fit_band(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const PredictedPiece> pieces,
                       std::size_t left_out);
 

@@ -12,13 +12,13 @@
 namespace heatsoak {
 namespace {
 
-/// An extension must lower the score by so much for each of its parameters.
+/// Required decrease of the score per parameter of an extension.
 constexpr double kLeastGain_nats = 0.05;
 constexpr std::size_t kRefitted = 4;
 constexpr int kMostExtensions = 4;
 constexpr int kScreeningSteps = 8;
 constexpr int kPieceSteps = 12;
-/// Of the perturbed start, of a logarithm.
+/// Largest ratio by which the perturbed starting point differs from the file.
 constexpr double kPerturbed_ratio = 1.5;
 
 struct Candidate {
@@ -60,7 +60,7 @@ class Search {
 
  private:
   [[nodiscard]] ForecastRules rules() const { return {.threads = threads_}; }
-  /// A fit to the other pieces begins near its end.
+  /// Fewer steps: a fit to the other pieces starts near its optimum.
   [[nodiscard]] ForecastRules of_piece() const { return {.rounds = 2, .steps = kPieceSteps, .threads = threads_}; }
 
   [[nodiscard]] ForecastFit best_of_starts(std::span<const Eigen::VectorXd> hints) const {
@@ -83,7 +83,7 @@ class Search {
     return best;
   }
 
-  /// Cost of `fit` had it been made at the error and weight of `other`.
+  /// Cost of `fit` in nats, recomputed with the error and weight of `other`.
   static double cost_at_error_of(const ForecastFit& other, const ForecastFit& fit) {
     double squares_K2 = 0.0;
     for (const Eigen::VectorXd& each : fit.residual_K) {
@@ -93,7 +93,7 @@ class Search {
     return fit.cost_nats + 0.5 * squares_K2 * scale;
   }
 
-  /// No network is scored better than one whose error is the sensors' noise.
+  /// False if the score is already as good as that of a network whose error is the sensors' noise.
   [[nodiscard]] bool could_gain() const {
     double least_nats = 0.0;
     double count = 0.0;
@@ -106,7 +106,7 @@ class Search {
     return score_.score_nats > least_nats / count + kLeastGain_nats;
   }
 
-  /// Accepts the extension under which the left-out pieces are predicted best, if it is worth its parameters.
+  /// Accepts the extension that predicts the left-out pieces best, if the gain exceeds the penalty for its parameters.
   bool extend() {
     const std::vector<Extension> all = extensions_for(out_.setup, *model_, out_.fit.theta, runs_);
     std::vector<Candidate> candidates = screened(all);
@@ -135,7 +135,7 @@ class Search {
     return true;
   }
 
-  /// One short fit of each at the error and weight of the present one; the best first.
+  /// Makes one short fit of each extension with the error and weight of the present fit. Returns the candidates, best first.
   std::vector<Candidate> screened(const std::vector<Extension>& all) const {
     std::vector<Candidate> candidates(all.size());
     ForecastRules rules{
@@ -152,7 +152,7 @@ class Search {
     return candidates;
   }
 
-  /// Of the file, of ordinary least squares and of the tempered fit, what predicts the left-out pieces best.
+  /// Selects among file, ordinary least squares and tempered fit the one that predicts the left-out pieces best.
   void choose() {
     const ForecastRules ordinary{
         .is_tempered = false, .has_heat_factors = false, .rounds = 2, .steps = 2 * kPieceSteps, .threads = threads_};
@@ -164,7 +164,7 @@ class Search {
     add_rival(ForecastSource::tempered, score_);
     add_rival(ForecastSource::ordinary, of_plain);
     add_rival(ForecastSource::file, of_file);
-    // A fit knows more than the file: that stays only where it is plainly better.
+    // A fit uses more information than the file, so the file must be clearly better.
     const auto handicapped = [](const RivalScore& rival) {
       return rival.score_nats + (rival.source == ForecastSource::file ? kLeastGain_nats : 0.0);
     };
@@ -203,7 +203,7 @@ class Search {
     out_.rivals.push_back(std::move(rival));
   }
 
-  /// Without left-out pieces the runs themselves are all that there is: they count as one, and do not narrow the band.
+  /// Fits the band. Without left-out pieces it uses the fitted runs, with one degree of freedom, and does not narrow the band.
   void set_band() {
     if (score_.pieces.empty()) {
       PredictedPiece own;

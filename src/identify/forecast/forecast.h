@@ -1,4 +1,4 @@
-// The model that forecasts other runs of a motor best: parameters by free runs, network by left-out pieces, and how far it may be off.
+// Finds the model that forecasts other runs of a motor best: parameters from free runs, network selected by left-out pieces, error band.
 #pragma once
 
 #include <string>
@@ -9,34 +9,34 @@
 
 namespace heatsoak {
 
-/// Where the parameters of a forecast come from. `ordinary` is the simple rival: least squares of free runs, no extension.
+/// Origin of a forecast's parameters. `ordinary` is the simple alternative: least squares of free runs without extensions.
 enum class ForecastSource { file, ordinary, tempered };
 
 struct AcceptedExtension {
   std::string name;
-  double gain_nats = 0.0;  ///< by which the score of the left-out pieces fell
+  double gain_nats = 0.0;  ///< decrease of the score of the left-out pieces
 };
 
-/// What the left-out pieces say of a rival.
+/// Score of one alternative on the left-out pieces.
 struct RivalScore {
   ForecastSource source = ForecastSource::file;
-  double score_nats = 0.0;                             ///< the smaller the better
-  std::vector<std::pair<std::string, double>> rmse_K;  ///< per signal, mean square over the pieces
+  double score_nats = 0.0;                             ///< smaller is better
+  std::vector<std::pair<std::string, double>> rmse_K;  ///< per signal, root of the mean square over the pieces
 };
 
 struct Forecast {
-  ForecastSetup setup;  ///< with the accepted extensions
+  ForecastSetup setup;  ///< includes the accepted extensions
   ForecastSource source = ForecastSource::tempered;
   ForecastFit fit;
   std::vector<AcceptedExtension> accepted;
-  std::size_t pieces = 0;          ///< that could be left out; fewer than kLeastPieces choose nothing
-  std::vector<RivalScore> rivals;  ///< empty: too few pieces
+  std::size_t pieces = 0;          ///< number of left-out pieces; with fewer than kLeastPieces nothing is selected
+  std::vector<RivalScore> rivals;  ///< empty if there are too few pieces
   ForecastBand band;
 
   [[nodiscard]] ForecastModel model() const { return setup.model(); }
 };
 
-/// `hints`: more parameters of the setup's model to begin at. Deterministic.
+/// Finds the best forecast model. `hints` are additional starting points in θ of the setup's model. Deterministic.
 Forecast forecast_of(ForecastSetup setup, std::span<const MeasuredRun> runs, std::span<const Eigen::VectorXd> hints, int threads);
 
 }  // namespace heatsoak

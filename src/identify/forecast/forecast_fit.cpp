@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The unknowns of one run: θ, the heat factor, the start of every node without a sensor.
+/// Normal equations of one run. Unknowns: θ, heat factor, start temperature of every node without a sensor.
 struct RunTerm {
   LinearisedRun path;
-  Eigen::MatrixXd normal;  ///< of these, without priors and weight
+  Eigen::MatrixXd normal;  ///< normal matrix of these unknowns, without priors and weight
   Eigen::VectorXd right;
   double squares_K2 = 0.0;
   double count = 0.0;
@@ -75,7 +75,7 @@ class Fitting {
     }
   }
 
-  /// Nodes with a sensor start where the first samples say under the present parameters; the others keep what the fit has found.
+  /// Sets the start of nodes with a sensor from the first samples and the present parameters. The other nodes keep their fitted start.
   void set_starts() {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const Eigen::VectorXd decided_C = model_.decided_start(runs_[r], theta_).state_C;
@@ -89,7 +89,7 @@ class Fitting {
 
   [[nodiscard]] Eigen::Index own_count(std::size_t run) const { return 1 + static_cast<Eigen::Index>(unseen_[run].size()); }
 
-  /// Of one run; columns: θ, heat, unseen starts.
+  /// Simulates one run and sets up its normal equations. Order: θ, heat factor, starts of nodes without a sensor.
   [[nodiscard]] RunTerm term(std::size_t r) const {
     RunTerm out;
     const Eigen::VectorXd& start_C = starts_[r].state_C;
@@ -118,7 +118,7 @@ class Fitting {
     return out;
   }
 
-  /// false where the model cannot be run there: then the terms are those of before.
+  /// Updates the terms of all runs. Returns false and keeps the previous terms if the simulation fails.
   bool assemble() {
     std::vector<RunTerm> terms(runs_.size());
     try {
@@ -179,7 +179,7 @@ class Fitting {
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
   };
-  /// θ first, then each run's own unknowns.
+  /// Normal equations of all runs with priors: θ first, then each run's own unknowns.
   [[nodiscard]] Equations equations() const {
     const Eigen::Index shared = model_.count();
     Eigen::Index all = shared;
@@ -206,7 +206,7 @@ class Fitting {
   }
 
   void add_own_priors(std::size_t r, Eigen::Index first, Equations& out) const {
-    // A factor that is not free is held at 0.
+    // A strong prior holds a heat factor that is not fitted at its present logarithm of 0.
     const double heat_precision = with_heat_ ? 1.0 / (kHeatFactor_sd * kHeatFactor_sd) : 1e12;
     out.normal(first, first) += heat_precision;
     out.right[first] -= heat_precision * heat_log_[static_cast<Eigen::Index>(r)];

@@ -11,10 +11,10 @@
 namespace heatsoak {
 namespace {
 
-/// Effects whose first parameter the heat of the inputs is proportional to.
+/// Effects whose heat is proportional to their first parameter.
 constexpr std::array<std::string_view, 4> kHeatEffects{"copper_loss", "no_load_loss", "input_power_loss", "remaining_loss"};
 
-/// A size of a fault may not leave the range of its declaration, whose lower end may be 0.
+/// Lower bound of a fault's size as a share of its prior median. The declared lower bound may be 0, which has no logarithm.
 constexpr double kLeast_share = 0.02;
 
 const EffectInPlace* effect_named(const Network& network, std::string_view name) {
@@ -49,7 +49,7 @@ ForecastModel::ForecastModel(MotorModel model, const Motor& motor, std::vector<F
 void ForecastModel::find_ties() {
   const EffectInPlace* const implicit = effect_named(network(), kImplicitPowerLoss);
   for (const EffectInPlace& effect : network().effects()) {
-    // One other effect at most takes a share of the input power; of more, the shares stay as the file has them.
+    // Only one other effect may take a share of the input power; with more, all shares stay as in the file.
     if (implicit && &effect != implicit && effect.type == implicit->type) {
       ties_.push_back({implicit->parameter_index.front(), effect.parameter_index.front()});
     }
@@ -67,7 +67,7 @@ void ForecastModel::find_heat() {
 void ForecastModel::find_conditions(const Motor& motor) {
   for (const MotorEffect& effect : motor.effects) {
     const int size = effect.type->candidacy.size_parameter;
-    // Effects whose condition no recording has are not in the network.
+    // An effect is not in the network if its condition holds in no recording.
     const EffectInPlace* const in_place = effect_named(network(), effect.name);
     if (!effect.condition.empty() && size >= 0 && in_place) {
       conditional_.push_back({in_place->parameter_index[static_cast<std::size_t>(size)], effect.condition});
@@ -120,7 +120,7 @@ LinearisedRun ForecastModel::along(const MeasuredRun& run, const Eigen::VectorXd
   out.by_parameter.setZero(by_value.rows(), count() + 1);
   out.by_parameter.leftCols(inner) = by_theta(model, theta.head(inner), by_value.leftCols(inner));
   const auto position = [&](int place) { return std::ranges::find(wanted_.begin(), wanted_.begin() + inner, place) - wanted_.begin(); };
-  // e^log_heat_ratio multiplies these columns below.
+  // These columns are multiplied by exp(log_heat_ratio) below.
   for (std::size_t i = 0; i < ties_.size(); ++i) {
     if (const Eigen::Index of = position(ties_[i].of); of < inner) {
       out.by_parameter.col(of) -= model.slope_of(of, theta[of]) * by_value.col(inner + static_cast<Eigen::Index>(i));

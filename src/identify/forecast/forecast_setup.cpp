@@ -12,15 +12,14 @@
 namespace heatsoak {
 namespace {
 
-/// Standard deviations of logarithms that are known before any run.
-/// 0.5 of the whole conductance, of which half varies.
+/// Prior standard deviations of logarithms. kContact_sd corresponds to 0.5 for the whole conductance, of which half varies.
 constexpr double kContact_sd = 1.0;
 constexpr double kShape_sd = 0.7;
 constexpr double kLoose_sd = 1.0;
-/// Of the share of the remaining loss in the winding and of the factor on it.
+/// For the winding's share of the remaining loss, and for the factor on the remaining loss.
 constexpr double kWindingShare_sd = 0.5;
 constexpr double kRemainder_sd = 0.1;
-/// σ·4·T³ at 320 K in W/(m² K).
+/// Linearised radiation coefficient 4·σ·T³ at 320 K.
 constexpr double kRadiation_W_per_m2_K = 7.432;
 
 bool all_have(std::span<const Recording> recordings, Signal signal) {
@@ -37,7 +36,7 @@ Figure held(double value) {
   return figure;
 }
 
-/// Free, its logarithm known to `sd`: prior_sd_of() of an estimate is a half of the logarithm of the range.
+/// Free parameter with prior standard deviation `sd` of its logarithm. The range follows from prior_sd_of() for the origin "estimated".
 Figure free_figure(double value, double sd) {
   Figure figure = held(value);
   figure.derivation = "start of the fit";
@@ -49,7 +48,7 @@ MotorEffect effect(std::string name, std::string_view type, std::vector<std::str
   return {std::move(name), find_effect(type), std::move(nodes), std::move(parameters), {}, {}};
 }
 
-/// Lists what could be added.
+/// Lists the possible extensions.
 class Listing {
  public:
   Listing(const ForecastSetup& setup, const ForecastModel& model, const Eigen::VectorXd& theta, std::span<const MeasuredRun> runs)
@@ -90,7 +89,7 @@ class Listing {
     all_.push_back({name, {std::move(effect)}, {}, free, {}});
   }
 
-  /// Half of the conductance becomes one that varies.
+  /// Replaces half of the winding-stator conductance by one that varies with temperature.
   void contact(double conductance_W_per_K) {
     constexpr double kVaries_share = 0.5;
     for (const auto& [by_mean, by_difference] : {std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {

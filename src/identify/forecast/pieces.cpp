@@ -13,10 +13,10 @@ namespace {
 constexpr std::size_t kBlocks = 4;
 constexpr double kExcited_share = 0.25;
 
-/// Sensor of the winding, or the first one.
+/// Index of the winding's sensor, or 0 if there is none.
 Eigen::Index watched_sensor(const MeasuredRun& run) { return std::max<Eigen::Index>(0, run.sensor_at("winding")); }
 
-/// Shown by the fitted model: measured less residual would miss samples, so that it is the residual's own path.
+/// Range of the predicted readings of samples [from, to). Predicted readings have no missing samples.
 std::pair<double, double> range_of(const Eigen::MatrixXd& shown_C, Eigen::Index sensor, Eigen::Index from, Eigen::Index to) {
   const auto part = shown_C.col(sensor).segment(from, to - from);
   return {part.minCoeff(), part.maxCoeff()};
@@ -34,7 +34,7 @@ Piece block_of(const MeasuredRun& run, Eigen::Index from, Eigen::Index to) {
   return piece;
 }
 
-/// Of the fit to everything but the piece.
+/// Predicts the piece with a fit to everything else (or with `theta` if `rules` is null).
 PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun> runs, const Piece& piece, const Eigen::VectorXd& theta,
                          const ForecastRules* rules) {
   const MeasuredRun& run = runs[piece.run];

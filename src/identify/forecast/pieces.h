@@ -1,4 +1,4 @@
-// Left-out pieces: what a network is scored on, each piece predicted by a fit to the others.
+// Cross-validation: networks are scored on left-out pieces, each predicted by a fit to the other data.
 #pragma once
 
 #include <string>
@@ -8,22 +8,23 @@
 
 namespace heatsoak {
 
-/// A run, or a block of a single run; the fit sees the rest.
+/// Left-out piece: a run, or a block of a single run. The fit uses the rest.
 struct Piece {
   std::size_t run = 0;
-  RowMask seen;    ///< rows of its run that the fit sees; empty: the whole run is left out
+  RowMask seen;    ///< rows of its run that the fit uses; empty: the whole run is left out
   RowMask scored;  ///< rows of its run that are predicted
 };
 
-/// Runs, or four masked blocks of a single run. A piece counts only if the fitted base model moves the winding in it by a quarter of its
-/// range over all runs: from fewer than three pieces no network can be chosen.
+/// Returns the pieces: all runs, or four blocks of a single run. A piece counts only if the predicted winding temperature varies in it by
+/// at least a quarter of its range over all runs.
 std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const MeasuredRun> runs);
+/// Fewer pieces do not suffice to select a network.
 inline constexpr std::size_t kLeastPieces = 3;
 
-/// A piece as predicted by a fit that has not seen it.
+/// Prediction of a piece by a fit that did not use it.
 struct PredictedPiece {
   std::size_t run = 0;
-  LinearisedRun path;          ///< heat factor 0; residual_K is NaN where a row is not scored
+  LinearisedRun path;          ///< with logarithm 0 of the heat factor; residual_K is NaN in rows that are not scored
   Eigen::MatrixXd covariance;  ///< of θ
   std::vector<double> values;  ///< the network's parameters
 };
@@ -33,7 +34,8 @@ struct PieceScore {
   std::vector<PredictedPiece> pieces;
 };
 
-/// `rules` of the fits, which begin at `theta`; without rules the parameters are `theta`.
+/// Fits without each piece, starting at `theta`, and scores its prediction. If `rules` is null, nothing is fitted and the parameters are
+/// `theta`. The score is infinite if a simulation fails.
 PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
                         const Eigen::VectorXd& theta, const ForecastRules* rules);
 

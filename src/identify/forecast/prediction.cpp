@@ -59,8 +59,7 @@ double longest_s(std::span<const MeasuredRun> runs) {
   return longest_s;
 }
 
-/// Of the recording alone.
-/// The motor under the conditions that a recording states; its name tells which run it is.
+/// Returns the motor under the conditions that a recording states. The recording's name is its condition "run".
 Motor as_in(const Recording& recording, const Motor& motor) {
   std::map<std::string, std::string> stated = recording.conditions;
   stated.emplace("run", recording.name);
@@ -122,7 +121,7 @@ std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<con
   std::vector<MeasuredRun> all;
   for (const Recording& recording : recordings) {
     MeasuredRunOptions here = how;
-    // A log that has a speed must have it in every row that is used.
+    // If a log has a speed column, only rows with a speed are used.
     std::erase(here.needed, Signal::speed);
     if (setup.heat != HeatInput::input_power && has_speed(recording)) {
       here.needed.push_back(Signal::speed);

@@ -1,4 +1,4 @@
-// A motor's file run along logs that it was not fitted to: predicted temperatures, their 90 % band, and how far off they were.
+// Predicts logs with a motor file: temperatures, their 90 % band, and their errors.
 #pragma once
 
 #include <span>
@@ -11,16 +11,16 @@
 
 namespace heatsoak {
 
-/// One sensor in one run; all vectors have one value per sample.
+/// Prediction of one sensor in one run; all vectors have one value per sample.
 struct PredictedSignal {
-  std::string signal;              ///< "winding_C"
-  std::vector<double> measured_C;  ///< NaN: nothing measured
+  std::string signal;              ///< key, for example "winding_C"
+  std::vector<double> measured_C;  ///< NaN: not measured
   std::vector<double> predicted_C;
-  std::vector<double> low_C, high_C;  ///< 90 % of the measured samples are expected between them
+  std::vector<double> low_C, high_C;  ///< limits of the 90 % band of the measured samples
   double rmse_K = 0.0;
   double max_abs_K = 0.0;
   double coverage_share = 0.0;  ///< share of the samples within the band
-  std::size_t samples = 0;      ///< that were measured
+  std::size_t samples = 0;      ///< number of measured samples
 };
 
 struct PredictedRun {
@@ -29,28 +29,28 @@ struct PredictedRun {
   std::vector<PredictedSignal> signals;
 };
 
-/// Runs stay apart: errors under different conditions are no sample of one distribution.
+/// Predictions of several runs. They are not pooled, because errors under different conditions have different distributions.
 struct Prediction {
   std::vector<PredictedRun> runs;
-  std::vector<std::string> notes;  ///< what was taken for granted, in sentences
+  std::vector<std::string> notes;  ///< sentences: assumptions
 };
 
-/// The run from its first temperatures under measured inputs. `covariance`: of θ.
+/// Predicts a run from its first temperatures and measured inputs. `covariance` is that of θ.
 PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance, const ForecastBand& band,
                      const MeasuredRun& run);
 
-/// Runs of recordings as the setup's model takes them; notes of the reader are added. Throws Failure as measured_runs().
+/// Reads the runs of the recordings with the signals that the setup's model needs. Appends to `notes`. Throws Failure as measured_runs().
 std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, double ambient_C,
                                        std::vector<std::string>& notes);
 
 struct PredictionOptions {
-  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
-  bool turns_within_rows = false;                       ///< a speed that changes its sign from row to row went straight in between
+  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< for logs without an ambient temperature
+  bool turns_within_rows = false;                       ///< interpolates speeds whose sign changes from row to row (turning_rows.h)
 };
 
-/// Each recording by itself, under whatever heat input it has: the power balance, a current, a torque, or input power. Of a motor without
-/// a fit the parameters are as uncertain as its data sheet. Throws Failure (bad_input) where a log has
-/// no heat input or no temperature, numerics_failed where the temperatures run away.
+/// Predicts each recording separately with the heat input that it has: power balance, current, torque or input power. Without a fit in the
+/// motor file, the parameters have their prior uncertainty. Throws Failure: bad_input if a log has no heat input or no temperature,
+/// numerics_failed if the temperatures diverge.
 Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options);
 
 }  // namespace heatsoak

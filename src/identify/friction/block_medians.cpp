@@ -16,7 +16,7 @@ constexpr std::size_t kMostRows = 9;
 constexpr double kBlock_s = 0.1;
 constexpr std::ptrdiff_t kLeastValues = 3;
 
-/// Odd, so that the median is one of the values.
+/// Number of rows that span about kBlock_s, odd so that the median is one of the values.
 std::size_t rows_per_block(const FrictionLog& log, std::size_t begin, std::size_t end) {
   std::vector<double> steps_s;
   for (std::size_t i = begin + 1; i < end; ++i) {
@@ -34,7 +34,7 @@ double median_of_rows(const std::vector<double>& column, std::size_t begin, std:
   return std::ranges::count_if(rows, [](double value) { return std::isfinite(value); }) < kLeastValues ? kNaN : median(rows);
 }
 
-/// Median of each value and its neighbours, ends as they are.
+/// Running median of three values; the two ends are unchanged.
 Eigen::RowVectorXd without_odd_ones(const Eigen::RowVectorXd& raw) {
   Eigen::RowVectorXd smooth = raw;
   for (Eigen::Index i = 1; i + 1 < raw.size(); ++i) {

@@ -1,4 +1,4 @@
-// Voltages that a robot's file, or else its motor's data sheet, makes expect.
+// Voltages expected before a fit: from the robot file, else from the motor's data sheet.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace heatsoak {
 
 struct Expectation {
   ExpectedVoltages voltages;
-  std::string from;  ///< "the robot's file", "the motor's data sheet"
+  std::string from;  ///< origin in words: "the robot's file" or "the motor's data sheet"
   double damping_V_s_per_rad = 0.0;
 };
 
-/// By the friction of the robot's file, where it has the tables that motion needs; else only back-EMF and drag of the motor.
+/// Returns the expectation from the friction in the robot file, if that describes the body; else from back-EMF and drag of the motor only.
 Expectation expectation(const Robot& robot, const MotorValues& motor);
 
 }  // namespace heatsoak

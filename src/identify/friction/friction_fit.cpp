@@ -18,7 +18,7 @@ constexpr double kSameHeading_rad = 2.5 * std::numbers::pi / 180.0;
 constexpr double kSpeedLevels_share = 0.15;
 constexpr double kPi = std::numbers::pi;
 
-/// How far φ may lie below and above φ_0 before a wheel seen turning one way would have to turn the other.
+/// Limits of φ − φ_0 within which every wheel turns in the measured direction.
 std::pair<double, double> phase_bounds_rad(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights) {
   double below_rad = kPi / 2.0;
   double above_rad = kPi / 2.0;
@@ -33,7 +33,7 @@ std::pair<double, double> phase_bounds_rad(const std::vector<WheelPoint>& points
   return {-below_rad, above_rad};
 }
 
-/// Fieller: the m = tan δ for which B − A·m is not significantly different from 0; nothing where no m is refused.
+/// Fieller's interval of δ: all m = tan δ for which B − A·m does not differ significantly from 0. nullopt if it is unbounded.
 std::optional<std::pair<double, double>> fieller_rad(double A, double B, const Eigen::Matrix2d& covariance, double t) {
   const double square = t * t;
   const double second = A * A - square * covariance(0, 0);
@@ -55,7 +55,7 @@ Estimate moved(const Estimate& estimate, double value) {
   return {value, value + estimate.low - estimate.value, value + estimate.high - estimate.value};
 }
 
-/// a along a direction of the plane of A and B, φ by Fieller; both may be cut off by the bounds.
+/// Converts A and B to a and φ − φ_0. The interval of φ is Fieller's; value and interval are limited to the bounds.
 SineAndPhase sine_and_phase(const RobustFit& fit, Eigen::Index sine, Eigen::Index cosine, std::pair<double, double> bounds_rad) {
   const Eigen::Vector2d both_V(fit.coefficients(sine), fit.coefficients(cosine));
   Eigen::Matrix2d covariance;
@@ -69,7 +69,7 @@ SineAndPhase sine_and_phase(const RobustFit& fit, Eigen::Index sine, Eigen::Inde
   const double half_V = fit.quantile_factor(sine) * std::sqrt(along.dot(covariance * along));
   const double sine_V = along.dot(both_V);
   const auto interval_rad = fieller_rad(both_V.x(), both_V.y(), covariance, fit.quantile_factor(cosine)).value_or(bounds_rad);
-  // Past a bound the interval goes along, so that it does not shrink to nothing there.
+  // If the value is moved to a bound, its interval moves too, so that it does not vanish there.
   const double past_rad = value_rad - offset_rad;
   const double low_rad = std::min(interval_rad.first, interval_rad.first + past_rad);
   const double high_rad = std::max(interval_rad.second, interval_rad.second + past_rad);
@@ -77,7 +77,7 @@ SineAndPhase sine_and_phase(const RobustFit& fit, Eigen::Index sine, Eigen::Inde
           {value_rad, std::clamp(low_rad, bounds_rad.first, value_rad), std::clamp(high_rad, value_rad, bounds_rad.second)}};
 }
 
-/// The best a and b with φ held and everything else as fitted.
+/// Returns the best a and b for a fixed φ, with all other coefficients as fitted.
 Eigen::Vector2d sine_and_constant_at(const Eigen::MatrixXd& X, const Eigen::VectorXd& voltage_V, std::span<const int> legs,
                                      const RobustFit& fit, std::array<Eigen::Index, 3> sine_cosine_constant, double offset_rad) {
   const auto [sine, cosine, constant] = sine_cosine_constant;
@@ -88,7 +88,7 @@ Eigen::Vector2d sine_and_constant_at(const Eigen::MatrixXd& X, const Eigen::Vect
   return robust_fit(both, voltage_V - X * others, legs).coefficients;
 }
 
-/// All terms at φ_0, their intervals widened by how far each moves while φ goes through its doubt.
+/// Estimates of all terms at φ_0. Their intervals cover the change of each term while φ varies over its uncertainty.
 std::vector<Estimate> estimates_in_doubt(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
                                          double given_V_s_per_rad, const RobustFit& fit, double left_V, double phase_doubt_rad) {
   std::vector<Estimate> estimates;
@@ -187,7 +187,7 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
     const double offset_rad = both.offset_rad.value;
     found.phase_is_bounded = offset_rad <= bounds_rad.first || offset_rad >= bounds_rad.second;
     if (found.phase_is_bounded) {
-      // The intervals stay those that do not know of the bound.
+      // Keep the width of the intervals without the bound.
       const Eigen::Vector2d held_V = sine_and_constant_at(X, voltage_V, legs, fit, {sine, cosine, place(WheelTerm::constant)}, offset_rad);
       both.sine_V = moved(both.sine_V, held_V.x());
       found.constant_V = moved(found.constant_V, held_V.y());
@@ -210,12 +210,12 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
   return found;
 }
 
-/// Voltage over speed on one heading: offset and slope, or the offset alone where the heading has one speed.
+/// Straight line of voltage over speed on one heading; only the offset if the heading has one speed.
 struct StraightLine {
   double heading_rad = 0.0;
-  RobustFit fit;            ///< plain least squares: what is gross has been left out by the fit over all headings
+  RobustFit fit;            ///< ordinary least squares; the fit over all headings has already removed outliers
   Eigen::MatrixXd inverse;  ///< (XᵀX)⁻¹
-  double error_V2 = 0.0;    ///< Σ of squared residuals
+  double error_V2 = 0.0;    ///< sum of squared residuals
   double freedom_count = 0.0;
 };
 
@@ -248,7 +248,7 @@ StraightLine straight_line(const std::vector<const SteadyPart*>& parts, int whee
   return line;
 }
 
-/// A heading has too few legs to tell their scatter; it is that of all headings of the wheel.
+/// Straight lines of all headings of a wheel. One heading has too few legs, so the scatter is estimated from all headings.
 std::vector<HeadingLine> lines_of(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights,
                                   const std::vector<SteadyPart>& parts, const std::vector<int>& numbers, int wheel,
                                   const WheelFriction& found) {
@@ -305,7 +305,9 @@ std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const Fit
   std::vector<std::size_t> order(parts.size());
   std::iota(order.begin(), order.end(), 0U);
   std::erase_if(order, [&](std::size_t i) { return parts[i].is_rotation || !is_used(parts[i], settings); });
-  const auto turn_rad = [&](std::size_t i) { return wrapped_rad(parts[i].heading_rad + kSameHeading_rad / 2.0); };  // 0° and −0° stay one
+  const auto turn_rad = [&](std::size_t i) {
+    return wrapped_rad(parts[i].heading_rad + kSameHeading_rad / 2.0);
+  };  // so that 0° and −0° are one heading
   std::ranges::stable_sort(order, {}, turn_rad);
   std::vector<int> numbers(parts.size(), -1);
   int number = -1;
@@ -348,7 +350,7 @@ HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, co
   }
   error.headings = error.all_headings / 3;
   FitSettings values_only = settings;
-  values_only.phase_doubt_rad = 0.0;  // it is of intervals, and a and b that cannot be told apart foretell as well
+  values_only.phase_doubt_rad = 0.0;  // affects only intervals; if a and b are indistinguishable, the prediction is not worse
   const FrictionFit fit = fit_friction(taught, kinematics, values_only);
   double before_V2 = 0.0;
   double after_V2 = 0.0;

@@ -1,4 +1,4 @@
-// What the friction test needs of a log, as columns.
+// Columns of a log that the friction test needs.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace heatsoak {
 
-/// Rows of one log; columns have one value per row, NaN where nothing was measured, or are empty where the log has none.
+/// Rows of one log. A column has one value per row, NaN if not measured; it is empty if the log does not have it.
 struct FrictionLog {
   std::string name;
   std::vector<double> time_s;           ///< strictly increasing
-  std::vector<std::size_t> run_begins;  ///< rows before which what happened is unknown; the first one is 0
+  std::vector<std::size_t> run_begins;  ///< first row of each continuous run; the first entry is 0
   std::array<std::vector<double>, kMostWheels> wheel_speed_rad_per_s;
   std::array<std::vector<double>, kMostWheels> voltage_V;  ///< at the driver's output; empty for a roll-out
-  std::vector<double> heading_rad;                         ///< direction of travel in the robot's frame; empty: from the wheels
-  std::vector<double> yaw_rad;                             ///< empty: from the wheels
+  std::vector<double> heading_rad;                         ///< direction of travel in the robot's frame; empty: computed from the wheels
+  std::vector<double> yaw_rad;                             ///< orientation of the robot; empty: computed from the wheels
 
   [[nodiscard]] std::size_t rows() const { return time_s.size(); }
 };

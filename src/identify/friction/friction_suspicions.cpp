@@ -18,7 +18,7 @@ constexpr double kMostOfBackEmf_ratio = 2.3;
 constexpr double kLeastExplained_ratio = 0.7;
 constexpr double kDead_share = 0.05;
 
-/// The log's direction of travel against what the wheels amount to, in the median; 0 without legs.
+/// Median angle in degrees between the log's direction of travel and that computed from the wheel speeds; 0 without legs.
 double direction_off_deg(const SteadyParts& steady, const Kinematics& kinematics) {
   std::vector<double> off_deg;
   for (const SteadyPart& part : steady.parts) {
@@ -31,7 +31,7 @@ double direction_off_deg(const SteadyParts& steady, const Kinematics& kinematics
   return off_deg.empty() ? 0.0 : median(off_deg);
 }
 
-/// Of four wheels, the share of their speeds that no motion of the robot explains, in the median; 0 of three.
+/// Median share of the wheel speeds that no motion of the robot explains; always 0 with three wheels.
 double contradiction_share(const SteadyParts& steady, const Kinematics& kinematics) {
   std::vector<double> shares;
   for (const SteadyPart& part : steady.parts) {
@@ -48,7 +48,7 @@ double contradiction_share(const SteadyParts& steady, const Kinematics& kinemati
   return shares.empty() ? 0.0 : median(shares);
 }
 
-/// The largest of a wheel's voltages, as a share of the median of the other wheels'.
+/// Largest voltage of a wheel divided by the median of the other wheels' largest voltages.
 double voltage_share(const SteadyParts& steady, int wheel, int wheel_count) {
   std::vector<double> tops_V;
   double own_V = 0.0;
@@ -67,7 +67,7 @@ double voltage_share(const SteadyParts& steady, int wheel, int wheel_count) {
   return others_V > 0.0 ? own_V / others_V : 1.0;
 }
 
-/// What one wheel alone shows; empty where nothing.
+/// Returns a sentence if one wheel is implausible by itself, else an empty string.
 std::string suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& wheel, int number, int wheel_count,
                                double back_emf_V_s_per_rad) {
   if (voltage_share(steady, number - 1, wheel_count) < kDead_share) {
@@ -121,7 +121,7 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
     }
   }
   const double damping = dampings.empty() ? std::numeric_limits<double>::quiet_NaN() : median(dampings);
-  // One that not all wheels show is told of each wheel.
+  // Problems that not all wheels have are reported per wheel below.
   const auto all = [&dampings](auto is_wrong) { return std::ranges::all_of(dampings, is_wrong); };
   if (damping < 0.0 && all([](double each) { return each < 0.0; })) {
     found.emplace_back("voltage falls as the wheels turn faster: does one of them have the wrong sign?");
@@ -136,7 +136,7 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
                       significant(ratio, 2)));
     }
   }
-  // What all wheels have in common is said once.
+  // Report single wheels only if no common problem was found.
   const bool is_of_single_wheels = found.empty();
   const double back_emf_V_s_per_rad =
       drive ? drive->torque_constant_Nm_per_A * drive->gear_ratio : std::numeric_limits<double>::quiet_NaN();

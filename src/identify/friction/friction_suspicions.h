@@ -1,4 +1,4 @@
-// What looks wrong about a drive once its friction is known: units, signs, the order of the wheels.
+// Plausibility checks after the friction fit: units, signs, order of the wheels.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace heatsoak {
 
-/// In sentences, said and not acted on. `drive` is that of the motor, where it is known.
+/// Returns sentences for the user about implausible results; nothing is corrected. `drive`: constants of the motor, if known.
 std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics,
                                              const std::optional<DriveConstants>& drive);
 

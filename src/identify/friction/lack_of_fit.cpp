@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kFalseAlarm_share = 1e-3;
 constexpr double kLeastFreedom_count = 5.0;
-/// Of the friction: a smaller error changes nothing that a firmware does with it.
+/// Smallest error worth reporting, as a share of the friction. A smaller one is irrelevant for a firmware.
 constexpr double kMatters_share = 0.02;
 constexpr std::array kMissingHarmonics{2.0, 3.0};
 
-/// What is left: per group, of which the law says nothing else, a mean for each repeat.
+/// Mean residual of each repeat, per group. Within a group the law predicts the same value.
 using LeftByGroup = std::map<int, std::vector<double>>;
 
 struct Repeats {
@@ -26,7 +26,7 @@ struct Repeats {
   std::vector<int> repeat;
 };
 
-/// From what tells most about repeats to what tells least. Two headings beside each other differ by the law's own error too, if little.
+/// Possible kinds of repeats, best first. Neighbouring headings also differ slightly by the error of the law itself.
 std::vector<Repeats> repeats_of(const std::vector<WheelPoint>& points, std::span<const int> heading) {
   const std::vector<int> headings(heading.begin(), heading.end());
   std::vector<int> legs(points.size()), parts(points.size()), pairs(points.size());
@@ -61,7 +61,7 @@ double repeats_count(const LeftByGroup& left) {
   return count;
 }
 
-/// One way analysis of variance. `heading_terms`: that means over groups are fitted by; `other_terms`: what is within them.
+/// One-way analysis of variance. `heading_terms` is the number of fitted terms that act between groups, `other_terms` that within groups.
 LackOfFit compared(const LeftByGroup& left, double heading_terms, double other_terms) {
   double between_V2 = 0.0;
   double within_V2 = 0.0;
@@ -140,7 +140,7 @@ void widen(const std::vector<WheelPoint>& points, const Eigen::MatrixXd& X, doub
   const Eigen::MatrixXd stays = harmonics - root.asDiagonal() * X * moved;
   const Eigen::MatrixXd seen = stays.transpose() * stays / fit.weights.sum();
   fit.covariance += left_V * left_V / seen.trace() * moved * moved.transpose();
-  // The size of each part of the error is known by the others only.
+  // The amplitude of the error is estimated from these harmonics, which limits the degrees of freedom.
   fit.freedom_counts = fit.freedom_counts.cwiseMin(seen.trace() * seen.trace() / seen.squaredNorm());
 }
 

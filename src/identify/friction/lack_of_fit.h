@@ -1,4 +1,4 @@
-// Whether what the law of friction leaves follows the direction of travel, and what that does to the intervals.
+// Tests whether the residuals of the friction fit depend on the direction of travel, and widens the intervals accordingly.
 #pragma once
 
 #include <span>
@@ -7,16 +7,17 @@
 
 namespace heatsoak {
 
-// How. What is left is averaged per leg, and on one heading legs differ by what does not repeat; where headings are driven once
-// each, the speeds of a leg, or else two headings beside each other take their place. Means over a heading that lie further from 0
-// than that explains (F test, 0.1 %) are the law's own error. A smooth error hides partly in a and b: it is taken as of the second and
-// third harmonic of the heading, the lowest that the law does not have, of any phase, and as large as what is seen of it.
+// Method. Residuals are averaged per leg; the differences between legs on one heading are the scatter of repeats. If each heading was
+// driven only once, the speeds of one leg or two neighbouring headings serve as repeats instead. If the means over headings deviate from
+// 0 by more than this scatter explains (F test, 0.1 %), the friction law has an error. Part of a smooth error is absorbed by a and b. To
+// estimate that part, the error is modelled as second and third harmonic of the heading (the lowest that the law lacks) with any phase,
+// scaled to the visible residuals.
 
-/// `heading`: per point its number, −1 for rotation. Points of no weight do not count.
+/// Tests the residuals of `fit`. `heading` has the heading number of each point, −1 for rotation. Points with weight 0 do not count.
 LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const int> heading, const WheelRegression& asked,
                       const std::vector<WheelTerm>& terms, const RobustFit& fit);
 
-/// Adds to the covariance what an error of `left_V` that follows the heading may have moved.
+/// Adds to the covariance of `fit` the effect of a heading-dependent error with RMS value `left_V`. No effect if `left_V` is 0.
 void widen(const std::vector<WheelPoint>& points, const Eigen::MatrixXd& X, double left_V, RobustFit& fit);
 
 }  // namespace heatsoak

@@ -87,7 +87,7 @@ class ColumnsOfRobot {
     return voltage_V;
   }
 
-  /// Whether the log's currents are sizes, though wheels turn both ways.
+  /// True if all currents are non-negative although wheels turn in both directions: the log has only magnitudes.
   [[nodiscard]] bool has_sizes_only() const {
     bool turns_back = false;
     for (std::size_t wheel = 0; wheel < robot_.wheel_axis_rad.size(); ++wheel) {
@@ -115,7 +115,7 @@ class ColumnsOfRobot {
     return voltage_V;
   }
 
-  /// Directions of a velocity; NaN where there is none.
+  /// Directions of a velocity with components x and y; NaN if both are 0.
   static Column directions_rad(const Column& x, const Column& y) {
     Column direction_rad(x.size());
     for (std::size_t row = 0; row < x.size(); ++row) {
@@ -130,7 +130,7 @@ class ColumnsOfRobot {
     return along && across ? directions_rad(*along, *across) : Column{};
   }
 
-  /// From the field's frame to the robot's.
+  /// Converts directions from the field's frame to the robot's. Throws Failure (bad_input) if the log has no yaw_rad.
   Column turned(Column direction_rad, const FrictionLog& log) {
     if (direction_rad.empty()) {
       return direction_rad;

@@ -30,10 +30,10 @@ std::string joined(const Lines& lines) {
   return text;
 }
 
-/// As a TOML text.
+/// Quotes a text as a TOML string.
 std::string quoted(const std::string& text) { return fmt::format("{:?}", text); }
 
-/// A figure with as many digits as its interval carries, two more than its first uncertain one.
+/// Formats a value and its range as TOML, with two digits more than the first uncertain one. `least` is a lower bound.
 std::string figure(const Estimate& estimate, double scale, const std::string& unit, double least, const std::string& source,
                    const std::string& derivation) {
   const auto kept = [&](double value) { return std::max(value, least) * scale; };
@@ -63,7 +63,7 @@ Failure other_form(const Robot& robot, const std::string& table) {
                    fmt::format("is not written as a table [{}], so that it cannot be updated in place", table));
 }
 
-/// Takes [friction.heading] and its wheels out; comments that stand before the next table stay.
+/// Removes [friction.heading], its wheels and the comments before it; keeps comments that belong to the next table.
 void remove_heading(Lines& lines) {
   for (auto begin = lines.begin(); begin != lines.end();) {
     if (!is_header_of(*begin, "friction.heading")) {
@@ -74,7 +74,7 @@ void remove_heading(Lines& lines) {
     while (end != begin + 1 && (std::prev(end)->empty() || std::prev(end)->starts_with("#"))) {
       --end;
     }
-    // and the comment that belongs to it
+    // The comment above the table belongs to it.
     while (begin != lines.begin() && (std::prev(begin)->starts_with("#") || std::prev(begin)->empty())) {
       --begin;
     }
@@ -82,7 +82,7 @@ void remove_heading(Lines& lines) {
   }
 }
 
-/// The end of the table [friction], behind its last line with text.
+/// Returns the position after the last line with text of the table [friction]; appends the table if the file has none.
 Lines::iterator end_of_friction(Lines& lines, const Robot& robot) {
   static const std::regex kHeader(R"(^\s*\[\s*friction\s*\])");
   const auto header = std::ranges::find_if(lines, [](const std::string& line) { return std::regex_search(line, kHeader); });
@@ -114,7 +114,7 @@ void set_damping(Lines& lines, const Robot& robot, const std::string& value) {
   old = line;
 }
 
-/// The mean of the wheels; its interval covers theirs.
+/// Mean of the wheels; the interval covers the intervals of all wheels.
 Estimate over_wheels(const std::vector<Estimate>& wheels) {
   Estimate all{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const Estimate& wheel : wheels) {
@@ -135,7 +135,7 @@ std::string volts(const Estimate& estimate) {
                              : fmt::format("{:.3f} V", estimate.value);
 }
 
-/// One wheel's table.
+/// Lines of the table of one wheel.
 Lines wheel_table(const WheelFriction& wheel, const DriveConstants& drive, const std::string& conversion, const std::string& source) {
   const double Nm_per_V = drive.torque_constant_Nm_per_A / drive.resistance_ohm * drive.gear_ratio * drive.gear_efficiency;
   const Estimate constant = converted(
@@ -170,7 +170,7 @@ void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::
   }
 }
 
-/// Throws a bug where the new text is no robot's file any more.
+/// Joins the lines. Throws Failure (bug) if the result cannot be read as a robot file.
 std::string checked(const Lines& lines, const Robot& robot) {
   std::string text = joined(lines);
   try {

@@ -9,17 +9,17 @@
 namespace heatsoak {
 namespace {
 
-constexpr double kBisquare = 4.685;  // 95 % efficient where errors are normal
+constexpr double kBisquare = 4.685;  // 95 % efficiency for normal errors
 constexpr double kNormal = 1.4826;   // standard deviation per median absolute deviation
 constexpr int kMostRounds = 60;
-constexpr double kLeastLeft_share = 0.05;  ///< of an error, in its residual
+constexpr double kLeastLeft_share = 0.05;  ///< smallest share of an error that is assumed to remain in its residual
 
 double bisquare_weight(double u) {
   const double share = u / kBisquare;
   return std::abs(share) < 1.0 ? (1.0 - share * share) * (1.0 - share * share) : 0.0;
 }
 
-/// Of the influence u·weight(u).
+/// Derivative of the influence function u·weight(u).
 double bisquare_slope(double u) {
   const double square = u * u / (kBisquare * kBisquare);
   return square < 1.0 ? (1.0 - square) * (1.0 - 5.0 * square) : 0.0;
@@ -30,7 +30,7 @@ Eigen::VectorXd weighted_solution(const Eigen::MatrixXd& X, const Eigen::VectorX
   return (root.asDiagonal() * X).colPivHouseholderQr().solve(root.cwiseProduct(y));
 }
 
-/// Median of the absolute residuals but the p that a fit of p coefficients can make vanish.
+/// Robust standard deviation: median absolute residual without the p smallest ones, which a fit of p coefficients can make vanish.
 double residual_deviation(const Eigen::VectorXd& residuals, Eigen::Index coefficients) {
   std::vector<double> sizes(residuals.size());
   Eigen::VectorXd::Map(sizes.data(), residuals.size()) = residuals.cwiseAbs();
@@ -38,7 +38,7 @@ double residual_deviation(const Eigen::VectorXd& residuals, Eigen::Index coeffic
   return kNormal * median(std::span(sizes).subspan(static_cast<std::size_t>(std::min(coefficients, residuals.size() - 1))));
 }
 
-/// Least absolute deviations by reweighting.
+/// Least absolute deviations by iteratively reweighted least squares.
 Eigen::VectorXd least_deviations(const Eigen::MatrixXd& X, const Eigen::VectorXd& y) {
   Eigen::VectorXd solution = weighted_solution(X, y, Eigen::VectorXd::Ones(y.size()));
   const double resolution = 1e-6 * std::max(1e-300, y.cwiseAbs().maxCoeff());
@@ -52,7 +52,7 @@ Eigen::VectorXd least_deviations(const Eigen::MatrixXd& X, const Eigen::VectorXd
   return solution;
 }
 
-/// (I − U·Uᵀ)⁻¹·values, as if the cluster were left out of the fit (CR3): unequal scatter then hides in no cluster that decides.
+/// Returns (I − U·Uᵀ)⁻¹·values, the leave-one-cluster-out correction (CR3). Without it, clusters with high leverage hide their scatter.
 Eigen::MatrixXd without_leverage(const Eigen::MatrixXd& U, const Eigen::MatrixXd& values) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(U.transpose() * U);
   const Eigen::VectorXd factors = of.eigenvalues().unaryExpr([](double leverage) {
@@ -71,7 +71,7 @@ void add_sandwich(const Eigen::MatrixXd& X, const Eigen::VectorXd& residuals, do
   const Eigen::VectorXd scaled_residuals = root.cwiseProduct(residuals);
   const Eigen::VectorXd slopes = (residuals / deviation).unaryExpr(&bisquare_slope);
   const Eigen::MatrixXd bread = (X.transpose() * slopes.asDiagonal() * X).completeOrthogonalDecomposition().pseudoInverse();
-  // weighted = U·…, of which U·Uᵀ is the hat matrix
+  // U is an orthonormal basis of the columns of `weighted`; U·Uᵀ is the hat matrix.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squares(weighted.transpose() * weighted);
   const double least = 1e-12 * squares.eigenvalues().maxCoeff();
   const Eigen::VectorXd inverse_roots =
@@ -82,7 +82,7 @@ void add_sandwich(const Eigen::MatrixXd& X, const Eigen::VectorXd& residuals, do
   for (Eigen::Index i = 0; i < X.rows(); ++i) {
     rows[cluster[static_cast<std::size_t>(i)]].push_back(i);
   }
-  // An estimated variance is eᵀ·Q·e; of errors e of equal size its mean goes with tr Q and its own variance with tr Q².
+  // An estimated variance is eᵀ·Q·e. For errors e of equal variance its mean is proportional to tr Q, its variance to tr Q².
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd trace = Eigen::VectorXd::Zero(size);
   Eigen::VectorXd trace_of_square = Eigen::VectorXd::Zero(size);
@@ -167,7 +167,7 @@ Estimate RobustFit::estimate(Eigen::Index coefficient) const {
 
 RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::span<const int> cluster) {
   RobustFit fit;
-  // Columns of like size: weights and ranks then do not depend on the units.
+  // Normalise the columns, so that weights and ranks do not depend on units.
   const Eigen::VectorXd size = X.colwise().norm().transpose().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = X * size.cwiseInverse().asDiagonal();
   fit.coefficients = least_deviations(scaled, y);

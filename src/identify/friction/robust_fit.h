@@ -1,4 +1,4 @@
-// Location and linear regression that bad values do not move.
+// Robust estimation of location and robust linear regression.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace heatsoak {
 
-/// A value with its 95 % interval; NaN throughout where the data cannot tell.
+/// A value with its 95 % interval; NaN if the data do not determine it.
 struct Estimate {
   double value = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN();
@@ -15,35 +15,35 @@ struct Estimate {
   [[nodiscard]] bool is_known() const;
 };
 
-/// Of the finite ones; NaN of none. Reorders `values`.
+/// Median of the finite values; NaN if there are none. Reorders `values`.
 double median(std::span<double> values);
 
-/// Tukey's bisquare M-estimate (c = 4.685, started at the median, spread from the median absolute deviation).
+/// Location by Tukey's bisquare M-estimate (c = 4.685), started at the median, with the scale from the median absolute deviation.
 struct RobustLocation {
   double value = std::numeric_limits<double>::quiet_NaN();
   double noise = 0.0;      ///< robust standard deviation
   std::vector<bool> kept;  ///< per value: finite and not an outlier
 };
-/// `step`: of the sensor; deviations of half of it are no outliers.
+/// Estimates the location of the finite values. `step` is the resolution of the sensor: deviations up to half of it are no outliers.
 RobustLocation robust_location(std::span<const double> values, double step);
 
-/// y = X·β with errors of which a fifth may be gross: least absolute deviations, then Tukey's bisquare. The covariance
-/// is the sandwich whose scores are summed over clusters (rows that share an error), so that unequal scatter does no harm
-/// (Croux, Dhaene, Hoorelbeke 2004), with residuals free of their leverage. A coefficient that few clusters decide has a
-/// variance that is hardly known: its degrees of freedom are Satterthwaite's (Bell, McCaffrey 2002; Pustejovsky, Tipton 2018).
+/// Robust regression y = X·β, in which up to a fifth of the values may be outliers: least absolute deviations, then Tukey's bisquare. The
+/// covariance is a cluster-robust sandwich estimate (clusters are rows that share an error), so that unequal variances do no harm (Croux,
+/// Dhaene, Hoorelbeke 2004). Residuals are corrected for leverage. If few clusters determine a coefficient, its variance is uncertain; the
+/// degrees of freedom are therefore Satterthwaite's (Bell, McCaffrey 2002; Pustejovsky, Tipton 2018).
 struct RobustFit {
   Eigen::VectorXd coefficients;
   Eigen::MatrixXd covariance;
-  Eigen::VectorXd weights;         ///< per row, 0 … 1; 0 is an outlier
-  Eigen::VectorXd freedom_counts;  ///< per coefficient
+  Eigen::VectorXd weights;         ///< per row, 0 to 1; 0 is an outlier
+  Eigen::VectorXd freedom_counts;  ///< degrees of freedom per coefficient
 
-  /// Student's quantile of 97.5 % at the coefficient's degrees of freedom.
+  /// Student's 97.5 % quantile for the coefficient's degrees of freedom.
   [[nodiscard]] double quantile_factor(Eigen::Index coefficient) const;
   [[nodiscard]] Estimate estimate(Eigen::Index coefficient) const;
 };
 RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::span<const int> cluster);
 
-/// Share of column `column` (as its root mean square) that the other columns cannot express: 0 is collinear.
+/// Returns the RMS share of a column that is linearly independent of the other columns; 0 means collinear.
 double independent_share(const Eigen::MatrixXd& X, Eigen::Index column);
 
 }  // namespace heatsoak

@@ -21,7 +21,7 @@ constexpr std::size_t kReach = 4;
 constexpr double kTrusted_share = 0.1;
 constexpr int kMostRollOutRounds = 5;
 
-/// Median of each value and its four neighbours on both sides: single bad rows vanish.
+/// Running median of nine values, which removes single outliers.
 std::vector<double> without_spikes(const std::vector<double>& values) {
   std::vector<double> smooth(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -33,7 +33,7 @@ std::vector<double> without_spikes(const std::vector<double>& values) {
   return smooth;
 }
 
-/// Per row, whether no wheel is driven; empty where the log does not say.
+/// Per row, true if no wheel is driven; empty if the log has no voltages.
 std::vector<bool> rows_off(const FrictionLog& log, int wheel_count) {
   std::vector<bool> off(log.rows(), true);
   bool is_known = false;
@@ -56,12 +56,12 @@ std::vector<bool> rows_off(const FrictionLog& log, int wheel_count) {
   return is_known ? off : std::vector<bool>{};
 }
 
-/// What rolls out, row by row.
+/// Speed and energy of the rolling body (or wheel), per row.
 struct Rolling {
   RollOutRun run;
   std::vector<double> speed;                ///< without spikes, m/s of the contact points or rad/s of a lifted wheel
-  std::vector<double> energy_J;             ///< as measured
-  std::vector<double> smooth_energy_J;      ///< of speeds without spikes
+  std::vector<double> energy_J;             ///< from the measured speeds
+  std::vector<double> smooth_energy_J;      ///< from speeds without spikes
   std::vector<double> turning_rad_per_s;    ///< Σ|ω_i|, as measured
   std::vector<double> turning_rad2_per_s2;  ///< Σω_i²
   explicit Rolling(std::size_t rows)
@@ -73,7 +73,7 @@ struct RollOutStretch {
   std::size_t end = 0;
 };
 
-/// Where the drivers are off and the speed is not yet gone, each to the end of its roll-out.
+/// Segments in which the drivers are off, each to the end of its roll-out.
 std::vector<RollOutStretch> stretches(const FrictionLog& log, const std::vector<bool>& off, const std::vector<double>& speed) {
   std::vector<RollOutStretch> found;
   double top = 0.0;
@@ -109,7 +109,7 @@ std::vector<RollOutStretch> stretches(const FrictionLog& log, const std::vector<
   return found;
 }
 
-/// What the wheels have turned since the stretch began, over the rows that are trusted.
+/// Rotation of the wheels since the begin of the segment, integrated over the trusted rows.
 struct Turned {
   std::vector<double> sum_rad;         ///< Σ∫|ω_i| dt
   std::vector<double> sum_rad2_per_s;  ///< Σ∫ω_i² dt
@@ -140,7 +140,7 @@ struct EnergyFit {
   Eigen::VectorXd energy;
 };
 
-/// Rows count by 1/√E, so that the noise of the speed is the same in all.
+/// Fits E_0, τ and D. Rows are weighted by 1/√E, so that speed noise has the same effect in all rows. nullopt with too few trusted rows.
 std::optional<EnergyFit> energy_fit(const Rolling& rolling, const RollOutStretch& stretch, const Turned& turned,
                                     const std::vector<bool>& trusted) {
   const double least_J = kEnd_share * kEnd_share * rolling.smooth_energy_J[stretch.begin];
@@ -165,7 +165,7 @@ std::optional<EnergyFit> energy_fit(const Rolling& rolling, const RollOutStretch
   return made;
 }
 
-/// Rows whose speed is within a tenth of the first one of what is expected; the others take no part.
+/// Marks rows whose speed differs from the expected one by at most a tenth of the first speed. Other rows are ignored.
 template <typename Expected>
 std::vector<bool> trusted_rows(const Rolling& rolling, const RollOutStretch& stretch, Expected expected_J) {
   std::vector<bool> trusted(stretch.end - stretch.begin);
@@ -270,7 +270,7 @@ void add_lifted(const FrictionLog& log, const BodyConfig& body, RollOutResult& r
   }
 }
 
-/// Mean over runs, its interval from their scatter.
+/// Mean over runs with an interval from their scatter (robust mean from three runs on).
 Estimate over_runs(const std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
   const Eigen::Map<const Eigen::VectorXd> all(values.data(), static_cast<Eigen::Index>(values.size()));

@@ -77,7 +77,7 @@ std::vector<Leg> legs_of(const std::vector<Block>& blocks) {
   return legs;
 }
 
-/// Marks legs that end less than half as far from where the robot came from as they began.
+/// Marks return legs: at their end the robot is less than half as far from where it came from as at their begin.
 void mark_returns(std::vector<Leg>& legs, const std::vector<Block>& blocks, const BlockMedians& medians, const FrictionLog& log) {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -101,7 +101,7 @@ void mark_returns(std::vector<Leg>& legs, const std::vector<Block>& blocks, cons
       yaw_rad += field.yaw_rad_per_s * duration_s;
       path_m += static_cast<Eigen::Index>(k) >= leg.begin ? std::hypot(field.x_m_per_s, field.y_m_per_s) * duration_s : 0.0;
     }
-    // As long as the way back, so that a short correction near home is no return.
+    // The minimum length excludes short corrections near the start.
     leg.is_return = leg.kind == Movement::translating && std::hypot(x_m, y_m) < 0.5 * begin_m && path_m > 0.5 * begin_m;
     if (leg.is_return) {
       x_m = y_m = 0.0;
@@ -111,10 +111,10 @@ void mark_returns(std::vector<Leg>& legs, const std::vector<Block>& blocks, cons
 
 struct Change {
   Eigen::Index at = 0;
-  double sum_ratio = 0.0;  ///< of the largest cumulative sum over what noise explains
+  double sum_ratio = 0.0;  ///< largest cumulative sum divided by its limit from noise
 };
 
-/// Per signal, whether it belongs to a wheel that turns in this leg: one that should stand sticks and slips as it likes.
+/// Per signal, true if its wheel turns in this leg. A wheel that should stand sticks and slips irregularly.
 std::vector<bool> turning_signals(const BlockMedians& medians, const std::vector<Block>& blocks, const Leg& leg,
                                   const Kinematics& kinematics) {
   std::vector<bool> turns(static_cast<std::size_t>(medians.values.rows()), true);
@@ -134,7 +134,7 @@ std::vector<bool> turning_signals(const BlockMedians& medians, const std::vector
   return turns;
 }
 
-/// The most significant change of a mean within [begin, end) that matters.
+/// Returns the most significant relevant change of a mean within [begin, end), or nullopt.
 std::optional<Change> change_within(const BlockMedians& blocks, const std::vector<bool>& counts, Eigen::Index begin, Eigen::Index end) {
   std::optional<Change> found;
   const Eigen::Index size = end - begin;
@@ -170,7 +170,7 @@ std::optional<Change> change_within(const BlockMedians& blocks, const std::vecto
   return found;
 }
 
-/// The undivided stretches of a leg.
+/// Returns the undivided segments of a leg as [begin, end) of blocks.
 std::vector<std::pair<Eigen::Index, Eigen::Index>> steady_stretches(const BlockMedians& blocks, const std::vector<bool>& counts,
                                                                     const Leg& leg) {
   std::vector<std::pair<Eigen::Index, Eigen::Index>> open{{leg.begin, leg.end}};
@@ -195,7 +195,7 @@ std::span<const double> rows_of(const std::vector<double>& column, const SteadyP
   return std::span(column).subspan(part.first_row, part.row_count);
 }
 
-/// Direction of travel: the log's, or that of the wheels.
+/// Direction of travel from the log, or else from the wheels.
 double heading_rad(const FrictionLog& log, const SteadyPart& part, const BodyVelocity& velocity) {
   if (!log.heading_rad.empty()) {
     std::vector<double> x, y;
@@ -235,14 +235,14 @@ SteadyPart measured_part(const FrictionLog& log, const Kinematics& kinematics, S
   return part;
 }
 
-/// Noise as large as a good part of the speed itself is a swinging controller.
+/// True if the noise is a large part of the speed, which means that the controller oscillates.
 bool is_restless(const SteadyPart& part) {
   const auto* const fastest = std::ranges::max_element(part.wheel_speed_rad_per_s, {}, [](double speed) { return std::abs(speed); });
   return part.speed_noise_rad_per_s[static_cast<std::size_t>(fastest - part.wheel_speed_rad_per_s.begin())] >
          kRestless_share * std::abs(*fastest);
 }
 
-/// Of stretches at one level of speed the longest stands for the leg: the others settle towards it, or leave it.
+/// Keeps only the longest of successive parts at one speed, because the others are transients towards or from it.
 std::vector<SteadyPart> settled(const std::vector<SteadyPart>& parts) {
   std::vector<SteadyPart> kept;
   for (const SteadyPart& part : parts) {

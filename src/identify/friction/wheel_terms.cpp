@@ -46,7 +46,7 @@ bool is_told(const Eigen::MatrixXd& X, const std::vector<WheelTerm>& terms, Whee
   return place != terms.end() && independent_share(X, place - terms.begin()) >= kIndependent_share;
 }
 
-/// With φ anywhere within its doubt. On the way to where a and b cannot be told they pass infinity.
+/// True if a and b are identifiable for every φ within its uncertainty. Otherwise both would diverge for some φ.
 bool friction_is_told(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms, double phase_doubt_rad) {
   const int steps = static_cast<int>(std::ceil(phase_doubt_rad / kPhaseStep_rad));
   for (int step = -steps; step <= steps; ++step) {
@@ -77,7 +77,7 @@ WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& ki
       point.cosine_ratio = std::cos(part.heading_rad + phase_rad);
       expected = should_stand(kinematics.wheels[wheel], part.heading_rad) ? 0.0 : point.sine_ratio;
     }
-    // A mean that its own noise could have turned round says nothing about the side either.
+    // The sign of a mean speed within its own noise is unknown.
     const double doubt_rad_per_s = 3.0 * part.speed_noise_rad_per_s[wheel] / std::sqrt(std::max(1, part.rows_kept[wheel]));
     if (expected * speed_rad_per_s <= 0.0 || std::abs(speed_rad_per_s) <= doubt_rad_per_s || !std::isfinite(part.voltage_V[wheel])) {
       ++found.standing;
@@ -137,7 +137,7 @@ WheelRegression regression_of(const std::vector<WheelPoint>& points, int wheel, 
     asked.voltage_V(static_cast<Eigen::Index>(i)) = part.voltage_V[wheel] - given_V_s_per_rad * part.wheel_speed_rad_per_s[wheel];
     asked.legs.push_back(part.leg);
   }
-  // Of a few long legs the scatter from leg to leg is not known; then stretches stand for themselves.
+  // With few legs the scatter between legs is unknown; then each segment is its own cluster.
   if (std::set<int>(asked.legs.begin(), asked.legs.end()).size() < kLegsPerTerm * terms.size()) {
     std::iota(asked.legs.begin(), asked.legs.end(), 0);
   }

@@ -1,4 +1,4 @@
-// What the steady parts of a wheel say of its friction, as rows of a regression, and which terms they can tell apart.
+// Regression of a wheel's friction: rows from steady parts, and the terms that these rows determine.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,12 +9,12 @@
 
 namespace heatsoak {
 
-/// One steady part seen by one wheel.
+/// One steady part as data point of one wheel.
 struct WheelPoint {
   const SteadyPart* part = nullptr;
-  double sine_ratio = 0.0;    ///< of θ + φ_0; 0 in rotation
-  double cosine_ratio = 0.0;  ///< likewise
-  int side = 0;               ///< of the wheel's speed, 1 or −1
+  double sine_ratio = 0.0;    ///< sin(θ + φ_0); 0 in rotation
+  double cosine_ratio = 0.0;  ///< cos(θ + φ_0); 0 in rotation
+  int side = 0;               ///< sign of the wheel's speed, 1 or −1
 };
 
 struct WheelPoints {
@@ -27,10 +27,10 @@ enum class WheelTerm { damping, sine, cosine, constant, rotation };
 bool is_used(const SteadyPart& part, const FitSettings& settings);
 WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, int wheel, const FitSettings& settings);
 
-/// As if the wheel's phase were φ_0 + offset; it turns the way it was seen to.
+/// Returns the points for the phase φ_0 + offset. The signs of the measured speeds stay.
 std::vector<WheelPoint> turned(std::vector<WheelPoint> points, double offset_rad);
 
-/// Terms that these points can tell apart, or why not.
+/// Terms that the points determine, or the reason why there are none.
 struct ChosenTerms {
   std::vector<WheelTerm> terms;
   bool damping_is_given = false;
@@ -40,7 +40,7 @@ struct ChosenTerms {
 
 ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const FitSettings& settings);
 
-/// What a wheel's points ask of its terms; `given_V_s_per_rad` is the damping that is taken as known.
+/// Linear regression of a wheel: voltage_V = X · coefficients. `given_V_s_per_rad` is the known damping, whose voltage is subtracted.
 struct WheelRegression {
   Eigen::MatrixXd X;
   Eigen::VectorXd voltage_V;

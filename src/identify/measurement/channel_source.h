@@ -1,4 +1,4 @@
-// Where a channel's values come from in a file with a certain header: columns, expressions, conditions.
+// Computes a channel's values from the columns of a file: columns, expressions, validity conditions.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace heatsoak {
 
-/// The columns of a file that anything reads, and which of a block's columns each of them is.
+/// Columns of a file that are used. slot() registers a column and returns its index within the blocks.
 class UsedColumns {
  public:
   std::size_t slot(std::size_t column);
@@ -24,7 +24,7 @@ class UsedColumns {
   std::vector<std::size_t> columns_;
 };
 
-/// An expression with its place in the blocks.
+/// Expression evaluated on the blocks of a table.
 class BlockExpression {
  public:
   BlockExpression(Expression expression, UsedColumns& used);
@@ -37,31 +37,31 @@ class BlockExpression {
   std::vector<double> values_;
 };
 
-/// The cells of a block that are no numbers, looked up by place.
+/// Cells of a block that are not numbers, indexed by position.
 class BadCells {
  public:
   void read(const TableBlock& block);
-  /// Null where the cell is a number; an empty text is a blank cell.
+  /// Returns the text of the cell, empty for a blank cell; nullptr if the cell is a number.
   [[nodiscard]] const std::string* find(std::size_t slot, std::size_t row) const;
 
  private:
-  std::vector<std::vector<const BadCell*>> by_slot_;  ///< per column in the order of rows
+  std::vector<std::vector<const BadCell*>> by_slot_;  ///< per column, in ascending order of rows
 };
 
-/// One channel on its way from cells to canonical values.
+/// Converts the cells of one channel to canonical values.
 class ChannelSource {
  public:
-  /// Problems of names and expressions are added to `problems`.
+  /// Adds unknown columns and invalid expressions to `problems`.
   ChannelSource(const QuantityMapping& mapping, std::span<const std::string> header, const std::string& log, UsedColumns& used,
                 Diagnostics& problems);
 
   [[nodiscard]] const Quantity& quantity() const { return mapping_.quantity; }
   [[nodiscard]] double clock_offset_s() const { return mapping_.clock_offset_s; }
-  /// An optional quantity of which the file has no column.
+  /// True for an optional quantity without a column in the file.
   [[nodiscard]] bool is_absent() const { return is_absent_; }
   [[nodiscard]] std::size_t filled() const { return filled_; }
 
-  /// Appends the rows of the block where `keep` says so; what is no measurement becomes NaN and is reported.
+  /// Appends the rows of the block with nonzero `keep`, in the quantity's unit. Invalid samples become NaN and are reported.
   void append(const TableBlock& block, const BadCells& bad, const std::vector<char>& keep, RecordingReport& report,
               std::vector<double>& values);
 
@@ -77,7 +77,7 @@ class ChannelSource {
   std::optional<BlockExpression> expression_;
   std::optional<BlockExpression> valid_;
   std::vector<Fill> fills_;
-  std::vector<std::pair<LeftOutReason, LeftOut*>> entries_;  ///< of the report, looked up once
+  std::vector<std::pair<LeftOutReason, LeftOut*>> entries_;  ///< entries of the report, cached
   std::size_t filled_ = 0;
   bool is_absent_ = false;
 };

@@ -19,11 +19,11 @@ namespace heatsoak {
 namespace {
 
 constexpr int kDelays = 61;
-constexpr int kParts = 8;  ///< of the log, left out in turn
+constexpr int kParts = 8;  ///< number of parts of the log for the jackknife
 constexpr std::size_t kMostWindows = 600;
 constexpr std::size_t kFewestWindows = 40;
 
-/// The integral of a channel from the run's first row to any moment; held or, for temperatures, straight between rows.
+/// Integral of a channel between two times. The channel is piecewise constant (`is_held`) or, for temperatures, piecewise linear.
 class Integral {
  public:
   Integral(std::span<const double> time_s, std::span<const double> values, bool is_held)
@@ -49,10 +49,10 @@ class Integral {
   std::span<const double> time_s_;
   std::span<const double> values_;
   bool is_held_;
-  std::vector<double> sums_;  ///< NaN from the first value on that is not known
+  std::vector<double> sums_;  ///< NaN from the first unknown value on
 };
 
-/// Where every channel needed is known from begin to end.
+/// Rows [begin, end) in which all needed channels are known.
 struct Piece {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -76,7 +76,7 @@ std::vector<Piece> known_pieces(const Recording& recording, std::span<const std:
   return pieces;
 }
 
-/// Left-out samples inside a piece are bridged here: only the delay is sought, and a piece without any hole may not exist.
+/// Fills gaps up to `longest_s` by linear interpolation. This is accurate enough for the delay, and pieces without gaps may not exist.
 std::vector<double> bridged(std::span<const double> time_s, std::span<const double> values, double longest_s) {
   std::vector<double> filled(values.begin(), values.end());
   std::size_t before = values.size();
@@ -101,7 +101,7 @@ struct Window {
   double change_K = 0.0;
 };
 
-/// All windows for all delays, as normal equations per part of the log, so that parts can be left out cheaply.
+/// Fits all windows for many delays. Keeps normal equations per part of the log, so that parts can be left out cheaply.
 class DelayScan {
  public:
   DelayScan(const Recording& recording, const Channel& temperature, const Channel& heat_input) : time_s_(recording.time_s) {
@@ -122,7 +122,7 @@ class DelayScan {
     pieces_ = known_pieces(recording, needed);
   }
 
-  /// How much of the heat's changes fell into lost rows. Over these the row before is held, so that inputs seem late.
+  /// Share of the heat's changes that fall into lost rows. There the previous row is held, so that inputs appear late.
   [[nodiscard]] double lost_changes_share() const {
     constexpr double kLost_ratio = 1.5;
     const double period_s = usual_period_s(time_s_);
@@ -138,8 +138,8 @@ class DelayScan {
     return all > 0.0 ? lost / all : 0.0;
   }
 
-  /// Where the heat goes that the temperature gives away is known, and it gives some away while it is heated: what is then no hotter than
-  /// all beside it follows them, whatever the current does.
+  /// True if the log has another temperature and this one is clearly the hottest while heated. Only then its heat flow to the others is
+  /// known; a temperature that is not the hottest follows the others instead of the current.
   [[nodiscard]] bool explains_flow(double noise_K) const {
     constexpr double kClearly = 5.0;
     if (columns_.size() < 2) {
@@ -161,7 +161,7 @@ class DelayScan {
     return !above_K.empty() && median_of(std::move(above_K)) > kClearly * noise_K;
   }
 
-  /// Windows of a length in which the temperature moves well beyond its noise, spread evenly.
+  /// Chooses windows long enough that the temperature changes well beyond its noise. Returns their number.
   std::size_t place_windows(double noise_K, double reach_s) {
     const double period_s = usual_period_s(time_s_);
     for (double length_s = 4.0 * period_s; length_s < 0.1 * (time_s_.back() - time_s_.front()); length_s *= 2.0) {
@@ -177,7 +177,7 @@ class DelayScan {
     return windows_.size();
   }
 
-  /// Sum of squared errors for each delay and each part left out; the last one leaves none out.
+  /// Sum of squared errors for each delay, with each part of the log left out; the last entry uses all parts.
   std::vector<std::array<double, kParts + 1>> errors(std::span<const double> delays_s) const {
     const auto size = static_cast<Eigen::Index>(columns_.size() + 2);
     std::vector<Integral> heats;
@@ -193,7 +193,7 @@ class DelayScan {
     }
     std::vector<std::array<double, kParts + 1>> found;
     for (const double delay_s : delays_s) {
-      // One row more and one column more than unknowns: the change itself, so that one matrix holds XᵀX, Xᵀy and yᵀy.
+      // The additional row and column hold y, so that one matrix contains XᵀX, Xᵀy and yᵀy.
       std::array<Eigen::MatrixXd, kParts> products;
       products.fill(Eigen::MatrixXd::Zero(size + 1, size + 1));
       Eigen::VectorXd row(size + 1);
@@ -213,7 +213,7 @@ class DelayScan {
   }
 
  private:
-  /// Else a winding that gets hot makes its current look as if it came earlier than its heat.
+  /// Scales the heat with the copper's resistance. Without this, heat that grows with temperature would appear to lag behind the current.
   void heat_by_hot_copper() {
     for (std::size_t row = 0; row < heat_.size(); ++row) {
       heat_[row] *= resistance_ratio(kCopper_per_K, columns_.front()[row]);
@@ -222,7 +222,7 @@ class DelayScan {
 
   [[nodiscard]] std::vector<Window> windows_of(double length_s, double reach_s) const {
     std::vector<Window> found;
-    // Uneven steps: even ones would see a load that repeats at a few of its phases only.
+    // Random steps: even ones would sample a periodic load at only a few of its phases.
     const std::size_t longest_stride = 2 * (time_s_.size() / kMostWindows) + 1;
     std::minstd_rand steps;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
@@ -232,7 +232,7 @@ class DelayScan {
         while (to + 1 < end && time_s_[to] - time_s_[from] < length_s) {
           ++to;
         }
-        // Every delay of the scan is asked of the same windows.
+        // All delays must use the same windows.
         if (time_s_[to] - time_s_[from] >= length_s && time_s_[from] - reach_s >= time_s_[begin] &&
             time_s_[to] + reach_s <= time_s_[end - 1]) {
           found.push_back({p, time_s_[from], time_s_[to], columns_[0][to] - columns_[0][from]});
@@ -259,12 +259,12 @@ class DelayScan {
 
   const std::vector<double>& time_s_;
   std::vector<double> heat_;
-  std::vector<std::vector<double>> columns_;  ///< temperatures, the one in question first
+  std::vector<std::vector<double>> columns_;  ///< temperatures, first the one whose delay is estimated
   std::vector<Piece> pieces_;
   std::vector<Window> windows_;
 };
 
-/// The bottom of the errors, between the grid's points; nothing at the ends.
+/// Delay of the smallest error, interpolated by a parabola; nullopt if it is at an end of the grid.
 std::optional<double> bottom_of(std::span<const double> delays_s, const std::vector<std::array<double, kParts + 1>>& errors,
                                 std::size_t part) {
   std::size_t best = 0;
@@ -280,7 +280,7 @@ std::optional<double> bottom_of(std::span<const double> delays_s, const std::vec
   return delays_s[best] + (curvature > 0.0 ? 0.5 * (delays_s[1] - delays_s[0]) * (left - right) / curvature : 0.0);
 }
 
-/// Sought as far as reach_s to either side of around_s.
+/// Searches the delay within around_s ± reach_s. If it cannot be determined, why_not states the reason.
 ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, double noise_K, double period_s) {
   ClockOffset offset;
   if (scan.place_windows(noise_K, std::abs(around_s) + reach_s) < kFewestWindows) {
@@ -311,7 +311,7 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   const double mean_s = sum_s / kParts;
   constexpr double kMany_share = 0.1;
   const double held_too_long_s = scan.lost_changes_share() > kMany_share ? period_s : 0.0;
-  // Jackknife; a step of the heat happens somewhere between two rows.
+  // Jackknife error, plus the unknown time of a heat step between two rows.
   const double by_parts_s = std::sqrt(std::max(0.0, (kParts - 1.0) * (sum_s2 / kParts - mean_s * mean_s)));
   const double standard_error_s = std::hypot(by_parts_s, period_s / std::sqrt(12.0), held_too_long_s);
   if (standard_error_s > kTooWide_share * reach_s) {
@@ -324,11 +324,12 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   return offset;
 }
 
-/// Beyond chance and what means over rows, or heat that nobody knows of, can make. Only the winding answers at once, and only to its
-/// current (power does work, too); without another temperature beside it the heat that it gives away passes for an offset.
+/// True if the delay exceeds its uncertainty and the possible effects of row averages and unmodelled heat. Only for the winding and its
+/// current: other bodies respond late, and power also contains mechanical work. Needs another temperature (explains_flow), because unknown
+/// heat flow would look like an offset.
 bool is_sure(const ClockOffset& offset, double period_s) {
   constexpr double kStandardErrors = 3.0;
-  // Of squares: logs in time of motors that something else heats, too, come to 2; a shift by one row to 11 and more.
+  // Ratio of squared errors: up to 2 for logs without offset but with another heat source, 11 or more for an offset of one row.
   constexpr double kMuchBetter_ratio = 5.0;
   constexpr double kLeast_s = 0.3;
   constexpr double kLeast_rows = 0.2;
@@ -350,7 +351,7 @@ ClockOffset clock_offset(const Recording& recording, const Channel& temperature,
   const double near_s = std::min(farthest_s, std::max(10.0, 10.0 * period_s));
   DelayScan scan(recording, temperature, heat_input);
   ClockOffset offset = offset_within(0.0, near_s, scan, noise_K, period_s);
-  // Two loggers started by hand are off by more.
+  // Two loggers started by hand may differ by more.
   constexpr double kByHand = 10.0;
   if (!offset.delay_s && farthest_s > near_s) {
     const ClockOffset wide = offset_within(0.0, std::min(farthest_s, kByHand * near_s), scan, noise_K, period_s);

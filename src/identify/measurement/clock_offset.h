@@ -1,4 +1,4 @@
-// Does the temperature answer when the heat changes? By how much the heat must be moved in time to explain it best.
+// Estimates the delay between heat input and temperature, which is a clock offset or a sensor lag.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace heatsoak {
 
-/// Fits changes of `temperature` by the heat that went in, moved by a delay, and the mean temperatures meanwhile (linear, no model of
-/// the motor); the delay with the least error wins. `noise_K` is the temperature's standard deviation.
+/// Returns the delay for which a linear regression explains the changes of `temperature` best. The regressors are the delayed heat input
+/// and the mean temperatures in each window; no motor model is needed. `noise_K` is the standard deviation of the temperature's noise.
 ClockOffset clock_offset(const Recording& recording, const Channel& temperature, const Channel& heat_input, double noise_K);
 
-/// What to say where the winding surely answers before its heat, in logs with rows of `period_s`; else empty. Nothing does: a clock is
-/// wrong.
+/// Returns a sentence if the winding certainly responds before its heat input, which is possible only with a wrong clock; else an empty
+/// string. `period_s` is the row spacing.
 std::string early_answer(const ClockOffset& offset, double period_s);
-/// What to say where the winding surely answers late, as with a sensor that lags; else empty.
+/// Returns a sentence if the winding certainly responds late, as with a sensor lag; else an empty string.
 std::string late_answer(const ClockOffset& offset, double period_s);
 
 }  // namespace heatsoak

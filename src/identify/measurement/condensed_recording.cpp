@@ -14,7 +14,7 @@ struct Group {
   std::size_t end = 0;
 };
 
-/// The mean of what is there, or for currents the rms with its sign.
+/// Weighted mean of the known values, or with `by_square` their RMS with the sign of the mean. NaN if none is known.
 double mean_of(std::span<const double> values, std::span<const double> weight_ratio, bool by_square) {
   double sum = 0.0;
   double squares = 0.0;
@@ -99,7 +99,7 @@ void CondensedRecording::leave_every_other_run_aside(Rows& some) {
   std::vector<std::size_t> run_begins;
   std::size_t kept = 0;
   const auto runs = some.rows.runs();
-  // The last one may go on.
+  // Always keep the last run, which may continue in the next part.
   for (std::size_t run = (runs.size() - 1) % 2; run < runs.size(); run += 2) {
     run_begins.push_back(kept);
     std::fill(stays.begin() + static_cast<std::ptrdiff_t>(runs[run].first), stays.begin() + static_cast<std::ptrdiff_t>(runs[run].second),

@@ -1,4 +1,4 @@
-// A recording of any length in a bounded number of rows, for what looks at a log as a whole.
+// Condenses a recording of any length to a bounded number of rows, for checks that need the whole log.
 #pragma once
 
 #include <cstddef>
@@ -8,34 +8,34 @@
 
 namespace heatsoak {
 
-/// Takes a log part by part. Where it grows beyond some ten thousand rows, neighbours of one run become one: heat inputs and
-/// surroundings their mean (currents the rms with the sign of the mean), temperatures and other signals the first one that is there. Of
-/// logs with more runs than that whole runs are left aside, spread evenly.
+/// Takes a log part by part. If it exceeds `most_rows`, neighbouring rows of a run are merged. Heat inputs and surroundings become means
+/// (currents: RMS with the sign of the mean); temperatures and other signals keep their first valid value. If a log has too many runs,
+/// every other run is dropped.
 class CondensedRecording {
  public:
   static constexpr std::size_t kMostRows = 1 << 16;
 
-  /// `most_rows`: even.
+  /// `most_rows` must be even.
   explicit CondensedRecording(std::size_t most_rows = kMostRows) : most_rows_(most_rows) {}
 
-  /// As RecordingStream gives them.
+  /// Adds the next part, as returned by RecordingStream.
   void add(const Recording& part);
   [[nodiscard]] const Recording& rows() const { return all_.rows; }
-  /// The smallest and the largest value in each row of a channel; NaN where it has none.
+  /// Smallest and largest value of a channel within each row; NaN if it has none.
   [[nodiscard]] const std::vector<double>& low(std::size_t channel) const { return all_.low[channel]; }
   [[nodiscard]] const std::vector<double>& high(std::size_t channel) const { return all_.high[channel]; }
-  /// Rows of the log in one row, at most; 1: nothing is condensed.
+  /// Largest number of log rows in one row; 1 if nothing is condensed.
   [[nodiscard]] std::size_t merged() const { return merged_; }
   void erase_channel(std::size_t channel);
 
  private:
   struct Rows {
     Recording rows;
-    std::vector<double> weight_ratio;  ///< rows of the log in each row
+    std::vector<double> weight_ratio;  ///< number of log rows in each row
     std::vector<std::vector<double>> low;
     std::vector<std::vector<double>> high;
   };
-  /// Up to `most` neighbours become one; `counted`: what the rows are made of, null: each is one row of the log.
+  /// Merges up to `most` neighbouring rows into one. `counted` has the number of log rows in each row; null means one each.
   static Rows merged(const Recording& rows, const Rows* counted, std::size_t most);
   static void leave_every_other_run_aside(Rows& some);
 

@@ -25,13 +25,13 @@ bool is_in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 
 double where(double condition, double then_value, double else_value) { return condition != 0.0 ? then_value : else_value; }
 double rounded_down(double value) { return std::floor(value); }
 
-/// Rewrites columns to names that muParser takes, c0_, c1_, …, and finds what is no column and no function.
+/// Rewrites column names to names that muParser accepts (c0_, c1_, …), and finds names that are neither column nor function.
 class Rewriter {
  public:
   Rewriter(std::string_view text, std::span<const std::string> header, std::vector<std::size_t>& columns)
       : text_(text), header_(header), columns_(columns) {}
 
-  /// What is wrong, or nothing; `at` then tells where in the text.
+  /// Returns the error, or an empty string. On an error, `at` is its position in the text.
   std::string run() {
     while (at < text_.size()) {
       const char c = text_[at];
@@ -131,7 +131,7 @@ class Rewriter {
 
 struct Expression::Compiled {
   mu::Parser parser;
-  std::vector<std::vector<double>> inputs;  ///< muParser reads from these places
+  std::vector<std::vector<double>> inputs;  ///< muParser keeps pointers to these values
 };
 
 Expression::Expression(std::string_view text, std::span<const std::string> header, Location at, const std::string& key,
@@ -147,7 +147,7 @@ Expression::Expression(std::string_view text, std::span<const std::string> heade
     compiled_->parser.DefineFun("where", where);
     compiled_->parser.DefineFun("floor", rounded_down);
     compiled_->parser.DefineConst("pi", std::numbers::pi);
-    // Bulk evaluation reads from a place that stays: one block of rows per column.
+    // muParser needs stable addresses: one buffer per column.
     compiled_->inputs.resize(columns_.size(), std::vector<double>(1, 1.0));
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       compiled_->parser.DefineVar(fmt::format("c{}_", i), compiled_->inputs[i].data());
@@ -180,7 +180,7 @@ void Expression::evaluate(std::span<const std::vector<double>* const> columns, s
   compiled_->parser.Eval(values.data(), static_cast<int>(rows));
   for (const std::vector<double>* column : columns) {
     for (std::size_t row = 0; row < rows; ++row) {
-      // min(a, NaN) and comparisons would hide that a cell is blank.
+      // min(a, NaN) and comparisons would otherwise hide a blank cell.
       values[row] = std::isnan((*column)[row]) || !std::isfinite(values[row]) ? std::numeric_limits<double>::quiet_NaN() : values[row];
     }
   }

@@ -1,4 +1,4 @@
-// An expression of columns, as a mapping writes it: "'motor temp [C]' - 0.3", "where(duty > 0, I, 0)".
+// Arithmetic expression of columns, as used in mappings: "'motor temp [C]' - 0.3", "where(duty > 0, I, 0)".
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,21 @@
 
 namespace heatsoak {
 
-/// + − * / ^, comparisons, && ||, c ? a : b, and the functions that functions() lists. Columns are named bare, or in
-/// single quotes where the name is no word.
+/// Supports + − * / ^, comparisons, && ||, c ? a : b, and the functions listed in expression.cpp. Column names that are not single words
+/// must be in single quotes.
 class Expression {
  public:
-  /// `at` is where the text begins in the mapping; a problem is added to `problems`, and the expression is not ok().
+  /// Parses the text. `at` is its position in the mapping. On an error, adds to `problems` and sets ok() to false.
   Expression(std::string_view text, std::span<const std::string> header, Location at, const std::string& key, Diagnostics& problems);
   ~Expression();
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
 
   [[nodiscard]] bool ok() const { return is_ok_; }
-  /// Places in the header, each once.
+  /// Indices of the used columns in the header, without repetition.
   [[nodiscard]] const std::vector<std::size_t>& columns() const { return columns_; }
-  /// One value per row; `columns` are the values of columns() in their order. NaN where a column is, or where the value is not finite.
+  /// Evaluates all rows. `columns` are the values of columns(), in that order. The result is NaN if a used cell is NaN or the value is not
+  /// finite.
   void evaluate(std::span<const std::vector<double>* const> columns, std::vector<double>& values);
 
  private:

@@ -14,7 +14,7 @@
 namespace heatsoak {
 namespace {
 
-/// FNV-1a, the same on every machine.
+/// FNV-1a hash, identical on every machine.
 class Hash {
  public:
   void add(std::uint64_t bits) {
@@ -32,7 +32,7 @@ class Hash {
   std::uint64_t value_ = 14'695'981'039'346'656'037ULL;
 };
 
-/// In single precision: another order of arithmetic in a mapping changes the last digits of a double.
+/// Bits of a value in single precision, because the order of arithmetic in a mapping may change the last digits of a double.
 std::uint64_t bits_of(double value) {
   constexpr std::uint64_t kUnknown = ~0ULL;
   return std::isnan(value) ? kUnknown : std::bit_cast<std::uint32_t>(static_cast<float>(value) + 0.0F);
@@ -60,7 +60,7 @@ std::optional<RowSpan> parsed(std::string_view text) {
 
 constexpr std::size_t kWindow_rows = 60;
 
-/// Of every stretch of sixty rows its hash (Karp and Rabin 1987), or 0 where too few rows differ from the one before.
+/// Rolling hash (Karp and Rabin 1987) of every window of 60 rows; 0 if too few rows differ from the previous one.
 std::vector<std::uint64_t> window_hashes(const std::vector<const Channel*>& channels) {
   constexpr std::uint64_t kBase = 0x9E37'79B9'7F4A'7C15ULL;
   constexpr std::size_t kLeastChanging_rows = 40;
@@ -137,7 +137,7 @@ bool is_cut_from(const Recording& part, const Recording& whole) {
       is_of_motor = is_of_motor || channel.quantity.kind == QuantityKind::temperature;
     }
   }
-  // Commands repeat as they were programmed, measured temperatures do not.
+  // Commands may repeat exactly; measured temperatures do not.
   if (!is_of_motor) {
     return false;
   }

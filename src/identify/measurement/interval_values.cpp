@@ -13,7 +13,7 @@ bool stands_for_an_interval(const Quantity& quantity) {
 }
 bool heats_by_its_square(const Quantity& quantity) { return quantity.kind == QuantityKind::heat_input && quantity.unit == "A"; }
 
-/// Over an interval in which it changes evenly: the mean, or the rms with the sign of the mean.
+/// Mean over an interval with linear change, or with `by_square` the RMS with the sign of the mean.
 double even_change(double from, double to, bool by_square) {
   const double mean = 0.5 * (from + to);
   return by_square ? std::copysign(std::sqrt((from * from + from * to + to * to) / 3.0), mean) : mean;
@@ -26,7 +26,7 @@ void to_held(std::span<double> values, InputHabit habit, bool by_square) {
   values.back() = kUnknown;
 }
 
-/// What is held from time_s[j] + offset_s on, averaged over the rows' intervals.
+/// Inputs that are held from time_s[j] + offset_s on, averaged over the rows' intervals.
 std::vector<double> shifted_inputs(std::span<const double> time_s, std::span<const double> values, double offset_s, bool by_square) {
   std::vector<double> shifted(values.size(), kUnknown);
   std::size_t held = 0;
@@ -54,7 +54,7 @@ std::vector<double> shifted_inputs(std::span<const double> time_s, std::span<con
   return shifted;
 }
 
-/// Samples of the moments time_s[j] + offset_s, at the rows' times; a sample that is not there makes its neighbourhood unknown.
+/// Samples taken at time_s[j] + offset_s, interpolated linearly to the rows' times. NaN beside a missing sample.
 std::vector<double> shifted_samples(std::span<const double> time_s, std::span<const double> values, double offset_s) {
   std::vector<double> shifted(values.size(), kUnknown);
   std::size_t before = 0;

@@ -1,4 +1,4 @@
-// Loggers' habits brought to one: what a row's heat inputs stand for, and whose clock they follow.
+// Converts heat inputs to interval values: different conventions and clock offsets of loggers become the canonical form.
 #pragma once
 
 #include <span>
@@ -8,10 +8,9 @@
 
 namespace heatsoak {
 
-/// Makes heat inputs and surroundings, recorded with `habit`, stand for the interval that begins at their row (currents by
-/// their square, so that the copper loss stays), and moves channels whose clock is off by `offsets_s` (one per channel) to the rows' times:
-/// inputs by averaging what was held, other channels on the straight line between neighbours. The last row of a run has no interval
-/// where the habit is another than held: its inputs become NaN.
+/// Converts heat inputs and surroundings, recorded with convention `habit`, to values of the interval that begins at their row. Currents
+/// are converted by their squares, which conserves the copper loss. Shifts channels by `offsets_s` (one per channel) to the rows' times:
+/// inputs by averaging, other channels by linear interpolation. Unless the habit is held, the inputs of a run's last row become NaN.
 void to_interval_values(Recording& recording, InputHabit habit, std::span<const double> offsets_s);
 
 }  // namespace heatsoak

@@ -61,7 +61,7 @@ TableFormat read_format(Reader& file) {
   return format;
 }
 
-/// Unit and sign: canonical value = value + scale_factor · file value.
+/// Reads unit and sign into value and scale_factor.
 void read_unit(Reader& reader, QuantityMapping& mapping) {
   const std::string& wanted = mapping.quantity.unit;
   const std::string unit = reader.text("unit", Need::optional).value_or(wanted);
@@ -145,10 +145,10 @@ void read_conditions(Reader& table, std::map<std::string, std::string>& conditio
   }
 }
 
-/// Returns whether any of the [[files]] is for this log.
+/// Applies the [[files]] entries for this log. Returns true if there is any.
 bool read_files(Reader& root, const fs::path& log, Mapping& mapping) {
   bool is_named = false;
-  std::map<std::pair<std::string, std::string>, std::string> said;  // of a name and a condition
+  std::map<std::pair<std::string, std::string>, std::string> said;  // by name and condition
   for (Reader& file : root.tables("files")) {
     const std::string name = file.text("name", Need::required).value_or("");
     std::map<std::string, std::string> conditions;

@@ -19,7 +19,7 @@ struct Level {
   std::size_t count = 0;
 };
 
-/// Values and how often each comes; where most come again, the others are no steps of the sensor but bad samples.
+/// Distinct values with their counts. If most values recur, those that occur once are dropped as bad samples.
 std::vector<Level> levels_of(const std::vector<double>& sorted) {
   std::vector<Level> levels;
   for (const double value : sorted) {
@@ -45,7 +45,7 @@ double resolution_of_sorted(const std::vector<double>& sorted) {
     return 0.0;
   }
   const double smallest = std::ranges::min(apart);
-  constexpr double kFinestGrid_share = 1e-6;  // of the range: finer ones are how the digits were stored
+  constexpr double kFinestGrid_share = 1e-6;  // of the range; a finer grid comes from the number of stored digits
   constexpr double kOffGrid_share = 0.1;
   constexpr double kOnGrid_share = 0.95;
   const auto on_grid = std::ranges::count_if(apart, [smallest](double difference) {

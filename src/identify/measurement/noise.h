@@ -1,4 +1,4 @@
-// How a channel wobbles by itself, told without any model of it.
+// Estimates noise and resolution of a channel without a model.
 #pragma once
 
 #include <cstddef>
@@ -11,29 +11,29 @@
 
 namespace heatsoak {
 
-/// 0 where there is none; NaN are not allowed.
+/// Median; 0 if `values` is empty. The values must not be NaN.
 double median_of(std::vector<double> values);
 
-/// The grid that the values lie on, or where they lie on none but come back again and again, how far apart they are; 0
-/// where neither. Values that come once among many that come often are bad samples and do not count; NaN are skipped.
+/// Returns the resolution of the values: the spacing of their grid, or the median spacing if they are not on a grid but recur often, else
+/// 0. If most values recur, values that occur once are ignored as bad samples. NaN are skipped.
 double resolution_of(std::span<const double> values);
 
 struct NoiseLevel {
   double step = 0.0;   ///< resolution_of()
-  double usual = 0.0;  ///< median change from one sample to the next, of those that change at all
+  double usual = 0.0;  ///< median of the nonzero changes from one sample to the next
   /// Standard deviation of white noise: 1.4826 · median|second difference| / √6, but not below step/√12.
   double noise = 0.0;
-  double repeats_share = 0.0;  ///< of neighbours that are equal
-  std::size_t distinct = 0;    ///< different values among those looked at
+  double repeats_share = 0.0;  ///< share of neighbouring samples that are equal
+  std::size_t distinct = 0;    ///< number of distinct values in the sample
 };
 
-/// Takes a channel's values in the order of time, NaN where there is none. Memory does not grow with their number: of long
-/// ones a sample is kept, spread evenly.
+/// Estimates the noise of a stream of values in order of time, NaN if missing. Memory is bounded: from long streams it keeps an evenly
+/// spaced sample.
 class NoiseGauge {
  public:
   explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), bends_(most) {}
 
-  /// What comes next does not follow what came before.
+  /// Begins a new run: differences do not extend over this point.
   void begin_run() { value_ = before_ = std::numeric_limits<double>::quiet_NaN(); }
   void add(std::span<const double> values);
   [[nodiscard]] NoiseLevel level() const;
@@ -42,11 +42,11 @@ class NoiseGauge {
   Thinned values_;
   Thinned changes_;
   Thinned bends_;
-  double value_ = std::numeric_limits<double>::quiet_NaN();  ///< the last one
-  double before_ = value_;                                   ///< the one before it
+  double value_ = std::numeric_limits<double>::quiet_NaN();  ///< last value
+  double before_ = value_;                                   ///< value before the last
 };
 
-/// Of values in the order of time; NaN are skipped, differences do not reach over `runs` ([begin, end)).
+/// Noise of values in order of time. NaN are skipped; differences do not extend over the ends of `runs` ([begin, end)).
 NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs,
                        std::size_t most = Thinned::kMost);
 

@@ -20,7 +20,7 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kFewestRows = 20;
-/// From the one that heats a winding most directly.
+/// In descending order of how directly they heat a winding.
 constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A", "power_in_W", "bus_A",          "torque_Nm",
                                                       "motor_V",   "duty_ratio",  "bus_V",      "speed_rad_per_s"};
 
@@ -35,7 +35,7 @@ std::string shown(double value, const Quantity& quantity) {
   return fmt::format("{} {}", significant(value, 4), unit_for_display(quantity.unit));
 }
 
-/// Every temperature is highest within the first third of the log, and plainly lower at its end.
+/// True if every temperature has its maximum in the first third of the log and is clearly lower at the end.
 bool cools_down(const Recording& recording, const std::vector<const ChannelQuality*>& temperatures) {
   const auto is_less = [](double a, double b) { return a < b || (std::isnan(a) && !std::isnan(b)); };
   return !temperatures.empty() && std::ranges::all_of(temperatures, [&](const ChannelQuality* each) {
@@ -68,7 +68,7 @@ Fitness thermal_fitness(const Recording& recording, std::size_t rows, const Data
   if (inputs.empty()) {
     fitness.lacks.emplace_back("it has no heat input (current_A, power_in_W, torque_Nm, speed_rad_per_s, …)");
   }
-  // A change below the noise shows nothing; √rows of averaging is left to the fit.
+  // Changes below the noise carry no information; the gain from averaging is ignored.
   const auto says_nothing = [](const ChannelQuality* channel) { return channel->high - channel->low <= 6.0 * channel->noise; };
   if (!temperatures.empty() && std::ranges::all_of(temperatures, says_nothing)) {
     const ChannelQuality& one = *temperatures.front();
@@ -77,7 +77,7 @@ Fitness thermal_fitness(const Recording& recording, std::size_t rows, const Data
                                 : fmt::format("no temperature moves beyond its noise: {} from {} to {}, noise {} K", one.quantity.key,
                                               shown(one.low, one.quantity), shown(one.high, one.quantity), significant(one.noise, 2)));
   }
-  // Without heat a motor that cools down still tells its time constants.
+  // Without heat, the time constants are still identifiable from a cool-down.
   if (!inputs.empty() && !cools_down(recording, temperatures) && heat_input_of(recording) == nullptr &&
       std::ranges::all_of(inputs, [](const ChannelQuality* channel) { return channel->high == 0.0 && channel->low == 0.0; })) {
     fitness.lacks.push_back(fmt::format("no heat goes in: {} is 0 throughout", inputs.front()->quantity.key));

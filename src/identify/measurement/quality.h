@@ -1,4 +1,4 @@
-// What a recording is worth, told before anything is fitted to it.
+// Quality of a recording, assessed before any fit.
 #pragma once
 
 #include <cstddef>
@@ -17,47 +17,47 @@ namespace heatsoak {
 
 struct Sampling {
   double duration_s = 0.0;
-  double usual_period_s = 0.0;  ///< median
-  double jitter_s = 0.0;        ///< 1.4826 · median deviation of the periods
+  double usual_period_s = 0.0;  ///< median time between rows
+  double jitter_s = 0.0;        ///< 1.4826 · median absolute deviation of the periods
   double longest_gap_s = 0.0;
 };
 
-/// Before a row: between it and the one before nothing is known.
+/// Gap before a row, in which nothing is known.
 struct Gap {
   int line = 0;
   double begin_s = 0.0;
   double duration_s = 0.0;
 };
 
-/// In the channel's unit where no other is named.
+/// Quality of a channel. Values are in its unit.
 struct ChannelQuality {
   Quantity quantity;
   std::size_t samples = 0;
-  std::size_t left_out = 0;  ///< for whatever reason
+  std::size_t left_out = 0;  ///< number of omitted samples, for any reason
   double low = 0.0;
   double high = 0.0;
   std::size_t at_low = 0;  ///< samples of exactly this value
   std::size_t at_high = 0;
-  std::size_t distinct = 0;  ///< different values, of long logs among some ten thousand samples
-  double step = 0.0;         ///< resolution; 0 where none is seen
+  std::size_t distinct = 0;  ///< number of distinct values; in long logs, of some ten thousand samples
+  double step = 0.0;         ///< resolution; 0 if no quantisation is visible
   double noise = 0.0;        ///< standard deviation, model-free, not below step/√12
   [[nodiscard]] bool is_constant() const { return !(high > low); }
 };
 
-/// Whether a temperature follows the heat input at once. A clock offset and a sensor's lag look alike.
+/// Delay of a temperature relative to the heat input. A clock offset and a sensor lag are indistinguishable.
 struct ClockOffset {
   std::string temperature;
   std::string heat_input;
-  std::optional<double> delay_s;     ///< positive: the temperature comes late; nothing where it cannot be told
-  double delay_uncertainty_s = 0.0;  ///< standard error, by leaving out one eighth of the log after the other
-  double misfit_ratio = 1.0;         ///< squared errors without any delay over those with it
-  std::string why_not;               ///< where it cannot be told
-  bool explains_flow = false;        ///< what the first temperature gives away is known, and heat makes it hotter than all beside it
+  std::optional<double> delay_s;     ///< positive: the temperature is late; nullopt if not determined
+  double delay_uncertainty_s = 0.0;  ///< standard error; includes a jackknife over eighths of the log
+  double misfit_ratio = 1.0;         ///< sum of squared errors without delay divided by that with delay
+  std::string why_not;               ///< reason if delay_s is not determined
+  bool explains_flow = false;        ///< true: the log has other temperatures, and this one is the hottest while heated
 };
 
-/// What a log is good for, or what it lacks.
+/// Suitability of a log for one purpose.
 struct Fitness {
-  std::vector<std::string> lacks;  ///< in sentences; empty: good
+  std::vector<std::string> lacks;  ///< sentences: what is missing; empty if suitable
   [[nodiscard]] bool is_good() const { return lacks.empty(); }
 };
 
@@ -68,21 +68,22 @@ struct DataQuality {
   std::vector<Gap> gaps;  ///< between runs, the first kMostGaps
   std::vector<ChannelQuality> channels;
   std::vector<ClockOffset> clock_offsets;
-  std::vector<std::string> suspicions;       ///< said, not acted on
-  std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
-  std::vector<std::string> spoiling_wheels;  ///< the same of a robot's wheels and angles, and of the clock
-  Fitness thermal;                           ///< to fit a thermal network
-  Fitness drive;                             ///< to fit friction of wheels
+  std::vector<std::string> suspicions;       ///< reported only, nothing is corrected
+  std::vector<std::string> spoiling;         ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<std::string> spoiling_wheels;  ///< same for a robot's wheels and angles, and for the clock
+  Fitness thermal;                           ///< for fitting a thermal network
+  Fitness drive;                             ///< for fitting friction of wheels
 };
 
-/// Takes a log part by part; what it keeps does not grow with the log.
+/// Assesses a log part by part with bounded memory.
 class Assessment {
  public:
   static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
 
-  /// As RecordingStream gives them.
+  /// Adds the next part, as returned by RecordingStream.
   void add(const Recording& part);
-  /// After the last part. Channels without one sample are not told of. `ambient_C`: of the air as the user states it, NaN where not.
+  /// Returns the result after the last part. Channels without samples are not listed. `ambient_C`: air temperature stated by the user, NaN
+  /// if not stated.
   DataQuality conclude(const RecordingReport& report, double ambient_C = kNotStated_C);
   [[nodiscard]] const CondensedRecording& condensed() const { return condensed_; }
 
@@ -110,14 +111,14 @@ class Assessment {
 
 DataQuality assess(const Recording& recording, const RecordingReport& report, double ambient_C = Assessment::kNotStated_C);
 
-/// Throws Failure (cannot_answer) where the recording cannot tell anything about a thermal network: too short, nothing
-/// changes, no temperature or no heat input.
+/// Throws Failure (cannot_answer) if the recording contains no information about a thermal network: too short, no changes, no temperature
+/// or no heat input.
 void require_thermal(const Recording& recording, const DataQuality& quality);
 
-/// The channel that tells best how much heat goes in: power, or else current, torque, voltage, speed; null where none varies.
+/// Returns the varying channel that heats the winding most directly: current, else power, torque, voltage, speed; nullptr if none varies.
 const Channel* heat_input_of(const Recording& recording);
 
-/// Heat per row, up to a factor: the channel itself where it is a power, else its square. NaN where it is not known.
+/// Returns the heat per row up to a factor: the channel itself if it is a power, else its square. NaN if not known.
 std::vector<double> relative_heat(const Channel& heat_input);
 
 }  // namespace heatsoak

@@ -17,7 +17,7 @@ using Kind = QuantityKind;
 
 constexpr Range kTemperature_C = Range::between(-100.0, 1000.0);
 constexpr Range kAny = Range::any();
-/// Whatever the unit: beyond it squares and sums of them lose all meaning.
+/// Valid for all units; larger values would make squares and sums meaningless.
 constexpr Range kHeatInput = Range::between(-1e12, 1e12);
 
 constexpr std::array kTypes{
@@ -67,7 +67,7 @@ constexpr std::array kTypes{
     QuantityType{"wheel_stator_C", Kind::temperature, "degC", kTemperature_C, true, "temperature of the stator of a wheel's motor"},
 };
 
-/// Endings of names that UDUNITS-2 writes otherwise, or would take for something else (C is its coulomb).
+/// Endings that UDUNITS-2 spells differently or interprets differently (C is coulomb there).
 struct Ending {
   std::string_view name;
   std::string_view unit;
@@ -94,7 +94,7 @@ std::vector<std::string_view> words_of(std::string_view key) {
   return words;
 }
 
-/// The unit that the last words of a name spell: "rad/s" for "…_rad_per_s". Nothing where they are no unit.
+/// Returns the unit at the end of a name, for example "rad/s" for "…_rad_per_s". nullopt if there is none.
 std::optional<std::string> unit_at_end(std::string_view key) {
   const std::vector<std::string_view> words = words_of(key);
   if (words.size() < 2 || std::ranges::any_of(words, &std::string_view::empty)) {
@@ -168,7 +168,7 @@ std::string nearest_quantity(std::string_view key) {
   for (const QuantityType& type : kTypes) {
     names.push_back(std::string(type.key) + (type.is_numbered ? "_1" : ""));
   }
-  // "winding_F": the quantity's own name with another unit.
+  // For example "winding_F": a known quantity in another unit.
   const std::string stem(key.substr(0, key.rfind('_') + 1));
   std::string_view same;
   for (const QuantityType& type : kTypes) {

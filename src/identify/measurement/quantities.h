@@ -1,4 +1,4 @@
-// What a log can hold: the one table of quantities, and how the name of any other column tells its unit.
+// Quantities of a log: the table of known ones, and how the unit follows from the name of any other column.
 #pragma once
 
 #include <optional>
@@ -12,38 +12,38 @@ namespace heatsoak {
 
 enum class QuantityKind {
   time,
-  temperature,   ///< of a part of the motor, instantaneous at the row's time
-  surroundings,  ///< a temperature that the motor does not make: ambient, coolant, driver, neighbour
-  heat_input,    ///< current, speed, torque, voltage, power: stands for the interval that begins at the row's time
-  signal         ///< anything else; can become a regressor
+  temperature,   ///< temperature of a part of the motor at the row's time
+  surroundings,  ///< temperature that the motor does not determine: ambient, coolant, driver, neighbour
+  heat_input,    ///< current, speed, torque, voltage, power: value of the interval that begins at the row's time
+  signal         ///< any other signal; may be used as regressor
 };
 std::string_view to_string(QuantityKind kind);
 
-/// One row of the table. Numbered ones stand for wheel_speed_rad_per_s_1, _2, …
+/// One row of the table. A numbered quantity has one column per number: wheel_speed_rad_per_s_1, _2, …
 struct QuantityType {
   std::string_view key;
   QuantityKind kind;
   std::string_view unit;  ///< UDUNITS text; "" is a pure number
-  Range possible;         ///< in that unit; what lies outside is no measurement
+  Range possible;         ///< in that unit; values outside are invalid
   bool is_numbered;
   std::string_view meaning;
 };
 std::span<const QuantityType> quantity_types();
 
-/// A channel's name, understood.
+/// Quantity of a channel, derived from its name.
 struct Quantity {
-  std::string key;  ///< as the log names it
+  std::string key;  ///< name in the log
   QuantityKind kind = QuantityKind::signal;
   std::string unit;  ///< UDUNITS text; "" is a pure number
   Range possible;
-  std::string meaning;  ///< empty where the table has no such quantity
+  std::string meaning;  ///< empty if the table does not have it
 };
 
-/// The quantity of the table, or a free one whose name ends in a unit ("thrust_N", "flow_m3_per_s", "valve_ratio").
-/// Nothing where the name tells no unit.
+/// Returns the quantity from the table, or a free one whose name ends in a unit ("thrust_N", "flow_m3_per_s", "valve_ratio"). nullopt if
+/// the name does not end in a unit.
 std::optional<Quantity> quantity_named(std::string_view key);
 
-/// "did you mean" among the table's names, or nothing.
+/// Returns a "did you mean" hint with the nearest name of the table, or an empty string.
 std::string nearest_quantity(std::string_view key);
 
 }  // namespace heatsoak

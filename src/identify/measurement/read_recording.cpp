@@ -8,7 +8,7 @@
 namespace heatsoak {
 namespace {
 
-/// Columns that grow by doubling would be copied and take twice the memory.
+/// Reserves memory for the expected number of rows. Growth by doubling would copy the columns and need twice the memory.
 void make_room(Recording& recording, const std::filesystem::path& log, std::size_t bytes_read) {
   constexpr double kMargin_ratio = 1.03;
   std::error_code unknown;

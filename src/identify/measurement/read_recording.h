@@ -1,4 +1,4 @@
-// A file of measurements -> a recording and a report of what was left out.
+// Reads a file of measurements into a recording and a report of omitted samples.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace heatsoak {
 
-/// All rows of `log` at once, without channels that hold no number; what is left out and what is thrown is RecordingStream's. Memory
-/// grows with the columns that are used only.
+/// Reads all rows of `log`; drops channels without any number. Omitted samples and exceptions are those of RecordingStream. Only used
+/// columns need memory.
 Recording read_recording(const std::filesystem::path& log, const Mapping& mapping, RecordingReport& report);
 
 }  // namespace heatsoak

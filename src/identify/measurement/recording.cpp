@@ -45,7 +45,7 @@ Recording part_of(const Recording& recording, double from_share, double to_share
   const std::size_t first = row_at(from_share);
   Recording part = recording.slice(first, std::max(first, row_at(to_share)));
   if (part.run_begins.empty() || part.run_begins.front() != 0) {
-    part.run_begins.insert(part.run_begins.begin(), 0);  // a run is entered in its middle
+    part.run_begins.insert(part.run_begins.begin(), 0);  // the part begins within a run
   }
   return part;
 }

@@ -1,4 +1,4 @@
-// What happened to the rows of a file on their way into a recording.
+// Report about omitted rows and samples of a file.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 namespace heatsoak {
 
 enum class LeftOutReason {
-  // of whole rows
+  // reasons for whole rows
   wrong_number_of_cells,
   cut_off,
   without_time,
   time_does_not_increase,
-  not_valid,  ///< by the mapping; also of one quantity
-  // of one quantity
+  not_valid,  ///< by the mapping; also for single quantities
+  // reasons for single quantities
   not_recorded,
   not_a_number,
   impossible,
@@ -25,10 +25,10 @@ enum class LeftOutReason {
   frozen,
   outlier
 };
-/// "the cell is blank", "saturated": for people and for JSON.
+/// Returns the reason as text ("the cell is blank", "saturated"), also used in JSON.
 std::string_view to_string(LeftOutReason reason);
 
-/// Lines of the file, both ends included.
+/// Range of lines of the file, both ends included.
 struct LineRange {
   int first = 0;
   int last = 0;
@@ -37,11 +37,11 @@ struct LineRange {
 struct LeftOut {
   static constexpr std::size_t kMostRanges = 1000;
 
-  std::size_t count = 0;         ///< samples, or rows
-  std::vector<LineRange> lines;  ///< the first kMostRanges stretches
-  std::string example;           ///< the first cell, as the file has it; may be empty
+  std::size_t count = 0;         ///< number of samples, or of rows
+  std::vector<LineRange> lines;  ///< the first kMostRanges ranges
+  std::string example;           ///< text of the first omitted cell; may be empty
 
-  /// Lines come in increasing order.
+  /// Lines must be added in increasing order.
   void add(int line);
 };
 
@@ -49,10 +49,10 @@ struct RecordingReport {
   std::size_t file_bytes = 0;
   std::size_t rows_in_file = 0;
   std::size_t rows_kept = 0;
-  std::size_t repeated_times = 0;  ///< of the rows whose time does not increase, those that repeat one
-  /// By quantity ("" is the whole row) and reason.
+  std::size_t repeated_times = 0;  ///< rows whose time equals that of the row before
+  /// Omitted samples by quantity ("" for whole rows) and reason.
   std::map<std::pair<std::string, LeftOutReason>, LeftOut> left_out;
-  std::vector<std::string> notes;  ///< what else was done or seen, in sentences
+  std::vector<std::string> notes;  ///< sentences: other actions and observations
 
   [[nodiscard]] const LeftOut* find(std::string_view quantity, LeftOutReason reason) const;
 };

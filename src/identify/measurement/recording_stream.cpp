@@ -20,13 +20,13 @@ namespace {
 
 constexpr double kUnsorted_share = 0.1;
 
-/// The canonical form: every column whose name is a quantity.
+/// Quantities of a canonical log: all columns whose name is a quantity. Reports the other columns.
 std::vector<QuantityMapping> quantities_of_header(const NumberTable& table, const std::string& file, RecordingReport& report) {
   std::vector<QuantityMapping> found;
   for (std::size_t i = 0; i < table.header().size(); ++i) {
     const std::string& name = table.header()[i];
     if (std::ranges::find(found, name, &QuantityMapping::column) != found.end()) {
-      continue;  // a name that stands twice is told of once
+      continue;  // a repeated name is reported elsewhere
     }
     if (const std::optional<Quantity> quantity = quantity_named(name)) {
       QuantityMapping& mapping = found.emplace_back();
@@ -41,7 +41,7 @@ std::vector<QuantityMapping> quantities_of_header(const NumberTable& table, cons
   return found;
 }
 
-/// What a header of one cell seems to be separated by.
+/// Hint about the separator of a header that was read as one cell.
 std::string other_separator(std::span<const std::string> header) {
   const std::string text = header.empty() ? "" : header.front();
   for (const auto& [mark, name] : {std::pair(';', ";"), std::pair('\t', "tab"), std::pair(',', ","), std::pair('|', "|")}) {
@@ -53,11 +53,11 @@ std::string other_separator(std::span<const std::string> header) {
   return " (a foreign log is read with --map; lines above its header are passed over by [file] header_rows and names_row of the mapping)";
 }
 
-/// Rows as the file has them.
+/// Rows of the file before checks.
 struct Rows {
   std::vector<double> time_s;
   std::vector<int> line;
-  std::vector<double> run_value;  ///< empty where no column tells of runs
+  std::vector<double> run_value;  ///< empty without a run column
   std::vector<std::vector<double>> columns;
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
@@ -69,7 +69,7 @@ struct Rows {
     change(run_value);
     std::ranges::for_each(columns, change);
   }
-  /// [begin, end).
+  /// Returns rows [begin, end).
   [[nodiscard]] Rows slice(std::size_t begin, std::size_t end) const {
     const auto of = [begin, end]<class T>(const std::vector<T>& all) {
       return all.empty() ? all
@@ -237,7 +237,7 @@ class RecordingStream::Intake {
     rows_.line.push_back(line);
   }
 
-  /// As many rows as make a part, and those around it.
+  /// Reads rows until there are enough for a part and the margin around it.
   void fill() {
     constexpr std::size_t kPart = 1 << 16;
     constexpr std::size_t kMargin = 1 << 12;
@@ -251,7 +251,7 @@ class RecordingStream::Intake {
       }
       bad.read(block);
       take(block, bad);
-      // A clock that is off by more than the margin needs neighbours from further away.
+      // A clock offset larger than the margin needs a larger margin.
       if (furthest_offset_s_ > 0.0 && context_ == 0 && rows_.size() > kPart) {
         constexpr double kSpare_ratio = 1.5;
         constexpr double kMostMargin = 1 << 22;
@@ -261,7 +261,7 @@ class RecordingStream::Intake {
     }
   }
 
-  /// Which rows leave time increasing; of those before `judged` the others are reported.
+  /// Returns 1 for each row to keep so that time increases. Reports dropped rows before `judged`.
   std::vector<char> increasing(std::size_t judged) {
     const auto fresh = std::span(rows_.time_s).subspan(context_);
     std::vector<char> stays(rows_.size(), 1);
@@ -288,7 +288,7 @@ class RecordingStream::Intake {
     return stays;
   }
 
-  /// Of the rows, which are the last ones of the part before, the part's own and the first of the next, those of the part.
+  /// Checks rows [first, last) and returns them as a part. The rows before and after them serve as context.
   Recording checked(std::size_t first, std::size_t last) {
     Recording part;
     part.name = log_.stem().string();
@@ -334,7 +334,7 @@ class RecordingStream::Intake {
     }
   }
 
-  /// Copies of rows do no harm; where most rows share a time with others, what they held is lost.
+  /// Throws Failure (bad_input) if most rows repeat a time. Few repeated rows are harmless, but here most of the data would be lost.
   void refuse_where_time_repeats() const {
     constexpr double kMost_share = 0.5;
     if (static_cast<double>(report_.repeated_times) > kMost_share * static_cast<double>(rows_with_time_)) {
@@ -346,7 +346,7 @@ class RecordingStream::Intake {
     }
   }
 
-  /// What can only be told at the end.
+  /// Checks at the end of the file.
   void conclude() {
     report_.file_bytes = table_.bytes_read();
     if (rows_with_time_ == 0) {
@@ -379,7 +379,7 @@ class RecordingStream::Intake {
                        left_out.lines.front().first, left_out.example.empty() ? "" : fmt::format(" ({})", left_out.example));
   }
 
-  /// The first row whose time is not after that of the row before.
+  /// First row whose time is not later than that of the row before.
   struct Backwards {
     int line = 0;
     double time_s = 0.0;
@@ -388,20 +388,20 @@ class RecordingStream::Intake {
   std::filesystem::path log_;
   Mapping mapping_;
   RecordingReport& report_;
-  RecordingReport time_report_;  ///< a row without time is reported as a row, not as a sample
+  RecordingReport time_report_;  ///< separate, because a row without time is reported as a row and not as a sample
   NumberTable table_;
   UsedColumns used_;
   std::optional<ChannelSource> time_;
   std::vector<ChannelSource> sources_;
   std::optional<BlockExpression> valid_;
   std::optional<BlockExpression> run_;
-  std::vector<double> offsets_s_;  ///< of the clocks, per channel
+  std::vector<double> offsets_s_;  ///< clock offset per channel
   double furthest_offset_s_ = 0.0;
   std::vector<char> keep_;
   std::vector<double> block_time_s_;
   Rows rows_;
-  std::size_t context_ = 0;  ///< of the rows the first ones, which have been handed over
-  std::size_t margin_ = 0;   ///< rows that are kept before a part and read after it
+  std::size_t context_ = 0;  ///< number of leading rows that were already returned
+  std::size_t margin_ = 0;   ///< number of rows kept before a part and read after it
   bool is_at_end_ = false;
   Thinned steps_s_;
   Screening screening_;

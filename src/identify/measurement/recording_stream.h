@@ -1,4 +1,4 @@
-// A file of measurements, some ten thousand rows at a time.
+// Reads a file of measurements in parts of some ten thousand rows.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,22 @@
 
 namespace heatsoak {
 
-/// Rows and samples that are no measurement (blank, not numbers, repeated or backward times, saturated, frozen, outliers of
-/// temperatures) are left out and reported, never guessed. Memory does not grow with the file. Whether a sample is frozen,
-/// saturated or in order is judged among some 65 000 rows, which is all of most logs.
-/// Throws Failure: bad_input for a file that is no such table, has no such column or whose time does not increase at all;
-/// cannot_answer where nothing is left. What only the end of the file can tell is thrown there, by next().
+/// Omits and reports invalid rows and samples (blank, not numbers, repeated or decreasing times, saturated, frozen, outliers of
+/// temperatures); never replaces them by guesses. Memory is bounded. Frozen and saturated samples and the order of rows are judged within
+/// parts of some 65 000 rows, which is all of most logs. Throws Failure: bad_input if the file is not a table, lacks a column or its time
+/// does not increase; cannot_answer if nothing is left. Errors that are visible only at the end of the file are thrown by next().
 class RecordingStream {
  public:
-  /// `report` outlives the stream.
+  /// `report` must outlive the stream.
   RecordingStream(const std::filesystem::path& log, const Mapping& mapping, RecordingReport& report);
   ~RecordingStream();
   RecordingStream(const RecordingStream&) = delete;
   RecordingStream& operator=(const RecordingStream&) = delete;
 
-  /// The next rows, with all channels; false at the end. `run_begins` has 0 only where a run begins with the part.
+  /// Reads the next rows of all channels; returns false at the end. `run_begins` contains 0 only if a run begins with the part.
   bool next(Recording& part);
   [[nodiscard]] std::size_t bytes_read() const;
-  /// Whether the channel had a number so far.
+  /// True if the channel has had a valid number so far.
   [[nodiscard]] bool has_numbers(std::size_t channel) const;
 
  private:

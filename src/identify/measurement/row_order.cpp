@@ -27,8 +27,8 @@ std::vector<char> increasing_rows(std::span<const double> time_s) {
   if (std::ranges::adjacent_find(time_s, std::greater_equal<>()) == time_s.end()) {
     return std::vector<char>(time_s.size(), 1);
   }
-  // Patience from the end: tails[k] begins the best sequence of k + 1 rows. Replaced by what stands before it where either
-  // would do, so that the first rows stay.
+  // Patience sorting from the end: tails[k] begins the best sequence of k + 1 rows. An equally good earlier row replaces it,
+  // so that the first rows stay.
   std::vector<std::size_t> tails;
   std::vector<std::size_t> after(time_s.size(), kNone);
   for (std::size_t row = time_s.size(); row-- > 0;) {

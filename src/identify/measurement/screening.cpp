@@ -14,7 +14,7 @@
 namespace heatsoak {
 namespace {
 
-/// Rows [begin, end) with one value; NaN inside do not end it.
+/// Rows [begin, end) with one value, apart from NaN.
 struct Stretch {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -37,20 +37,20 @@ std::vector<Stretch> stretches_of(std::span<const double> values, std::pair<std:
   return found;
 }
 
-/// What the channel does when it is in order.
+/// Normal behaviour of the channel.
 struct Habits {
   double high = 0.0;
   NoiseLevel noise;
-  double repeats_share = 0.0;      ///< of neighbours that are equal, long stretches aside
-  std::size_t longest_chance = 0;  ///< samples of one value that noise can give; 0 where that cannot be told
+  double repeats_share = 0.0;      ///< share of equal neighbours, without long constant segments
+  std::size_t longest_chance = 0;  ///< longest constant segment that noise explains, in samples; 0 if unknown
 };
 
-/// More of a part does not tell its noise better.
+/// Sufficient number of samples for a noise estimate.
 constexpr std::size_t kMostSamples = 1 << 14;
 constexpr std::size_t kShortStretch = 20;
-constexpr std::size_t kPile = 10;  ///< samples at one end of the range, at least, that are called cut off there
+constexpr std::size_t kPile = 10;  ///< smallest number of samples at one end of the range that counts as cut off
 
-/// Of a sample to be equal to the one before while the temperature stands still in the middle of a step, where they repeat most.
+/// Probability that a sample equals the previous one if the temperature is constant in the middle of a quantisation step (worst case).
 double repeat_probability(const NoiseLevel& noise) {
   const double white = std::sqrt(std::max(0.0, noise.noise * noise.noise - noise.step * noise.step / 12.0));
   return white > 0.0 ? std::erf(0.5 * noise.step / (std::sqrt(2.0) * white)) : 1.0;
@@ -75,7 +75,7 @@ Habits habits_of(std::span<const double> values, std::span<const std::vector<Str
   habits.repeats_share = samples > 0 ? static_cast<double>(repeats) / static_cast<double>(samples) : 1.0;
   const double share = std::max({habits.repeats_share, 0.05, repeat_probability(noise)});
   if (samples >= kEnoughSamples && share < kTooCoarse_share) {
-    // n equal neighbours by chance once in a thousand logs of this length: rows · share^n = 1/1000.
+    // n equal neighbours occur by chance in one of 1000 logs of this length: rows · share^n = 1/1000.
     constexpr double kLogOfThousand = 6.9;
     habits.longest_chance =
         1 + static_cast<std::size_t>(std::ceil((std::log(static_cast<double>(values.size())) + kLogOfThousand) / -std::log(share)));
@@ -83,12 +83,12 @@ Habits habits_of(std::span<const double> values, std::span<const std::vector<Str
   return habits;
 }
 
-/// Longer than noise leaves any temperature at one value, still or not.
+/// True if noise makes such a long constant segment improbable, even for a constant temperature.
 bool is_improbable(const Stretch& stretch, const Habits& habits) {
   return habits.longest_chance > 0 && stretch.samples > habits.longest_chance;
 }
 
-/// The change out of the stretch stands alone: what follows moves far less. A sensor that held still while the temperature went on.
+/// True if the constant segment ends in a jump much larger than the following changes: the sensor was frozen while the temperature changed.
 bool ends_in_isolated_jump(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
   constexpr std::size_t kLongHold = 30;
   constexpr double kIsolated_ratio = 4.0;
@@ -105,7 +105,7 @@ bool ends_in_isolated_jump(const std::vector<Stretch>& run, std::size_t at, cons
   return jump > std::max(kIsolated_ratio * after, 6.0 * habits.noise.noise);
 }
 
-/// Noise that never stopped before has stopped for good, after a slope that would have gone on.
+/// True if a noisy channel stays constant to the end of the run after a slope that should have continued.
 bool stays_still_to_the_end(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
   constexpr std::size_t kSlopeStretches = 10;
   constexpr double kFarAway_ratio = 20.0;
@@ -117,7 +117,7 @@ bool stays_still_to_the_end(const std::vector<Stretch>& run, std::size_t at, con
   return std::abs(slope) * static_cast<double>(run[at].samples) > kFarAway_ratio * std::max(habits.noise.noise, habits.noise.usual);
 }
 
-/// Three steps towards the extreme, each at least usual, and then none at all.
+/// True if three steps of at least the usual size lead to the extreme, followed by a constant segment.
 bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
   constexpr std::size_t kStops = 5;
   constexpr std::size_t kClimbs = 4;  // the last one may already be cut
@@ -133,12 +133,11 @@ bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Hab
   return run[at - 1].samples == 1;
 }
 
-/// A noisy channel whose noise is cut off: far more samples at the very end of its range than at any value within,
-/// and it comes there by usual changes, not creeping.
+/// True if the noise of a channel is cut off at `end`: far more samples there than at any other value, reached by changes of usual size.
 bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habits& habits) {
   constexpr double kFine_share = 0.2;
   constexpr std::size_t kPile_ratio = 5;
-  constexpr std::size_t kFewestOthers = 5;  // a coarse sensor that rests shows its neighbouring steps now and then
+  constexpr std::size_t kFewestOthers = 5;  // a coarse sensor at rest has only a few neighbouring steps
   if (habits.repeats_share > kFine_share) {
     return false;
   }
@@ -169,8 +168,8 @@ bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habi
   return counts.size() >= kFewestOthers && there > kPile_ratio * elsewhere;
 }
 
-/// Neither five equal neighbours nor ten samples at an end of the range: nothing below could be found. Most long logs end here.
-/// `low` and `high`: of what went before, and then of this too.
+/// Fast check for most long logs: true if there are neither five equal neighbours nor ten samples at an end of the range, so that nothing
+/// can be frozen or saturated. Updates `low` and `high`.
 bool never_rests(std::span<const double> values, double& low, double& high) {
   std::size_t longest = 0;
   std::size_t equal = 0;
@@ -189,7 +188,7 @@ bool never_rests(std::span<const double> values, double& low, double& high) {
   return longest < kRests && static_cast<std::size_t>(at_ends) < kPile;
 }
 
-/// Where a part's rows are reported, and into what.
+/// Rows [first, last) of a part that are reported, and the report.
 struct Reported {
   std::size_t first;
   std::size_t last;
@@ -203,7 +202,7 @@ struct Reported {
   }
 };
 
-/// `frozen_at` of the row before the first that is reported, and then of the last.
+/// Omits frozen and saturated samples. `frozen_at` is the frozen value before the first reported row, on return that of the last (or NaN).
 void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high, double& frozen_at,
                          const Reported& reported) {
   const double was_frozen_at = std::exchange(frozen_at, kUnknown);
@@ -216,7 +215,7 @@ void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& no
   }
   const Habits habits = habits_of(channel.values, runs, noise, high);
   if (!(high > low)) {
-    return;  // constant from begin to end: what that means is asked elsewhere
+    return;  // a constant channel is reported elsewhere
   }
   const bool low_is_cut = piles_up(runs, low, habits);
   const bool high_is_cut = piles_up(runs, high, habits);
@@ -244,10 +243,10 @@ void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& no
   }
 }
 
-/// Valid samples on each side of one that is judged.
+/// Number of valid samples on each side of a tested one.
 constexpr std::size_t kSide = 3;
 
-/// Median of up to three samples, and how far the middle one of them is off it.
+/// Median of up to three samples, and their median absolute deviation.
 struct Side {
   double median = 0.0;
   double deviation = 0.0;
@@ -269,8 +268,8 @@ Side side_of(std::span<const double> values, std::span<const std::size_t> rows) 
   return side;
 }
 
-/// Far from the medians of the three valid samples before and after, on the same side of both, which agree. At the ends of a run one side
-/// decides: an outlier beside a gap or at the very beginning has no other.
+/// True if the sample is far from the medians of the three valid samples before and after, on the same side of both, and these medians
+/// agree. At the ends of a run only one side exists and decides.
 bool is_spike(std::span<const double> values, std::span<const std::size_t> rows, std::size_t k, double least) {
   constexpr double kOfSlope_ratio = 3.0;
   constexpr double kAgree_share = 0.4;
@@ -280,7 +279,7 @@ bool is_spike(std::span<const double> values, std::span<const std::size_t> rows,
   const Side before = has_before ? side_of(values, rows.subspan(k - kSide, kSide)) : side_of(values, rows.subspan(k + 1, kSide));
   const Side after = has_after ? side_of(values, rows.subspan(k + 1, kSide)) : before;
   if (!has_before || !has_after) {
-    // A change that goes on at a like rate is the motor's own: copper warms by kelvins per second.
+    // A change that continues at a similar rate is real: copper can warm by several kelvins per second.
     constexpr double kAlone_ratio = 3.0;
     const double next = values[rows[has_after ? k + 1 : k - 1]];
     const double second = values[rows[has_after ? k + 2 : k - 2]];
@@ -293,7 +292,7 @@ bool is_spike(std::span<const double> values, std::span<const std::size_t> rows,
          (value > before.median) == (value > after.median) && std::abs(before.median - after.median) <= kAgree_share * distance;
 }
 
-/// Neighbours are the samples that are there, whatever lies between.
+/// Omits outliers. Neighbours are the nearest valid samples, across gaps within a run.
 void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noise, const Reported& reported) {
   constexpr double kFar_ratio = 5.0;
   const double least = kFar_ratio * std::max(noise.noise, noise.usual);
@@ -319,9 +318,9 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
   }
 }
 
-constexpr std::size_t kWindow = 7;  ///< of the median of a heat input
+constexpr std::size_t kWindow = 7;  ///< window of the running median of a heat input, in rows
 
-/// 0: nothing of such a channel is too large by itself.
+/// Largest magnitude that any motor reaches, in the quantity's unit; 0 if there is no such limit.
 double largest_of_any_motor(const Quantity& quantity) {
   if (quantity.kind != QuantityKind::heat_input) {
     return 0.0;
@@ -329,7 +328,8 @@ double largest_of_any_motor(const Quantity& quantity) {
   return quantity.unit == "A" ? kLargestCurrent_A : quantity.unit == "rad/s" ? kFastest_rad_per_s : 0.0;
 }
 
-/// One wild sample among the squares of a current would pass for all the heat. Many of them are rather a unit.
+/// Omits single impossible heat inputs: one outlier of a current, squared, could exceed all other heat. Many of them indicate a wrong unit
+/// and are kept.
 void leave_out_wild_inputs(Recording& part, Channel& channel, const Reported& reported) {
   const double largest = largest_of_any_motor(channel.quantity);
   if (!(largest > 0.0)) {

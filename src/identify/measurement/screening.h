@@ -1,4 +1,4 @@
-// Samples that no sensor in order can give: temperatures frozen, saturated, outliers, and wild heat inputs.
+// Detects invalid samples: frozen or saturated temperatures, outliers, and impossible heat inputs.
 #pragma once
 
 #include <cstddef>
@@ -10,23 +10,23 @@
 
 namespace heatsoak {
 
-/// Makes them NaN and reports them by line. Heat inputs and other signals may rightly jump and rest: they stay as they are, but for a
-/// few currents and speeds that no motor reaches, far beyond their neighbours (outliers).
-/// - frozen: exactly one value for longer than the channel's noise allows, until an isolated jump frees it or for good after
-///   a slope. A still sensor whose temperature is still too gives no false value and stays.
-/// - saturated: a climb that stops dead at the largest or smallest value, or noise cut off there.
-/// - outlier: further from the median of its seven neighbours than 6 median deviations (Hampel), and than 4 usual changes.
-/// A log comes in parts, always with the same channels; of what went before only extremes and what was frozen are kept.
+/// Replaces invalid samples by NaN and reports their lines. Heat inputs and other signals may jump and rest, so they are kept, except for
+/// single currents and speeds that no motor reaches and that are far from their neighbours (outliers).
+/// - frozen: exactly one value for longer than the channel's noise allows; or one value until an isolated jump, or to the end of the run
+///   after a slope. A constant reading of a constant temperature is valid.
+/// - saturated: a climb that stops abruptly at the largest or smallest value, or noise that is cut off there.
+/// - outlier: far from the medians of the three valid samples before and after, and on the same side of both.
+/// Logs are processed in parts with the same channels; between parts only extremes and frozen values are remembered.
 class Screening {
  public:
-  /// Of `part` the rows [first, last) are reported; those around them are their neighbours.
+  /// Screens `part` and reports its rows [first, last); the other rows serve as neighbours.
   void leave_out_bad_samples(Recording& part, std::size_t first, std::size_t last, RecordingReport& report);
 
  private:
   struct Past {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
-    double value = std::numeric_limits<double>::quiet_NaN();  ///< at which it is frozen in the row before the part; NaN: it is not
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< frozen value in the row before the part; NaN: not frozen
   };
   std::vector<Past> past_;  ///< per channel
 };

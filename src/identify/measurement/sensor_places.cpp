@@ -15,12 +15,12 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kEnoughBlocks = 10;
-/// What heats the winding before anything else does. Voltage and speed do not: without load they heat the iron.
+/// Signals that heat the winding first. Voltage and speed are not among them: without load they heat the iron.
 constexpr std::array<std::string_view, 5> kWindingHeats{"current_A", "current_q_A", "power_in_W", "bus_A", "torque_Nm"};
-/// What, at zero, leaves the motor unheated.
+/// Signals that imply no heat if they are zero.
 constexpr std::array<std::string_view, 7> kHeats{"current_A", "current_q_A", "power_in_W", "bus_A", "torque_Nm", "motor_V", "duty_ratio"};
 
-/// The first of them that is there, though it be constant: what comes after it tells less of the same.
+/// Returns the first of these channels that the log has, even if it is constant; nullptr if there is none.
 const Channel* first_of(const Recording& recording, std::span<const std::string_view> keys) {
   for (const std::string_view key : keys) {
     if (const Channel* const channel = recording.find(key)) {
@@ -30,12 +30,12 @@ const Channel* first_of(const Recording& recording, std::span<const std::string_
   return nullptr;
 }
 
-/// A channel's changes over blocks long enough to see them, with the mean heat and speed of each.
+/// Changes of a channel over blocks of time, with the mean heat and speed of each block.
 struct Blocks {
   std::vector<double> change_K;
   std::vector<double> rate_K_per_s;
   std::vector<double> heat;
-  std::vector<double> speed_rad_per_s;  ///< size; empty without a speed
+  std::vector<double> speed_rad_per_s;  ///< magnitude; empty if the log has no speed
 };
 
 void subtract_line(std::span<const double> x, std::vector<double>& y) {
@@ -115,7 +115,7 @@ class Places {
     }
   }
 
-  /// Then it warms up to the air, also where nothing heats it.
+  /// True if the motor started colder than the air and then warmed up towards it, also without heat.
   [[nodiscard]] bool was_brought_in_cold(const Channel& channel, std::span<const double> above_K) const {
     constexpr double kColdest_K = -40.0;
     constexpr double kWarms_K = 1.0;
@@ -135,7 +135,7 @@ class Places {
     return start_K > kColdest_K && start_K < -kWarms_K && (rests >= kEnoughBlocks ? rises_in_rests_K : rises_K) > kWarms_K;
   }
 
-  /// take(from, to, change_K) of rows where the channel has values.
+  /// Calls take(from, to, change_K) for each block whose end rows have values.
   template <class Take>
   void for_each_block(const Channel& channel, Take take) const {
     for (const auto& [begin, end] : recording_.runs()) {
@@ -174,8 +174,8 @@ class Places {
     return blocks;
   }
 
-  /// It falls while it is heated and rises at rest, by much of all that it moves. Where the heat hardly varies, a motor that
-  /// levels out while its resistance rises looks alike.
+  /// Detects a wrong sign: the temperature falls while heated and rises at rest, by a large part of its range. If the heat hardly varies,
+  /// a motor near steady state with rising resistance may look the same.
   void signs() {
     const Channel* const input = first_of(recording_, kHeats);
     if (!moves(input)) {
@@ -206,8 +206,8 @@ class Places {
     }
   }
 
-  /// A temperature's rate against the heat. What turns with the heat heats the iron too, and by that the stator first: then
-  /// at one and the same speed.
+  /// Regression of a temperature's rate on the heat. If heat and speed are correlated, the effect of speed is removed first, because iron
+  /// loss heats the stator.
   [[nodiscard]] Regression answer_of(const Channel& channel, std::span<const double> heat) const {
     Blocks blocks = blocks_of(channel, heat);
     if (speed_ != nullptr && regress(blocks.speed_rad_per_s, blocks.heat).correlation_ratio > 0.0) {
@@ -227,7 +227,7 @@ class Places {
     if (!moves(input)) {
       return;
     }
-    // Without a speed the iron may be what is heated: then both swing almost alike.
+    // Without a logged speed the heat may be iron loss, with which both temperatures swing similarly.
     const double kSwing_ratio = speed_ != nullptr ? 1.1 : 1.25;
     const std::vector<double> heat = relative_heat(*input);
     const Regression of_winding = answer_of(*winding_, heat);
@@ -239,8 +239,8 @@ class Places {
     }
   }
 
-  /// Where nothing heats, the winding stays the hotter and falls by more: it has only the stator to lose its heat to. The
-  /// offset of a sensor does not change with the temperature, so that all must point the same way from hot to cold.
+  /// Detects swapped sensors in cool-downs. Without heat, the winding stays hotter than the stator, to which it loses its heat, and falls
+  /// by more. A sensor offset is constant, so the difference must change in one direction from hot to cold.
   void swapped_by_cooling() {
     int swapped = 0;
     int sound = 0;
@@ -266,7 +266,7 @@ class Places {
     }
   }
 
-  /// While the motor stands there is only copper loss, and from one temperature the winding goes ahead of the stator.
+  /// Detects swapped sensors at standstill: there is only copper loss, so the winding must warm up faster than the stator.
   void swapped_at_standstill() {
     const Channel* const input = first_of(recording_, kWindingHeats);
     if (speed_ == nullptr || input == nullptr || !found_.empty()) {
@@ -286,9 +286,9 @@ class Places {
 
   struct StandstillWarmUp {
     double stator_rise_K = 0.0;
-    double stator_ahead_K = 0.0;  ///< of the winding, by the middle of the samples; 0 where it is not plainly so
+    double stator_ahead_K = 0.0;  ///< median lead of the stator over the winding; 0 if it is not clear
   };
-  /// From a run's first row to where it turns.
+  /// Evaluates a run from its first row until the motor turns.
   [[nodiscard]] StandstillWarmUp standstill_warm_up(std::size_t begin, std::size_t end, std::span<const double> heat) const {
     constexpr double kStands_rad_per_s = 1.0;
     constexpr double kAlikeAtStart_K = 10.0;
@@ -318,7 +318,7 @@ class Places {
     for (std::size_t i = 0; i < winding_C.size(); ++i) {
       if (stator_C[i] - stator_start_C > kRises_K) {
         rises_K.push_back(stator_C[i] - stator_start_C);
-        // What is apart from the start may be a sensor's offset.
+        // An initial difference may be a sensor offset.
         ahead_K.push_back(stator_C[i] - winding_C[i] - std::max(0.0, at_start_K));
       }
     }
@@ -330,8 +330,8 @@ class Places {
   }
 
   struct Cooling {
-    int verdict = 0;              ///< 1: as it should be, -1: as if swapped, 0: cannot be told
-    double stator_above_K = 0.0;  ///< while hot, where it is as if swapped
+    int verdict = 0;              ///< 1: correct, -1: swapped, 0: undecided
+    double stator_above_K = 0.0;  ///< excess of the stator while hot, if swapped
   };
   [[nodiscard]] Cooling cooling_over(std::span<const std::size_t> rows) const {
     constexpr std::size_t kFewestRows = 15;
@@ -357,7 +357,7 @@ class Places {
     if (fall_K(stator_C) < kFalls_K || fall_K(mean_C) < kFalls_K) {
       return {};
     }
-    // Thirds of what it falls, not of the time: at the end nothing may fall any more.
+    // Thirds of the temperature drop, not of the time, because the last part of the time may be constant.
     const double hot_C = middle_of(std::span(mean_C).first(3));
     const double third_K = fall_K(mean_C) / 3.0;
     std::array<std::vector<double>, 3> apart_per_third_K;
@@ -377,7 +377,7 @@ class Places {
     const double hot_K = middle_of(apart_per_third_K[0]);
     const double warm_K = middle_of(apart_per_third_K[1]);
     const double cool_K = middle_of(apart_per_third_K[2]);
-    // A winding that only lagged behind an iron that was heated ends as the hotter one, but by little.
+    // If iron was heated and the winding only lagged, the winding ends slightly hotter.
     const bool stays_above = cool_K < kStatorAbove_K || cool_K - hot_K > kMoreThanLag_K;
     if (hot_K < -kStatorAbove_K && stays_above && warm_K - hot_K > margin_K && cool_K - warm_K > margin_K) {
       return {-1, -hot_K};
@@ -392,7 +392,7 @@ class Places {
   const Channel* ambient_;
   const Channel* speed_;
   double block_s_ = 0.0;
-  std::vector<char> rests_;  ///< per row: nothing heats
+  std::vector<char> rests_;  ///< per row: 1 if nothing heats the motor
   std::vector<std::string> found_;
 };
 

@@ -1,4 +1,4 @@
-// Temperatures that answer to heat as no motor does: swapped channels, a wrong sign.
+// Detects temperatures whose response to heat is impossible for a motor: swapped channels, wrong sign.
 #pragma once
 
 #include <span>

@@ -10,7 +10,7 @@
 namespace heatsoak {
 namespace {
 
-/// The first five that are there; of a reversed view the last.
+/// First five values that are not NaN; for a reversed view the last five.
 std::vector<double> first_samples(auto&& values) {
   std::vector<double> first;
   for (const double value : values) {
@@ -24,7 +24,7 @@ std::vector<double> first_samples(auto&& values) {
 }  // namespace
 
 double percentile(std::span<const double> values, double share) {
-  constexpr std::size_t kMostValues = 200'000;  // of a long log, spread evenly
+  constexpr std::size_t kMostValues = 200'000;  // evenly spaced sample of a long log
   std::vector<double> sorted;
   for (std::size_t i = 0; i < values.size(); i += values.size() / kMostValues + 1) {
     if (!std::isnan(values[i])) {

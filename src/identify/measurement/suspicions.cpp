@@ -135,7 +135,7 @@ class Suspector {
     }
   }
 
-  /// By the 98 % of the sizes, so that single wild rows do not count.
+  /// Checks units of wheel signals with the 98th percentile of the magnitudes, which ignores single outliers.
   void wheels() {
     constexpr double kLargestBattery_V = 1000.0;
     constexpr double kLongestPeriod_s = 2.0;  // wheels speed up and stop within it
@@ -169,7 +169,7 @@ class Suspector {
     }
   }
 
-  /// Nothing gets warm before its heat.
+  /// Reports temperatures that respond before their heat input.
   void early_answers() {
     for (const ClockOffset& offset : told_.clock_offsets) {
       if (std::string early = early_answer(offset, told_.sampling.usual_period_s); !early.empty()) {
@@ -178,7 +178,8 @@ class Suspector {
     }
   }
 
-  /// Whole seconds as minutes or hours, and no motor as fast as that. Loggers of 60 Hz there are: without a motor it is only said.
+  /// Detects times in minutes or hours: the period is then a whole number of seconds, and a temperature falls faster than any motor cools.
+  /// Loggers with 60 Hz look similar.
   void short_clock() {
     const double period_s = usual_period_s(recording_.time_s);
     constexpr double kMost_s = 60.0;
@@ -193,7 +194,7 @@ class Suspector {
         if (channel.quantity.kind != QuantityKind::temperature) {
           continue;
         }
-        // How fast it rises is for the current to say, but nothing but the motor itself cools it.
+        // The rate of a rise depends on the current, but the rate of a fall only on the motor.
         const double fast_s = channel.quantity.key.find("winding") != std::string::npos ? 0.5 : 5.0;
         if (const double fall_s = usual_fall_s(channel); fall_s < fast_s) {
           found_.push_back(fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?", significant(period_s, 3),
@@ -204,7 +205,7 @@ class Suspector {
     }
   }
   static constexpr double kFall_K = 10.0;
-  /// The usual time that it takes to fall by kFall_K without a rise; infinite with less than two of these.
+  /// Median time of a fall by kFall_K without a rise; infinite with fewer than two falls.
   [[nodiscard]] double usual_fall_s(const Channel& channel) const {
     std::vector<double> falls_s;
     for (const auto& [begin, end] : recording_.runs()) {
@@ -225,7 +226,7 @@ class Suspector {
     return falls_s.size() < 2 ? std::numeric_limits<double>::infinity() : middle_of(falls_s);
   }
 
-  /// The fit takes such a sensor as none: it is only said.
+  /// Reports constant temperatures. The fit ignores such a sensor.
   void constants() {
     constexpr double kMoves_K = 10.0;
     for (const Channel& constant : recording_.channels) {
@@ -243,7 +244,7 @@ class Suspector {
     }
   }
 
-  /// What a temperature would be frozen or cut for is often right for an input: it is only said.
+  /// Reports heat inputs that often have their extreme value. For a temperature that would be saturation; for an input it is often valid.
   void limits() {
     constexpr double kMuch_share = 0.2;
     for (const Channel& channel : recording_.channels) {

@@ -1,4 +1,4 @@
-// What looks like a wrong unit, a wrong sign or swapped channels. Said to the user, never acted on.
+// Detects probable wrong units, wrong signs and swapped channels. They are reported to the user, never corrected.
 #pragma once
 
 #include <string>
@@ -11,10 +11,11 @@ namespace heatsoak {
 
 struct Suspicions {
   std::vector<std::string> all;
-  std::vector<std::string> spoiling;         ///< of them: units, signs and sensors with which nothing can be fitted, were it so
-  std::vector<std::string> spoiling_wheels;  ///< of them: the same of a robot's wheels and angles, and of the clock
+  std::vector<std::string> spoiling;         ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<std::string> spoiling_wheels;  ///< subset about a robot's wheels and angles, and about the clock
 };
-/// Of what is told of sampling, channels and clocks. `ambient_C`: of the air as the user states it, NaN where not.
+/// Returns the suspicions as sentences. `told` must contain sampling, channels and clock offsets. `ambient_C`: air temperature stated by
+/// the user, NaN if not stated.
 Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C);
 
 }  // namespace heatsoak

@@ -15,9 +15,9 @@ namespace heatsoak {
 namespace {
 
 constexpr double kApart_K = 15.0;
-/// Between what starts at one temperature, of which one may be heated at once.
+/// Largest difference between sensors that start at one temperature, although one may be heated immediately.
 constexpr double kAlike_K = 4.0;
-/// A motor that is as warm as the room falls by no more.
+/// Largest fall of a motor that starts at room temperature.
 constexpr double kFalls_K = 1.5;
 
 double from_kelvin_C(double value) { return value - 273.15; }
@@ -25,15 +25,15 @@ double from_fahrenheit_C(double value) { return (value - 32.0) / 1.8; }
 double from_tenths_C(double value) { return 0.1 * value; }
 bool is_of_a_room(double value_C) { return value_C > 12.0 && value_C < 40.0; }
 
-/// Beyond this share of the usual, an input heats.
+/// An input heats if it exceeds this share of its usual magnitude.
 constexpr double kHeats_share = 0.01;
 
-/// What does not heat leaves them at 0.
+/// True for inputs that are 0 if the motor is not heated.
 bool is_watts(const Channel& channel) {
   return channel.quantity.kind == QuantityKind::heat_input && channel.quantity.unit != "V" && !channel.quantity.unit.empty();
 }
 
-/// The first row after which no heat goes in until the end; the number of rows where it is not known.
+/// First row after which the motor is not heated until the end; the number of rows if unknown.
 std::size_t heat_ends(const Recording& recording) {
   std::size_t after = recording.run_begins.empty() ? 0 : recording.run_begins.back();
   bool is_logged = false;
@@ -43,7 +43,7 @@ std::size_t heat_ends(const Recording& recording) {
     }
     is_logged = true;
     const double least = kHeats_share * top_of_sizes(channel.values);
-    // What came after the last row, nobody logged.
+    // The last row is ignored, because the log ends with it.
     for (std::size_t row = after; row + 1 < recording.rows(); ++row) {
       after = std::isnan(channel.values[row]) || std::abs(channel.values[row]) > least ? row + 1 : after;
     }
@@ -51,8 +51,8 @@ std::size_t heat_ends(const Recording& recording) {
   return is_logged ? after : recording.rows();
 }
 
-/// Where an even decay from `first` to the log's end comes to rest, by the law of three moments of equal distance; unknown where it is
-/// no decay, or far from its end.
+/// Final value of an exponential decay from row `first` to the end of the log, from three equidistant times. NaN if it is not a decay or
+/// still far from its end.
 double rests_at(const Recording& recording, const Channel& channel, std::size_t first) {
   constexpr std::size_t kFewestRows = 40;
   constexpr double kFall_K = 3.0;
@@ -64,7 +64,7 @@ double rests_at(const Recording& recording, const Channel& channel, std::size_t 
   const double third_s = (recording.time_s.back() - begin_s) / 3.0;
   std::array<double, 3> at{};
   for (std::size_t k = 0; k < at.size(); ++k) {
-    // The middles of stretches of a tenth, the last of which ends with the log.
+    // Medians over tenths of the time, the last of which ends with the log.
     const double middle_s = begin_s + (static_cast<double>(k) + 0.85) * third_s;
     const auto from = std::ranges::lower_bound(recording.time_s, middle_s - 0.15 * third_s) - recording.time_s.begin();
     const auto to = std::ranges::upper_bound(recording.time_s, middle_s + 0.15 * third_s) - recording.time_s.begin();
@@ -76,7 +76,8 @@ double rests_at(const Recording& recording, const Channel& channel, std::size_t 
   return decays ? at[2] - late_K * late_K / (early_K - late_K) : kUnknown;
 }
 
-/// A motor that starts at the temperature of the room never falls below it, one that starts warm does; in steps of `degree`.
+/// True if the channel never falls below its start, as for a motor that starts at room temperature. `degree` is the value of 1 K in the
+/// channel's unit.
 bool never_falls(const Channel& channel, double degree) {
   return percentile(channel.values, 0.02) > coolest_at_start(channel) - kFalls_K * degree;
 }
@@ -132,7 +133,7 @@ class Scales {
     return starts_C;
   }
 
-  /// Where kelvin would be far from a room, and the others, in °C, start at a tenth of it.
+  /// True if the channel is probably in tenths of degrees: kelvin gives no room temperature, and another channel starts at a tenth of it.
   [[nodiscard]] bool is_in_tenths(const Channel& channel) const {
     constexpr double kLeast = 180.0;
     const double start = coolest_at_start(channel);
@@ -142,7 +143,7 @@ class Scales {
            });
   }
 
-  /// A log mostly starts cold, all of its temperatures at that of the room.
+  /// True if the channel is probably in degrees Fahrenheit. Assumes that most logs start cold, with all temperatures at room temperature.
   [[nodiscard]] bool is_in_fahrenheit(const Channel& channel) const {
     const double start = at_start(channel);
     const double coolest_C = from_fahrenheit_C(coolest_at_start(channel));
@@ -157,9 +158,9 @@ class Scales {
       others_C.push_back(stated_C_);
     }
     const bool stands_apart = std::ranges::none_of(others_C, [start](double other_C) { return std::abs(other_C - start) < kApart_K; });
-    // Where the others start warm too, this one may as well.
+    // If the others start at different temperatures, this one may be warm too.
     const bool others_are_alike = std::ranges::all_of(others_C, [&](double one_C) { return all_within(one_C, kApart_K); });
-    // One other alone may by chance be where a warm motor's Fahrenheit is. Beside the room a motor may be a little warm.
+    // A single other channel may agree by chance, so the limit is smaller. A motor may be slightly warmer than the room.
     const double below_K = others_C.size() > 1 ? kAlike_K : 0.5 * kAlike_K;
     const bool is_beside_room = sensors_.size() == 1 && sensors_.front() == &channel;
     const double above_K = is_beside_room ? 1.2 * kAlike_K : below_K;
@@ -173,7 +174,7 @@ class Scales {
            is_of_a_room(from_fahrenheit_C(start));
   }
 
-  /// All of the motor's sensors start alike and far above the room, and in Fahrenheit at the room's temperature.
+  /// Detects a motor in Fahrenheit: all sensors start alike, far above room temperature, but at room temperature if read as Fahrenheit.
   void motor_in_fahrenheit() {
     const double room_C = ambient_ != nullptr ? at_start(*ambient_) : stated_C_;
     if (std::isnan(room_C) || sensors_.size() < 2) {
@@ -193,7 +194,7 @@ class Scales {
     }
   }
 
-  /// Without heat a motor comes to rest at the air's temperature; in degrees Fahrenheit far above it.
+  /// Detects Fahrenheit from a cool-down: without heat, a motor approaches the air temperature, but in Fahrenheit a value far above it.
   void cooling_in_fahrenheit() {
     const double room_C = ambient_ != nullptr ? middle_of(ambient_->values) : stated_C_;
     if (std::isnan(room_C) || sensors_.empty() || is_told_) {
@@ -217,9 +218,9 @@ class Scales {
   const Recording& recording_;
   const Channel* ambient_;
   double stated_C_;
-  bool is_told_ = false;                  ///< that a sensor of the motor looks like degrees Fahrenheit
-  std::vector<const Channel*> sensors_;   ///< of the motor
-  std::vector<const Channel*> channels_;  ///< these and the surroundings'
+  bool is_told_ = false;                  ///< true: Fahrenheit has already been reported for a sensor of the motor
+  std::vector<const Channel*> sensors_;   ///< temperatures of the motor
+  std::vector<const Channel*> channels_;  ///< these and the surroundings
   std::vector<std::string> found_;
 };
 

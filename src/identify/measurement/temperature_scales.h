@@ -1,4 +1,4 @@
-// Temperatures that look like kelvin, degrees Fahrenheit or tenths of degrees.
+// Detects temperatures that are probably in kelvin, degrees Fahrenheit or tenths of degrees.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace heatsoak {
 
-/// `ambient_C`: of the air as the user states it, NaN where not; a recording's own goes before it.
+/// Returns sentences about suspicious temperature scales. `ambient_C`: air temperature stated by the user, NaN if not stated; the
+/// recording's own ambient temperature takes precedence.
 std::vector<std::string> suspicious_scales(const Recording& recording, double ambient_C);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// A sample of a sequence whose length nobody knows beforehand.
+// Evenly spaced sample of a sequence of unknown length.
 #pragma once
 
 #include <cstddef>
@@ -6,12 +6,12 @@
 
 namespace heatsoak {
 
-/// Every n-th of the numbers that come, n the least power of two with which they stay below a bound.
+/// Keeps every n-th number; n is the smallest power of two for which the count stays within a bound.
 class Thinned {
  public:
   static constexpr std::size_t kMost = 1 << 16;
 
-  /// `most` is even.
+  /// `most` must be even.
   explicit Thinned(std::size_t most = kMost) : most_(most) {}
 
   void add(double value) {
@@ -27,7 +27,7 @@ class Thinned {
     }
     values_.push_back(value);
   }
-  /// In the order in which they came.
+  /// Kept numbers in the order of add().
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
 
  private:

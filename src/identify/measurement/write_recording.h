@@ -1,4 +1,4 @@
-// A recording as canonical CSV, for other programs and for keeping.
+// Writes a recording as canonical CSV, for other programs and for archiving.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace heatsoak {
 
-/// Every channel in its unit with all of its digits, a blank cell where it is left out. Motor and conditions stand in comments.
+/// Returns the CSV text. Every channel is in its unit with full precision; omitted samples are blank cells. Motor and conditions are
+/// written as comments.
 std::string to_canonical_csv(const Recording& recording);
 
 }  // namespace heatsoak
