@@ -146,7 +146,7 @@ std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
         const Condition condition{{key, value}};
         std::vector<bool> has;
         for (const MeasuredRun& run : runs) {
-          has.push_back(has_condition(run, condition));
+          has.push_back(run.has(condition));
         }
         const bool parts = std::ranges::find(has, false) != has.end();
         if ((key == "run") == named && parts && std::ranges::find(known, has) == known.end()) {
@@ -420,7 +420,7 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
   extended.state_C.assign(start_C.begin(), start_C.end());
   for (std::size_t j = 0; j < candidates.size(); ++j) {
-    if (!has_condition(run, candidates[j].condition)) {
+    if (!run.has(candidates[j].condition)) {
       continue;
     }
     if (candidates[j].type) {

@@ -163,7 +163,7 @@ class Teller {
                 std::size_t own) const {
     const Network& network = after().model.model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
-    if (!has_condition(run, deviation.condition)) {
+    if (!run.has(deviation.condition)) {
       return;
     }
     for (std::size_t e = 0; e < network.effects().size(); ++e) {

@@ -77,12 +77,12 @@ double ExtendedModel::high(Eigen::Index coordinate) const {
 std::vector<double> ExtendedModel::values_in(const MeasuredRun& run) const {
   std::vector<double> values = model.values;
   for (const ConditionalTerm& term : conditional) {
-    if (!has_condition(run, term.condition)) {
+    if (!run.has(term.condition)) {
       values[static_cast<std::size_t>(term.place)] = term.off_value;
     }
   }
   for (const RunDeviation& each : deviations) {
-    if (has_condition(run, each.condition)) {
+    if (run.has(each.condition)) {
       for (const int place : each.type->places_in(model.network)) {
         values[static_cast<std::size_t>(place)] *= 1.0 + each.deviation_share;
       }
@@ -97,13 +97,13 @@ namespace {
 double factor_in(const ExtendedModel& model, int place, const MeasuredRun& run) {
   double factor = 1.0;
   for (const RunDeviation& each : model.deviations) {
-    if (has_condition(run, each.condition)) {
+    if (run.has(each.condition)) {
       const std::vector<int> places = each.type->places_in(model.model.network);
       factor *= std::ranges::find(places, place) != places.end() ? 1.0 + each.deviation_share : 1.0;
     }
   }
   for (const ConditionalTerm& term : model.conditional) {
-    factor *= term.place == place && !has_condition(run, term.condition) ? 0.0 : 1.0;
+    factor *= term.place == place && !run.has(term.condition) ? 0.0 : 1.0;
   }
   return factor;
 }
@@ -118,7 +118,7 @@ LinearisedRun linearised(const ExtendedModel& model, const MeasuredRun& run, con
   }
   std::vector<Eigen::Index> deviates;  // of each wanted parameter beyond the model's own: by which deviation
   for (std::size_t i = 0; i < model.deviations.size(); ++i) {
-    if (has_condition(run, model.deviations[i].condition)) {
+    if (run.has(model.deviations[i].condition)) {
       const std::vector<int> places = model.deviations[i].type->places_in(network);
       wanted.insert(wanted.end(), places.begin(), places.end());
       deviates.resize(deviates.size() + places.size(), static_cast<Eigen::Index>(i));

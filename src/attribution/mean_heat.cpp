@@ -61,7 +61,7 @@ HeatOfEffect heat_of(const RefitResult& fit, const std::vector<MeasuredRun>& run
   double time_s = 0.0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const MeasuredRun& run = runs[r];
-    if (!has_condition(run, condition)) {
+    if (!run.has(condition)) {
       continue;
     }
     heat_along(fit, run, fit.fitted[r], [&](std::size_t k, std::span<const double> heat_W) {

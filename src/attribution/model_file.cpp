@@ -68,6 +68,36 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
   }
 }
 
+/// Switches effects with a condition off in runs without it, and notes where that is impossible or concerns every run.
+void add_conditional_effects(const Motor& motor, const std::vector<Recording>& recordings, ModelOfLogs& out) {
+  const auto holds = [](const Recording& recording, const std::map<std::string, std::string>& condition) {
+    return std::ranges::all_of(condition, [&](const auto& part) {
+      const auto found = recording.conditions.find(part.first);
+      return found != recording.conditions.end() ? found->second == part.second : part.first == "run" && part.second == recording.name;
+    });
+  };
+  for (const MotorEffect& effect : motor.effects) {
+    if (effect.condition.empty()) {
+      continue;
+    }
+    const auto& [key, value] = *effect.condition.begin();
+    const auto count = std::ranges::count_if(recordings, [&](const Recording& each) { return holds(each, effect.condition); });
+    const int size = effect.type->candidacy.size_parameter;
+    if (size < 0 && count < std::ssize(recordings)) {
+      out.notes.push_back(
+          fmt::format("{} acts in every run here, although its condition is {} = {}: an effect of the type {} has no size that could be "
+                      "set to 0; leave out the runs without that condition",
+                      effect.name, key, value, effect.type->name));
+    } else if (count == 0) {
+      out.notes.push_back(fmt::format("{} acts in none of these runs: no log has its condition {} = {}", effect.name, key, value));
+    }
+    if (size >= 0) {
+      const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
+      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
+    }
+  }
+}
+
 constexpr const char* kSource = "diagnosis";
 
 Figure measured(double value, double low, double high, const Range& range) {
@@ -233,13 +263,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.figures = std::move(built.figures);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));
-  for (const MotorEffect& effect : motor.effects) {
-    const int size = effect.type->candidacy.size_parameter;
-    if (!effect.condition.empty() && size >= 0) {
-      const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
-      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
-    }
-  }
+  add_conditional_effects(motor, recordings, out);
   if (const std::string lacking = column_lacking(out.how.column, recordings); !lacking.empty()) {
     out.notes.push_back(lacking);
   }

@@ -73,11 +73,4 @@ std::vector<int> RunDeviationType::places_in(const Network& network) const {
   return places;
 }
 
-bool has_condition(const MeasuredRun& run, const Condition& condition) {
-  return std::ranges::all_of(condition, [&](const auto& part) {
-    const auto found = run.conditions.find(part.first);
-    return found != run.conditions.end() && found->second == part.second;
-  });
-}
-
 }  // namespace heatsoak

@@ -14,7 +14,6 @@ namespace heatsoak {
 
 /// What runs have in common that others lack: "cooling" -> "fan", or "run" -> "run4".
 using Condition = std::map<std::string, std::string>;
-bool has_condition(const MeasuredRun& run, const Condition& condition);
 
 /// Parameters of the network that are worth 1 + d times as much under a condition.
 struct RunDeviationType {

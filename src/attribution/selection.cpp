@@ -40,9 +40,6 @@ class Selector : Rounds {
   }
 
  private:
-  /// The model has what lost its name to a curve: nothing that matters remains beside the best set.
-  bool keeps_helpers_ = false;
-
   void decide(const Judged& judged) {
     const EffectSet& best = search_->sets().front();
     RefitOptions options = final_options(judged.best_place);
@@ -65,12 +62,33 @@ class Selector : Rounds {
     if (rules_.scans_drivers && !is_speed_open_ && (out_.is_material() || !named.empty())) {
       scan(judged, best);
     }
-    weigh_curve(best, named);
+    if (are_runs_as_usual()) {
+      out_.is_as_usual = true;
+      keep_as_it_is(judged);
+      return;
+    }
+    const std::vector<ScanResult>& scan = out_.rounds.back().scan;
+    if (!scan.empty() && scan.front().gain_nats > rules_.curve_gain_nats) {
+      const ScanResult curve = scan.front();
+      if (const std::optional<std::size_t> same = same_effect(best, curve)) {
+        if (std::ranges::find(named, *same) == named.end()) {
+          named.push_back(*same);
+        }
+      } else if (follow_curve(judged, best, named, curve)) {
+        return;
+      }
+    }
+    if (out_.is_material()) {
+      keep_what_outweighs(best, named);
+      out_.is_unexplained = named.empty();
+    }
     if (input_.model.usual_flux_W > 0.0) {
       keep_what_helps(best, named);
     }
-    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
     build(judged, best, named);
+    if (named.empty() && out_.changed.empty() && predicts_best_as_it_is()) {
+      keep_as_it_is(judged);
+    }
   }
 
   void refuse(int member, const std::string& why) {
@@ -127,42 +145,40 @@ class Selector : Rounds {
     out_.rounds.back().scan = scan_drivers(input, rules_, kTold);
   }
 
-  /// Whether heat remains that no effect is, whether a curve is it, and which names a curve takes away.
-  void weigh_curve(const EffectSet& best, std::vector<std::size_t>& named) {
-    const std::vector<ScanResult>& scan = out_.rounds.back().scan;
-    const bool has_curve = !scan.empty() && scan.front().gain_nats > rules_.curve_gain_nats;
-    if (!has_curve) {
-      if (out_.is_material()) {
-        keep_what_outweighs(best, named);
-        out_.is_unexplained = named.empty();
-      }
-      return;
-    }
-    const ScanResult& curve = scan.front();
+  /// The member of the best set that a curve is another shape of.
+  [[nodiscard]] std::optional<std::size_t> same_effect(const EffectSet& best, const ScanResult& curve) const {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double share = curve.gain_nats / (curve.gain_nats + search_->loss_without_nats(best, m));
-      // Another shape of the same effect is that effect.
       if (!is_figure(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio && share < rules_.same_shape_share) {
-        if (std::ranges::find(named, m) == named.end()) {
-          named.push_back(m);
-        }
-        return;
+        return m;
       }
     }
-    std::erase_if(named, [&](std::size_t m) {
-      const bool goes = std::ranges::find(curve.beside, static_cast<int>(m)) == curve.beside.end();
-      if (goes) {
+    return std::nullopt;
+  }
+
+  /// Replaces the effects that the curve explains better by the curve. Returns false, with nothing changed, if the curve does not predict
+  /// training runs that its fit has not seen.
+  bool follow_curve(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named, const ScanResult& curve) {
+    const auto stays = [&](std::size_t m) { return std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end(); };
+    std::vector<std::size_t> beside;
+    std::ranges::copy_if(named, std::back_inserter(beside), stays);
+    if (input_.model.usual_flux_W > 0.0) {
+      keep_what_helps(best, beside);
+    }
+    build(judged, best, beside);
+    if (!adopt_curve(judged, curve)) {
+      out_.terms.clear();
+      out_.after = out_.own;
+      return false;
+    }
+    for (const std::size_t m : named) {
+      if (!stays(m)) {
         refuse(best.members[m],
                fmt::format("a curve over {} explains the runs better", out_.drivers[static_cast<std::size_t>(curve.term.driver)].name));
       }
-      return goes;
-    });
-    if (out_.is_material() || named.empty()) {
-      out_.is_unexplained = true;
-      out_.open_curve = curve;
-    } else {
-      keeps_helpers_ = true;
     }
+    out_.is_unexplained = true;
+    return true;
   }
 
   [[nodiscard]] double free_run_error_K(const ExtendedModel& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
@@ -199,17 +215,25 @@ class Selector : Rounds {
     named = std::move(kept);
   }
 
-  /// What a calibrated model leaves of the runs at once it left of the runs that it was fitted to as well: a name must let whole runs be
-  /// followed plainly better, and where whole runs decided the file's figures, runs that are followed as usual show nothing.
+  /// Whole runs decided the file's parameters, and the model follows these runs as well as it followed those.
+  [[nodiscard]] bool are_runs_as_usual() const {
+    return input_.model.usual_flux_W > 0.0 && input_.model.usual_error_K > 0.0 &&
+           free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.model.usual_error_K;
+  }
+
+  void keep_as_it_is(const Judged& judged) {
+    out_.is_kept = true;
+    RefitOptions as_it_is = final_options(judged.empty_place);
+    as_it_is.most_steps = 0;
+    as_it_is.around.clear();
+    out_.after = out_.own = refit(input_.model, input_.runs, starts_of(input_.model), as_it_is);
+    out_.after.covariance = input_.model.prior().precision.inverse();
+  }
+
+  /// A calibrated model leaves some heat of the runs it was fitted to, so evidence alone is not enough: with a named effect whole runs
+  /// must be followed plainly better.
   void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
-    if (input_.model.usual_error_K > 0.0 && free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.model.usual_error_K) {
-      named.clear();
-      out_.open_curve.reset();
-      out_.is_unexplained = false;
-      out_.is_as_usual = true;
-      return;
-    }
-    // The surest stays longest.
+    // The weakest is examined first.
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
     for (std::size_t i = named.size(); i-- > 0;) {
       std::vector<std::size_t> others = named;
@@ -222,50 +246,28 @@ class Selector : Rounds {
     }
   }
 
-  void build(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named) {
+  /// Fits the model with the named effects and the changed parameters.
+  void build(const Judged& judged, const EffectSet& best, std::vector<std::size_t> named) {
+    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    out_.after = out_.own;
+    if (named.empty()) {
+      return;
+    }
     std::vector<int> kept;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
-      if (keeps_helpers_ || is_figure(best.members[m]) || std::ranges::find(named, m) != named.end()) {
+      if (is_figure(best.members[m]) || std::ranges::find(named, m) != named.end()) {
         kept.push_back(best.members[m]);
       }
     }
-    out_.after = out_.own;
-    if (out_.is_as_usual) {
-      RefitOptions as_it_is = final_options(judged.empty_place);
-      as_it_is.most_steps = 0;
-      as_it_is.around.clear();
-      out_.after = out_.own = refit(input_.model, input_.runs, starts_of(input_.model), as_it_is);
-      out_.after.covariance = input_.model.prior().precision.inverse();
-    } else if (!named.empty()) {
-      const SetSearch::AtBest at = search_->at_best(kept);
-      const ExtendedModel model = with_members(kept, at, ShapesAre::free);
-      RefitResult fit = try_refit(model, input_.runs, starts_of(model), final_options(judged.best_place));
-      if (!std::isfinite(fit.evidence_nats)) {
-        out_.is_unexplained = true;
-        return;
-      }
-      out_.after = to_predict(std::move(fit));
-      add_terms(best, named, kept);
-    }
-    if (!out_.open_curve || adopt_curve(judged)) {
+    const SetSearch::AtBest at = search_->at_best(kept);
+    const ExtendedModel model = with_members(kept, at, ShapesAre::free);
+    RefitResult fit = try_refit(model, input_.runs, starts_of(model), final_options(judged.best_place));
+    if (!std::isfinite(fit.evidence_nats)) {
+      out_.is_unexplained = true;
       return;
     }
-    // What does not predict runs that its fit has not seen is no driver.
-    out_.open_curve.reset();
-    if (!out_.terms.empty()) {
-      std::vector<std::size_t> outweighing = named;
-      keep_what_outweighs(best, outweighing);
-      if (outweighing.size() == named.size()) {
-        out_.is_unexplained = false;
-        return;
-      }
-      // A part of what is missing predicts no better than the model without it.
-      for (const std::size_t m : named) {
-        refuse(best.members[m], "more heat remains than what every model leaves");
-      }
-      out_.terms.clear();
-      out_.after = out_.own;
-    }
+    out_.after = to_predict(std::move(fit));
+    add_terms(best, named, kept);
   }
 
   void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
@@ -299,41 +301,49 @@ class Selector : Rounds {
     }
   }
 
-  /// The model follows a curve where that predicts training runs that the fit did not see.
-  bool adopt_curve(const Judged& judged) {
-    const Driver& driver = out_.drivers[static_cast<std::size_t>(out_.open_curve->term.driver)];
-    const std::optional<ExtendedModel> curved = with_curve(out_.after.model, *out_.open_curve, driver);
+  /// Sum over the training runs of the mean square error with which a model predicts each from a fit to all others.
+  [[nodiscard]] double left_out_error_K2(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const LatentFlux& flux) const {
+    double sum_K2 = 0.0;
+    for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
+      std::vector<MeasuredRun> others;
+      std::vector<std::vector<double>> start_C;
+      RefitOptions own;
+      own.flux = flux;
+      for (std::size_t r = 0; r < runs.size(); ++r) {
+        if (r != left_out) {
+          others.push_back(runs[r]);
+          start_C.push_back(out_.after.start_C[r]);
+          own.weights.push_back(out_.weights[r]);
+          own.merged.push_back(merged_[r]);
+        }
+      }
+      const RefitResult fit = try_refit(model, others, start_C, own);
+      sum_K2 += std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
+                                                 : std::numeric_limits<double>::infinity();
+    }
+    return sum_K2;
+  }
+
+  /// Whether the file's values predict the training runs better than values that were refitted to all but the predicted run.
+  [[nodiscard]] bool predicts_best_as_it_is() const {
+    double as_it_is_K2 = 0.0;
+    for (const MeasuredRun& run : input_.runs) {
+      as_it_is_K2 += std::pow(rms_K(open_loop_errors(input_.model, {run}, {})), 2);
+    }
+    return input_.runs.size() >= 2 && as_it_is_K2 < left_out_error_K2(out_.own.model, input_.runs, out_.own.flux);
+  }
+
+  /// Gives the model a curve if that predicts training runs that the fit has not seen.
+  bool adopt_curve(const Judged& judged, const ScanResult& curve) {
+    const Driver& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
+    const std::optional<ExtendedModel> curved = with_curve(out_.after.model, curve, driver);
     if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
       return false;
     }
     std::vector<MeasuredRun> runs = input_.runs;
     set_column(runs, curved->column);
-    RefitOptions options = final_options(judged.best_place);
-    options.around.clear();
-    double without_K2 = 0.0;
-    double with_K2 = 0.0;
-    for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
-      const auto error_K2 = [&](const ExtendedModel& model, const LatentFlux& flux) {
-        std::vector<MeasuredRun> others;
-        std::vector<std::vector<double>> start_C;
-        RefitOptions own;
-        own.flux = flux;
-        for (std::size_t r = 0; r < runs.size(); ++r) {
-          if (r != left_out) {
-            others.push_back(runs[r]);
-            start_C.push_back(out_.after.start_C[r]);
-            own.weights.push_back(out_.weights[r]);
-            own.merged.push_back(merged_[r]);
-          }
-        }
-        const RefitResult fit = try_refit(model, others, start_C, own);
-        return std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
-                                                : std::numeric_limits<double>::infinity();
-      };
-      without_K2 += error_K2(out_.after.model, out_.after.flux);
-      with_K2 += error_K2(*curved, options.flux);
-    }
-    if (!(with_K2 < without_K2)) {
+    if (!(left_out_error_K2(*curved, runs, final_options(judged.best_place).flux) <
+          left_out_error_K2(out_.after.model, runs, out_.after.flux))) {
       return false;
     }
     RefitResult fit = try_refit(*curved, runs, out_.after.start_C, final_options(judged.best_place));
@@ -341,13 +351,13 @@ class Selector : Rounds {
       return false;
     }
     AcceptedTerm term;
-    term.curve = out_.open_curve;
+    term.curve = curve;
     term.effect_name = fit.model.model.network.effects().back().name;
-    term.loss_without_nats = out_.open_curve->gain_nats;
+    term.loss_without_nats = curve.gain_nats;
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
       const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      if (each.gain_nats > out_.open_curve->gain_nats - kAmbiguous_nats && other != driver.name &&
+      if (each.gain_nats > curve.gain_nats - kAmbiguous_nats && other != driver.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
         term.confusable_with.push_back(other);
       }
@@ -357,7 +367,6 @@ class Selector : Rounds {
     const auto behind =
         std::ranges::find_if(out_.terms, [&](const AcceptedTerm& other) { return other.loss_without_nats < term.loss_without_nats; });
     out_.terms.insert(behind, std::move(term));
-    out_.open_curve.reset();
     return true;
   }
 };

@@ -66,13 +66,13 @@ struct Selection {
   double mean_heat_W = 0.0;              ///< that the model knows of, over all runs
   double material_W = 0.0;               ///< unknown heat of less is what every model leaves
   std::map<std::string, double> left_W;  ///< by node: rms of what the best set leaves, smoothed
-  std::optional<ScanResult> open_curve;  ///< that heat follows, and the model does not have
   std::vector<Eigen::VectorXd> weights;  ///< per run and sample: 0 for what the model makes impossible
   std::vector<std::string> unseen;       ///< effects that at their typical size would not show in these runs
   double seen_share = 1.0;               ///< of the effects that were judged
   double nothing_probability = 1.0;      ///< of the empty set
   std::vector<Refusal> refused;
   bool is_as_usual = false;     ///< whole runs are followed as those that the file was fitted to: nothing was changed
+  bool is_kept = false;         ///< the file's values predict runs that a fit has not seen better than refitted ones: they stay
   bool is_unexplained = false;  ///< heat is left that matters, and no effect of the catalogue is it
 
   /// More heat is left than what every model leaves.

@@ -16,16 +16,13 @@ class HeatTeller {
  public:
   HeatTeller(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) : told_(diagnosis), train_(train) {}
 
-  /// Curves that were found, curves that could not be put into the network, and heat that no signal follows.
+  /// Curves that the model was given; without one, the node with the most unknown heat.
   std::vector<Unexplained> tell() {
     for (const AcceptedTerm& term : told_.selection.terms) {
       if (term.curve) {
         add_curve(*term.curve, term.confusable_with);
         tell_as_added(term, heats_.back());
       }
-    }
-    if (told_.selection.open_curve) {
-      add_curve(*told_.selection.open_curve, {});
     }
     if (heats_.empty() && told_.selection.is_unexplained) {
       heats_.push_back(most());

@@ -51,8 +51,7 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
            std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
   };
   // What is said first is the answer; what else remains may follow.
-  const bool leads = selection.terms.empty() ? selection.open_curve && is_right(*selection.open_curve)
-                                             : selection.terms.front().curve && is_right(*selection.terms.front().curve);
+  const bool leads = !selection.terms.empty() && selection.terms.front().curve && is_right(*selection.terms.front().curve);
   return leads && answer.diagnosis.verdict == DiagnosisVerdict::unexplained;
 }
 
@@ -73,7 +72,7 @@ bool mentions(const Answer& answer, const Subject& subject) {
   });
 }
 
-bool is_silent(const Answer& answer) { return answer.named.empty() && !answer.diagnosis.selection.open_curve; }
+bool is_silent(const Answer& answer) { return answer.named.empty(); }
 
 std::string account(const Answer& answer) {
   const Selection& selection = answer.diagnosis.selection;
