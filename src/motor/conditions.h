@@ -1,4 +1,4 @@
-// Effects that were seen under a condition only: which of them predictions reckon with.
+// Effects that hold only under a condition ("cooling" = "fan"), and which of them a prediction includes.
 #pragma once
 
 #include <map>
@@ -9,8 +9,8 @@
 
 namespace heatsoak {
 
-/// Where nobody says whether the condition holds, heat is reckoned with and cooling is not: an effect acts unless it takes heat out of
-/// the hottest body it touches. `parameters` in the type's declared order.
+/// Returns whether an effect acts if its condition is unknown. The choice is pessimistic: it acts unless it cools the hottest node that it
+/// touches. `parameters` in the type's declared order.
 bool acts_by_default(const MotorEffect& effect, std::span<const double> parameters);
 
 /// The motor where "cooling" -> "fan" and the like are known to hold: effects under one of them act, those under another value of a key
