@@ -13,8 +13,8 @@ namespace heatsoak {
 /// touches. `parameters` in the type's declared order.
 bool acts_by_default(const MotorEffect& effect, std::span<const double> parameters);
 
-/// The motor where "cooling" -> "fan" and the like are known to hold: effects under one of them act, those under another value of a key
-/// do not. Throws Failure (bad_input) where a key is none of the motor's, with what it has.
+/// Returns the motor with known conditions, such as "cooling" -> "fan": effects under another value of a key are removed, those under this
+/// value become unconditional. Throws Failure (bad_input) if no effect of the motor has such a key; the message lists the existing ones.
 Motor under(Motor motor, const std::map<std::string, std::string>& conditions);
 
 }  // namespace heatsoak

@@ -32,15 +32,15 @@ struct DefaultRow {
 constexpr std::array kDefaults{
     // Production tolerance of the wire's cross-section and length, and contacts.
     DefaultRow{"terminal_resistance", {0.90, 1.10}, {0.90, 1.10}, {0.85, 1.25}, {0.80, 1.30}},
-    // Remanence of the magnets and the air gap.
+    // Remanence of the magnets and width of the air gap.
     DefaultRow{"torque_constant", {0.93, 1.07}, {0.93, 1.07}, {0.90, 1.10}, {0.85, 1.15}},
-    // Bearing friction and iron loss differ most of all between parts, upwards more than downwards.
+    // Bearing friction and iron loss vary most between parts, more upwards than downwards.
     DefaultRow{"no_load_current", {0.65, 1.55}, {0.65, 1.55}, {0.65, 2.05}, {0.55, 2.05}},
     // Impregnation of the winding.
     DefaultRow{"thermal_resistance_winding_stator", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {0.55, 1.80}},
-    // Mounting, position and air movement.
+    // Mounting, orientation and air movement.
     DefaultRow{"thermal_resistance_stator_ambient", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {0.50, 1.80}},
-    // Products of a resistance above and a heat capacity.
+    // A thermal resistance from above times a heat capacity.
     DefaultRow{"thermal_time_constant_winding", {0.75, 1.25}, {0.60, 1.60}, {0.60, 1.60}, {0.45, 2.05}},
     DefaultRow{"thermal_time_constant_stator", {0.75, 1.25}, {0.60, 1.60}, {0.60, 1.60}, {0.45, 2.05}},
     // A property of copper; other alloys have a data sheet of their own.

@@ -76,7 +76,7 @@ class Reading {
   /// Starts from a node that has had this temperature for a long time.
   Reading(std::vector<SensorFault> faults, double true_C);
 
-  /// The temperature went evenly to this one.
+  /// The temperature changes linearly to `true_C` within the duration.
   void advance(double duration_s, double true_C);
   [[nodiscard]] double shown_C() const { return passed_C_.back(); }
 
