@@ -26,8 +26,8 @@ struct OutputFile {
 };
 
 /// An output file that is written piece by piece, so that memory does not grow with its size. It stays without a name until write_files()
-/// publishes it; if that never happens, nothing is left on disk. A device or pipe receives the bytes immediately. Throws Failure
-/// (bad_input) on errors.
+/// publishes it; if that never happens, nothing is left on disk. A device or pipe receives the bytes as they are produced.
+/// Throws Failure (bad_input) on errors.
 class StreamedFile {
  public:
   explicit StreamedFile(std::filesystem::path path);

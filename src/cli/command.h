@@ -67,7 +67,7 @@ class Session {
   std::function<void()> last_;
 };
 
-/// An effect, other than those of the network, that a command's answer may name.
+/// A topic of `list` and `describe` other than a file or an effect of the network, such as a sensor effect or a threshold.
 struct Topic {
   std::string id;
   std::string summary;

@@ -14,7 +14,7 @@ std::size_t terminal_width(int descriptor);
 /// Returns true for a terminal unless NO_COLOR or TERM=dumb is set.
 bool takes_colors(int descriptor);
 
-/// Returns a progress bar with the remaining time on stderr; silent if stderr is no terminal.
+/// Returns a progress bar with the remaining time on stderr; silent if stderr is not a terminal.
 Progress progress_bar(std::string what);
 
 }  // namespace heatsoak

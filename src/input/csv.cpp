@@ -88,7 +88,7 @@ class Table {
     left_out_before_row_ = left_out_;
   }
 
-  /// Counts a comment line, which is no row.
+  /// Counts a comment line, which is not a row.
   void skip_line() { ++line_; }
 
   /// Throws immediately: after this error the rest of the file cannot be interpreted.

@@ -12,7 +12,7 @@
 
 namespace heatsoak {
 
-/// A file with more columns is rejected: it is no log.
+/// A file with more columns is rejected, because it is not a log.
 inline constexpr std::size_t kMostColumns = 1000;
 /// UTF-8 byte order mark, which some editors write at the beginning of a file.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";

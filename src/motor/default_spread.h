@@ -16,8 +16,8 @@ namespace heatsoak {
 struct DefaultSpread {
   std::string key;  ///< "thermal_resistance_stator_ambient", "effects.chassis.conductance"
   Origin origin = Origin::estimated;
-  double value = 0.0;  ///< range around the value, in the same unit
-  Spread spread;       ///< a range that encloses the value, in the same unit
+  double value = 0.0;  ///< in the unit of the declaration
+  Spread spread;       ///< range around the value, in the same unit
 };
 
 /// Returns true if the stated spread has zero width, such as a tolerance of 0 %. False for a value of 0, whose relative spread is always

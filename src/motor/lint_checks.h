@@ -53,7 +53,7 @@ bool is_complete(const MotorValues& values);
 /// Returns the terminal resistance at `temperature_C`, in ohm.
 double resistance_ohm(const MotorValues& values, double temperature_C);
 
-/// Format with three significant digits and unit, as a data sheet does.
+/// These functions format a value with three significant digits and its unit, as a data sheet does.
 std::string shown_torque(double torque_Nm);
 std::string shown_speed(double speed_rad_per_s);
 std::string shown_torque_constant(double constant_Nm_per_A);

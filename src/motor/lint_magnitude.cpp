@@ -11,8 +11,8 @@ namespace {
 
 /// Copper (385 J/(kg K)) is 3 to 30 % of a motor's mass, and resin adds at most as much again; maxon sheets give 32 to 51 J/(kg K).
 constexpr Bounds kWindingHeat_J_per_kg_K{10.0, 150.0};
-/// Steel 460, magnets 450, aluminium 900 J/(kg K). Upper bound: the whole mass. Lower bound: a stator of a quarter of the mass, because an
-/// external rotor may not contribute. Maxon sheets give 355 to 455 J/(kg K).
+/// Steel 460, magnets 450, aluminium 900 J/(kg K). Upper bound: all of the mass counts. Lower bound: a stator of a quarter of the mass,
+/// because an external rotor may not contribute. Maxon sheets give 355 to 455 J/(kg K).
 constexpr Bounds kStatorHeat_J_per_kg_K{100.0, 900.0};
 /// L/R does not depend on the number of turns: in motor_db 0.058 ms without iron, 0.38 to 1.0 ms with iron. A wrong prefix or an extra zero
 /// is a factor of 10.

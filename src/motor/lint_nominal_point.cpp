@@ -164,8 +164,8 @@ void assigned_power(const Motor& motor, Findings& findings) {
   }
 }
 
-/// Bounds of the nominal speed: at most the speed loss of the cold resistance, at least that of hot copper and full commutation overlap. It
-/// uses the speed constant, which the no-load speed confirms, so that a wrong torque constant does not disturb the check.
+/// The speed loss at nominal torque is at least that of the cold resistance and at most that of hot copper plus full commutation overlap.
+/// The check uses the speed constant, which the no-load speed confirms, so that a wrong torque constant does not disturb it.
 void nominal_speed(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double constant_rad_per_s_per_V =

@@ -132,7 +132,7 @@ struct MotorSample {
 MotorSample nominal_sample(const Motor& motor);
 MotorSample draw_sample(const Motor& motor, Random& random);
 
-/// Returns how well the temperatures of this motor are founded. If a calibration wrote the file: `measured` if all four thermal resistances
+/// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances
 /// and time constants are measured and no thermal value is an estimate, else `mixed`. Otherwise: `datasheet` if every thermal value is
 /// measured or from the data sheet; `estimated` if one of the four, the winding limit or a parameter of an effect is an estimate; else
 /// `mixed`.

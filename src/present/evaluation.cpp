@@ -93,7 +93,7 @@ std::vector<Text> row(std::size_t rank, const MotorEvaluation& motor, double amb
           {p95_text(motor)}};
 }
 
-/// "fails: the winding reaches 162 °C, its limit is 155 °C, exceeded after 5 min".
+/// Formats as "fails: the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)".
 std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
   if (motor.verdict == Verdict::infeasible) {
     return fmt::format("cannot drive this duty: {} does not suffice", to_string(motor.limiting_factor));

@@ -29,8 +29,8 @@ struct WheelDemands {
   bool lifted = false;             ///< a wheel has left the ground
 };
 
-/// Wheel torque T_i = loss(η, f_i·r) + f_i·r + friction_i(θ, ω) + J·dω_i/dt, with the least Σf² that gives Jᵀ·f = wrench(a) − external −
-/// roller drag.
+/// Wheel torque T_i = loss(η, f_i·r) + f_i·r + friction_i(θ, ω) + J·dω_i/dt, with the least Σf² that gives
+/// Jᵀ·f = wrench(a) − external − roller drag.
 /// The normal loads N_i follow from the demanded acceleration. A contact transmits at most √(μ² − c²)·N_i. If one of four wheels exceeds
 /// this limit, the others take over: as much of the self-balancing force pattern (inner_share) is added as needed. If that is not enough,
 /// the acceleration is scaled down in its direction. If drag and push alone exceed the limits, each contact transmits its maximum and the

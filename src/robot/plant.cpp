@@ -170,7 +170,7 @@ Electrics nothing_runs(const Held& held, double charge_A_s, const Wheels& back_e
   }
   Electrics made = motors_at(held, held.demands, back_emf_V, source_V);
   made.battery = battery_load(battery, charge_A_s, made.power_W);
-  // The bus voltage is solved for only if a motor reaches it, or reaches the range between source and bus.
+  // The bus limits a motor only if its bridge voltage reaches the lower of source and terminal voltage.
   if (made.highest_bridge_V >= std::min(source_V, made.battery.terminal_V)) {
     made = sagging_bus(held, back_emf_V, source_V);
     made.battery = battery_load(battery, charge_A_s, made.power_W);

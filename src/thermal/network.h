@@ -44,7 +44,7 @@ class Network {
   static constexpr int kMostRoles = 4;        ///< per effect
   static constexpr int kMostParameters = 16;  ///< per effect
 
-  /// Adds a state node and returns its index. Throws std::logic_error unless `heat_capacity_J_per_K` > 0 and the name is new.
+  /// Adds a state node and returns its index. Throws std::logic_error for a capacity ≤ 0, a known name or too many nodes.
   int add_node(std::string name, double heat_capacity_J_per_K);
   /// Adds an effect. `nodes` and `parameters` are in the order of the type's declaration. All nodes must exist, except a node of the
   /// effect's own: it is added under the name given for its role. Throws std::logic_error on a mismatch or a value out of range.

@@ -18,8 +18,8 @@ struct SteadyState {
 std::optional<SteadyState> steady_state(const Network& network, const OperatingPoint<double>& at);
 
 /// Steady state under an on/off current after maxon: equations (8) to (12) of the RoboTeam Twente paper of 2025. α refers to 25 °C. For
-/// another ambient temperature T_A it is converted together with R, which keeps the equations exact for the network: R_TA =
-/// R25·(1+α(T_A−25)), α_TA = α·R25/R_TA.
+/// another ambient temperature T_A it is converted together with R, which keeps the equations exact for the network:
+/// R_TA = R25·(1+α(T_A−25)), α_TA = α·R25/R_TA.
 struct OnOffCurrent {
   double current_on_A = 0.0;
   double time_on_s = 0.0;

@@ -13,7 +13,7 @@ namespace {
 
 /// Step size times the bound of the fastest eigenvalue; the local error is then below 1e-5 of the change.
 constexpr double kStepPerTimeConstant = 0.5;
-/// Below this value the third-order method, with one stage less, has no larger error.
+/// If interval times eigenvalue is below this, the third-order method has no larger error with one stage less.
 constexpr double kShortStep = 0.12;
 
 struct Stage {

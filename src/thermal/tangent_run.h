@@ -13,8 +13,7 @@ namespace heatsoak {
 struct NetworkStep {
   Eigen::VectorXd state_C;       ///< n, temperatures at the end
   Eigen::MatrixXd by_start;      ///< n × n, derivative of state_C with respect to the start temperatures: the transition matrix
-  Eigen::MatrixXd by_parameter;  ///< n × (w + q), derivative of state_C with the start fixed: per unit of each wanted parameter, then per W
-                                 ///< of heat
+  Eigen::MatrixXd by_parameter;  ///< n × (w + q), the same for the wanted parameters (per unit), then for the heats (K/W)
 };
 
 /// Classical Runge-Kutta method together with its derivatives; steps are short compared with the fastest time constant. Very short

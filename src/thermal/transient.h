@@ -43,10 +43,9 @@ struct TransientMoment {
 
 struct TransientResult {
   std::vector<double> end_C;                           ///< per state node
-  std::vector<double> peak_C;                          ///< per state node, between the steps too; at most kDestroyed_C
-  std::vector<double> peak_time_s;                     ///< per state node, including maxima between steps; at most kDestroyed_C
-  std::vector<std::optional<double>> time_to_limit_s;  ///< per limit: first upward crossing; 0 if exceeded at the start, nothing if never
-                                                       ///< exceeded
+  std::vector<double> peak_C;                          ///< per state node, including maxima between steps; at most kDestroyed_C
+  std::vector<double> peak_time_s;                     ///< per state node
+  std::vector<std::optional<double>> time_to_limit_s;  ///< per limit: first upward crossing; 0 if over at the start; empty if never
   bool destroyed = false;                              ///< a node exceeded kDestroyed_C at end_s; later intervals were not simulated
   double end_s = 0.0;
   /// Heat in J that effect e booked into node n, at [e · node_count + n]; empty without a ledger.

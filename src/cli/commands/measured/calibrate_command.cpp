@@ -135,7 +135,7 @@ nlohmann::ordered_json error_json(const std::vector<ErrorBeforeAfter>& errors, b
   return all;
 }
 
-/// Six significant digits are the same on every machine.
+/// Rounds to six significant digits, which are the same on every machine.
 nlohmann::ordered_json number(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 nlohmann::ordered_json forecast_json(const Forecast& forecast) {
