@@ -48,7 +48,7 @@ struct MotorFit {
   /// parameters, as in a motor with more thermal bodies than the model.
   double free_run_error_K = 0.0;
   TrainingRange training = {};
-  std::optional<ForecastBand> band = {};  ///< found by the calibration on hold-out runs, if there were any
+  std::optional<ForecastBand> band = {};  ///< estimated by the calibration from left-out runs; may be absent
 };
 
 /// Reads the table; `figures` are the keys of the file. Adds problems to the reader's diagnostics.
