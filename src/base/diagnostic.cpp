@@ -33,7 +33,7 @@ bool has_letters_in_order(std::string_view word, std::string_view letters) {
   return letters.empty();
 }
 
-/// Levenshtein distance; the words are short.
+/// Levenshtein distance, O(|a|·|b|).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -88,7 +88,7 @@ std::string did_you_mean(std::string_view written, std::span<const std::string> 
   const std::string given = in_small_letters(written);
   std::vector<std::string> known;
   std::ranges::transform(candidates, std::back_inserter(known), in_small_letters);
-  // Two letters of a short word are most of it.
+  // A short word allows one wrong letter only: two would match almost any other short word.
   std::size_t best_distance = std::max<std::size_t>(given.size() < 4 ? 1 : 2, given.size() / 3) + 1;
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < known.size(); ++i) {
@@ -102,10 +102,10 @@ std::string did_you_mean(std::string_view written, std::span<const std::string> 
     const auto found = best ? known.end() : std::ranges::find_if(known, is_meant);
     best = found == known.end() ? best : static_cast<std::size_t>(found - known.begin());
   };
-  // What somebody leaves out: "tigers" for "tigers_v2020", "roboteam_v2024" for "roboteam_twente_v2024".
+  // Abbreviations: "tigers" for "tigers_v2020", "roboteam_v2024" for "roboteam_twente_v2024".
   take_first([&](const std::string& each) { return given.size() >= 3 && each.find(given) != std::string::npos; });
   take_first([&](const std::string& each) { return given.size() >= 6 && has_letters_in_order(each, given); });
-  // What begins alike: "iron_lossX" for "iron_loss_eddy".
+  // A common beginning: "iron_lossX" for "iron_loss_eddy".
   std::size_t longest_match = std::max<std::size_t>(3, (2 * given.size() + 2) / 3) - 1;
   std::optional<std::size_t> begins_alike;
   for (std::size_t i = 0; i < known.size(); ++i) {

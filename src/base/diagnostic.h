@@ -1,4 +1,4 @@
-// How problems reach the user: where, what, and what to do. One channel for every verb.
+// How problems are reported to the user: the place, what is wrong, and what to do. All commands use these types.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace heatsoak {
 
-/// What the process tells the shell.
+/// Exit codes of the process.
 enum class ExitCode {
   done = 0,
   limit_exceeded = 1,   ///< a limit or threshold is exceeded
@@ -19,7 +19,7 @@ enum class ExitCode {
   bug = 70
 };
 
-/// A place in a file of the user; line and column count from 1, 0 where there is none.
+/// A place in one of the user's files. Line and column count from 1; 0 means unknown.
 struct Location {
   std::string file;
   int line = 0;
@@ -28,14 +28,14 @@ struct Location {
 
 struct Diagnostic {
   Location at;
-  std::string key;      ///< dotted path of the value, "figures.torque_constant"; may be empty
+  std::string key;      ///< dotted path of the value in the file; may be empty
   std::string message;  ///< what is wrong, what was expected, what to do
 };
 
-/// `file:line:column: error: key: message`, so that editors can jump.
+/// Formats as `file:line:column: error: key: message`, the form from which editors jump to the place.
 std::string to_string(const Diagnostic& diagnostic);
 
-/// Ends a command: every problem at once, and the exit code.
+/// Thrown to end a command: an exit code, a summary and the list of all problems found.
 class Failure : public std::runtime_error {
  public:
   Failure(ExitCode code, std::string message, std::vector<Diagnostic> diagnostics = {});
@@ -51,7 +51,7 @@ class Failure : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// One problem of one file.
+/// Returns a Failure with exit code bad_input and one diagnostic.
 Failure bad_input(Location at, std::string key, std::string message);
 
 /// Collects problems so that all of them are reported, not only the first.
@@ -60,14 +60,14 @@ class Diagnostics {
   void add(Location at, std::string key, std::string message);
   [[nodiscard]] bool empty() const { return list_.empty(); }
   [[nodiscard]] std::span<const Diagnostic> list() const { return list_; }
-  /// Throws Failure (bad_input) with all of them, sorted by place, if there are any.
+  /// Throws a Failure (bad_input) with all collected problems, sorted by file, line and column. Does nothing if there are none.
   void throw_if_any() const;
 
  private:
   std::vector<Diagnostic> list_;
 };
 
-/// `; did you mean 'x'?` for the nearest of the candidates, or nothing where none is near.
+/// Returns `; did you mean 'x'?` with the candidate closest to `written`, or an empty string if none is close.
 std::string did_you_mean(std::string_view written, std::span<const std::string> candidates);
 
 }  // namespace heatsoak

@@ -14,7 +14,7 @@ constexpr std::array<std::pair<Origin, std::string_view>, 5> kOrigins{{{Origin::
                                                                        {Origin::derived, "derived"},
                                                                        {Origin::estimated, "estimated"}}};
 
-/// Standard normal cut off at ±2 standard deviations, scaled to ±1.
+/// Quantile of the standard normal distribution truncated at ±2 standard deviations, divided by 2 so that it lies in ±1.
 double cut_off_normal(double uniform) {
   static const boost::math::normal kNormal;
   static const double kBelow = boost::math::cdf(kNormal, -2.0);

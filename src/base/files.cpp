@@ -57,7 +57,7 @@ bool are_one_file(const std::filesystem::path& one, const std::filesystem::path&
 }
 
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes) {
-  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
+  // O_NONBLOCK: without it, opening a pipe that has no writer would block the program.
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) {
     cannot_read(path, std::strerror(errno));
@@ -97,11 +97,11 @@ namespace {
   throw bad_input({path.string()}, "", fmt::format("cannot be written: {}", std::strerror(error)));
 }
 
-/// A file that nobody sees before publish(): it has no name, so that not even a killed process leaves a part of it. Where the
-/// file system knows no files without a name (NFS), or without /proc, it has a temporary one.
+/// An output file that is invisible until publish(). It has no name (O_TMPFILE), so that even a killed process leaves no partial file. File
+/// systems without O_TMPFILE (NFS) and systems without /proc get a temporary name instead.
 class UnfinishedFile {
  public:
-  /// `in_place` for what must not be replaced by a renamed file: devices and pipes.
+  /// `in_place` opens the target itself: a device or pipe must not be replaced by a renamed file.
   UnfinishedFile(std::filesystem::path target, bool in_place)
       : target_(std::move(target)), temporary_(fmt::format("{}.{}.partial", target_.string(), ::getpid())), is_in_place_(in_place) {
     if (in_place) {
@@ -145,7 +145,7 @@ class UnfinishedFile {
 
   void publish() {
     if (!is_in_place_ && !has_temporary_name_) {
-      // A link cannot replace a file, a renamed one can: the name lives for the moment between the two.
+      // linkat() cannot replace an existing file, rename() can. The temporary name exists only between the two calls.
       ::unlink(temporary_.c_str());
       has_temporary_name_ =
           ::linkat(AT_FDCWD, fmt::format("/proc/self/fd/{}", descriptor_).c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) == 0;
@@ -153,7 +153,7 @@ class UnfinishedFile {
         cannot_write(target_, errno);
       }
     }
-    // A full disk may show only here.
+    // A full disk may be reported only by close().
     if (::close(std::exchange(descriptor_, -1)) != 0 || (!is_in_place_ && std::rename(temporary_.c_str(), target_.c_str()) != 0)) {
       cannot_write(target_, errno);
     }

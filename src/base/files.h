@@ -1,4 +1,4 @@
-// Reading and writing whole files, with the reason where it fails.
+// Reads and writes whole files. Error messages name the reason of the operating system.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 
 namespace heatsoak {
 
-/// All bytes of a regular file of at most `largest_bytes`; else Failure (bad_input).
+/// Returns all bytes of a regular file. Throws Failure (bad_input) if it cannot be read or is larger than `largest_bytes`.
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes);
 
-/// Whoever opens an input tells it here, so that no output replaces it. Any thread may.
+/// Records that a file was opened as an input, so that no output overwrites it. Thread-safe.
 void note_input(const std::filesystem::path& path);
-/// Whether this process has read the file, under whatever name.
+/// Returns whether this process has read the file. Links and relative names are resolved.
 bool is_input(const std::filesystem::path& path);
 
-/// Whether both name one file, under whatever name; a device or pipe takes any number of outputs.
+/// Returns whether both paths name the same file after links are resolved. False for devices and pipes, which may take several outputs.
 bool are_one_file(const std::filesystem::path& one, const std::filesystem::path& other);
 
 struct OutputFile {
@@ -25,8 +25,9 @@ struct OutputFile {
   std::string content;
 };
 
-/// A file that is written as its content comes, and has no name until write_files() gives it one: what is not finished leaves nothing
-/// behind, and memory does not grow with it. A device or pipe takes the bytes as they come. Throws Failure (bad_input).
+/// An output file that is written piece by piece, so that memory does not grow with its size. It stays without a name until write_files()
+/// publishes it; if that never happens, nothing is left on disk. A device or pipe receives the bytes as they are produced.
+/// Throws Failure (bad_input) on errors.
 class StreamedFile {
  public:
   explicit StreamedFile(std::filesystem::path path);
@@ -44,12 +45,11 @@ class StreamedFile {
   std::unique_ptr<State> state_;
 };
 
-/// Writes all of the files or none: each under a temporary name beside its path, and only when all are complete they
-/// are renamed. A link is followed, and a device or pipe takes the bytes as they come. Throws Failure (bad_input), also
-/// where two of them are the same file.
+/// Writes all files or none. Each is written without a name or under a temporary one, and renamed when all of them are complete. Links are
+/// followed; a device or pipe receives the bytes directly. Throws Failure (bad_input) on errors and if two outputs have the same target.
 void write_files(std::span<const OutputFile> files, std::span<const std::unique_ptr<StreamedFile>> streamed = {});
 
-/// One file in the same way.
+/// Writes one file in the same way.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// Several parameter samples side by side: a law written for `double` runs on them unchanged.
+// Several parameter samples evaluated together (SIMD). A law written for `double` also runs on Lanes.
 #pragma once
 
 #include <Eigen/Core>

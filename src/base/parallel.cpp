@@ -19,13 +19,13 @@ void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t t
       progress(++done, total);
     }
   };
-  // A job elsewhere that throws ends jobs beside it, not halves of those that have begun: who waits for their results would go on without.
+  // By default an exception in an enclosing parallel loop would also cancel this one, which would then return with jobs not done.
   tbb::task_group_context own(tbb::task_group_context::isolated);
   const auto all = [&] { tbb::parallel_for(std::size_t{0}, count, work, tbb::simple_partitioner(), own); };
   if (threads > 0) {
     tbb::task_arena(std::min(threads, tbb::info::default_concurrency())).execute(all);
   } else {
-    // Or a thread that waits for its part could begin another job of ours while it holds a lock.
+    // Without isolation a waiting thread could start another of our jobs while it holds a lock, and deadlock.
     tbb::this_task_arena::isolate(all);
   }
 }

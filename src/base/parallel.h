@@ -1,4 +1,4 @@
-// Independent jobs on all cores.
+// Runs independent jobs on several cores.
 #pragma once
 
 #include <cstddef>
@@ -6,15 +6,15 @@
 
 namespace heatsoak {
 
-/// `done` of `total` units of work are finished.
+/// Called when `done` of `total` units of work are finished.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Runs job(0) … job(count − 1) on `threads` threads, 0: all cores. The first exception ends the rest and is thrown here. A job may
-/// run jobs of its own and hold a lock meanwhile.
-/// For the progress, which is called from one thread at a time, they are the ones after `done` of `total`.
+/// Runs job(0) … job(count − 1) on `threads` threads; 0 means all cores. The first exception stops the remaining jobs and is rethrown here.
+/// A job may hold a lock and call in_parallel() itself.
+/// Each finished job calls `progress` with `done` increased by one. The calls come from one thread at a time.
 void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress,
                  const std::function<void(std::size_t)>& job);
-/// The same without a word about progress.
+/// The same without progress reports.
 inline void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& job) {
   in_parallel(count, threads, 0, count, {}, job);
 }

@@ -1,4 +1,4 @@
-// One statement of a parameter, read by loading, range checks, documentation, sampling, fitting.
+// Declaration of a parameter. Loading, range checks, documentation, sampling and fitting all read it.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace heatsoak {
 
-/// Open or closed interval in the parameter's unit.
+/// Interval in the parameter's unit; each end is open or closed, and may be infinite.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -24,13 +24,13 @@ struct Range {
   static constexpr Range between(double low, double high) { return {low, high, false, false}; }
 };
 
-/// "a positive value", "0 … 1": for messages and documentation.
+/// Formats a range for messages and documentation: "more than 0 W", "0 to 1", "any value".
 std::string to_string(const Range& range, std::string_view unit);
 
-/// One of the things that a parameter may name instead of a number.
+/// One of the named options of a parameter that is not a number.
 struct Choice {
-  std::string_view name;  ///< as a file has it
-  std::string_view unit;  ///< of the parameters that take theirs from this choice
+  std::string_view name;  ///< as written in a file
+  std::string_view unit;  ///< unit of those parameters whose unit depends on this choice
   std::string_view meaning;
 };
 
@@ -39,16 +39,16 @@ struct ParameterSpec {
   std::string_view unit;  ///< UDUNITS text; "" is a pure number
   Range range;
   std::string_view meaning;
-  /// Where there are any, a file has one of their names and the value is its place; never sampled, never fitted. Static.
+  /// If not empty, a file gives the name of one choice and the value is its index; never sampled, never fitted. Static storage.
   std::span<const Choice> choices = {};
-  int unit_of = -1;  ///< place of the choice among the parameters whose unit this one takes
+  int unit_of = -1;  ///< index of the choice parameter that decides this one's unit; -1: `unit` applies
 
   static constexpr ParameterSpec choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning) {
     return {key, "", Range::between(0.0, static_cast<double>(choices.size() - 1)), meaning, choices};
   }
 };
 
-/// The unit of parameter `place`, given the values of those declared before it.
+/// Returns the unit of parameter `place`. `values` holds the values of the parameters declared before it.
 std::string_view unit_of(std::span<const ParameterSpec> specs, std::size_t place, std::span<const double> values);
 
 }  // namespace heatsoak

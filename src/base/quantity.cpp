@@ -25,7 +25,7 @@ struct FreeConverter {
 using Unit = std::unique_ptr<ut_unit, FreeUnit>;
 using Converter = std::unique_ptr<cv_converter, FreeConverter>;
 
-/// Reading the unit database takes 5 ms, so it waits for the first quantity.
+/// Reading the unit database takes 5 ms, so it is postponed until the first quantity is parsed.
 ut_system* unit_system() {
   static ut_system* const system = [] {
     ut_set_error_message_handler(ut_ignore);
@@ -38,10 +38,10 @@ ut_system* unit_system() {
   return system;
 }
 
-/// Spellings of data sheets that UDUNITS-2 does not know.
+/// Replaces data sheet spellings that UDUNITS-2 does not know.
 std::string as_udunits(std::string_view unit) {
   std::string text(unit);
-  // Longer ones first: none may appear in what replaced another. µ is U+00B5 or the Greek letter U+03BC.
+  // Longer spellings first, so that no replacement text is replaced again. µ is U+00B5 or the Greek letter U+03BC.
   constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kSpellings{{{"mNm", "(mN m)"},
                                                                                       {"µNm", "(µN m)"},
                                                                                       {"μNm", "(µN m)"},
@@ -80,11 +80,11 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// "+5" as "5", which std::from_chars does not know; "+-5" stays what it is, no number.
+/// Removes a leading plus sign, which std::from_chars does not accept. "+-5" stays as it is and is rejected later.
 std::string_view without_plus(std::string_view text) { return text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text; }
 
-/// UDUNITS takes "000 ohm" for zero ohm and "ohm @ 3" for a shifted scale, so "1 000 ohm" would silently be 0.
-/// A unit has digits in its exponents only ("cm2", "s-1") and as the leading "1/". What is wrong, or nothing.
+/// Rejects texts that UDUNITS would misread: it takes "000 ohm" for zero ohm and "ohm @ 3" for a shifted scale, so "1 000 ohm" would
+/// silently become 0. Digits are allowed in exponents ("cm2", "s-1") and in a leading "1/". Returns the error text, or an empty string.
 std::string misread_as_unit(std::string_view unit) {
   if (unit.starts_with(',')) {
     return "has a decimal comma; write a point";
@@ -95,7 +95,7 @@ std::string misread_as_unit(std::string_view unit) {
     if (c < 0x20 || c == 0x7f) {
       return "holds a control character";
     }
-    std::size_t before = i;  // of the exponent's sign
+    std::size_t before = i;  // index of the exponent's sign, or of the digit if it has none
     if (is_digit(unit[i]) && before > 0 && (unit[before - 1] == '-' || unit[before - 1] == '+')) {
       --before;
     }
@@ -108,12 +108,12 @@ std::string misread_as_unit(std::string_view unit) {
   return {};
 }
 
-/// A text of the user inside a message: one short line.
+/// Shortens a text of the user for use in a message: at most 60 bytes, no control characters.
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   std::string line(text.substr(0, kLongest));
   while (line.size() < text.size() && !line.empty() && (static_cast<unsigned char>(text[line.size()]) & 0xC0U) == 0x80U) {
-    line.pop_back();  // not inside a UTF-8 character
+    line.pop_back();  // do not cut inside a UTF-8 character
   }
   std::ranges::replace_if(
       line, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
@@ -163,7 +163,7 @@ ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_uni
   }
   const Unit to = parse_unit(wanted_unit);
   const Converter converter(ut_get_converter(from.get(), to.get()));
-  // UDUNITS-2 also converts to the reciprocal ("5 W/K" to 0.2 K/W); that one sends zero to infinity.
+  // UDUNITS-2 also converts to the reciprocal ("5 W/K" to 0.2 K/W). Only a reciprocal conversion maps zero to infinity.
   if (!converter || !std::isfinite(cv_convert_double(converter.get(), 0.0))) {
     return {0.0, fmt::format("'{}' is a unit of something else; {}", shown(unit), example_for(wanted_unit))};
   }

@@ -1,4 +1,4 @@
-// Numbers with units, as people write them: "36.9 mN m/A", "265 rpm/V", "155 degC", "10 %".
+// Numbers with units in the notation of data sheets: "36.9 mN m/A", "265 rpm/V", "155 degC", "10 %".
 #pragma once
 
 #include <optional>
@@ -7,28 +7,28 @@
 
 namespace heatsoak {
 
-/// The value in the wanted unit, or what is wrong with the text.
+/// The value in the wanted unit, or a description of the error.
 struct ParsedQuantity {
   double value = 0.0;
-  std::string problem;  ///< empty where `value` is good
+  std::string problem;  ///< empty if `value` is valid
   [[nodiscard]] bool ok() const { return problem.empty(); }
 };
 
-/// Reads one finite number with a unit and converts it (UDUNITS-2). `wanted_unit` is a UDUNITS text; ""
-/// means a pure number, for which "%" is understood too. An angle must be named: "1/s" is no speed of rotation,
-/// because a sheet's "1/min" means rpm and would be taken for 2π less.
+/// Reads one finite number with a unit and converts it to `wanted_unit` (UDUNITS-2 syntax). With `wanted_unit` "" the text must be a pure
+/// number or a percentage. A rotational speed must name its angle ("rpm", "rad/s"): UDUNITS would read a data sheet's "1/min" as rad/min,
+/// which is wrong by 2π.
 ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_unit);
 
-/// A number without unit, all of `text`; nothing where it is not one.
+/// Reads a number without unit. The whole text must be the number, except for spaces around it; otherwise returns nothing.
 std::optional<double> parse_number(std::string_view text);
 
-/// `value`, given in `from`, expressed in `to`; both are units of this program, so a mismatch is a bug.
+/// Converts `value` between two units of this program. Throws std::logic_error if they are not convertible.
 double convert(double value, std::string_view from, std::string_view to);
 
-/// "K/W", "°C", "A": how a unit is written for people.
+/// Returns the unit as shown to the user: "degC" becomes "°C", all others stay as they are.
 std::string unit_for_display(std::string_view unit);
 
-/// Rounded to `digits` significant ones, plain notation, no trailing zeros: "3.8", "0.0041", "162".
+/// Rounds to `digits` significant digits. Decimal notation without trailing zeros: "3.8", "0.0041", "162"; "1e+20" if very large or small.
 std::string significant(double value, int digits);
 
 }  // namespace heatsoak

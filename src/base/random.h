@@ -1,4 +1,4 @@
-// Chance that is the same on every machine and for every number of threads.
+// Pseudo-random numbers that are identical on every machine and for every number of threads.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,12 @@
 
 namespace heatsoak {
 
-/// A stream of its own for each sample: (seed, stream) decide all its numbers.
+/// A random stream that is determined by (seed, stream). Each sample uses its own stream.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(seed + mixed(stream))) {}
 
-  /// In the open interval (0, 1).
+  /// Returns a uniform number in the open interval (0, 1).
   double uniform() { return (static_cast<double>(engine_() >> 11) + 0.5) * 0x1p-53; }
 
  private:

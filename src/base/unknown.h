@@ -1,4 +1,4 @@
-// A number that nobody measured or gave.
+// The value of a quantity that was neither measured nor given.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// The program's version, as answers and generated files carry it.
+// The program's version, written to answers and generated files.
 #pragma once
 
 #include <string_view>

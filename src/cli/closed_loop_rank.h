@@ -1,4 +1,4 @@
-// `evaluate --closed-loop`: the answer of games that the drive core has driven, beside the open-loop evaluation.
+// `evaluate --closed-loop`: results of games driven by the drive core, shown beside the open-loop evaluation.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,16 +15,16 @@ struct ClosedLoopRank {
   GameDrives drives;
   double winding_limit_C = 0.0;
   std::optional<double> stator_limit_C;
-  /// infeasible: some game was not driven (not_driven()) or the file lacks what motion needs; fail: the first game or more than half of
-  /// them exceed a limit; marginal: any other game does.
+  /// infeasible: some game could not be driven (not_driven()), or the file lacks values for motion. fail: the first game or more than half
+  /// of the games exceed a limit. marginal: any other game does.
   Verdict verdict = Verdict::infeasible;
 };
 
-/// Sorts `results` and what belongs to them in the same order: by the closed-loop verdict, then by the hottest winding's distance to its
-/// limit. `drives` has the motors of `results` in any order.
+/// Sorts `results` and returns the ranks in the same order: by the closed-loop verdict, then by the distance of the hottest winding to its
+/// limit. `drives` contains the motors of `results` in any order.
 std::vector<ClosedLoopRank> rank_closed_loop(std::vector<GameDrives> drives, std::vector<MotorEvaluation>& results);
 
-/// Puts the verdicts of the driven games first, and their table and notes beside those of the evaluation.
+/// Puts the verdicts of the driven games first and adds their table and notes to those of the evaluation.
 void add_closed_loop(present::Document& document, const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed);
 nlohmann::ordered_json closed_loop_json(const ClosedLoopRank& rank, std::uint64_t seed);
 

@@ -1,4 +1,4 @@
-// --condition KEY=VALUE: what is known to hold of the effects that a motor has under conditions.
+// Option --condition KEY=VALUE: states which conditions of the motor's conditional effects hold.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -1,4 +1,4 @@
-// What answers say of motor files that give no tolerances.
+// What answers report about values without a stated tolerance.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,10 +9,10 @@
 
 namespace heatsoak {
 
-/// A line for each motor with a value that got a default spread; empty where there is none.
+/// Returns a line for each motor with a value that got a default spread; empty if there is none.
 std::string default_spreads_text(std::span<const Motor> motors);
 
-/// [{"motor","key","origin","low_ratio","high_ratio"}]: bounds of the assumed range per value.
+/// Returns [{"motor","key","origin","low_ratio","high_ratio"}]: bounds of the assumed range as ratios to the value.
 nlohmann::ordered_json default_spreads_json(std::span<const Motor> motors);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// Effects that are none of the network's: what `list` and `describe` say of them.
+// Topics of `list` and `describe` for effects that are not part of the thermal network.
 #pragma once
 
 #include <span>
@@ -12,21 +12,21 @@
 namespace heatsoak {
 
 struct TopicLine {
-  std::string_view key;    ///< of the JSON, as for the network's effects
-  std::string_view label;  ///< for people
+  std::string_view key;    ///< key in the JSON, as for the effects of the network
+  std::string_view label;  ///< label in the text
   std::string words;
 };
 
-/// `where` in a few words; `use` says what a user does with it, after everything else.
+/// Returns the topic of an effect. `where` states its place in a few words; `use` tells how it is used and is printed last.
 Topic effect_topic(std::string_view where, std::string_view name, std::string_view summary, const ParameterSpec& size,
                    std::span<const TopicLine> lines, std::string_view use);
 
-/// "[effects.my_NAME]" with its type: lines to paste into a motor file.
+/// Returns the table "[effects.my_NAME]" with its type, ready to paste into a motor file.
 std::string effect_table(std::string_view type_name);
-/// A parameter of it at its typical size.
+/// Returns the line of a parameter at its typical size.
 std::string typical_figure(std::string_view key, double value, std::string_view unit);
 
-/// Errors of sensors, and what the answers of verbs may name.
+/// Returns all topics: sensor effects and those of the commands.
 std::vector<Topic> all_topics();
 
 }  // namespace heatsoak

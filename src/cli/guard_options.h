@@ -1,4 +1,4 @@
-// What the verbs that make a thermal guard share: which motor, and how careful the derating is.
+// Options shared by the commands that generate a thermal guard: the motor and the safety of the derating.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -22,11 +22,11 @@ void add_motor_options(CLI::App& app, GuardOptions& options);
 /// --ambient, --coldest, --approach, --confidence, --error, --size, --samples, --seed, --threads.
 void add_derate_options(CLI::App& app, DerateOptions& options);
 
-/// The model takes the motor's place; where both are named it must be a model of that motor. Throws Failure (bad_input), also with what
-/// `named` has found before.
+/// Returns the motor to guard. A model replaces the motor; if both are named, it must be a model of that motor. Throws Failure (bad_input),
+/// also with the problems that `named` has collected before.
 Motor guarded_motor(const GuardOptions& options, NamedFiles& named);
 
-/// Throws Failure (bad_input) where options contradict each other.
+/// Throws Failure (bad_input) if options contradict each other.
 void check_derate_options(const DerateOptions& options);
 
 }  // namespace heatsoak

@@ -12,7 +12,7 @@
 namespace heatsoak {
 namespace {
 
-/// "a", "b" of a type name such as "G:{a,b}", as CLI11 writes a set.
+/// Returns "a", "b" for a type name such as "G:{a,b}", the CLI11 notation of a set.
 std::vector<std::string> choices_of(const std::string& type) {
   const std::size_t begin = type.find('{');
   const std::size_t end = type.find('}', begin);
@@ -37,7 +37,7 @@ HelpOption option_of(const CLI::Option& option) {
   if (result.takes_value) {
     result.value = option.get_type_name();
     result.choices = choices_of(result.value);
-    // CLI11 writes a check behind the name of the type: "G:{off,shadow}", "INT:INT in [1 - 1000]".
+    // CLI11 appends a check to the name of the type: "G:{off,shadow}", "INT:INT in [1 - 1000]".
     result.value = result.value.substr(0, result.value.find(':'));
     result.value += option.get_default_str().empty() ? "" : "=" + option.get_default_str();
     const bool is_list = option.get_expected_max() == CLI::detail::expected_max_vector_size;
@@ -69,7 +69,7 @@ std::string cell(std::string_view text) {
   return result;
 }
 
-/// Text for roff: a backslash, a hyphen that is meant as one, and no line that begins with a command.
+/// Escapes text for roff: backslashes, hyphens, and a leading character that would start a command.
 std::string roff(std::string_view text) {
   std::string result;
   bool begins_line = true;

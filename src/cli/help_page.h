@@ -1,4 +1,4 @@
-// The help of a verb as data: for man pages, the reference in Markdown and completion scripts.
+// The help of a command as data, for man pages, the Markdown reference and completion scripts.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace heatsoak {
 
 struct HelpOption {
   std::vector<std::string> names;  ///< "-h", "--help"; one word without dashes for a positional
-  std::string value;               ///< "FILE.toml", with "=" and the default where there is one; empty for a flag
+  std::string value;               ///< "FILE.toml", with "=" and the default if it has one; empty for a flag
   std::string meaning;
   bool is_required = false;
   bool takes_value = false;
@@ -26,13 +26,13 @@ struct HelpPage {
   std::vector<std::string> examples;
 };
 
-/// Returns the help pages of all verbs, sorted by name.
+/// Returns the help pages of all commands, sorted by name.
 std::vector<HelpPage> help_pages(const CLI::App& program);
 
 std::string markdown_of(const HelpPage& page);
-/// The list of all pages, with links.
+/// Returns the index of all pages with links.
 std::string markdown_index(const std::vector<HelpPage>& pages);
-/// For man(1), section 1.
+/// Returns a page for man(1), section 1.
 std::string man_page_of(const HelpPage& page);
 std::string man_page_index(const std::vector<HelpPage>& pages);
 

@@ -1,4 +1,4 @@
-// The help of CLI11, with lines as long as the terminal is wide.
+// CLI11's help text with lines wrapped at the width of the terminal.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -31,7 +31,7 @@ std::string table(const std::vector<StudyResult>& results, const Robot& robot) {
   return text;
 }
 
-/// A curve per acceleration, and bang-bang as a dashed line of its colour.
+/// Adds a curve for each acceleration, and bang-bang as a dashed line of the same colour.
 void add_curves(ChartPanel& panel, const std::vector<StudyResult>& results, const Robot& robot, bool named, double scale,
                 double StudyResult::*value) {
   std::vector<double> jerk_m_per_s3;

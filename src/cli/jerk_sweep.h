@@ -1,4 +1,4 @@
-// `simulate --jerk-sweep`: what the limit of the jerk does to slip, time, precision and heat.
+// `simulate --jerk-sweep`: effect of the jerk limit on slip, time, precision and heat.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@
 namespace heatsoak {
 namespace {
 
-/// ∫M²dt of all wheels.
+/// Returns ∫M²dt summed over all wheels.
 double effort_Nm2_s(const PhaseLoad& phase) {
   return std::accumulate(phase.torque_squared_Nm2_s.begin(), phase.torque_squared_Nm2_s.end(), 0.0);
 }
@@ -34,7 +34,7 @@ double most_effort_Nm2_s(const RoleLoads& roles) {
   return most_Nm2_s;
 }
 
-/// A row of shares of each role's own torque squared.
+/// Returns a table row with a share of ∫M²dt for each role, relative to that role's total.
 template <class Part>
 std::string share_row(const RoleLoads& roles, std::string_view name, double time_s, const Part& part_Nm2_s) {
   std::string text = fmt::format("{:23} {:7.0f}", name, time_s);

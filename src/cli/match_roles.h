@@ -1,4 +1,4 @@
-// Where a match's heat comes from: phase by phase, role by role, duels apart.
+// Origin of the heat of a match: by phase and by role, with duels listed separately.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace heatsoak {
 
-/// The same game as each role plays it, in the order of kRoleNames.
+/// The same game played in each role, in the order of kRoleNames.
 using RoleLoads = std::array<MatchLoad, kRoleNames.size()>;
 RoleLoads play_roles(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed, Planner planner);
 
-/// Shares of ∫M²dt of the wheels, whatever motor turns them; copper heat adds what the motor's own drag asks while it turns.
+/// Shares of ∫M²dt of the wheels, which do not depend on the motor. The copper heat of a motor also includes the current for its own drag.
 std::string role_table(const RoleLoads& roles);
 nlohmann::ordered_json role_json(const RoleLoads& roles);
 

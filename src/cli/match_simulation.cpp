@@ -17,15 +17,15 @@
 namespace heatsoak {
 namespace {
 
-constexpr double kMostRows = 500'000.0;  ///< some 250 MB of text
+constexpr double kMostRows = 500'000.0;  ///< about 250 MB of text
 constexpr double kPictureStep_s = 2.0;
 
-/// One run and what was kept of it.
+/// One simulated run and its recorded data.
 struct Played {
   Planner planner = Planner::jerk_limited;
   MatchRun run;
   std::string csv;
-  std::vector<MatchRow> rows;  ///< for the picture
+  std::vector<MatchRow> rows;  ///< rows for the picture
 };
 
 Played play(const MatchSimulation& wanted, const Game& game, const robot_core::Config& core, Planner planner) {
@@ -56,7 +56,7 @@ Played play(const MatchSimulation& wanted, const Game& game, const robot_core::C
   return played;
 }
 
-/// Of all runs: too hot is worse than not driven.
+/// Verdict over all runs: fail (a limit exceeded) takes precedence over infeasible (not driven).
 std::string_view verdict(const MatchSimulation& wanted, const std::vector<Played>& all) {
   const MotorValues& limits = wanted.motor.nominal;
   const auto too_hot = [&](const Played& each) {
@@ -160,7 +160,7 @@ std::string sensing_text(const MatchSimulation& wanted) {
                                  : fmt::format("real sensing and {:.0f} radio packets per second", radio_of(wanted.robot).packet_rate_Hz);
 }
 
-/// What the thermal guard did or, in shadow mode, would have done.
+/// Reports what the thermal guard did or, in shadow mode, would have done.
 std::string guard_text(const MatchSimulation& wanted, const MotorGuard& guard, const std::vector<Played>& all) {
   if (wanted.guard == GuardUse::off) {
     return "thermal guard: off\n";
@@ -247,7 +247,7 @@ std::vector<double> column(const std::vector<MatchRow>& rows, const std::functio
   return values;
 }
 
-/// One planner: every wheel's winding, and what the hottest one's motor, the robot and the battery do.
+/// Panels for one planner: the windings of all wheels, then the motor of the hottest one, the robot and the battery.
 std::vector<ChartPanel> detail(const MatchSimulation& wanted, const Played& played) {
   const auto hottest = static_cast<std::size_t>(played.run.score.hottest_wheel);
   const std::vector<double> minutes = column(played.rows, [](const MatchRow& row) { return row.time_s / 60.0; });
@@ -273,7 +273,7 @@ std::vector<ChartPanel> detail(const MatchSimulation& wanted, const Played& play
           single("Battery", "voltage / V", curve("", 6, [](const MatchRow& row) { return row.battery_V; }))};
 }
 
-/// Both planners: heat, slip and precision against each other.
+/// Panels that compare both planners: heat and precision.
 std::vector<ChartPanel> comparison(const MatchSimulation& wanted, const std::vector<Played>& all) {
   std::vector<ChartPanel> panels{
       {.title = "Hottest winding", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}},
@@ -304,7 +304,7 @@ std::vector<ChartPanel> comparison(const MatchSimulation& wanted, const std::vec
   return panels;
 }
 
-/// "winding 62 °C of 155 °C, within the limit", of the hottest planner's game.
+/// Formats as "winding 62 °C, within the limit of 155 °C", for the hottest run.
 std::string verdict_of(const MatchSimulation& wanted, const std::vector<Played>& all) {
   double peak_C = 0.0;
   for (const Played& each : all) {

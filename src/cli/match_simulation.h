@@ -1,4 +1,4 @@
-// `simulate` on a match: the closed loop as text, JSON, CSV and picture, of one planner or of both side by side.
+// `simulate` for a match: the closed loop as text, JSON, CSV and picture, for one planner or for both.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ struct MatchSimulation {
   const MatchInputs& inputs;
   std::vector<Planner> planners;
   std::uint64_t seed = 1;
-  std::string out;   ///< CSV, of one planner
-  std::string plot;  ///< SVG
+  std::string out;   ///< CSV file; for one planner only
+  std::string plot;  ///< SVG file
   double every_s = 1.0;
   GuardUse guard = GuardUse::shadow;
   bool is_sensing_ideal = false;

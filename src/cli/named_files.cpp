@@ -64,7 +64,7 @@ std::filesystem::path NamedFiles::file(FileKind kind, const std::string& name) c
                                                                   : folders_.duties;
   std::filesystem::path path = file_of(folder, to_string(kind), name);
   if (path.string() != name) {
-    return path;  // an id: the folder says what it is
+    return path;  // an id: the folder determines the kind
   }
   const FileKind found = evident_kind(read_toml(path)).value_or(kind);
   if (found != kind) {

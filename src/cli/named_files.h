@@ -1,4 +1,4 @@
-// Motors, robots and duties by the names that a command line gives them: ids, or files of the user's own.
+// Resolves names on the command line to motors, robots and duties: ids, or paths of the user's files.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,15 @@
 
 namespace heatsoak {
 
-/// Reads them one after the other; what is wrong with one does not hide what is wrong with the next.
+/// Reads files one after the other and collects the problems of all of them.
 class NamedFiles {
  public:
   explicit NamedFiles(DataFolders folders) : folders_(std::move(folders)) {}
 
-  /// Nothing where there is a problem, which throw_if_any() then tells. A motor whose values contradict each other is one
-  /// (require_sound()): verdicts and firmware need one that can be.
+  /// Returns nothing if there is a problem, which throw_if_any() then reports. A motor with contradicting values is a problem too
+  /// (require_sound()), because verdicts and firmware need a consistent one.
   std::optional<Motor> motor(const std::string& name);
-  /// As its file has it, contradictions included: for verbs that measure the motor.
+  /// Returns the motor as its file states it, even with contradicting values; for commands that measure the motor.
   std::optional<Motor> motor_as_written(const std::string& name);
   std::optional<Robot> robot(const std::string& name);
   std::optional<Duty> duty(const std::string& name);
@@ -33,7 +33,7 @@ class NamedFiles {
   [[nodiscard]] const DataFolders& folders() const { return folders_; }
 
  private:
-  /// The file of that name; throws where it describes something else.
+  /// Returns the path of that name; throws if the file is of another kind.
   [[nodiscard]] std::filesystem::path file(FileKind kind, const std::string& name) const;
   template <class Read>
   auto attempt(const Read& read) -> std::optional<decltype(read())>;
@@ -42,7 +42,7 @@ class NamedFiles {
   std::vector<Failure> problems_;
 };
 
-/// One alone, with the same problems; the motor as its file has it.
+/// Read a single file with the same checks; the motor as its file states it. Throw Failure (bad_input).
 Motor motor_named(const DataFolders& folders, const std::string& name);
 Robot robot_named(const DataFolders& folders, const std::string& name);
 

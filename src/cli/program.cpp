@@ -37,13 +37,13 @@ constexpr std::string_view kFooter =
 constexpr std::string_view kWithoutMeasured =
     "\nThis program was built without log, friction, calibrate, predict and diagnose; `./bootstrap build` adds them.\n";
 
-/// Options that name what a verb writes.
+/// Options that name an output file of a command.
 constexpr std::array kOutputs{"--out", "--plot", "--json", "--junit", "--report"};
 
-/// An option that stands where a file should is none.
+/// Returns whether a word can be an output file: another option in its place cannot.
 bool is_output(std::string_view word) { return word == "-" || !word.starts_with('-'); }
 
-/// CLI11 throws on bad usage before any option is stored, so the target of a JSON error is looked up by hand.
+/// CLI11 reports bad usage before it stores any option, so the target of a JSON error is searched for here.
 std::string json_target(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -57,7 +57,7 @@ std::string json_target(int argc, const char* const* argv) {
   return {};
 }
 
-/// Whether an answer may replace what is there: whoever takes --json for a switch names a file of his own behind it.
+/// Returns whether a JSON answer may replace the file. A user who takes --json for a switch may have named another file after it.
 bool may_take_json(const std::filesystem::path& path) {
   std::error_code unreadable;
   if (path.extension() == ".json" || !std::filesystem::is_regular_file(path, unreadable)) {
@@ -68,13 +68,13 @@ bool may_take_json(const std::filesystem::path& path) {
   return first == '{' || first == std::ifstream::traits_type::eof();
 }
 
-/// "heatsoak evaluate", as far as the line names a verb.
+/// Returns "heatsoak evaluate", or the program's name alone if the command line names no command.
 std::string verb_of(const CLI::App& app) {
   const auto verbs = app.get_subcommands();
   return verbs.empty() ? app.get_name() : fmt::format("{} {}", app.get_name(), verbs.front()->get_name());
 }
 
-/// Makes what is not there yet; returns that, the innermost first.
+/// Creates missing folders and returns those that were created, the innermost first.
 std::vector<std::filesystem::path> made_folders(const std::vector<std::filesystem::path>& wanted) {
   std::vector<std::filesystem::path> made;
   for (const std::filesystem::path& folder : wanted) {
@@ -92,7 +92,7 @@ std::vector<std::filesystem::path> made_folders(const std::vector<std::filesyste
   return made;
 }
 
-/// What a terminal would obey, and names of files may hold, is shown as a question mark.
+/// Replaces control characters, which could come from file names and control the terminal, by question marks.
 std::string printable(std::string_view text) {
   std::string result(text);
   std::ranges::replace_if(
@@ -100,10 +100,10 @@ std::string printable(std::string_view text) {
   return result;
 }
 
-/// Unlike fmt::print this does not throw: a full disk is found at the end (see run_program), a full stderr is borne.
+/// Unlike fmt::print this does not throw: a full disk is detected at the end (see run_program), a failing stderr is ignored.
 void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
 
-/// Findings of layers that know the file and the key, but no longer the line.
+/// Adds line numbers to diagnostics that have only a file and a key.
 Failure with_places(const Failure& failure) {
   std::vector<Diagnostic> all(failure.diagnostics().begin(), failure.diagnostics().end());
   for (Diagnostic& each : all) {
@@ -114,7 +114,7 @@ Failure with_places(const Failure& failure) {
   return {failure.code(), failure.message(), std::move(all)};
 }
 
-/// So that a change of the numbers can be told from an upgrade of the program.
+/// Adds the program's version after the schema, so that changed results can be attributed to an upgrade.
 nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
   nlohmann::ordered_json result;
   for (const auto& [key, value] : answer.items()) {
@@ -126,7 +126,7 @@ nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
   return result;
 }
 
-/// In GitHub Actions a mark at each line that is wrong.
+/// Returns annotations for GitHub Actions at each line with a problem; empty elsewhere.
 std::string annotations_of(const Failure& failure) {
   const auto environment = [](const char* name) {
     const char* const value = std::getenv(name);
@@ -148,7 +148,7 @@ int fail(Session& session, const Failure& found) {
   return static_cast<int>(failure.code());
 }
 
-/// Before anything is computed. The refusal itself then goes to stderr only: as JSON it would stand where the other output should.
+/// Called before any computation. The error goes to stderr only: as JSON it would overwrite the other output.
 void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
   std::vector<std::pair<const char*, std::string>> given;
   for (const char* const name : kOutputs) {
@@ -187,7 +187,7 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
   }
   session.set_json_target(json_target(argc, argv));
   const auto words = std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
-  // CLI11 speaks of a missing option before it speaks of a misspelt one, so the words are looked at first.
+  // CLI11 reports a missing option before a misspelt one, so words are checked first.
   check_words(app, words);
   try {
     app.parse(argc, argv);
@@ -326,7 +326,7 @@ std::vector<Command> all_commands() {
   std::vector<Command> all;
   for (const auto& [name, make] : commands::registry) {
     all.push_back(make());
-    // A verb whose name is a word of C++ or clashes with a function has a file name of its own.
+    // A command whose name is a C++ keyword or clashes with a function has a different file name.
     all.back().name = name.ends_with("_command") ? name.substr(0, name.size() - std::string_view("_command").size()) : name;
   }
   return all;
@@ -343,7 +343,7 @@ nlohmann::ordered_json rounded(double value, int decimals) {
 }
 
 int run_program(int argc, const char* const* argv) {
-  // A file that grows beyond the user's limit then fails as on a full disk, with a message.
+  // With SIGXFSZ ignored, a file beyond the user's size limit fails like a full disk, with a message.
   (void)std::signal(SIGXFSZ, SIG_IGN);
   Session session;
   try {

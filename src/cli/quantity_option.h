@@ -1,4 +1,4 @@
-// Options that take a quantity: "6A", "4 s", "25degC", or a bare number in the unit the help names.
+// Options with a quantity: "6A", "4 s", "25degC", or a number in the unit that the help names.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,20 +10,20 @@
 
 namespace heatsoak {
 
-/// `value` holds the default and is set in the unit of `spec`; a wrong unit or range is a usage error.
+/// `value` holds the default and is set in the unit of `spec`. A wrong unit or range is a usage error.
 CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const ParameterSpec& spec);
 
-/// A check for options: a whole number from 0 to `most`. CLI11 takes -1 for 2^64 − 1, a number too large for the largest
-/// one, and 010 for 8.
+/// Returns a check for an integer from 0 to `most`. It replaces CLI11's parsing, which reads -1 as 2^64 − 1, clips too large numbers and
+/// reads 010 as 8.
 std::function<std::string(const std::string&)> whole_number(std::uint64_t most);
 
-/// --seed, a whole number; `seed` holds the default.
+/// Adds --seed, a non-negative integer; `seed` holds the default.
 CLI::Option* add_seed(CLI::App& app, std::uint64_t& seed, const std::string& meaning);
 
-/// --plot FILE.svg; another ending is a usage error, because nothing else is drawn.
+/// Adds --plot with FILE.svg or FILE.png; another extension is a usage error.
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning);
 
-/// --out FILE.csv; another ending is a usage error.
+/// Adds --out FILE.csv; another extension is a usage error.
 CLI::Option* add_table(CLI::App& app, std::string& file, const std::string& meaning);
 
 }  // namespace heatsoak

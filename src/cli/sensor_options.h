@@ -1,4 +1,4 @@
-// A temperature sensor of the motor, as options of a verb.
+// Command line options for a temperature sensor of the motor.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -10,7 +10,7 @@
 namespace heatsoak {
 
 struct SensorFlags {
-  std::string thermistor;  ///< node; empty: none
+  std::string thermistor;  ///< node of the thermistor; empty: no thermistor
   double thermistor_accuracy_K = 2.0;
   double thermistor_lag_s = 0.0;
   bool reads_resistance = false;
@@ -19,13 +19,13 @@ struct SensorFlags {
   double current_error_A = 0.01;
 };
 
-/// --thermistor, --winding-resistance and what belongs to them.
+/// Adds --thermistor, --winding-resistance and their parameters.
 void add_sensor_options(CLI::App& app, SensorFlags& flags);
 
-/// Nothing without a sensor. Throws Failure (bad_input) for both at once.
+/// Returns nothing without a sensor. Throws Failure (bad_input) if both sensors are given.
 std::optional<SensorOptions> sensor_options(const SensorFlags& flags);
 
-/// What the sensor is worth and what it can do wrong; empty without one.
+/// Describes the benefit and the possible faults of the sensor; empty without one.
 std::string sensor_text(const Derating& derating);
 
 }  // namespace heatsoak

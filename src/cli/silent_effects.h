@@ -1,4 +1,4 @@
-// What a prediction cannot know of the effects in motor files.
+// Notes about effects of motor files whose inputs a prediction does not know.
 #pragma once
 
 #include <span>
@@ -8,14 +8,13 @@
 
 namespace heatsoak {
 
-/// A line for each effect whose signal no duty has, with what is done about it; empty where there is none.
+/// Returns a line for each effect with an unknown input and how it is treated; empty if there is none.
 std::string silent_effects(std::span<const Motor> motors);
 
-/// Of those the ones that go with a column of logs, which no prediction knows.
+/// Returns the lines of effects that depend on a log column; these use the value of the curve that gives the highest temperature.
 std::string columns_at_their_hottest(std::span<const Motor> motors);
 
-/// A line for each condition that was stated, and for each effect that was seen under one of which nothing is said: heat is reckoned
-/// with, cooling is not.
+/// Returns a line for each condition that was stated, and for each effect whose condition is unknown: it acts if it heats, not if it cools.
 std::string effects_under_conditions(std::span<const Motor> motors);
 
 }  // namespace heatsoak

@@ -20,17 +20,17 @@ std::string_view environment(const char* name) {
   return value ? value : "";
 }
 
-/// Remaining time of a job from what is done so far.
+/// Estimates the remaining time of a job from its progress.
 class Remaining {
  public:
-  /// The time from the first finished unit on counts: what came before it, such as reading files, is of another kind.
+  /// Time counts from the first finished unit: work before it, such as reading files, is of a different kind.
   void start(std::size_t done) {
     if (begin_ == Clock::time_point()) {
       begin_ = Clock::now();
       before_ = done;
     }
   }
-  /// "12 s left"; empty until enough is done to say it within a factor of two.
+  /// Returns "12 s left"; empty until enough is done for an estimate within a factor of two.
   [[nodiscard]] std::string text(std::size_t done, std::size_t total) const {
     constexpr double kLeastElapsed_s = 1.0;
     constexpr double kLeastShare = 0.02;
@@ -71,7 +71,7 @@ bool takes_colors(int descriptor) { return isatty(descriptor) == 1 && environmen
 
 namespace {
 
-/// A line on stderr that is written over and gone at the end, also where the work ends early.
+/// A line on stderr that is overwritten and removed at the end, even if the work ends early.
 class Bar {
  public:
   explicit Bar(std::string what) : what_(std::move(what)) {}
@@ -96,7 +96,7 @@ class Bar {
   using Clock = std::chrono::steady_clock;
   void clear() {
     if (is_visible_) {
-      // A full stderr is borne: what is computed matters more.
+      // A failing stderr is ignored: the result matters more.
       static_cast<void>(std::fputs("\r\x1b[K", stderr));
       is_visible_ = false;
     }

@@ -1,4 +1,4 @@
-// What the terminal behind a file descriptor can show.
+// Capabilities of the terminal behind a file descriptor.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace heatsoak {
 
-/// In characters: COLUMNS where that is a number from 20 to 1000, else the terminal's own width, else 80.
+/// Returns the width in characters: COLUMNS if it is an integer from 20 to 1000, else the terminal's own width, else 80.
 std::size_t terminal_width(int descriptor);
 
-/// Whether it is a terminal, and neither NO_COLOR nor TERM=dumb is set.
+/// Returns true for a terminal unless NO_COLOR or TERM=dumb is set.
 bool takes_colors(int descriptor);
 
-/// A bar with the remaining time on stderr; silent where that is no terminal.
+/// Returns a progress bar with the remaining time on stderr; silent if stderr is not a terminal.
 Progress progress_bar(std::string what);
 
 }  // namespace heatsoak

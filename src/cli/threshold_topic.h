@@ -1,4 +1,4 @@
-// Thresholds of `check`: what `list` and `describe` say of them.
+// Topics of `list` and `describe` for the thresholds of `check`.
 #pragma once
 
 #include <vector>

@@ -12,10 +12,10 @@
 namespace heatsoak {
 namespace {
 
-/// "-3A" is a value, "-" a place for output.
+/// "-3A" is a value, and "-" is an output.
 bool is_option(std::string_view word) { return word.size() > 1 && word[0] == '-' && (word[1] == '-' || std::isalpha(word[1]) != 0); }
 
-/// An option with what follows it up to the next option, or what stands before the first.
+/// An option with the words up to the next option; the first group holds the words before all options.
 using Group = std::vector<std::string>;
 
 std::vector<Group> groups_of(std::span<const char* const> words) {
@@ -29,12 +29,12 @@ std::vector<Group> groups_of(std::span<const char* const> words) {
   return groups;
 }
 
-/// The complaint about the values of one group, empty where there is none: what else is missing is another matter.
+/// Returns the error in the values of one group; empty if there is none. Missing options are reported elsewhere.
 std::string complaint(const Command& command, Group group) {
   Session nobody;
   CLI::App app;
-  const auto run = command.declare(app, nobody);  // holds what the options write to
-  std::ranges::reverse(group);                    // as CLI11 wants them
+  const auto run = command.declare(app, nobody);  // keeps the variables alive that the options write to
+  std::ranges::reverse(group);                    // CLI11 expects the words in reverse order
   try {
     app.parse(std::move(group));
   } catch (const CLI::ValidationError& error) {
@@ -46,7 +46,7 @@ std::string complaint(const Command& command, Group group) {
   return {};
 }
 
-/// The verb that the words begin with; null where there is none.
+/// Returns the command that the words begin with; null if there is none.
 const CLI::App* verb_of(const CLI::App& app, std::span<const char* const> words) {
   for (const CLI::App* each : app.get_subcommands({})) {
     if (!words.empty() && each->get_name() == words.front()) {
@@ -99,7 +99,7 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
 std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std::span<const char* const> words) {
   std::vector<std::string> all{error.what()};
   const CLI::App* verb = verb_of(app, words);
-  // Only after all words were taken apart does CLI11 look at values, and then at what is missing.
+  // CLI11 checks values and missing options only after it has accepted all words; other errors are reported alone.
   const bool is_of_an_option = dynamic_cast<const CLI::ValidationError*>(&error) || dynamic_cast<const CLI::ConversionError*>(&error) ||
                                dynamic_cast<const CLI::RequiredError*>(&error);
   if (!verb || !is_of_an_option) {

@@ -1,4 +1,4 @@
-// What is wrong with a command line, all of it at once: CLI11 stops at the first mistake.
+// Reports all mistakes of a command line together; CLI11 stops at the first one.
 #pragma once
 
 #include <CLI/Error.hpp>
@@ -9,11 +9,11 @@
 
 namespace heatsoak {
 
-/// Throws Failure (bad_input): no such verb, or no such options; with "did you mean". `words` are those after the program's name.
+/// Throws Failure (bad_input) with "did you mean" for an unknown command or option. `words` follow the program's name.
 void check_words(const CLI::App& app, std::span<const char* const> words);
 
-/// What parsing found, and which other options have a wrong value or are missing; a line each. `error` came out of parsing
-/// `words` with `app`.
+/// Returns the error of parsing and all other options with a wrong value or without a required one, a line each. `error` is the result of
+/// parsing `words` with `app`.
 std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std::span<const char* const> words);
 
 }  // namespace heatsoak

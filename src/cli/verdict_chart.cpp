@@ -19,7 +19,7 @@ std::vector<double> in_minutes(std::vector<double> times_s) {
   return times_s;
 }
 
-/// The robot's own motor and the best of the others: what a team decides between.
+/// Returns the robot's own motor first, then the others from the best on.
 std::vector<const MotorEvaluation*> chosen(const std::vector<MotorEvaluation>& results, const Robot& robot) {
   std::vector<const MotorEvaluation*> all;
   for (const MotorEvaluation& each : results) {
@@ -35,7 +35,7 @@ double at(const TemperatureCurves& curves, const std::vector<double>& values, do
   return values[static_cast<std::size_t>(std::min(next, curves.time_s.end() - 1) - curves.time_s.begin())];
 }
 
-/// Whether one line would lie under the other: then it is dashed, so that both are seen.
+/// Returns whether two lines nearly coincide: the second is then dashed, so that both are visible.
 bool coincide(const TemperatureCurves& one, const std::vector<double>& one_C, const TemperatureCurves& other,
               const std::vector<double>& other_C) {
   constexpr int kLooks = 60;
@@ -48,7 +48,7 @@ bool coincide(const TemperatureCurves& one, const std::vector<double>& one_C, co
   return 2 * alike > kLooks;
 }
 
-/// Areas of many motors would lie over each other: then only the robot's own motor and the best of the others have one.
+/// Returns the number of motors with a band. Bands of many motors would cover each other, so only the first two get one then.
 std::size_t bands_of(std::size_t motors) {
   constexpr std::size_t kMostWithAreas = 4;
   return motors > kMostWithAreas ? 2 : motors;

@@ -1,4 +1,4 @@
-// The picture of a verdict: winding above, stator below, over time, with the limit.
+// Chart of a verdict: winding (top) and stator (bottom) temperature over time, with the limits.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace heatsoak {
 
-/// Shows at most kMostCurves motors: the one the robot is built with first, then the best of the others.
+/// Maximum number of motors: the one that the robot is built with, then the best of the others.
 inline constexpr std::size_t kMostCurves = 6;
 Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty);
 

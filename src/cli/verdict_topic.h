@@ -1,4 +1,4 @@
-// Verdicts: what `describe verdict` says.
+// The topic of `describe verdict`.
 #pragma once
 
 #include "cli/command.h"

@@ -26,10 +26,10 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kMostProblems = 20;
-constexpr std::size_t kHopeless = 1000;  ///< problems after which the rest is not read
+constexpr std::size_t kHopeless = 1000;  ///< number of unlisted problems after which reading stops
 constexpr std::size_t kLongestCell_bytes = 1 << 16;
 
-/// Enough of a cell for a message.
+/// The beginning of a cell for use in a message: its first line, at most 40 bytes.
 std::string_view first_line(std::string_view cell) { return cell.substr(0, std::min<std::size_t>(cell.find_first_of("\r\n"), 40)); }
 
 class Table {
@@ -61,7 +61,7 @@ class Table {
     ++column_;
   }
 
-  /// `terminator` is the byte that ended the row, or -1 for the end of the file; CR LF ends it once.
+  /// `terminator` is the byte that ended the row, or -1 at the end of the file. CR LF counts as one line end.
   void end_of_row(int terminator) {
     if (column_ > 0) {
       if (cut_off_ && has_header_ && terminator < 0) {
@@ -88,10 +88,10 @@ class Table {
     left_out_before_row_ = left_out_;
   }
 
-  /// A line that is no row.
+  /// Counts a comment line, which is not a row.
   void skip_line() { ++line_; }
 
-  /// What the rest of the file holds no longer matters.
+  /// Throws immediately: after this error the rest of the file cannot be interpreted.
   [[noreturn]] void stop(std::string message) const { throw bad_input({file_, line_, 1}, "", std::move(message)); }
 
   void finish() {
@@ -126,7 +126,7 @@ class Table {
  private:
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-  /// A column of the same quantity in another unit has to be converted, a misspelt one renamed.
+  /// Suggests a column for a missing one: the same quantity in another unit, to be converted, or a similar name.
   [[nodiscard]] std::string look_alike(const std::string& name) const {
     constexpr std::array<std::string_view, 8> kUnits{"_rad_per_s", "_Nm", "_rad", "_A", "_V", "_C", "_s", "_m"};
     const auto* const unit = std::ranges::find_if(kUnits, [&](std::string_view each) { return name.ends_with(each); });
@@ -211,7 +211,7 @@ class Table {
 
 std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::path& path) {
   const auto cannot_read = [&](const char* reason) { return bad_input({path.string()}, "", fmt::format("cannot be read: {}", reason)); };
-  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
+  // O_NONBLOCK: without it, opening a pipe that has no writer would block the program.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(descriptor < 0 ? nullptr : ::fdopen(descriptor, "rb"), &std::fclose);
   struct stat about {};
@@ -225,7 +225,7 @@ std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::pa
   return file;
 }
 
-/// Comments before the header, as exported tables have them.
+/// Skips comment lines before the header, which exported tables may have.
 void skip_comments(std::FILE* file, Table& table) {
   int c = std::fgetc(file);
   for (; c == '#'; c = std::fgetc(file)) {
@@ -237,7 +237,7 @@ void skip_comments(std::FILE* file, Table& table) {
   std::ungetc(c, file);
 }
 
-/// libcsv is C: an exception must not pass through it.
+/// Holds an exception of a callback, because it must not propagate through libcsv, which is C.
 struct Guarded {
   Table& table;
   std::exception_ptr error;
@@ -302,7 +302,7 @@ void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose,
     if (parsed != bytes.size()) {
       table.stop("a quote stands inside a cell of this row; expected cells quoted as a whole, or not at all");
     }
-    // One chunk may hold a cell of its own length; what is longer grows with the file.
+    // One chunk may hold a single cell of its size; a longer cell would make the buffer grow with the file.
     if (csv_get_buffer_size(&parser) > chunk.size() + kLongestCell_bytes) {
       table.stop(fmt::format("a cell is longer than {} bytes; is it a binary file, or is a quote not closed?", kLongestCell_bytes));
     }
@@ -345,7 +345,7 @@ std::vector<Diagnostic> with_characters(std::vector<Diagnostic> of_cells) {
       cell += text[i] == ',' && !quoted ? 1 : 0;
       character += (text[i] & 0xC0) != 0x80 ? 1 : 0;
     }
-    // A row that goes over several lines has its place at the first of them.
+    // A row that spans several lines is reported at the beginning of its first line.
     each.at.column = cell == each.at.column ? character : 1;
   }
   return of_cells;

@@ -14,7 +14,7 @@ DataFolders source_tree(const fs::path& root) { return {root / "motor_db", root 
 
 DataFolders installed(const fs::path& share) { return {share / "motor_db", share / "robots", share / "duty_profiles", share}; }
 
-/// Never throws: a folder that may not be looked into is none.
+/// Never throws; a folder without permission counts as missing.
 bool is_folder(const fs::path& path) {
   std::error_code error;
   return fs::is_directory(path, error);
@@ -32,7 +32,7 @@ DataFolders beside_the_program() {
       return found;
     }
   }
-  // A build folder elsewhere: the sources that this file was compiled from.
+  // A build folder outside the source tree: use the tree that this file was compiled from.
   if (DataFolders found = source_tree(fs::path(__FILE__).parent_path().parent_path().parent_path()); complete(found)) {
     return found;
   }

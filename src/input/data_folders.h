@@ -1,4 +1,4 @@
-// Where motors, robots and duties are found.
+// Locates the files of motors, robots, duties and logs.
 #pragma once
 
 #include <filesystem>
@@ -8,27 +8,27 @@
 
 namespace heatsoak {
 
-/// The folders of data files; the stem of a file is the id of what it holds.
+/// The folders of data files. The stem of a file is the id of the motor, robot or duty.
 struct DataFolders {
   std::filesystem::path motors;
   std::filesystem::path robots;
   std::filesystem::path duties;
-  std::filesystem::path shipped;  ///< what the names of logs that came with the program begin from
+  std::filesystem::path shipped;  ///< base folder for the relative names of logs that came with the program
 
-  /// Looks beside the program: the installed share/heatsoak, or the source tree that holds the build folder.
-  /// `database`, where not empty, is used instead: a folder that holds motor_db/, or itself a motor_db folder.
-  /// Throws Failure (bad_input) where nothing is found.
+  /// Searches beside the program: the installed share/heatsoak, or the source tree that contains the build folder. A non-empty `database`
+  /// takes precedence for the folders it contains; it holds motor_db/, or is itself a motor_db folder. Throws Failure (bad_input) if a
+  /// folder is not found.
   static DataFolders find(const std::filesystem::path& database);
 };
 
-/// Stems of the *.toml files of a folder, sorted.
+/// Returns the stems of the *.toml files in a folder, sorted; empty if the folder cannot be read.
 std::vector<std::string> ids_in(const std::filesystem::path& folder);
 
-/// The file of `name` in the folder; a name with a '/' or ending in ".toml" is a path of the user's own.
-/// Throws Failure (bad_input) with "did you mean". `kind` is for the message: "motor".
+/// Returns the path of the file `name` in the folder. A name with a '/' or ending in ".toml" is a path of the user and returned as it is.
+/// Throws Failure (bad_input) with "did you mean" for an unknown name. `kind` is used in the message: "motor".
 std::filesystem::path file_of(const std::filesystem::path& folder, std::string_view kind, std::string_view name);
 
-/// A log of the user's own or, where there is none of that name here, the one that came with the program.
+/// Returns `name`, or the log shipped with the program if `name` is relative and exists only there.
 std::filesystem::path log_named(const DataFolders& folders, const std::filesystem::path& name);
 
 }  // namespace heatsoak

@@ -11,17 +11,16 @@ namespace heatsoak {
 namespace {
 
 constexpr std::size_t kLargestToml_bytes = 1'000'000;
-constexpr std::size_t kMostKeys = 1000;  ///< of one table; looking a key up goes through all of them
-constexpr int kMostDots = 16;            ///< of one key
+constexpr std::size_t kMostKeys = 1000;  ///< per table, because looking up a key is a linear search
+constexpr int kMostDots = 16;            ///< per key
 
 Location place(const toml::node& node, const std::string& file) {
   const toml::source_position at = node.source().begin;
   return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
 }
 
-/// toml++ bounds nested values but not a.a.a.a…, whose tables are then destroyed one inside the other until the
-/// stack ends. Only keys (and numbers) have dots outside of strings and comments. The line of the first key with
-/// too many, 0 where there is none.
+/// Returns the first line with a key of more than kMostDots dots, or 0. toml++ limits nested values but not dotted keys: the recursive
+/// destructor of a.a.a.a… would overflow the stack. Outside of strings and comments only keys and numbers have dots.
 int line_of_deep_key(std::string_view content) {
   int line = 1;
   int dots = 0;
@@ -35,7 +34,7 @@ int line_of_deep_key(std::string_view content) {
         line += content[i] == '\n' ? 1 : 0;
         i += c == '"' && content[i] == '\\' ? 1 : 0;
         if (i < content.size() && content[i] == '\n' && quotes.size() == 1) {
-          return 0;  // not closed: the parser says where
+          return 0;  // not closed; the parser reports it
         }
       }
       i += quotes.size() - 1;
@@ -85,7 +84,7 @@ Value convert(const toml::node& node, const std::string& file) {
   return value;
 }
 
-/// The last line that begins with a key of that name; 0 where there is none.
+/// Returns the last line that begins with a key of that name, or 0 if there is none.
 int line_of_key(const toml::table& table, std::string_view name) {
   int line = 0;
   for (const auto& [key, member] : table) {
@@ -99,7 +98,7 @@ int line_of_key(const toml::table& table, std::string_view name) {
   return line;
 }
 
-/// What the parser says, and of a key that is given twice where the first one is.
+/// Returns the message of the parser; for a key that is given twice also the line of the first one.
 std::string explanation(const toml::parse_error& error, std::string_view content) {
   const std::string_view said = error.description();
   const std::size_t from = said.find('\'');
@@ -116,7 +115,7 @@ std::string explanation(const toml::parse_error& error, std::string_view content
   try {
     first_line = line_of_key(toml::parse(content.substr(0, end)), path.substr(path.rfind('.') + 1));
   } catch (const toml::parse_error&) {
-    // The second stands inside something that began before: the message does without the line of the first.
+    // The text before the second key ends inside a table or string. The message then omits the line of the first key.
   }
   return fmt::format("not valid TOML: '{}' is given twice{}; keep one of the two", path,
                      first_line > 0 ? fmt::format(", first in line {}", first_line) : "");
@@ -165,7 +164,7 @@ Location place_of(const std::filesystem::path& path, std::string_view key) {
       key.remove_prefix(std::min(dot + 1, key.size()));
     }
   } catch (const Failure&) {
-    // The finding stands without its line.
+    // The file cannot be parsed: the position then has no line.
   }
   return place;
 }

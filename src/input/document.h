@@ -1,4 +1,4 @@
-// A file of the user as a tree in which every value knows its place.
+// A parsed TOML file as a tree in which every value has its file position.
 #pragma once
 
 #include <filesystem>
@@ -15,9 +15,9 @@ struct Value {
   enum class Kind { text, number, boolean, array, table, other };
   Kind kind = Kind::other;
   Location at;
-  std::string text;  ///< of a text; of a number as it was written
+  std::string text;  ///< of a text: its content; of a number: as written in the file
   bool boolean = false;
-  std::vector<Value> items;     ///< of an array
+  std::vector<Value> items;     ///< elements of an array
   std::vector<Member> members;  ///< of a table, in the order of the file
 
   [[nodiscard]] const Value* find(std::string_view key) const;
@@ -28,17 +28,17 @@ struct Member {
   Value value;
 };
 
-/// "a text", "a number", …: for messages.
+/// Returns "a text", "a number", …, for messages.
 std::string_view to_string(Value::Kind kind);
 
-/// Reads a TOML file of at most 1 MB, 1000 keys per table and 16 dots per key. Throws Failure (bad_input) that says the place of the first
-/// error of syntax, or why the file cannot be read.
+/// Reads a TOML file. Throws Failure (bad_input) if it cannot be read, at the first syntax error, or if it exceeds 1 MB, 1000 keys per
+/// table or 16 dots per key.
 Value read_toml(const std::filesystem::path& path);
 
-/// Where the file has the dotted key, or the last table on the way to it; no line where the file cannot be read.
+/// Returns the position of a dotted key, or of the last table on its path that exists. Line 0 if the file cannot be read.
 Location place_of(const std::filesystem::path& path, std::string_view key);
 
-/// As read_toml, for text that is at hand; `file` is its name in messages.
+/// Like read_toml() for a text in memory; `file` is its name in messages.
 Value parse_toml(const std::string& content, const std::string& file);
 
 }  // namespace heatsoak

@@ -34,10 +34,10 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-/// Lines of a file, one buffer ahead.
+/// Reads a file line by line through a buffer.
 class LineReader {
  public:
-  // O_NONBLOCK: a pipe that nobody writes to must not keep the program waiting.
+  // O_NONBLOCK: without it, opening a pipe that has no writer would block the program.
   explicit LineReader(const std::filesystem::path& path)
       : path_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
     struct stat about {};
@@ -57,7 +57,7 @@ class LineReader {
     }
   }
 
-  /// Without its line end; valid until the next call. `line_` counts it.
+  /// Gives the next line without its line end; it is valid until the next call. Returns false at the end of the file.
   bool next(std::string_view& line) {
     for (;;) {
       const char* const from = buffer_.data() + begin_;
@@ -82,7 +82,8 @@ class LineReader {
       fill();
     }
   }
-  /// Puts the line that follows behind the one before, with the line end between them.
+  /// Appends a line end and the next line to `record`, for quoted cells with line breaks. Returns false at the end of the file or if the
+  /// record exceeds the longest line allowed.
   bool extend(std::string& record) {
     std::string_view more;
     if (record.size() > kLongestLine_bytes || !next(more)) {
@@ -119,7 +120,7 @@ class LineReader {
   void fill() {
     std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
     end_ -= std::exchange(begin_, 0);
-    buffer_.resize(std::max(buffer_.size(), end_ + kChunk_bytes));  // zeroed once, not for every chunk
+    buffer_.resize(std::max(buffer_.size(), end_ + kChunk_bytes));  // zero-fills only when the buffer grows
     const ssize_t got = ::read(descriptor_, buffer_.data() + end_, kChunk_bytes);
     if (got < 0) {
       fail(std::strerror(errno));
@@ -141,14 +142,14 @@ class LineReader {
   std::vector<char> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
-  std::size_t searched_ = 0;  ///< bytes from begin_ that hold no line end
+  std::size_t searched_ = 0;  ///< bytes from begin_ that were searched without finding a line end
   std::size_t bytes_ = 0;
   int line_ = 0;
   bool is_at_end_ = false;
   bool has_open_end_ = false;
 };
 
-/// The cells of one record by libcsv, which knows the rules of quoting; nothing where a quote is wrong.
+/// Splits one record into cells with libcsv. Returns nothing if the quoting is invalid.
 std::optional<std::vector<std::string>> quoted_cells(std::string_view record, char separator) {
   csv_parser parser{};
   csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
@@ -167,7 +168,7 @@ std::optional<std::vector<std::string>> quoted_cells(std::string_view record, ch
 struct NumberTable::State {
   State(const std::filesystem::path& path, TableFormat layout) : lines(path), format(std::move(layout)) {}
 
-  /// Not blank, no comment.
+  /// Gives the next line that is neither blank nor a comment. Returns false at the end of the file.
   bool next_content(std::string_view& line) {
     while (lines.next(line)) {
       if (!(format.comment.empty() ? false : line.starts_with(format.comment)) && !trimmed(line).empty()) {
@@ -216,7 +217,7 @@ struct NumberTable::State {
     slots.assign(header.size(), -1);
   }
 
-  /// One cell; `at` is its place in the header.
+  /// Parses one cell and appends it to column `slot` of the block; NaN and an entry in bad_cells if it is not a finite number.
   void number(std::string_view cell, int slot, TableBlock& block) const {
     cell = trimmed(cell);
     const std::string_view digits = cell.starts_with('+') && !cell.starts_with("+-") ? cell.substr(1) : cell;
@@ -237,7 +238,7 @@ struct NumberTable::State {
     block.columns[static_cast<std::size_t>(slot)].push_back(value);
   }
 
-  /// Cells without quotes. Returns how many there were; what was pushed stands even where that number is wrong.
+  /// Reads a row without quotes and returns its number of cells. Values are appended to the block even if that number is wrong.
   std::size_t split(std::string_view line, TableBlock& block) {
     const char* at = line.data();
     const char* const end = at + line.size();
@@ -298,8 +299,8 @@ struct NumberTable::State {
   TableFormat format;
   std::vector<std::string> header;
   int header_line = 0;
-  std::vector<int> slots;     ///< for each column of the file its place among the chosen ones, or -1
-  std::size_t last_used = 0;  ///< columns from here on are counted only
+  std::vector<int> slots;     ///< for each column of the file its index among the chosen ones, or -1
+  std::size_t last_used = 0;  ///< columns from this index on are only counted
   std::size_t chosen = 0;
 };
 

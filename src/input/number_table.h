@@ -1,4 +1,4 @@
-// Tables of numbers as loggers write them, fast: chosen columns of a CSV of any dialect, some thousand rows at a time.
+// Fast reader for large CSV logs of any dialect: reads chosen columns of numbers in blocks of some thousand rows.
 #pragma once
 
 #include <cstddef>
@@ -10,23 +10,23 @@
 
 namespace heatsoak {
 
-/// How a file is laid out.
+/// CSV dialect of a file.
 struct TableFormat {
   char separator = ',';
   char decimal_point = '.';
-  std::string comment = "#";  ///< lines that begin with it are skipped; empty: there are none
+  std::string comment = "#";  ///< lines that begin with it are skipped; empty: the file has no comments
   int header_rows = 1;
-  int names_row = 1;  ///< which of them names the columns, from 1
+  int names_row = 1;  ///< which header row names the columns, from 1
 };
 
-/// A cell that is no number: where, and its first characters.
+/// A cell that is not a finite number.
 struct BadCell {
-  std::size_t row = 0;     ///< of the block
-  std::size_t column = 0;  ///< of the chosen ones
-  std::string text;        ///< empty where the cell is blank
+  std::size_t row = 0;     ///< index in the block
+  std::size_t column = 0;  ///< index among the chosen columns
+  std::string text;        ///< first characters of the cell; empty if it is blank
 };
 
-/// A line that is no row: another number of cells than the header has, or cut off at the end of the file.
+/// A line that is not a valid row: its number of cells differs from the header's, or the file ends inside it.
 struct BadLine {
   int line = 0;
   std::size_t cells = 0;
@@ -34,15 +34,15 @@ struct BadLine {
 };
 
 struct TableBlock {
-  std::vector<std::vector<double>> columns;  ///< as chosen; NaN for a bad cell
-  std::vector<int> lines;                    ///< of each row, from 1 as an editor counts
+  std::vector<std::vector<double>> columns;  ///< one vector per chosen column; NaN for a bad cell
+  std::vector<int> lines;                    ///< line number of each row, from 1
   std::vector<BadCell> bad_cells;
   std::vector<BadLine> bad_lines;
   [[nodiscard]] std::size_t rows() const { return lines.size(); }
 };
 
-/// Quoted cells, CR LF, blank lines, comments and a UTF-8 byte order mark are understood. Memory does not grow with the file.
-/// Throws Failure (bad_input): unreadable or binary file, no header, a line longer than 1 MB, an open quote.
+/// Accepts quoted cells, CR LF, blank lines, comments and a UTF-8 byte order mark. Memory does not grow with the file. Throws Failure
+/// (bad_input) for an unreadable or binary file, a missing header, a line longer than 1 MB and an unclosed quote.
 class NumberTable {
  public:
   NumberTable(const std::filesystem::path& path, const TableFormat& format);
@@ -51,13 +51,13 @@ class NumberTable {
   NumberTable& operator=(NumberTable&&) noexcept;
 
   [[nodiscard]] std::span<const std::string> header() const;
-  [[nodiscard]] int header_line() const;  ///< of the names
-  /// Places in the header; before the first next().
+  [[nodiscard]] int header_line() const;  ///< line of the column names
+  /// Sets the columns to read, as indices into header(). Call it before the first next().
   void choose(std::vector<std::size_t> columns);
-  /// The next rows; false at the end of the file. `block` is reused.
+  /// Reads the next rows into `block`, whose memory is reused. Returns false at the end of the file.
   bool next(TableBlock& block);
   [[nodiscard]] std::size_t bytes_read() const;
-  /// The last line has no line end, so that its last cell may be cut off.
+  /// Returns whether the last line has no line end, so that its last cell may be incomplete.
   [[nodiscard]] bool ends_without_line_end() const;
 
  private:

@@ -15,7 +15,7 @@ std::string out_of_range(std::string_view text, const ParameterSpec& spec) {
   return fmt::format(R"("{}" is out of range; expected {} ({}))", text, to_string(spec.range, spec.unit), spec.meaning);
 }
 
-/// What TOML takes for numbers and nobody can put a unit to.
+/// NaN and infinity: TOML accepts them as numbers, but they cannot be quantities.
 bool is_no_quantity(std::string_view number) {
   return number.find("nan") != std::string_view::npos || number.find("inf") != std::string_view::npos;
 }
@@ -208,7 +208,7 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
     }
     figure.origin = known.value_or(Origin::estimated);
   }
-  const bool has_origin = origin && origin_from(*origin);  // without one, what else is needed is not known
+  const bool has_origin = origin && origin_from(*origin);  // without a valid origin the other required keys are unknown
   const bool calculated = figure.origin == Origin::derived || figure.origin == Origin::estimated;
   figure.derivation = inner.text("derivation", has_origin && calculated ? Need::required : Need::optional).value_or("");
   const Value* source = value->find("source");
@@ -217,7 +217,7 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
   } else {
     figure.source = inner.text("source", calculated ? Need::optional : Need::required).value_or("");
   }
-  // An empty text names nothing: the figure would claim an origin that leads nowhere.
+  // An empty source would give the value an origin that nobody can check.
   if (source && figure.source.empty() && (source->kind == Value::Kind::text || source->items.empty())) {
     inner.problem("source", "is empty; expected ids of [sources]");
   }

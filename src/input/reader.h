@@ -1,4 +1,4 @@
-// Checked access to a table: every problem is collected, every unknown key is named.
+// Checked access to a table of a file: collects every problem and reports every unknown key.
 #pragma once
 
 #include <optional>
@@ -17,37 +17,36 @@ namespace heatsoak {
 
 enum class Need { required, optional };
 
-/// Reads the keys of one table. A getter that finds a problem adds it to the diagnostics and returns nothing;
-/// the caller goes on, so that all problems are found in one run. finish() reports keys nobody asked for.
+/// Reads the keys of one table. A getter that finds a problem adds it to the diagnostics and returns nothing; the caller continues, so that
+/// one run finds all problems. finish() reports keys that were never requested.
 class Reader {
  public:
-  /// `table` and `diagnostics` outlive the reader. `path` is the dotted name of the table, "" at the top.
+  /// `table` and `diagnostics` must outlive the reader. `path` is the dotted name of the table, "" at the top.
   Reader(const Value& table, std::string path, Diagnostics& diagnostics);
 
   std::optional<std::string> text(std::string_view key, Need need);
   std::optional<bool> flag(std::string_view key, Need need);
   std::vector<std::string> texts(std::string_view key, Need need);
-  /// One of `choices`; the message lists them.
+  /// Returns one of `choices`; any other text is a problem whose message lists them.
   std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> choices, Need need);
-  /// A quantity written as text with a unit, in the unit and range of `spec`.
+  /// Returns a quantity written as text with a unit, converted to the unit of `spec` and checked against its range.
   std::optional<double> quantity(const ParameterSpec& spec, Need need);
-  /// A list of such texts. What is wrong with an element is reported at its place, as key[index];
-  /// it counts as 0, so that the length is that of the list.
+  /// Returns a list of such quantities. An invalid element is reported as key[index] and returned as 0, so that the length is kept.
   std::vector<double> quantities(const ParameterSpec& spec, Need need);
-  /// `{ value = "…", origin = "…", source = "…", tolerance = "…" }`; see motor_db/README.md.
+  /// Reads `{ value = "…", origin = "…", source = "…", tolerance = "…" }`; see motor_db/README.md.
   std::optional<Figure> figure(const ParameterSpec& spec, Need need);
   std::optional<Reader> table(std::string_view key, Need need);
-  std::vector<Reader> tables(std::string_view key);  ///< [[key]], or none
-  /// Every member of this table as a table of its own, for folders of named things.
+  std::vector<Reader> tables(std::string_view key);  ///< the elements of [[key]]; empty if there are none
+  /// Returns every member of this table as a table, with its key.
   std::vector<std::pair<std::string, Reader>> named_tables();
 
-  /// Knows the key without looking at it: where another problem hides what it should hold.
+  /// Marks a key as known without reading it, for use when another problem prevents its interpretation.
   void pass_over(std::string_view key) { asked_.insert(std::string(key)); }
   void finish();
 
-  /// A problem of the value of `key`, or of the whole table where it has no such key.
+  /// Adds a problem at the value of `key`, or at the table itself if it has no such key.
   void problem(std::string_view key, std::string message);
-  /// A problem of another file that this table names.
+  /// Adds a problem found in another file that this table refers to.
   void add(const Diagnostic& found);
   [[nodiscard]] Location at(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;

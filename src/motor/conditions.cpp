@@ -13,7 +13,7 @@
 namespace heatsoak {
 namespace {
 
-/// A motor at work, hot: every signal that a law may need is there.
+/// A hot motor under load, with all signals that a law may need.
 OperatingPoint<double> at_work() {
   OperatingPoint<double> at;
   at.current_rms_A = 5.0;

@@ -1,4 +1,4 @@
-// Effects that were seen under a condition only: which of them predictions reckon with.
+// Effects that hold only under a condition ("cooling" = "fan"), and which of them a prediction includes.
 #pragma once
 
 #include <map>
@@ -9,12 +9,12 @@
 
 namespace heatsoak {
 
-/// Where nobody says whether the condition holds, heat is reckoned with and cooling is not: an effect acts unless it takes heat out of
-/// the hottest body it touches. `parameters` in the type's declared order.
+/// Returns whether an effect acts if its condition is unknown. The choice is pessimistic: it acts unless it cools the hottest node that it
+/// touches. `parameters` in the type's declared order.
 bool acts_by_default(const MotorEffect& effect, std::span<const double> parameters);
 
-/// The motor where "cooling" -> "fan" and the like are known to hold: effects under one of them act, those under another value of a key
-/// do not. Throws Failure (bad_input) where a key is none of the motor's, with what it has.
+/// Returns the motor with known conditions, such as "cooling" -> "fan": effects under another value of a key are removed, those under this
+/// value become unconditional. Throws Failure (bad_input) if no effect of the motor has such a key; the message lists the existing ones.
 Motor under(Motor motor, const std::map<std::string, std::string>& conditions);
 
 }  // namespace heatsoak

@@ -18,8 +18,7 @@ struct Ratios {
   double high = 1.0;
 };
 
-/// A row per key. A value that is called measured but states no interval is trusted no more than an estimate: a measurement knows its
-/// uncertainty.
+/// Default bounds of one key by origin. A measured value without an uncertainty gets the bounds of an estimate.
 struct DefaultRow {
   std::string_view key;
   Ratios sheet;
@@ -28,27 +27,27 @@ struct DefaultRow {
   Ratios estimated;
 };
 
-// Manufacturers publish nominal values without bands. The sheet's column holds the engineering defaults of motor_db/README.md; the others
-// enclose the widest range that motor_db derives for that origin from similar motors.
+// Manufacturers publish nominal values without tolerances. The column of the data sheet holds the engineering defaults of
+// motor_db/README.md. The others enclose the widest range that motor_db derives for that origin from similar motors.
 constexpr std::array kDefaults{
-    // Production tolerance of the wire's cross-section and length, and the contacts.
+    // Production tolerance of the wire's cross-section and length, and contacts.
     DefaultRow{"terminal_resistance", {0.90, 1.10}, {0.90, 1.10}, {0.85, 1.25}, {0.80, 1.30}},
-    // Remanence of the magnets and the air gap.
+    // Remanence of the magnets and width of the air gap.
     DefaultRow{"torque_constant", {0.93, 1.07}, {0.93, 1.07}, {0.90, 1.10}, {0.85, 1.15}},
-    // Bearing friction and iron loss differ most of all between parts, upwards more than downwards.
+    // Bearing friction and iron loss vary most between parts, more upwards than downwards.
     DefaultRow{"no_load_current", {0.65, 1.55}, {0.65, 1.55}, {0.65, 2.05}, {0.55, 2.05}},
     // Impregnation of the winding.
     DefaultRow{"thermal_resistance_winding_stator", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {0.55, 1.80}},
-    // Mounting, position and air movement.
+    // Mounting, orientation and air movement.
     DefaultRow{"thermal_resistance_stator_ambient", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {0.50, 1.80}},
-    // Products of a resistance above and a heat capacity.
+    // A thermal resistance from above times a heat capacity.
     DefaultRow{"thermal_time_constant_winding", {0.75, 1.25}, {0.60, 1.60}, {0.60, 1.60}, {0.45, 2.05}},
     DefaultRow{"thermal_time_constant_stator", {0.75, 1.25}, {0.60, 1.60}, {0.60, 1.60}, {0.45, 2.05}},
-    // A property of copper; other alloys have their own sheet.
+    // A property of copper; other alloys have a data sheet of their own.
     DefaultRow{"temperature_coefficient", {0.98, 1.02}, {0.98, 1.02}, {0.95, 1.05}, {0.90, 1.10}},
 };
 
-/// Parameters of effects are of many kinds, so only the origin counts: an estimate may be wrong by a factor of 1.5.
+/// Effects have parameters of many kinds, so the default depends on the origin only: an estimate may be wrong by a factor of 1.5.
 constexpr DefaultRow kEffectDefault{"", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {1.0 / 1.5, 1.5}};
 
 const Ratios& ratios(const DefaultRow& row, Origin origin) {
@@ -71,15 +70,15 @@ const DefaultRow* row_of(std::string_view key) {
   return found == kDefaults.end() ? nullptr : found;
 }
 
-/// Within what the declaration allows, so that no draw leaves it.
+/// Returns the spread around the value, clipped to the declared range so that no sample leaves it.
 Spread spread_by(const Ratios& by, const Figure& figure, const Range& range) {
   const double one = figure.value * by.low;
   const double other = figure.value * by.high;
   return {Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high), figure.value > 0.0};
 }
 
-/// The narrowest that a file may state, on each side. The honest files of motor_db state 27 % of their default or more. A measurement can
-/// be better than that, but no thermal one is better than its sensors.
+/// Returns the narrowest credible bounds. Well documented files of motor_db state at least 27 % of the default spread. A measurement can be
+/// more accurate, but no thermal measurement is more accurate than its sensors.
 Ratios least_ratios(const DefaultRow& row, Origin origin) {
   constexpr double kLeastShare = 0.25;
   constexpr double kLeastMeasured = 0.01;
@@ -90,15 +89,15 @@ Ratios least_ratios(const DefaultRow& row, Origin origin) {
                                     : Ratios{1.0 - low, 1.0 + high};
 }
 
-/// On a side where the declaration's range ends, a spread needs to go no further.
+/// Returns whether the stated spread is too narrow. A bound at the end of the declared range is always wide enough.
 bool is_narrow(const Figure& figure, const Spread& least, const Range& range) {
-  constexpr double kRounding = 1e-3;  // of a printed tolerance
+  constexpr double kRounding = 1e-3;  // rounding of a printed tolerance
   const double slack = kRounding * std::abs(figure.value);
   return figure.spread && ((figure.spread->low > least.low + slack && figure.spread->low > range.low) ||
                            (figure.spread->high < least.high - slack && figure.spread->high < range.high));
 }
 
-/// What takes the place of the stated spread; nothing where that can be believed.
+/// Returns the spread that replaces the stated one; nothing if the stated one is credible.
 std::optional<Spread> replacement(const DefaultRow& row, const Figure& figure, const Range& range) {
   if (figure.value == 0.0) {
     return std::nullopt;
@@ -118,7 +117,7 @@ std::optional<Spread> replacement(const DefaultRow& row, const Figure& figure, c
                 figure.value > 0.0};
 }
 
-/// Places on a curve's axis and temperatures are chosen, not found: no factor applies to them.
+/// False for the knots of a curve and for temperatures: these are chosen, so no relative uncertainty applies.
 bool takes_default(const EffectType& type, std::size_t place) {
   const ParameterSpec& spec = type.parameters[place];
   return spec.choices.empty() && spec.unit != "degC" && !spec.key.ends_with("_knot");

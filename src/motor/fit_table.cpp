@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<std::string_view, 2> kHeatedNodes{"winding", "stator"};
 constexpr double kLargest_W = 1e6;
 
-/// Rows of a lower triangle with 1 on the diagonal: "1", "0.2 1", …
+/// Reads the rows of a lower triangular matrix with a diagonal of 1: "1", "0.2 1", …
 Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
   const auto size = static_cast<Eigen::Index>(count);
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
@@ -189,7 +189,7 @@ double drawn_heat_factor(const ForecastBand& band, double uniform) {
 
 void correlate(const MotorFit& fit, std::span<double> uniforms) {
   static const boost::math::normal kNormal;
-  // The root of the matrix, with what rounding made negative cut off.
+  // Square root of the matrix. Eigenvalues that rounding made negative are set to 0.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(fit.correlation);
   Eigen::VectorXd independent(fit.correlation.rows());
   for (Eigen::Index i = 0; i < independent.size(); ++i) {

@@ -1,4 +1,4 @@
-// What a calibration knows besides values and intervals: how the figures hang together, and what was left unexplained.
+// The [fit] table of a motor file: correlations of the fitted parameters, and the uncertainty of forecasts.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,51 +15,51 @@
 
 namespace heatsoak {
 
-/// How far forecasts of other runs may be off beside what the uncertainty of the parameters explains.
+/// Uncertainty of a forecast beyond that of the parameters.
 struct ForecastBand {
   std::array<double, 2> unknown_heat_share{};  ///< rms of slow unknown heat at winding and stator, per rms heat of the run
-  double time_scale_s = 0.0;                   ///< over which that heat forgets
-  double heat_factor_sd = 0.0;                 ///< of the logarithm of a factor on all heat of a run
-  double width_ratio = 1.0;                    ///< the band as computed is widened by this
+  double time_scale_s = 0.0;                   ///< correlation time of the unknown heat
+  double heat_factor_sd = 0.0;                 ///< standard deviation of the logarithm of a factor on all heat of a run
+  double width_ratio = 1.0;                    ///< factor by which the computed band is widened
 };
 
-/// In the input's unit.
+/// Range of an input signal, in the unit of its channel.
 struct InputRange {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// What the fitted runs had; empty in files that do not record it.
+/// Conditions and input ranges of the fitted runs; empty if the file does not record them.
 struct TrainingRange {
-  std::set<std::string> conditions = {};          ///< "fan=on"
+  std::set<std::string> conditions = {};          ///< such as "fan=on"
   std::map<std::string, InputRange> inputs = {};  ///< by channel: "ambient_C", "speed_rad_per_s", "current_A"
 };
 
-/// The [fit] table of a motor file that a calibration wrote.
+/// The [fit] table, which a calibration writes.
 struct MotorFit {
-  std::string motor;                                    ///< id of the motor file that the fit began with
-  std::vector<std::string> runs;                        ///< names, with what of them: "match_1 (5f0c31d2a7e94b68 0-1800 s)"
-  std::vector<std::string> figures;                     ///< keys: "thermal_resistance_winding_stator", "effects.fan.conductance"
-  Eigen::MatrixXd correlation;                          ///< of their logarithms, in that order
-  std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of one sample
-  std::vector<double> latent_flux_W;                    ///< unknown heat of winding and stator: rms
+  std::string motor;                 ///< id of the motor file that the fit started from
+  std::vector<std::string> runs;     ///< names with the used part: "match_1 (5f0c31d2a7e94b68 0-1800 s)"
+  std::vector<std::string> figures;  ///< keys of the fitted parameters: "thermal_resistance_winding_stator", "effects.fan.conductance"
+  Eigen::MatrixXd correlation;       ///< of the logarithms of these parameters, in that order
+  std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of the noise of one sample
+  std::vector<double> latent_flux_W;                    ///< rms of the unknown heat flux into winding and stator
   double latent_flux_time_scale_s = 0.0;
-  /// Above 0: whole runs decided the figures, and the model that runs free follows them to this (rms); what follows the load at once
-  /// asks for other figures, as in a motor of more parts than the model.
+  /// Above 0 if the parameters were fitted to simulations of whole runs: their rms error. Short-term predictions would then ask for other
+  /// parameters, as in a motor with more thermal bodies than the model.
   double free_run_error_K = 0.0;
   TrainingRange training = {};
-  std::optional<ForecastBand> band = {};  ///< of left-out runs, where a calibration has found it
+  std::optional<ForecastBand> band = {};  ///< estimated by the calibration from left-out runs; may be absent
 };
 
-/// Reads the table; `figures` are the keys that the file has. Problems go to the reader's diagnostics.
+/// Reads the table; `figures` are the keys of the file. Adds problems to the reader's diagnostics.
 MotorFit read_fit(Reader& table, std::span<const std::string> figures);
 std::string to_toml(const MotorFit& fit);
 
-/// Factor on all heat of a run at `uniform` in (0, 1): the heat factor of the band, and the unknown heat at the winding as if it stayed the
-/// same throughout, which is the worst that slow heat can do.
+/// Returns the factor on all heat of a run at the quantile `uniform` in (0, 1). It combines the heat factor of the band with the unknown
+/// heat at the winding, which is assumed constant over the run as the worst case of slow heat.
 double drawn_heat_factor(const ForecastBand& band, double uniform);
 
-/// Independent numbers in (0, 1), one per figure of the fit, become dependent ones with the fit's correlation (Gaussian copula).
+/// Converts independent uniform numbers in (0, 1), one per fitted parameter, to numbers with the correlation of the fit (Gaussian copula).
 void correlate(const MotorFit& fit, std::span<double> uniforms);
 
 }  // namespace heatsoak

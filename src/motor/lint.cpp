@@ -56,7 +56,7 @@ namespace {
 struct NamedCheck {
   std::string_view name;
   void (*run)(const Motor&, lint_checks::Findings&);
-  bool is_of_values = true;  ///< false: of how the file is written
+  bool is_of_values = true;  ///< false: checks how the file is written, not its values
 };
 
 constexpr std::array kChecks = {
@@ -108,7 +108,7 @@ std::vector<LintFinding> lint(const Motor& motor) {
     lint_checks::Findings findings(motor, check.name, list);
     const std::size_t before = list.size();
     check.run(motor, findings);
-    // What was fitted is of one motor, its other figures are of the sheet: that they differ is no fault of the file.
+    // Fitted values describe one motor, the other values the data sheet: a difference between them is no fault of the file.
     for (std::size_t i = before; i < list.size() && motor.fit && check.is_of_values; ++i) {
       list[i].level = LintFinding::Level::note;
     }
@@ -127,7 +127,7 @@ void add_lint_errors(const Motor& motor, Diagnostics& diagnostics) {
     lines.insert(each.at.line);
   }
   for (const LintFinding& each : lint(checked)) {
-    // What a line lacks that could not be read is no second problem.
+    // A line that could not be read has a problem already; a value missing because of it is not reported again.
     if (each.level == LintFinding::Level::error && each.check != "spreads" && !lines.contains(each.at.line)) {
       diagnostics.add(each.at, each.check, each.message);
     }

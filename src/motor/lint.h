@@ -1,4 +1,4 @@
-// Do the figures of a motor agree with each other, and what do they rest on?
+// Checks whether the values of a motor are consistent with each other, and how reliable they are.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@ namespace heatsoak {
 
 struct LintFinding {
   enum class Level {
-    error,    ///< two figures contradict each other or nature: one of them is wrong
-    warning,  ///< hardly possible, or contradicted by an estimate: look it up again
-    note      ///< nothing is wrong, but who relies on the motor should know
+    error,    ///< two values contradict each other or physics: one of them is wrong
+    warning,  ///< unlikely, or contradicted by an estimate: check the source again
+    note      ///< no fault, but relevant to the accuracy of results
   };
   Level level = Level::note;
   std::string check;    ///< name of the check, "constants"
@@ -24,20 +24,20 @@ struct LintFinding {
 
 std::string_view to_string(LintFinding::Level level);
 
-/// Every finding of every check whose figures the file gives. A motor that passes has no errors.
+/// Runs all checks; each uses only values that the file gives. A motor passes if there are no errors.
 std::vector<LintFinding> lint(const Motor& motor);
 
-/// Adds the errors of lint() to `diagnostics`. Where these hold problems already, the file was read in part only: then the effects, which
-/// may name nodes that are missing, are left out of the check. A missing spread does not count, because a default takes its place,
-/// nor does an error on a line that has a problem already.
+/// Adds the errors of lint() to `diagnostics`. If these already contain problems, the file was read incompletely: effects are then not
+/// checked, because they may name missing nodes. Not added: missing spreads, which defaults replace, and errors on lines that already have
+/// a problem.
 void add_lint_errors(const Motor& motor, Diagnostics& diagnostics);
 
-/// The nominal point seen by the thermal network.
+/// The nominal operating point according to the thermal network.
 struct NominalPointHeat {
-  double equivalent_current_A = 0.0;  ///< I_eq = (T_n + K_t·I_0)/K_t: makes the nominal torque and the drag
-  double limit_current_A = 0.0;       ///< brings the winding just to its limit at nominal speed and 25 °C ambient
+  double equivalent_current_A = 0.0;  ///< I_eq = (T_n + K_t·I_0)/K_t: current for nominal torque and drag
+  double limit_current_A = 0.0;       ///< current that heats the winding exactly to its limit at nominal speed and 25 °C ambient
 };
-/// Nothing where the file has no nominal torque or speed.
+/// Returns nothing if the file lacks the nominal torque, the nominal speed or a value of the network.
 std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor);
 
 }  // namespace heatsoak

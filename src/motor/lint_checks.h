@@ -1,5 +1,5 @@
-// What the checks of the lint share; nobody else needs it. A check says something only where all the figures
-// it compares are in the file: absent ones are NaN in MotorValues.
+// Interface shared by the lint checks. A check reports nothing unless the file gives all the values that it compares; absent ones are NaN
+// in MotorValues.
 #pragma once
 
 #include <initializer_list>
@@ -12,7 +12,7 @@
 
 namespace heatsoak::lint_checks {
 
-/// Takes the findings of one check.
+/// Collects the findings of one check.
 class Findings {
  public:
   Findings(const Motor& motor, std::string_view check, std::vector<LintFinding>& list) : motor_(motor), check_(check), list_(list) {}
@@ -23,7 +23,7 @@ class Findings {
   void error_at(Location at, std::string message) { add_at(LintFinding::Level::error, std::move(at), std::move(message)); }
   void note_at(Location at, std::string message) { add_at(LintFinding::Level::note, std::move(at), std::move(message)); }
   void warning_at(Location at, std::string message) { add_at(LintFinding::Level::warning, std::move(at), std::move(message)); }
-  /// `key` is the figure that the finding is about; its place in the file is reported.
+  /// Adds a finding about the value `key`, with its place in the file.
   void add(LintFinding::Level level, std::string_view key, std::string message);
 
  private:
@@ -36,24 +36,24 @@ class Findings {
   std::vector<LintFinding>& list_;
 };
 
-/// Nominal figures of a sheet hold at this ambient temperature.
+/// Ambient temperature at which the nominal values of data sheets hold.
 inline constexpr double kSheetAmbient_C = 25.0;
 
 struct Bounds {
   double low = 0.0;
   double high = 0.0;
-  /// False for NaN on purpose too: what is not given is not outside.
+  /// Returns whether the value is out of bounds; false for NaN, so that absent values cause no finding.
   [[nodiscard]] bool excludes(double value) const { return value < low || value > high; }
 };
 
-/// A contradiction is an error, but only a warning where one of the figures is somebody's estimate.
+/// Returns error, or warning if one of the contradicting values is an estimate.
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys);
-/// Whether every value is there that a network needs: a file that was read in part may lack some.
+/// Returns whether all values that a thermal network needs are present; a file that was read incompletely may lack some.
 bool is_complete(const MotorValues& values);
-/// Of the copper at `temperature_C`.
+/// Returns the terminal resistance at `temperature_C`, in ohm.
 double resistance_ohm(const MotorValues& values, double temperature_C);
 
-/// Three significant digits with unit, as a sheet prints them.
+/// These functions format a value with three significant digits and its unit, as a data sheet does.
 std::string shown_torque(double torque_Nm);
 std::string shown_speed(double speed_rad_per_s);
 std::string shown_torque_constant(double constant_Nm_per_A);
@@ -62,7 +62,7 @@ std::string shown_gradient(double gradient_rad_per_s_per_Nm);
 std::string shown_inertia(double inertia_kg_m2);
 std::string shown(double value, std::string_view unit);
 
-// Electrical and mechanical figures: lint_electrical.cpp
+// Electrical and mechanical values: lint_electrical.cpp
 void constants(const Motor& motor, Findings& findings);
 void mechanical_time_constant(const Motor& motor, Findings& findings);
 void speed_torque_gradient(const Motor& motor, Findings& findings);
@@ -71,7 +71,7 @@ void stall_torque(const Motor& motor, Findings& findings);
 void no_load_speed(const Motor& motor, Findings& findings);
 void max_efficiency(const Motor& motor, Findings& findings);
 
-// The nominal and the peak point: lint_nominal_point.cpp
+// Nominal and peak operating point: lint_nominal_point.cpp
 void nominal_current(const Motor& motor, Findings& findings);
 void peak_point(const Motor& motor, Findings& findings);
 void power_balance(const Motor& motor, Findings& findings);
@@ -87,7 +87,7 @@ void density(const Motor& motor, Findings& findings);
 void rotor_inertia(const Motor& motor, Findings& findings);
 void limits(const Motor& motor, Findings& findings);
 
-// What the figures rest on: lint_provenance.cpp
+// Sources, spreads and origins of the values: lint_provenance.cpp
 void sources(const Motor& motor, Findings& findings);
 void confirmations(const Motor& motor, Findings& findings);
 void estimates(const Motor& motor, Findings& findings);

@@ -1,4 +1,4 @@
-// Constants, time constants and lines of a sheet that follow from one another.
+// Checks of electrical and mechanical values that follow from one another.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,27 +12,26 @@
 namespace heatsoak::lint_checks {
 namespace {
 
-/// Three digits leave ±0.5 % where the figure begins with 1. Two figures make 1 %, and conversion of units by the
-/// manufacturer adds a digit: the maxon pages have 0.996 … 1.001.
+/// Rounding to three digits is ±0.5 % if the number begins with 1. Two values give 1 %, and unit conversion by the manufacturer adds
+/// another digit. On maxon pages the product is 0.996 to 1.001.
 constexpr double kConstantsTolerance = 0.015;
-/// A convention must explain the factor better than this; the nearest two of them are 4.5 % apart.
+/// A convention must explain the factor at least this well; the two closest conventions are 4.5 % apart.
 constexpr double kConventionTolerance = 0.02;
-/// R, J, K_t² and the listed figure of three digits: 5 × 0.5 % at worst, 2 % in all likelihood; found ≤ 0.4 %.
+/// R, J, K_t² and the listed value, each with three digits: 5 × 0.5 % at worst, 2 % very likely; found ≤ 0.4 %.
 constexpr double kProductTolerance = 0.02;
-/// U/R, and K_t·U/R: two or three figures of three digits; found ≤ 0.7 % and ≤ 0.5 %.
+/// U/R and K_t·U/R: two or three values of three digits; found ≤ 0.7 % and ≤ 0.5 %.
 constexpr double kStallTolerance = 0.015;
 /// The 43.5 mm pages print the stall current in whole amperes, and 25.48 A as 26 A.
 constexpr double kWholeAmperes_A = 0.6;
-/// Below this share of K_t·U/R no rounding explains the stall torque; with saturation it was 0.37 and 0.47.
+/// Rounding cannot explain a stall torque below this share of K_t·U/R; with saturation the share was 0.37 and 0.47.
 constexpr double kLooksSaturated = 0.8;
-/// motors.yaml: k_n(U − I_0 R) over the listed speed is 1.0008 … 1.0212, because commutation costs voltage too;
-/// ±1 % of rounding around it.
+/// motors.yaml: k_n(U − I_0 R) over the listed speed is 1.0008 to 1.0212, because commutation needs voltage too; plus ±1 % of rounding.
 constexpr Bounds kNoLoadSpeed{0.99, 1.03};
-/// (1 − √(I_0 R/U))² is the linear motor's best: above it only rounding (whole percent: 0.6 %). Loss that
-/// grows with speed costs up to 5.6 % of it on known sheets (ECX FLAT 42 M).
+/// (1 − √(I_0 R/U))² is the best efficiency of the linear model. Only rounding exceeds it (whole percent: 0.6 %). Losses that grow with
+/// speed lower it by up to 5.6 % on known sheets (ECX FLAT 42 M).
 constexpr Bounds kEfficiency{0.9, 1.015};
 
-/// What a torque constant is, divided by the one per DC ampere, when somebody mistakes the convention.
+/// A mistaken convention: torque constant in that convention divided by the one per DC ampere.
 struct Convention {
   double factor;
   std::string_view meaning;
@@ -74,7 +73,7 @@ std::string explanation(double factor) {
   return fmt::format("these are contradictory conventions: the factor is that of {}", nearest.meaning);
 }
 
-/// What to do; where the no-load speed is given, it tells which of the two is wrong.
+/// Returns advice. A given no-load speed decides which of the two constants is wrong.
 std::string verdict_on_constants(const MotorValues& v) {
   const double emf_V = v.nominal_voltage_V - v.no_load_current_A * v.terminal_resistance_ohm;
   const double no_load_rad_per_s = v.no_load_speed_rad_per_s;
@@ -92,7 +91,7 @@ std::string verdict_on_constants(const MotorValues& v) {
   return fmt::format("the no-load speed of {} agrees with the speed constant; {}", shown_speed(no_load_rad_per_s), torque_verdict);
 }
 
-/// For a quantity proportional to the resistance: the factor between a phase and two of them.
+/// Returns a hint if a quantity proportional to the resistance is off by the factor 2 between one phase and two.
 std::string resistance_hint(double found_over_listed) {
   if (std::abs(found_over_listed / 0.5 - 1.0) < kConventionTolerance) {
     return "; the factor 2 means that the resistance is of one phase: set conventions.terminal_resistance = \"phase_to_star\"";
@@ -175,7 +174,7 @@ void stall_torque(const Motor& motor, Findings& findings) {
     }
   } else if (around_one(kStallTolerance).excludes(ratio) &&
              std::abs(v.stall_torque_Nm / (v.torque_constant_Nm_per_A * v.stall_current_A) - 1.0) < kStallTolerance) {
-    // Torque and current at stall agree with each other: nothing saturates.
+    // Stall torque and stall current are consistent, so there is no saturation.
     findings.error("stall_torque", found + ", expected the same within 1.5 %" + resistance_hint(ratio));
   } else if (ratio < kLooksSaturated) {
     findings.error("stall_torque", found +

@@ -1,4 +1,4 @@
-// What no motor of this world can have.
+// Checks of orders of magnitude: values that no real motor has.
 #include <fmt/format.h>
 
 #include <numbers>
@@ -9,25 +9,24 @@
 namespace heatsoak::lint_checks {
 namespace {
 
-/// Copper (385 J/(kg K)) is 3 to 30 % of a motor's mass, and resin holds as much again at most; the maxon
-/// sheets have 32 … 51 J/(kg K).
+/// Copper (385 J/(kg K)) is 3 to 30 % of a motor's mass, and resin adds at most as much again; maxon sheets give 32 to 51 J/(kg K).
 constexpr Bounds kWindingHeat_J_per_kg_K{10.0, 150.0};
-/// Steel 460, magnets 450, aluminium 900 J/(kg K): at most all of it, at least a stator of a quarter of the mass
-/// (the rotor may hang in the air); the maxon sheets have 355 … 455 J/(kg K).
+/// Steel 460, magnets 450, aluminium 900 J/(kg K). Upper bound: all of the mass counts. Lower bound: a stator of a quarter of the mass,
+/// because an external rotor may not contribute. Maxon sheets give 355 to 455 J/(kg K).
 constexpr Bounds kStatorHeat_J_per_kg_K{100.0, 900.0};
-/// L/R does not depend on the number of turns: 0.058 ms without iron, 0.38 … 1.0 ms with it in motor_db; a
-/// prefix or a zero too many is a factor of 10.
+/// L/R does not depend on the number of turns: in motor_db 0.058 ms without iron, 0.38 to 1.0 ms with iron. A wrong prefix or an extra zero
+/// is a factor of 10.
 constexpr Bounds kElectrical_s{20e-6, 5e-3};
-/// Steel is 7850, magnets 7500, aluminium 2700, resin 1200 kg/m³, and gaps weigh nothing: a body is less dense
-/// than a solid one of magnet and steel. motor_db has 3860 … 5330 kg/m³.
+/// Steel has 7850, magnets 7500, aluminium 2700, resin 1200 kg/m³. With its gaps a motor is less dense than solid magnet and steel.
+/// motor_db has 3860 to 5330 kg/m³.
 constexpr Bounds kDensity_kg_per_m3{1500.0, 7500.0};
 constexpr Bounds kUsualDensity_kg_per_m3{3000.0, 6500.0};
-/// J/(m·r²): all mass in a thin ring would be 1, half the mass in a ring is 0.5; motor_db has 0.05 … 0.28.
+/// J/(m·r²): 1 if all mass is in a thin ring, 0.5 if half of it is; motor_db has 0.05 to 0.28.
 constexpr double kMostInertia = 0.5;
-/// An external rotor is a bell with the magnets in it: 8 % of the mass with a radius of gyration of 0.6 r has 0.03.
-/// motor_db has 0.05 … 0.28 for external rotors, 0.018 … 0.028 for the internal ones of the EC-i 40.
+/// An external rotor is a bell with the magnets in it: 8 % of the mass with a radius of gyration of 0.6 r gives 0.03. motor_db has 0.05 to
+/// 0.28 for external rotors, 0.018 to 0.028 for the internal ones of the EC-i 40.
 constexpr double kLeastExternalInertia = 0.03;
-/// Shorter than this share of its diameter a motor counts as flat: nearly all of them have an external rotor.
+/// A motor shorter than this share of its diameter counts as flat; nearly all flat motors have an external rotor.
 constexpr double kFlat = 0.7;
 
 double body_area_m2(const MotorValues& v) { return std::numbers::pi / 4.0 * v.diameter_m * v.diameter_m; }

@@ -1,4 +1,4 @@
-// The nominal point against the constants, the energy it takes and the heat it makes.
+// Checks of the nominal point: motor constants, energy balance and heat.
 #include <fmt/format.h>
 
 #include <boost/math/tools/roots.hpp>
@@ -13,30 +13,30 @@
 namespace heatsoak::lint_checks {
 namespace {
 
-/// motors.yaml: T_n/(K_t·I_n) is 0.98 … 1.09 on EC flat pages, because the listed current is a mean of the supply
-/// during commutation; 0.1 more on each side for other manufacturers' ways to say it.
+/// motors.yaml: T_n/(K_t·I_n) is 0.98 to 1.09 on EC flat pages, because the listed current is the mean supply current during commutation.
+/// Widened by about 0.1 on each side for the definitions of other manufacturers.
 constexpr Bounds kNominalTorque{0.85, 1.2};
-/// A peak torque has the same excess (found 1.07, 1.10), but saturation may take most of it (0.37 at stall).
+/// A peak torque has the same excess (found 1.07 and 1.10), but saturation may reduce it strongly (0.37 at stall).
 constexpr Bounds kPeakTorque{0.2, 1.2};
-/// Energy: copper at 25 °C is the least loss there can be, so only rounding of four figures is left.
+/// Energy balance with the least possible loss, copper at 25 °C: only the rounding of four values remains.
 constexpr double kPowerTolerance = 0.03;
-/// Shaft, hot copper and drag make 0.93 … 1.03 of the input on known sheets. Less is power gone nowhere; more is a
-/// resistance too high, for a sheet whose nominal point leaves the winding cooler than its limit 4 % more at most.
+/// Shaft power, hot copper loss and drag explain 0.93 to 1.03 of the input on known sheets. Too little means unexplained power. Too much
+/// means a resistance that is too high; a sheet whose nominal point stays below the winding limit gives at most 4 % more.
 constexpr Bounds kPowerExplained{0.85, 1.08};
-/// Rounding of the nominal speed and of the line; the found speeds lie between the two lines of the check.
+/// Rounding of the nominal speed and of the line; known speeds lie between the two lines of the check.
 constexpr double kSpeedTolerance = 0.03;
-/// A resistance derived from the slowest nominal speed is uncertain by the commutation: ±30 % around two.
+/// Commutation makes a resistance derived from the slowest nominal speed uncertain: ±30 % around 2.
 constexpr Bounds kAboutTwo{1.4, 2.6};
-/// motors.yaml: 0.946 … 1.045 on the 12 windings with full data; rounded up for other sheets.
+/// motors.yaml: 0.946 to 1.045 on the 12 windings with full data; widened for other sheets.
 constexpr Bounds kHeat{0.85, 1.10};
-/// Of those 12 with their rounding: outside, a figure that the verdict rests on may be wrong, and half a thermal resistance is only 7 %
-/// away.
+/// Range of those 12 with rounding. Outside it a value that the verdict depends on may be wrong: half a thermal resistance changes the
+/// ratio by only 7 %.
 constexpr Bounds kUsualHeat{0.935, 1.055};
-/// motors.yaml: I_n over the current for copper loss alone is 0.73 … 0.985; ±10 % around it.
+/// motors.yaml: I_n over the current for copper loss alone is 0.73 to 0.985; plus ±10 %.
 constexpr Bounds kCopperLimit{0.65, 1.05};
 
-/// The current that brings the winding just to its limit in the steady state; 0 where the other losses do so alone. By the
-/// sheet's network: the sheet's nominal point knows nothing of effects that the file adds.
+/// Returns the current in A that heats the winding exactly to its limit in the steady state; 0 if the other losses alone do. Uses the data
+/// sheet network, because the nominal point of a sheet does not include effects that the file adds.
 double limit_current_A(const Motor& motor, double speed_rad_per_s) {
   Motor sheet = motor;
   sheet.effects.clear();
@@ -64,8 +64,8 @@ LintFinding::Level level_of_heat(const Motor& motor) {
               "torque_constant", "no_load_current", "nominal_torque", "nominal_speed", "nominal_current"});
 }
 
-/// Volts per ampere that commutation costs beyond the copper at most: the overlap of a six-pulse bridge,
-/// (3/π)·ω_electric·L of one phase. 0 where the file gives no inductance or pole pairs.
+/// Returns the largest voltage loss of commutation per ampere, in ohm: the overlap of a six-pulse bridge, (3/π)·ω_electric·L of one phase.
+/// 0 if the file lacks inductance or pole pairs.
 double commutation_ohm(const MotorValues& v) {
   const double overlap_ohm = 3.0 / std::numbers::pi * v.pole_pairs * v.nominal_speed_rad_per_s * 0.5 * v.terminal_inductance_H;
   return std::isnan(overlap_ohm) ? 0.0 : overlap_ohm;
@@ -139,8 +139,8 @@ void power_balance(const Motor& motor, Findings& findings) {
   }
 }
 
-/// The name plate holds for the type: a winding made for low speed does not reach it at its own voltage (the
-/// 48 V, 3440 rpm winding of a 70 W motor gives 36 W). But the type's torque at its highest speed must.
+/// The assigned power holds for the motor type. A winding for low speed does not reach it at its own voltage (the 48 V, 3440 rpm winding of
+/// a 70 W motor gives 36 W), but the type's torque at its highest speed must.
 void assigned_power(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double torque_Nm = std::isnan(v.nominal_torque_Nm) ? v.torque_constant_Nm_per_A * v.nominal_current_A : v.nominal_torque_Nm;
@@ -164,8 +164,8 @@ void assigned_power(const Motor& motor, Findings& findings) {
   }
 }
 
-/// At best the motor loses the speed of its cold resistance, at worst that of hot copper and full commutation
-/// overlap. By the speed constant, which the no-load speed confirms, so that a wrong torque constant does not spoil it.
+/// The speed loss at nominal torque is at least that of the cold resistance and at most that of hot copper plus full commutation overlap.
+/// The check uses the speed constant, which the no-load speed confirms, so that a wrong torque constant does not disturb it.
 void nominal_speed(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double constant_rad_per_s_per_V =
@@ -230,7 +230,7 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
   }
 }
 
-/// The coarser sibling for sheets without nominal torque or speed: copper loss alone, at standstill.
+/// Coarser check for sheets without nominal torque or speed: copper loss alone, at standstill.
 void copper_limit(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   if (std::isnan(v.nominal_current_A) || !is_complete(v) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {

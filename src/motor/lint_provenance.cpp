@@ -1,4 +1,4 @@
-// What a motor's figures rest on: who says so, who confirms it, how far it may be wrong, and what counts them twice.
+// Checks of sources, confirmations, origins and spreads, and of heat that is counted twice.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,10 +11,10 @@
 namespace heatsoak::lint_checks {
 namespace {
 
-/// Of an agreed figure, which has no tolerance.
+/// Relative tolerance of agreed values, which have no spread.
 constexpr double kSame = 1e-6;
 
-/// Every figure of the file, those of its effects too, with a name for messages.
+/// Calls visit(name, figure) for every value of the file, including those of its effects and sensors.
 template <class Visit>
 void for_each_figure(const Motor& motor, const Visit& visit) {
   for (const auto& [key, figure] : motor.figures) {
@@ -22,7 +22,7 @@ void for_each_figure(const Motor& motor, const Visit& visit) {
   }
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      // A choice is a word, not a figure that somebody found.
+      // A choice is a word, not a value with a source.
       if (effect.type->parameters[i].choices.empty()) {
         visit(fmt::format("{}.{}", effect.name, effect.type->parameters[i].key), effect.parameters[i]);
       }
@@ -37,7 +37,7 @@ void for_each_figure(const Motor& motor, const Visit& visit) {
 
 void sources(const Motor& motor, Findings& findings) {
   for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
-    // What an estimate rests on stands in its derivation.
+    // The derivation of an estimate replaces its source.
     const bool is_derived = figure.origin == Origin::estimated && !figure.derivation.empty();
     if (figure.source.empty() && !is_derived) {
       findings.error_at(figure.at, fmt::format("{} of {} names no source; expected the ids of what it was derived from, or one whose text "
@@ -47,7 +47,7 @@ void sources(const Motor& motor, Findings& findings) {
   });
 }
 
-/// Two sources that know nothing of each other agree within the tolerance of the figure, or one of them is wrong.
+/// Two independent sources must agree within the tolerance of the value, else one of them is wrong.
 void confirmations(const Motor& motor, Findings& findings) {
   for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
     const Bounds bounds = figure.spread
@@ -88,7 +88,7 @@ void spreads(const Motor& motor, Findings& findings) {
   }
 }
 
-/// Nothing that is built is exact.
+/// Real parts have a tolerance, so a spread of zero width is an error.
 void exact_values(const Motor& motor, Findings& findings) {
   for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
     if (is_exact(figure) && !is_agreed(key)) {
@@ -100,7 +100,7 @@ void exact_values(const Motor& motor, Findings& findings) {
   });
 }
 
-/// A tolerance of 0.001 % is as good as none. A fit may find one, so that of a measured value is widened and noted, not refused.
+/// A spread of 0.001 % is as unlikely as none. A fit may produce one for a measured value, so there it is a note and the spread is widened.
 void narrow_values(const Motor& motor, Findings& findings) {
   for (const NarrowSpread& each : narrow_spreads(motor)) {
     const Figure& figure = *each.figure;

@@ -15,7 +15,7 @@
 namespace heatsoak {
 namespace {
 
-/// From the motor of a watch to that of a locomotive: what lies outside is a slip of the unit.
+/// Ranges from a watch motor to a locomotive motor; a value outside them has a wrong unit.
 constexpr Range kVoltage = Range::between(0.1, 1e4);
 constexpr Range kCurrent = Range::between(1e-4, 1e5);
 constexpr Range kResistance = Range::between(1e-5, 1e5);
@@ -74,8 +74,8 @@ constexpr std::array kSpecs = {
 constexpr std::array<std::string_view, 8> kAgreed{"nominal_voltage", "assigned_power", "max_speed",   "pole_pairs",
                                                   "winding_limit",   "stator_limit",   "ambient_min", "ambient_max"};
 
-/// Conversions to the conventions of MotorValues. For a sinusoidal back-EMF the torque constant per peak
-/// phase ampere is √3·π/6 = 0.907 of the one per DC ampere of block commutation; RMS is peak/√2.
+/// Factors to the conventions of MotorValues. For a sinusoidal back-EMF the torque constant per peak phase ampere is √3·π/6 = 0.907 of the
+/// one per DC ampere of block commutation; RMS is peak/√2.
 constexpr std::array<std::pair<std::string_view, double>, 2> kResistanceConventions{{{"between_terminals", 1.0}, {"phase_to_star", 2.0}}};
 const std::array<std::pair<std::string_view, double>, 3> kTorqueConventions{
     {{"per_dc_ampere", 1.0},
@@ -131,7 +131,7 @@ void read_figures(Reader& top, Motor& motor, double resistance_factor, double to
   figures->finish();
 }
 
-/// A source that a figure names must be explained, else the origin leads nowhere.
+/// Every source id that a value names must be explained in [sources], so that its origin can be checked.
 void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   std::vector<std::string> known;
   for (const auto& [id, text] : motor.sources) {
@@ -165,7 +165,7 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   }
 }
 
-/// In the order in which they are drawn.
+/// Keys of all values in the order of sampling.
 std::vector<std::string> figure_keys(const Motor& motor) {
   std::vector<std::string> keys;
   for (const MotorFigureSpec& each : kSpecs) {
@@ -181,7 +181,7 @@ std::vector<std::string> figure_keys(const Motor& motor) {
   return keys;
 }
 
-/// Where the numbers of a draw go, in the order of figure_keys().
+/// Pairs of each value and the number in the sample that it sets, in the order of figure_keys().
 std::vector<std::pair<const Figure*, double*>> places(const Motor& motor, MotorSample& sample) {
   std::vector<std::pair<const Figure*, double*>> all;
   for (const MotorFigureSpec& each : kSpecs) {
@@ -328,8 +328,7 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
 
 namespace {
 
-/// Of a motor whose file a calibration wrote: what it fitted and the runs show is measured. A limit and a tabulated constant of a sheet
-/// do not make it worse, a guess does.
+/// Quality of a motor file written by a calibration. Limits and constants from a data sheet do not lower it, estimates do.
 std::string_view quality_of_fit(const Motor& motor) {
   bool is_measured = true;
   for (const MotorEffect& effect : motor.effects) {

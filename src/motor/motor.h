@@ -1,4 +1,4 @@
-// A motor as its file declares it: figures with unit, origin, source and spread.
+// A motor as its file declares it: values with unit, origin, source and spread.
 #pragma once
 
 #include <filesystem>
@@ -21,8 +21,8 @@ namespace heatsoak {
 
 inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
-/// The figures as numbers, in this program's conventions: resistance and inductance between two terminals,
-/// torque constant per DC ampere of block commutation. NaN where the file gives none.
+/// Values as numbers in this program's conventions: resistance and inductance between two terminals, torque constant per DC ampere of block
+/// commutation. NaN if the file does not give them.
 struct MotorValues {
   double nominal_voltage_V = kAbsent;
   double no_load_speed_rad_per_s = kAbsent;
@@ -59,33 +59,34 @@ struct MotorValues {
   double thermal_time_constant_stator_s = kAbsent;
 };
 
-/// The one declaration of a motor figure: what the file calls it, and where its number goes.
+/// Declaration of one motor parameter: its key, unit and range in the file, and the member that stores it.
 struct MotorFigureSpec {
   ParameterSpec spec;
   double MotorValues::*value = nullptr;
   Need need = Need::optional;
-  bool is_thermal = false;  ///< the temperature calculation rests on it
+  bool is_thermal = false;  ///< temperatures depend on it
 };
 std::span<const MotorFigureSpec> motor_figure_specs();
-/// Agreed, not built, such as a limit or the nominal voltage: no part has another one, so it needs no tolerance.
+/// Returns whether the value is set by agreement, such as a limit or the nominal voltage. It is the same for all parts and needs no
+/// tolerance.
 bool is_agreed(std::string_view key);
 
-/// An effect that the file adds to the datasheet network.
+/// An effect that the file adds to the data sheet network.
 struct MotorEffect {
   std::string name;
   const EffectType* type = nullptr;
   std::vector<std::string> nodes;
   std::vector<Figure> parameters;  ///< in the type's declared order
-  /// Where it acts: "cooling" -> "fan" as logs name their conditions. Empty: everywhere. An effect with a condition was seen in
-  /// some runs only: what predictions do with it stands in conditions.h.
+  /// Condition under which it acts: "cooling" -> "fan", as logs name their conditions. Empty: always. An effect with a condition was
+  /// observed in some runs only; conditions.h describes how predictions treat it.
   std::map<std::string, std::string> condition = {};
-  std::string column = {};  ///< of logs, that a curve is drawn over; empty where it is over another signal
+  std::string column = {};  ///< log column that is the abscissa of its curve; empty if the abscissa is another signal
 
-  /// Of the parameters, in the type's declared order.
+  /// Returns the values of the parameters in the type's declared order.
   [[nodiscard]] std::vector<double> values() const;
 };
 
-/// A fault that the file states for a sensor at the motor: it moves what is shown, not the temperature.
+/// A sensor fault that the file states. It changes the reading, not the temperature.
 struct MotorSensor {
   std::string name;
   const SensorEffectType* type = nullptr;
@@ -93,37 +94,37 @@ struct MotorSensor {
 };
 
 struct Motor {
-  std::string id;  ///< the file's stem
+  std::string id;  ///< stem of the file name
   std::filesystem::path file;
   std::string manufacturer;
   std::string name;
   std::string part_number;
   std::string type;                            ///< "brushless", "brushed"
-  std::string rotor;                           ///< "external" around the stator, "internal"; empty where the file does not say
-  std::map<std::string, std::string> assumed;  ///< conditions that were stated to hold (conditions.h); no part of the file
+  std::string rotor;                           ///< "external" (around the stator) or "internal"; empty if the file does not say
+  std::map<std::string, std::string> assumed;  ///< conditions set by under() (conditions.h); not in the file
   std::vector<std::string> notes;
   std::map<std::string, std::string, std::less<>> sources;
   bool stall_includes_saturation = false;
   std::map<std::string_view, Figure> figures;  ///< by key, in this program's conventions
   std::vector<MotorEffect> effects;
   std::vector<MotorSensor> sensors;
-  std::optional<MotorFit> fit;  ///< where a calibration wrote the file
+  std::optional<MotorFit> fit;  ///< present if a calibration wrote the file
   MotorValues nominal;
 };
 
 /// Throws Failure (bad_input) with every problem of the file.
 Motor read_motor(const std::filesystem::path& path);
 
-/// By key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null where the motor has none.
+/// Finds a value by key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null if the motor has none.
 Figure* find_figure(Motor& motor, std::string_view key);
-/// Sets `nominal` by the figures, after some of them were changed.
+/// Updates `nominal` after values in `figures` were changed.
 void refresh_values(Motor& motor);
 
-/// What the file states for the sensor of a signal, "winding_C".
+/// Returns the faults that the file states for the sensor of a signal such as "winding_C".
 std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal);
 
-/// One draw of every declared tolerance and range of what makes temperatures; figures of a fit hang together as the fit says, and all heat
-/// of a motor with a forecast band has a factor of that band.
+/// One sample of all uncertain values that temperatures depend on. Fitted values have the correlation of the fit. If the fit has a forecast
+/// band, terminal resistance and no-load current are multiplied by a common heat factor.
 struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order
@@ -131,10 +132,10 @@ struct MotorSample {
 MotorSample nominal_sample(const Motor& motor);
 MotorSample draw_sample(const Motor& motor, Random& random);
 
-/// What a verdict on this motor's temperature rests on. Of a file that a calibration wrote: `measured` where it has all of the four thermal
-/// resistances and time constants from data and nothing is estimated, else `mixed`. Otherwise: `datasheet` where every thermal figure is
-/// measured or from the manufacturer's sheet, `estimated` where one of the four thermal resistances and time constants, the winding limit
-/// or a figure of an added effect is an estimate, `mixed` otherwise.
+/// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances
+/// and time constants are measured and no thermal value is an estimate, else `mixed`. Otherwise: `datasheet` if every thermal value is
+/// measured or from the data sheet; `estimated` if one of the four, the winding limit or a parameter of an effect is an estimate; else
+/// `mixed`.
 std::string_view data_quality(const Motor& motor);
 
 }  // namespace heatsoak

@@ -23,8 +23,8 @@ bool brings_node(const EffectType& type) {
 struct Entry {
   std::string name;
   Reader reader;
-  const EffectType* type;          ///< null where it is one of a sensor
-  const SensorEffectType* sensor;  ///< null where it is one of the network
+  const EffectType* type;          ///< null for a sensor effect
+  const SensorEffectType* sensor;  ///< null for a thermal effect
 };
 
 std::vector<std::string> known_types() {
@@ -38,7 +38,7 @@ std::vector<std::string> known_types() {
   return known;
 }
 
-/// The tables whose name and type are good.
+/// Returns the tables with a valid name and type; adds a problem for each other one.
 std::vector<Entry> entries_of(Reader& table) {
   std::vector<Entry> entries;
   for (auto& [name, reader] : table.named_tables()) {
@@ -114,7 +114,7 @@ bool goes_with_column(const MotorEffect& effect) {
   return std::ranges::any_of(effect.parameters, [](const Figure& each) { return each.printed == kColumnChoice; });
 }
 
-/// Those that bring a node come before those that name it, else as in the file.
+/// Orders the effects so that every node is added before it is used; otherwise the order of the file is kept.
 std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& table) {
   std::vector<std::string> there(kNodes.begin(), kNodes.end());
   std::vector<MotorEffect> ordered;

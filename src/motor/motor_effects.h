@@ -1,12 +1,13 @@
-// The effects that a motor file adds: [effects.NAME], one table each.
+// Reads the effects that a motor file adds: one table [effects.NAME] each.
 #pragma once
 
 #include "motor/motor.h"
 
 namespace heatsoak {
 
-/// Reads the table `effects` of the file, if there is one: those of the network and those of sensors. A node that an effect brings is named
-/// after it, and other effects may name it too; the motor gets the effects in an order in which every node is there before it is named.
+/// Reads the table `effects`, if present: thermal effects and sensor faults. A node that an effect adds has the effect's name, and other
+/// effects may use it. The motor gets the effects ordered so that every node is added before it is used. Adds problems to the reader's
+/// diagnostics.
 void read_effects(Reader& top, Motor& motor);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// A motor file whose problems are collected instead of thrown.
+// Reads a motor file and collects its problems instead of throwing.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace heatsoak {
 
-/// As read_motor(path), but adds the problems to `diagnostics`, for whoever looks for more of them. Values that could not be read are NaN
-/// or absent. Throws Failure (bad_input) where the file is no TOML.
+/// Like read_motor(path), but adds the problems to `diagnostics`, so that the caller can look for more. Values that could not be read are
+/// NaN or absent. Throws Failure (bad_input) if the file is not valid TOML.
 Motor read_motor(const std::filesystem::path& path, Diagnostics& diagnostics);
 
 }  // namespace heatsoak

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kGainReference_C = 25.0;
 
-/// What remains of a difference after an interval.
+/// Share of an initial difference that remains after an interval.
 double kept_of_lag(double lag_s, double duration_s) { return lag_s > 0.0 ? std::exp(-duration_s / lag_s) : 0.0; }
 
 }  // namespace
@@ -58,7 +58,7 @@ double shown_at_rest_C(std::span<const SensorFault> faults, double true_C) {
 }
 
 double true_at_rest_C(std::span<const SensorFault> faults, double shown_C) {
-  // Readings are linear in the temperature.
+  // Readings at rest are linear in the temperature.
   const double at_0_C = shown_at_rest_C(faults, 0.0);
   return (shown_C - at_0_C) / (shown_at_rest_C(faults, 1.0) - at_0_C);
 }
@@ -95,8 +95,8 @@ SensorLaw sensor_gain_law() {
 }
 
 SensorLaw sensor_lag_law() {
-  // Between two samples the temperature changes evenly with slope s; the reading then follows
-  // y(t) = T(t) − τ·s + (y₀ − T₀ + τ·s)·e^(−t/τ). It starts at the temperature itself.
+  // Between two samples the temperature changes linearly with slope s; the reading follows y(t) = T(t) − τ·s + (y₀ − T₀ + τ·s)·e^(−t/τ).
+  // Initially it equals the temperature.
   return {.at_rest = [](double, double true_C, bool) { return true_C; },
           .after =
               [](double size, double duration_s, double before_C, double now_C, double shown_C) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kDigits = 6;
 
-/// As a basic string of TOML.
+/// Quotes a text as a TOML basic string.
 std::string toml_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -49,7 +49,7 @@ std::string figure_text(const Figure& figure, const std::string& unit) {
     }
     text += ids.size() == 1 ? fmt::format(", source = {}", ids.front()) : fmt::format(", source = [{}]", fmt::join(ids, ", "));
   }
-  // A share of nothing is nothing.
+  // A percentage of zero is zero: the tolerance of a value of 0 cannot be written.
   if (figure.spread && (figure.spread->kind == Spread::Kind::range || unit == "degC" || figure.value != 0.0)) {
     const Spread& spread = *figure.spread;
     const double half = 0.5 * (spread.high - spread.low);
@@ -74,7 +74,7 @@ std::string head_of_effect(const std::string& name, std::string_view type) {
 std::string effect_text(const MotorEffect& effect) {
   std::string text = head_of_effect(effect.name, effect.type->name);
   for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
-    // A node of the effect's own is named after it.
+    // A node of the effect's own has the effect's name and is not written.
     if (effect.type->nodes[role].own_capacity < 0) {
       text += fmt::format("{} = {}\n", effect.type->nodes[role].role, toml_text(effect.nodes[role]));
     }

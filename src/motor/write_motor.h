@@ -1,4 +1,4 @@
-// A motor as the text of a motor file.
+// Writes a motor as a motor file.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace heatsoak {
 
-/// read_motor() of it gives the same motor, in this program's conventions. Figures keep the text of their file where they have one.
+/// Returns the text of a file from which read_motor() gives the same motor, in this program's conventions. Values keep the text of their
+/// original file if they have one.
 std::string to_toml(const Motor& motor);
 
 }  // namespace heatsoak

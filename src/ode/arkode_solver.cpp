@@ -1,4 +1,4 @@
-// The explicit one-step method: Dormand-Prince 5(4).
+// Explicit one-step method: Dormand-Prince 5(4).
 #include <arkode/arkode_erkstep.h>
 
 #include "ode/solver.h"
@@ -19,14 +19,14 @@ class ArkodeSolver final : public OdeSolver {
       check(ERKStepRootInit(memory_.get(), event_count(), events));
       check(ERKStepSetNoInactiveRootWarn(memory_.get()));
     } else {
-      // Without events nothing is interpolated, and the default of degree 4 costs one call more per stop.
+      // Without events nothing is interpolated; the default interpolant of degree 4 costs one more call per stop.
       check(ERKStepSetInterpolantDegree(memory_.get(), 1));
     }
   }
 
  private:
   void restart(StepSize step_size) override {
-    // Reset keeps the step size and the controller's history, ReInit searches for a first step again.
+    // Reset keeps the step size and the history of the step controller; ReInit searches for a first step again.
     check(step_size == StepSize::keep ? ERKStepReset(memory_.get(), time_s(), y())
                                       : ERKStepReInit(memory_.get(), derivative, time_s(), y()));
   }

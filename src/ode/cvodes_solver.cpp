@@ -40,8 +40,8 @@ class CvodesSolver final : public OdeSolver {
 
  private:
   void restart(StepSize /*step_size*/) override {
-    // At order one the step size reached before is far too large; keeping the last first step would save 2 of
-    // 22 calls per piece, but a single short piece would shrink it for all that follow.
+    // At order one the previous step size is far too large. Keeping the last first step would save 2 of 22 calls per interval, but one
+    // short interval would shrink it for all later ones.
     check(CVodeReInit(memory_.get(), time_s(), y()));
   }
 

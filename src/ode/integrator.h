@@ -1,4 +1,4 @@
-// SUNDIALS behind one face: start at a discontinuity, advance to the next one.
+// Common interface to the SUNDIALS solvers: start at a discontinuity, then advance to the next one.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace heatsoak {
 
-/// cvodes_bdf: stiff networks. cvodes_adams: smooth ones. arkode_erk: an explicit one-step method, which
-/// loses nothing at a restart and so is the fastest on inputs that jump (Dormand-Prince 5(4)).
+/// cvodes_bdf: for stiff networks. cvodes_adams: for smooth inputs. arkode_erk: an explicit one-step method, Dormand-Prince 5(4). It loses
+/// nothing at a restart and is therefore the fastest for inputs with jumps.
 enum class OdeMethod { cvodes_bdf, cvodes_adams, arkode_erk };
 
 struct OdeTolerances {
@@ -17,8 +17,8 @@ struct OdeTolerances {
   double absolute = 1e-9;  ///< in the unit of the state
 };
 
-/// Where a step ended. `crossed` holds the events that crossed zero there: +1 rising, -1 falling, 0 not;
-/// it is empty unless `at_event`, and valid until the next call.
+/// End of a step. `crossed` tells for each event whether it crossed zero: +1 rising, -1 falling, 0 not. It is empty unless `at_event`, and
+/// valid until the next call.
 struct OdeStep {
   double time_s = 0.0;
   bool at_event = false;
@@ -27,10 +27,9 @@ struct OdeStep {
 
 class OdeSolver;
 
-/// Integrates one system, which outlives the integrator. After the first step no memory is allocated, but for
-/// cvodes_bdf, where SUNDIALS allocates a vector without data for each Jacobian.
-/// Failures of the solver are thrown as Failure (numerics_failed) that say the time and the solver's reason;
-/// what the system throws arrives as thrown. After either, start() is needed before the next step.
+/// Integrates one system, which must outlive the integrator. No memory is allocated after the first step, except by cvodes_bdf: SUNDIALS
+/// allocates an empty vector for each Jacobian. Throws Failure (numerics_failed) with the time and the solver's reason. Exceptions of the
+/// system are passed on unchanged. After either, call start() before the next step.
 class Integrator {
  public:
   Integrator(OdeSystem& system, OdeMethod method, OdeTolerances tolerances);
@@ -38,19 +37,19 @@ class Integrator {
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  /// Begins, or begins again, at `time_s` with `y`: call it at every jump of the inputs. arkode_erk goes on with the
-  /// step size it had reached, so a second run may differ from the first one within the tolerances.
+  /// Starts or restarts at `time_s` with the state `y`; call it at every jump of the inputs. arkode_erk keeps its step size, so that a
+  /// second run may differ from the first within the tolerances.
   void start(double time_s, std::span<const double> y);
 
-  /// One internal step of the solver's own choosing, never past `stop_s` (an input may jump there).
+  /// Takes one internal step of a size that the solver chooses, never past `stop_s` (an input may jump there).
   OdeStep step(double stop_s);
 
-  /// Steps until `stop_s` or the next event, whichever is first.
+  /// Integrates until `stop_s` or the next event, whichever comes first.
   OdeStep advance(double stop_s);
 
   [[nodiscard]] std::span<const double> state() const;
   [[nodiscard]] double time_s() const;
-  /// Calls of OdeSystem::derivative so far, for benchmarks and tests.
+  /// Number of calls of OdeSystem::derivative so far, for benchmarks and tests.
   [[nodiscard]] long derivative_count() const;
 
  private:

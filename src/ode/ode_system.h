@@ -1,12 +1,12 @@
-// An initial value problem, and nothing of what it means.
+// An initial value problem without physical meaning.
 #pragma once
 
 #include <span>
 
 namespace heatsoak {
 
-/// dy/dt = f(t, y), with event functions whose zero crossings end a step.
-/// Implementations may throw; the integrator hands the exception through the C solver unharmed.
+/// dy/dt = f(t, y), with event functions whose zero crossings end a step. Implementations may throw; the integrator passes the exception
+/// through the C solver.
 class OdeSystem {
  public:
   virtual ~OdeSystem() = default;

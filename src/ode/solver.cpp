@@ -14,7 +14,7 @@ namespace heatsoak {
 OdeSolver::OdeSolver(OdeSystem& system)
     : system_(system), y_(N_VNew_Serial(system.size(), context_), N_VDestroy), crossed_(static_cast<std::size_t>(system.event_count())) {
   N_VConst(0.0, y_.get());
-  // The packages clone this vector: a stage is then summed in one pass rather than one per term.
+  // The packages clone this vector; fused operations then sum a stage in one pass instead of one per term.
   N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
 }
 
@@ -24,7 +24,7 @@ void OdeSolver::start(double time_s, std::span<const double> y) {
   }
   time_s_ = time_s;
   std::ranges::copy(y, values(y_.get()).begin());
-  // A failed run leaves a step size that says nothing about the next one.
+  // After a failed run the step size is meaningless for the next one.
   restart(std::exchange(ready_, false) ? StepSize::keep : StepSize::guess);
   ready_ = true;
 }
@@ -33,7 +33,7 @@ OdeStep OdeSolver::integrate(double stop_s, Stride stride) {
   if (!ready_) {
     throw Failure(ExitCode::bug, "integrator: start() has to come before a step");
   }
-  // Times that were summed in different orders meet only to rounding; no package accepts such a step.
+  // Equal times may differ by rounding if they were summed in different orders; no package accepts such a short step.
   constexpr double kShortest_s = 1e-15;
   const double rounding_s = 100.0 * std::numeric_limits<double>::epsilon() * std::max({std::abs(time_s_), std::abs(stop_s), kShortest_s});
   if (!(stop_s > time_s_ + rounding_s)) {
@@ -44,7 +44,7 @@ OdeStep OdeSolver::integrate(double stop_s, Stride stride) {
     return {.time_s = time_s_, .at_event = false, .crossed = {}};
   }
   ready_ = false;
-  // Behind an event the package may already be past the stop: then it interpolates, which ends at the stop.
+  // After an event the package may already be past the stop; it then interpolates to the stop.
   const bool to_step = stop_s > internal_time_s();
   if (to_step) {
     set_stop(stop_s);
@@ -69,7 +69,7 @@ void OdeSolver::check(int flag) {
   }
 }
 
-/// An exception must not cross the C code: it waits here for check(). A value that is no number is one, too.
+/// Runs `write` and stores an exception for check(), because it must not propagate through C code. A non-finite value counts as one.
 template <typename Write>
 int OdeSolver::shield(const char* what, double time_s, std::span<double> written, Write write) {
   if (!thrown_) {
@@ -85,8 +85,8 @@ int OdeSolver::shield(const char* what, double time_s, std::span<double> written
       thrown_ = std::current_exception();
     }
   }
-  // CVODES' fixed-point iteration does not end at a failed call, it tries smaller steps for ever (seen in 6.4.1).
-  // No test of convergence accepts these.
+  // CVODES' fixed-point iteration does not stop at a failed call but retries smaller steps for ever (seen in 6.4.1). NaN values fail every
+  // convergence test.
   std::ranges::fill(written, std::numeric_limits<double>::quiet_NaN());
   return -1;
 }

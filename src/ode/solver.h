@@ -1,4 +1,4 @@
-// What CVODES and ARKODE share: the state, the callbacks, events and failures. Private to src/ode.
+// Common part of the CVODES and ARKODE solvers: state, callbacks, events and failures. Private to src/ode.
 #pragma once
 
 #include <nvector/nvector_serial.h>
@@ -14,11 +14,11 @@
 
 namespace heatsoak {
 
-/// A SUNDIALS object with the function that frees it.
+/// Owns a SUNDIALS object together with the function that frees it.
 template <typename T>
 using SundialsHandle = std::unique_ptr<T, void (*)(T*)>;
 
-/// A package is a subclass that restarts and evolves; it checks every flag it gets with check().
+/// Base class: each SUNDIALS package is a subclass that implements the virtual functions and passes every return flag to check().
 class OdeSolver {
  public:
   enum class Stride { one_step, until_stop };
@@ -38,29 +38,29 @@ class OdeSolver {
  protected:
   enum class StepSize { guess, keep };
 
-  /// Begins at time_s() with y(). With `keep` the package may begin with the step size it had reached.
+  /// Starts at time_s() with y(). With `keep` the package may start with its previous step size.
   virtual void restart(StepSize step_size) = 0;
-  /// How far the package has got; behind an event that is later than time_s().
+  /// Time that the package has reached internally; after an event it is later than time_s().
   [[nodiscard]] virtual double internal_time_s() const = 0;
-  /// The package may not step past this.
+  /// Sets a time that the package must not step past.
   virtual void set_stop(double stop_s) = 0;
-  /// Writes y() and `reached_s`; true at an event.
+  /// Integrates and writes y() and `reached_s`. Returns true at an event.
   virtual bool evolve(double stop_s, Stride stride, double& reached_s) = 0;
   virtual void read_crossed(int* crossed) = 0;
 
-  /// Throws what the system threw during the call, or a Failure where the package gave up.
+  /// Rethrows an exception that the system threw during the call, or throws a Failure if `flag` reports one.
   void check(int flag);
 
-  /// A system that needs more per advance() is stuck: hours for the user, not an answer.
+  /// A system that needs more steps per advance() is stuck and would run for hours.
   static constexpr long kMaximumSteps = 10'000'000;
 
   [[nodiscard]] SUNContext context() { return context_; }
-  /// What the callbacks get; the conversion to void* has to start from OdeSolver.
+  /// User data of the callbacks. The conversion to void* must start from OdeSolver.
   [[nodiscard]] void* self() { return this; }
   [[nodiscard]] N_Vector y() { return y_.get(); }
   [[nodiscard]] int event_count() const { return static_cast<int>(crossed_.size()); }
 
-  // The callbacks have one signature in all packages; `self` is the OdeSolver.
+  // All packages use the same callback signatures; `self` is the OdeSolver.
   static int derivative(realtype time_s, N_Vector y, N_Vector dydt, void* self);
   static int events(realtype time_s, N_Vector y, realtype* event_values, void* self);
   static void keep_reason(int code, const char* module, const char* function, char* message, void* self);

@@ -1,4 +1,4 @@
-// A document: the answer of a verb in words and tables, free of how it is shown.
+// The answer of a command in text and tables, independent of how it is rendered.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace heatsoak::present {
 
-/// How good the news of a piece of text is; renderers may colour it.
+/// Rating of a piece of text; renderers may colour it.
 enum class Tone { neutral, good, doubtful, bad };
 
 struct Text {
@@ -20,7 +20,7 @@ enum class Alignment { left, right };
 /// Columns with priority 0 are always shown. A narrow terminal drops the others, the highest number first.
 struct Column {
   std::string name = {};
-  std::string unit = {};  ///< empty: a word or a number without unit
+  std::string unit = {};  ///< empty for text and pure numbers
   int priority = 0;
   Alignment alignment = Alignment::right;
 };
@@ -32,14 +32,14 @@ struct Table {
   std::vector<std::vector<Text>> rows = {};
 };
 
-/// In rising order of urgency.
+/// Severity of a note, in ascending order.
 enum class Severity {
   background,  ///< explains how the answer was made
-  note,        ///< limits what the answer is worth
-  warning,     ///< the answer may be wrong or must not be relied on
+  note,        ///< limits the accuracy or scope of the answer
+  warning,     ///< the answer may be wrong or unsafe to rely on
 };
 
-/// One sentence or two that begin with their consequence.
+/// One or two sentences; the first states the consequence.
 struct Note {
   Severity severity = Severity::note;
   std::string words = {};
@@ -47,11 +47,11 @@ struct Note {
 
 struct Document {
   std::vector<Text> headline = {};           ///< the verdict, sentence by sentence
-  std::vector<std::string> paragraphs = {};  ///< what was computed, on which input
+  std::vector<std::string> paragraphs = {};  ///< what was computed, from which inputs
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
 
-  /// A note that is there already is not added again.
+  /// Adds a note unless the same one exists already.
   void add_note(Severity severity, std::string_view words);
 };
 

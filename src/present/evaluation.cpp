@@ -13,7 +13,7 @@
 namespace heatsoak::present {
 namespace {
 
-/// Fewer samples leave the ends of a 90 % range to chance: it may then exclude the nominal value.
+/// With fewer samples the ends of a 90 % range are random; it may even exclude the nominal value.
 constexpr int kFewestForRange = 20;
 
 std::string peak_text(const MotorEvaluation& motor) {
@@ -93,7 +93,7 @@ std::vector<Text> row(std::size_t rank, const MotorEvaluation& motor, double amb
           {p95_text(motor)}};
 }
 
-/// "fails: the winding reaches 162 °C, its limit is 155 °C, exceeded after 5 min".
+/// Formats as "fails: the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)".
 std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
   if (motor.verdict == Verdict::infeasible) {
     return fmt::format("cannot drive this duty: {} does not suffice", to_string(motor.limiting_factor));
@@ -122,7 +122,7 @@ std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
   }
 }
 
-/// With the remark that the robot's mass and wheels play no part where the duty states torque and speed itself.
+/// Adds the remark that mass and wheels of the robot do not matter if the duty states torque and speed itself.
 std::string load_words(const Duty& duty) {
   return duty.shape_data->depends_on_robot()
              ? duty.id
@@ -149,7 +149,7 @@ std::vector<Text> headline(std::span<const MotorEvaluation> results, const Evalu
   return sentences;
 }
 
-/// How far the number of samples alone can be trusted.
+/// States the sampling error of probability and peak temperature.
 std::string sampling_error(std::span<const MotorEvaluation> results) {
   double probability_ratio = 0.0;
   double p95_K = 0.0;
@@ -196,7 +196,7 @@ void add_notes(Document& document, const MotorEvaluation& motor, const Evaluatio
   }
 }
 
-/// "500 samples", "600 to 9600 samples" where motors needed different numbers of them.
+/// Formats "500 samples", or "600 to 9600 samples" if motors needed different numbers.
 std::string counted(std::span<const MotorEvaluation> results, int MotorEvaluation::*count, std::string_view unit) {
   const auto [least, most] = std::ranges::minmax(results, {}, count);
   const std::string number =
@@ -234,7 +234,7 @@ void add_changes(Document& document, std::span<const ChangeEffect> effects, cons
   };
   for (const ChangeEffect& each : effects) {
     const double error_K = std::isfinite(each.standard_error_K) ? each.standard_error_K : 0.0;
-    // A change that its own scatter could make is none.
+    // A change that is not larger than its own scatter is not listed.
     if (table.rows.size() < kMost && each.is_deliverable && each.saved_K > std::max(0.5, 2.0 * error_K)) {
       table.rows.push_back({{std::string(name_of(each.quantity))},
                             {shown(each.before, unit_of(each.quantity))},

@@ -1,4 +1,4 @@
-// The answer of `steady` as a document.
+// Formats the answer of `steady` as a document.
 #pragma once
 
 #include "motor/motor.h"
@@ -10,9 +10,9 @@ namespace heatsoak::present {
 
 struct SteadyAnswer {
   const Motor& motor;
-  const PeriodicState& periodic;      ///< of the whole network
-  const OnOffSteadyState& under_rms;  ///< equations (8) to (12), or the network under the rms current where the file adds effects
-  bool is_of_the_equations = true;    ///< which of both
+  const PeriodicState& periodic;      ///< result for the whole network
+  const OnOffSteadyState& under_rms;  ///< equations (8) to (12), or the network under the RMS current if the file adds effects
+  bool is_of_the_equations = true;    ///< true if `under_rms` comes from the equations
   double ambient_C = 25.0;
   bool is_over_limit = false;
 };

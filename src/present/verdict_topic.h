@@ -1,4 +1,4 @@
-// The meaning of the verdicts, for `describe verdict`: the only place that defines them in words.
+// Definitions of the verdicts for `describe verdict`; no other place defines them in words.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@ namespace heatsoak::present {
 
 struct VerdictMeaning {
   Verdict verdict;
-  std::string meaning;  ///< with the thresholds of select/evaluate.h
+  std::string meaning;  ///< includes the thresholds of select/evaluate.h
 };
-/// From the best to the worst.
+/// Returns the verdicts from best to worst.
 std::vector<VerdictMeaning> verdict_meanings();
 
-/// When a verdict is called undecided.
+/// Explains when a verdict is reported as undecided.
 std::string undecided_meaning();
 
 }  // namespace heatsoak::present

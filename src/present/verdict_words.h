@@ -1,4 +1,4 @@
-// What several verbs say in the same words.
+// Phrases that several commands share.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace heatsoak {
 
-/// "58 s", "12 min".
+/// Formats a duration: "58 s", "12 min".
 std::string duration_text(double duration_s);
 
-/// That the ground cannot carry the motion that a demand comes from, as one line with its end; empty where it nearly always can.
+/// Returns a line that the ground contacts cannot transmit the demanded motion; empty if they nearly always can.
 std::string slip_text(const WheelDemand& wheel);
 
-/// Why a motor cannot deliver what is demanded, as one line with its end; empty where it can.
+/// Returns a line that explains why a motor cannot deliver the demand; empty if it can.
 std::string why_infeasible(const MotorEvaluation& motor, const Robot& robot);
 
 }  // namespace heatsoak

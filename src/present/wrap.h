@@ -1,4 +1,4 @@
-// Widths and line breaks of text for a terminal.
+// Width and line breaks of text on a terminal.
 #pragma once
 
 #include <cstddef>
@@ -7,17 +7,17 @@
 
 namespace heatsoak::present {
 
-/// In characters of UTF-8; every character that the program prints is one column wide.
+/// Returns the number of UTF-8 characters; every character that the program prints is one column wide.
 std::size_t width_of(std::string_view text);
 
-/// The first `count` characters.
+/// Returns the first `count` characters.
 std::string_view leading(std::string_view text, std::size_t count);
 
-/// The last `count` characters.
+/// Returns the last `count` characters.
 std::string_view trailing(std::string_view text, std::size_t count);
 
-/// `text` in lines of at most `width` characters, broken at blanks; a longer word keeps a line of its own. `first` stands before the
-/// first line and blanks of its width before the others. Ends without a line break.
+/// Breaks `text` at blanks into lines of at most `width` characters; a longer word gets a line of its own. The first line starts with
+/// `first`, the others with as many blanks. No line break at the end.
 std::string wrapped(std::string_view text, std::string_view first, std::size_t width);
 
 }  // namespace heatsoak::present

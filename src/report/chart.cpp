@@ -43,7 +43,7 @@ fs::path find_plugin() {
                                            chart_plugin_file, searched));
 }
 
-/// Never closed: VTK's factories do not survive being unloaded. Opening again costs next to nothing.
+/// The library is never closed: VTK's object factories do not survive unloading. Opening it again is cheap.
 void* plugin_function(const char* name) {
   const fs::path plugin = find_plugin();
   void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -16,10 +16,10 @@ struct Assumed {
   double low;
   double nominal;
   double high;
-  bool is_per_load;  ///< times weight and wheel radius
+  bool is_per_load;  ///< the value is multiplied by weight and wheel radius
 };
 
-// TIGERs: 4.2 mN m at 2.78 kg and 32 mm, 0.11, no damping, 0.72. Twente: 1 mN m at 2.63 kg, 0.16, 0.144 mN m s/rad, no loss of its own.
+// TIGERs: 4.2 mN m at 2.78 kg and 32 mm, 0.11, no damping, 0.72. Twente: 1 mN m at 2.63 kg, 0.16, 0.144 mN m s/rad, no separate efficiency.
 constexpr std::array<Assumed, 4> kAssumed{{
     {&Robot::wheel_friction_torque_Nm, 0.0, 0.003, 0.008, true},
     {&Robot::wheel_damping_Nm_s_per_rad, 0.0, 1e-4, 3e-4, true},

@@ -1,4 +1,4 @@
-// A battery that sags under load and empties.
+// Battery whose voltage falls with load and with discharge.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace heatsoak {
 
-/// Open-circuit voltage linear over the charge that is left, one internal resistance.
+/// The open-circuit voltage is linear in the remaining charge; one internal resistance.
 struct BatteryConfig {
   double full_V = 0.0;
   double empty_V = 0.0;
@@ -18,16 +18,16 @@ inline double open_circuit_V(const BatteryConfig& battery, double charge_A_s) {
   return battery.empty_V + (battery.full_V - battery.empty_V) * charge_A_s / battery.capacity_A_s;
 }
 
-/// Energy that the charge can still give, ∫E dq: its loss is what a step takes out, E·I.
+/// Returns the energy in J that the remaining charge can deliver, ∫E dq. Its decrease over a step is the energy E·I·t of the step.
 double stored_energy_J(const BatteryConfig& battery, double charge_A_s);
 
 struct BatteryLoad {
   double terminal_V = 0.0;
-  double current_A = 0.0;  ///< > 0 discharges
-  bool collapsed = false;  ///< more power was asked for than E²/(4·R) can give
+  double current_A = 0.0;  ///< positive when discharging
+  bool collapsed = false;  ///< the demanded power exceeds the maximum E²/(4·R)
 };
-/// P = V·I with V = E − R·I: V = (E + √(E² − 4·R·P))/2. Where there is no such V, the load gets V = E/2 and the most
-/// there is; the caller must shed load.
+/// Terminal voltage and current at a power: P = V·I with V = E − R·I gives V = (E + √(E² − 4·R·P))/2. Without a solution the result is the
+/// maximum power point, V = E/2, and `collapsed`; the caller must then reduce the load.
 inline BatteryLoad battery_load(const BatteryConfig& battery, double charge_A_s, double power_W) {
   const double source_V = open_circuit_V(battery, charge_A_s);
   const double below_root_V2 = source_V * source_V - 4.0 * battery.internal_resistance_ohm * power_W;

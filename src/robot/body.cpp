@@ -30,7 +30,7 @@ FrictionConfig make_friction(const Robot& robot, const Kinematics& kinematics) {
   return friction;
 }
 
-/// Whether wheels that only push can carry the robot at rest: their loads have the moment of its weight.
+/// Returns whether the robot stands at rest: non-negative wheel loads can balance the moment of its weight.
 bool stands(const WeightConfig& weight) {
   const LoadMoment moment = load_moment(weight, {}, {}, 0.0);
   LoadMoment carried;

@@ -1,4 +1,4 @@
-// One motor on its driver: from a command to current and powers.
+// One motor on its driver: converts a command to current and powers.
 #pragma once
 
 #include <array>
@@ -12,20 +12,20 @@ namespace heatsoak {
 
 /// Currents are equivalent DC currents of block commutation, voltages between two terminals (as in MotorValues).
 struct DriverConfig {
-  double voltage_limit_V = std::numeric_limits<double>::infinity();  ///< of the command
+  double voltage_limit_V = std::numeric_limits<double>::infinity();  ///< limit of the commanded voltage
   double current_limit_A = std::numeric_limits<double>::infinity();
   double resistance_ohm = 0.0;  ///< in series with the winding
-  double standby_W = 0.0;       ///< always
+  double standby_W = 0.0;       ///< constant power of the electronics
 };
 
 struct MotorElectrics {
   double resistance_25C_ohm = 1.0;
   double resistance_rise_per_K = 0.0039;
   double torque_constant_25C_Nm_per_A = 0.0;
-  /// Magnets weaken with heat: K_t·(1 − β·(T − 25 °C)); NdFeB has about 0.0011 /K. A data sheet gives none, so 0.
+  /// Reversible loss of the magnets: K_t·(1 − β·(T − 25 °C)); NdFeB about 0.0011 1/K. Data sheets do not give it, so the default is 0.
   double torque_constant_fall_per_K = 0.0;
-  double heating_factor = 1.0;  ///< copper loss per R·I²: 0.912 where the current is sinusoidal
-  double drag_torque_Nm = 0.0;  ///< iron and bearings, K_t·I_0, at the motor
+  double heating_factor = 1.0;  ///< copper loss per R·I²: 0.912 for sinusoidal current
+  double drag_torque_Nm = 0.0;  ///< iron and bearing loss, K_t·I_0, at the motor
 };
 DriverConfig make_driver(const Robot& robot);
 MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor);
@@ -33,26 +33,26 @@ MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor);
 struct MotorCommand {
   enum class Kind { voltage, current, open };
   Kind kind = Kind::open;
-  double value = 0.0;  ///< V or A; an open motor has no current
+  double value = 0.0;  ///< V or A; ignored for an open motor, which has no current
 };
 
 struct MotorPoint {
   double current_A = 0.0;
-  double bridge_V = 0.0;    ///< mean voltage that the switches put out
-  double terminal_V = 0.0;  ///< what arrives at the motor
+  double bridge_V = 0.0;    ///< mean output voltage of the bridge
+  double terminal_V = 0.0;  ///< voltage at the motor terminals
   double torque_constant_Nm_per_A = 0.0;
-  double resistance_ohm = 0.0;  ///< that turns current into heat, winding and driver
+  double resistance_ohm = 0.0;  ///< winding (with heating factor) plus driver
   double copper_W = 0.0;
-  double driver_W = 0.0;  ///< conduction and standby
-  double input_W = 0.0;   ///< from the bus: bridge_V·I + standby; < 0 gives back
-  bool limited = false;   ///< by the bus, the command's clamp or the current limit
+  double driver_W = 0.0;  ///< conduction loss and standby
+  double input_W = 0.0;   ///< from the bus: bridge_V·I + standby; negative when feeding back
+  bool limited = false;   ///< by the bus voltage, the limit of the command or the current limit
 };
 
 /// Electrical constants of the motors of all wheels at their temperatures.
 struct MotorCircuits {
   Wheels torque_constant_Nm_per_A;
-  Wheels winding_ohm;     ///< resistance that converts current into copper loss, heating factor included
-  Wheels resistance_ohm;  ///< winding and driver
+  Wheels winding_ohm;     ///< resistance that gives the copper loss, heating factor included
+  Wheels resistance_ohm;  ///< winding plus driver
   Wheels conductance_S;   ///< 1/resistance_ohm
 };
 inline MotorCircuits motor_circuits(const MotorElectrics& motor, const DriverConfig& driver, const Wheels& winding_C,
@@ -67,13 +67,13 @@ inline MotorCircuits motor_circuits(const MotorElectrics& motor, const DriverCon
   return made;
 }
 
-/// Commands and limits of all wheels as numbers, so that motor_currents() needs no branch per wheel. An open motor, or a wheel
-/// that does not exist, is a current command of 0 without a voltage limit.
+/// Commands and limits of all wheels as numbers, so that motor_currents() needs no branch per wheel. An open motor or a missing wheel is a
+/// current command of 0 without a voltage limit.
 struct DriverDemands {
   Wheels voltage_V;        ///< 0 if the command is not a voltage
   Wheels current_A;        ///< 0 if the command is not a current
   Wheels voltage_share;    ///< 1 if the command is a voltage, else 0
-  Wheels voltage_limit_V;  ///< of the command; infinite if open
+  Wheels voltage_limit_V;  ///< limit of the command; infinite if open
   Wheels beyond_bus_V;     ///< 0 if the bus voltage is a limit, infinite if open
   Wheels current_limit_A;  ///< 0 if open
 };
@@ -81,7 +81,7 @@ inline DriverDemands driver_demands(const DriverConfig& driver, const std::array
   constexpr double kNone_V = std::numeric_limits<double>::infinity();
   const auto is = [&](int i, MotorCommand::Kind kind) { return i < wheel_count && command[i].kind == kind; };
   const auto is_open = [&](int i) { return i >= wheel_count || command[i].kind == MotorCommand::Kind::open; };
-  // Wheels are built in registers: a pair that was stored one number at a time is slow to load.
+  // Wheels are assembled in registers, because loading a vector just after scalar stores is slow.
   const auto of_all = [](const auto& of) { return Wheels(of(0), of(1), of(2), of(3)); };
   return {of_all([&](int i) { return is(i, MotorCommand::Kind::voltage) ? command[i].value : 0.0; }),
           of_all([&](int i) { return is(i, MotorCommand::Kind::current) ? command[i].value : 0.0; }),
@@ -98,12 +98,12 @@ bool is_limited(const DriverDemands& demands, const Wheels& limit_V, const Wheel
 struct MotorCurrents {
   Wheels current_A;
   Wheels bridge_V;
-  bool limited = false;  ///< any motor: by the bus, the command's clamp or the current limit
+  bool limited = false;  ///< true if any motor is limited by the bus, the limit of its command or the current limit
 };
 
-/// The current has settled (its time constant L/R is below a millisecond): I = (U − K_t·ω)/(R(T)·k + R_driver), k the
-/// heating factor, so that U·I = copper + driver conduction + K_t·ω·I holds to rounding.
-/// |U| ≤ min(bus, voltage limit), |I| ≤ current limit.
+/// Steady-state currents; the electrical time constant L/R is below a millisecond. I = (U − K_t·ω)/(R(T)·k + R_driver) with the heating
+/// factor k, so that U·I = copper + driver conduction + K_t·ω·I holds to rounding error. |U| ≤ min(bus, voltage limit), |I| ≤ current
+/// limit.
 inline MotorCurrents motor_currents(const MotorCircuits& circuits, const DriverDemands& demands, const Wheels& back_emf_V, double bus_V) {
   const Wheels limit_V = (demands.beyond_bus_V + bus_V).min(demands.voltage_limit_V);
   const Wheels asked_V = demands.voltage_V.max(-limit_V).min(limit_V);
@@ -113,14 +113,14 @@ inline MotorCurrents motor_currents(const MotorCircuits& circuits, const DriverD
   MotorCurrents made;
   made.bridge_V = needed_V.max(-limit_V).min(limit_V);
   made.current_A = (made.bridge_V - back_emf_V) * circuits.conductance_S;
-  // Rounding alone can put needed_V above the limit, so is_limited() decides.
+  // Rounding errors alone can put needed_V above the limit, so is_limited() decides.
   const bool may_be_limited =
       (demands.voltage_V.abs() - limit_V).max((within_A - wanted_A).abs()).max(needed_V.abs() - limit_V).maxCoeff() > 0.0;
   made.limited = may_be_limited && is_limited(demands, limit_V, wanted_A, within_A, made.current_A);
   return made;
 }
 
-/// motor_currents() for one motor, with its powers.
+/// motor_currents() for a single motor, with its powers.
 MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s,
                        double winding_C, double magnet_C, double bus_V);
 

@@ -9,7 +9,7 @@
 namespace heatsoak {
 namespace {
 
-/// γ: 0 in translation, 1 where the contact points move more by rotation.
+/// Returns γ: 0 in translation, 1 if rotation moves the contact points at least as fast as translation.
 double rotation_share(const Kinematics& kinematics, const BodyVelocity& local, double speed_m_per_s) {
   const double turning_m_per_s = kinematics.contact_radius_m * std::abs(local.yaw_rad_per_s);
   if (turning_m_per_s == 0.0) {
@@ -25,7 +25,7 @@ Wheels sines(const std::array<Direction, kMostWheels>& of) {
   return {of[0].sine_ratio, of[1].sine_ratio, of[2].sine_ratio, of[3].sine_ratio};
 }
 
-/// |f(θ)| of the wheels, rotation mixed in.
+/// Returns |f(θ)| of each wheel, blended with the rotation constant.
 Wheels heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics& kinematics, const BodyVelocity& local) {
   const double speed_m_per_s = std::sqrt(local.x_m_per_s * local.x_m_per_s + local.y_m_per_s * local.y_m_per_s);
   const double rotation = rotation_share(kinematics, local, speed_m_per_s);

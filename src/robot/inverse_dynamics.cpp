@@ -8,7 +8,7 @@ namespace {
 
 Wrench operator-(const Wrench& a, const Wrench& b) { return {a.x_N - b.x_N, a.y_N - b.y_N, a.yaw_Nm - b.yaw_Nm}; }
 
-/// Drag of rollers that do not slide.
+/// Returns the roller drag along each axle without slip.
 PerWheel roller_drags_N(const BodyConfig& body, const PerWheel& lateral_m_per_s, const PerWheel& normal_N) {
   PerWheel drag_N{};
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
@@ -17,7 +17,7 @@ PerWheel roller_drags_N(const BodyConfig& body, const PerWheel& lateral_m_per_s,
   return drag_N;
 }
 
-/// What is asked of the contacts: for drag and push alone, and for the acceleration on top.
+/// Rolling forces demanded from the contacts: rest_N for drag and push alone, part_N for the acceleration; and their limits.
 struct Demand {
   Wrench acceleration;
   PerWheel rest_N{};
@@ -48,12 +48,12 @@ Demand demand_on_contacts(const BodyConfig& body, const BodyMotion& motion, Whee
   return demand;
 }
 
-/// low > high: empty.
+/// Empty if low > high.
 struct Interval {
   double low = 0.0;
   double high = 0.0;
 
-  /// Keeps what satisfies slope·x ≤ bound. A hair more is allowed, for wheels without load bound each other tightly.
+  /// Restricts the interval to slope·x ≤ bound. A small tolerance is added, because wheels without load give coinciding bounds.
   void keep(double slope, double exact_bound) {
     const double bound = exact_bound + 1e-9;
     if (slope > 0.0) {
@@ -66,13 +66,12 @@ struct Interval {
   }
 };
 
-/// Below this the wheel has no part in the inner forces.
+/// A wheel with a smaller inner_share takes no part in the inner forces.
 constexpr double kNoPart = 1e-9;
 
-/// Shares κ in 0 … 1 of the acceleration for which some inner force λ keeps every contact within its grip,
-///   |rest_i + κ·part_i + λ·n_i| ≤ limit_i.
-/// Each wheel bounds λ from both sides; λ exists where every lower bound is below every upper one, which are conditions
-/// linear in κ.
+/// Returns the shares κ in 0 to 1 of the acceleration for which some inner force λ keeps every contact within its limit:
+/// |rest_i + κ·part_i + λ·n_i| ≤ limit_i. Each wheel bounds λ from both sides; λ exists if every lower bound is below every upper bound.
+/// These conditions are linear in κ.
 Interval possible_shares(const Kinematics& kinematics, const Demand& demand) {
   Interval shares{0.0, 1.0};
   for (int i = 0; i < kinematics.wheel_count; ++i) {
@@ -93,7 +92,7 @@ Interval possible_shares(const Kinematics& kinematics, const Demand& demand) {
   return shares;
 }
 
-/// The demand as it stands is within every grip: the ordinary case, told apart for speed.
+/// Returns whether the demand is within every limit without inner forces. This common case is checked first to save time.
 bool grips(const Kinematics& kinematics, const Demand& demand) {
   bool all = true;
   for (int i = 0; i < kinematics.wheel_count; ++i) {
@@ -102,7 +101,7 @@ bool grips(const Kinematics& kinematics, const Demand& demand) {
   return all;
 }
 
-/// The smallest inner force that keeps the contacts within their grip at the share.
+/// Returns the smallest inner force that keeps the contacts within their limits at this share of the acceleration.
 double inner_force_N(const Kinematics& kinematics, const Demand& demand, double share) {
   double low_N = -1e300;
   double high_N = 1e300;
@@ -117,7 +116,7 @@ double inner_force_N(const Kinematics& kinematics, const Demand& demand, double 
   return low_N <= high_N ? std::clamp(0.0, low_N, high_N) : 0.5 * (low_N + high_N);
 }
 
-/// Shifts force to the wheels that stand firmer, scales the acceleration to what the contacts pass on, or lets them slide.
+/// Distributes the forces: adds inner forces, then scales the acceleration down, then lets the contacts slide.
 void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
   const int count = body.kinematics.wheel_count;
   const Interval shares = grips(body.kinematics, demand) ? Interval{0.0, 1.0} : possible_shares(body.kinematics, demand);
@@ -145,7 +144,7 @@ void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& dem
 
 BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global,
                         const BodyAcceleration& acceleration_global) {
-  // The field's x axis in the local frame turns both: sine and cosine once.
+  // Both vectors use the same sine and cosine, taken from the field's x axis in the local frame.
   const BodyVelocity x_axis = to_local(BodyVelocity{1.0, 0.0, 0.0}, pose.yaw_rad);
   const auto along = [&](double x, double y) { return x * x_axis.x_m_per_s - y * x_axis.y_m_per_s; };
   const auto across = [&](double x, double y) { return x * x_axis.y_m_per_s + y * x_axis.x_m_per_s; };
@@ -185,7 +184,7 @@ double largest_push_N(const BodyConfig& body, double direction_rad, double heigh
     const Interval shares = possible_shares(body.kinematics, demand);
     return shares.low <= shares.high;
   };
-  // Forces that hold are an interval from 0: halving keeps its end between the two.
+  // The forces without sliding are an interval from 0; bisection finds its upper end.
   double holds_N = 0.0;
   double slides_N = body.traction.traction_ratio * body.weight.mass_kg * kGravity_m_per_s2;
   constexpr int kHalvings = 40;

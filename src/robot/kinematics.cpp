@@ -57,7 +57,7 @@ Kinematics make_kinematics(const Robot& robot) {
   made.wheel_count = static_cast<int>(count);
   made.wheel_radius_m = robot.wheel_radius_m;
   made.contact_radius_m = robot.wheel_contact_radius_m;
-  // The yaw column in units of the contact radius keeps the matrix well scaled.
+  // The yaw column is divided by the contact radius to keep the matrix well scaled.
   Eigen::MatrixX3d jacobian(count, 3);
   for (std::size_t i = 0; i < count; ++i) {
     const double cosine = std::cos(robot.wheel_axis_rad[i]);
@@ -65,7 +65,7 @@ Kinematics make_kinematics(const Robot& robot) {
     made.wheels[i] = {cosine, sine, -sine, cosine};
     jacobian.row(static_cast<Eigen::Index>(i)) << -sine, cosine, 1.0;
   }
-  // A robot's worst direction takes a few times the rim speed of its best; milliradians between all axles take a thousand times.
+  // A usual robot has a condition number of a few; axles that differ by milliradians only have about a thousand.
   constexpr double kWorstCondition = 1e3;
   const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(jacobian.transpose() * jacobian).eigenvalues();
   if (!(squares(2) <= kWorstCondition * kWorstCondition * squares(0))) {

@@ -1,4 +1,4 @@
-// Plane motion of a robot on omni wheels: body motion to wheel speeds and wheel forces to body force, and back.
+// Planar kinematics of a robot on omni wheels: body motion and wheel speeds, wheel forces and body wrench.
 #pragma once
 
 #include <array>
@@ -7,26 +7,26 @@
 
 namespace heatsoak {
 
-// Frames. Global: fixed to the field, x towards the right goal. Local: on the robot, origin on the axis of the circle
-// of its wheels, x straight ahead, y to its left. Yaw is the angle from the global to the local x axis. Angles count
-// counter-clockwise. (RoboTeam Twente, ETDP 2025, section 2.1.)
+// Frames. Global: fixed to the field, x towards the right goal. Local: fixed to the robot, origin on the axis of the wheel circle, x
+// straight ahead, y to the left. Yaw is the angle from the global to the local x axis. Angles are positive counter-clockwise. (RoboTeam
+// Twente, ETDP 2025, section 2.1.)
 
-/// In the global frame.
+/// Position and heading in the global frame.
 struct Pose {
   double x_m = 0.0;
   double y_m = 0.0;
   double yaw_rad = 0.0;
 };
 
-/// Velocity of the origin of the local frame, resolved along the axes of the frame that the variable's name says.
+/// Velocity of the origin of the local frame, in components of the frame that the variable's name states.
 struct BodyVelocity {
   double x_m_per_s = 0.0;
   double y_m_per_s = 0.0;
   double yaw_rad_per_s = 0.0;
 };
 
-/// Acceleration of that point as seen from the field, resolved likewise. On local axes it is not the rate of change
-/// of the velocity's components: those turn with the robot, see acceleration_from_rates().
+/// Acceleration of that point in the inertial frame, in components like BodyVelocity. In local components it differs from the time
+/// derivative of the velocity components, because the axes rotate; see acceleration_from_rates().
 struct BodyAcceleration {
   double x_m_per_s2 = 0.0;
   double y_m_per_s2 = 0.0;
@@ -47,16 +47,16 @@ BodyAcceleration to_global(const BodyAcceleration& local, double yaw_rad);
 Wrench to_local(const Wrench& global, double yaw_rad);
 Wrench to_global(const Wrench& local, double yaw_rad);
 
-/// a = dv/dt + yaw rate × v, where `rates` are the rates of change of the local components.
+/// Returns a = dv/dt + yaw rate × v, with `rates` the time derivatives of the local components.
 BodyAcceleration acceleration_from_rates(const BodyVelocity& local, const BodyAcceleration& rates);
-/// dv/dt = a − yaw rate × v.
+/// Returns dv/dt = a − yaw rate × v.
 inline BodyAcceleration rates_from_acceleration(const BodyVelocity& local, const BodyAcceleration& acceleration) {
   return {acceleration.x_m_per_s2 + local.yaw_rad_per_s * local.y_m_per_s, acceleration.y_m_per_s2 - local.yaw_rad_per_s * local.x_m_per_s,
           acceleration.yaw_rad_per_s2};
 }
 
 inline constexpr int kMostWheels = 4;
-/// One value per wheel, wheel 1 first; of a robot with three wheels the last is 0.
+/// One value per wheel, wheel 1 first; the fourth is 0 for a robot with three wheels.
 using PerWheel = std::array<double, kMostWheels>;
 
 /// Directions of one wheel, from its axle angle α (robot file, `axis_angles`): the axle points outward along
@@ -73,43 +73,41 @@ struct WheelDirections {
   double rolling_y_share = 0.0;
 };
 
-/// Rows t, e and what follows from them, calculated once. With J = [t_x t_y R] per wheel (R contact radius, r wheel
-/// radius) r·ω = J·v and the wrench of the rolling forces is Jᵀ·f; J⁺ = (JᵀJ)⁻¹Jᵀ.
+/// Directions t and e of the wheels and matrices derived from them. With one row [t_x t_y R] of J per wheel (R contact radius, r wheel
+/// radius), r·ω = J·v, and the wrench of the rolling forces is Jᵀ·f; J⁺ = (JᵀJ)⁻¹Jᵀ.
 struct Kinematics {
   int wheel_count = 0;
   double wheel_radius_m = 1.0;
   double contact_radius_m = 1.0;
   std::array<WheelDirections, kMostWheels> wheels{};
-  /// J⁺ without and with the unit: of x and y pure numbers, of yaw 1/m.
+  /// Rows of J⁺: x and y are dimensionless, yaw has the unit 1/m.
   PerWheel inverse_x_factor{};
   PerWheel inverse_y_factor{};
   PerWheel inverse_yaw_per_m{};
-  /// Forces of four wheels that work against each other and move nothing, Jᵀ·n = 0, Σn² = 1; 0 for three wheels.
+  /// Self-balancing force pattern of four wheels that moves nothing: Jᵀ·n = 0, Σn² = 1; 0 for three wheels.
   PerWheel inner_share{};
 };
 
-/// Throws Failure (bad_input) for more than four wheels, or where all axles are alike so that the robot cannot be
-/// driven in every direction.
+/// Throws Failure (bad_input) for more than four wheels, or if the axle directions do not allow motion in every direction.
 Kinematics make_kinematics(const Robot& robot);
 
-/// Speed of the contact point along the wheel's rolling direction, t·v + R·yaw rate: what a wheel that does not slip
-/// has at its rim.
+/// Returns the speed of each contact point along its rolling direction, t·v + R·yaw rate. It equals the rim speed of a wheel without slip.
 PerWheel rolling_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local);
-/// Speed of the contact points along the axles, e·v: taken by the rollers.
+/// Returns the speed of each contact point along its axle, e·v, at which the rollers turn.
 PerWheel lateral_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local);
 
-/// ω = J·v/r of wheels that do not slip.
+/// Returns ω = J·v/r for wheels without slip.
 PerWheel wheel_speeds_rad_per_s(const Kinematics& kinematics, const BodyVelocity& local);
 
-/// v = r·J⁺·ω: of four wheels that contradict each other the least squares of their slip.
+/// Returns v = r·J⁺·ω: for inconsistent speeds of four wheels the least-squares solution.
 BodyVelocity body_velocity(const Kinematics& kinematics, const PerWheel& wheel_speed_rad_per_s);
 
-/// The forces along the rolling directions that make up a wrench, f = J⁺ᵀ·w: with four wheels the least Σf².
+/// Returns the forces along the rolling directions that produce a wrench, f = J⁺ᵀ·w; with four wheels those of least Σf².
 PerWheel rolling_forces_N(const Kinematics& kinematics, const Wrench& local);
 
-/// Wrench of forces on the contact points along the rolling directions.
+/// Returns the wrench of forces on the contact points along the rolling directions.
 Wrench wrench_of_rolling_forces(const Kinematics& kinematics, const PerWheel& force_N);
-/// Wrench of forces along the axles; they pass through the origin.
+/// Returns the wrench of forces along the axles; they have no moment about the origin.
 Wrench wrench_of_lateral_forces(const Kinematics& kinematics, const PerWheel& force_N);
 
 }  // namespace heatsoak

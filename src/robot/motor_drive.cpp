@@ -24,7 +24,7 @@ DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wa
   point.motor_speed_rad_per_s = motor_speed_rad_per_s;
   const double back_emf_V = motor.torque_constant_Nm_per_A * motor_speed_rad_per_s;
   const double loop_ohm = motor.terminal_resistance_ohm + robot.series_resistance_ohm();
-  // Where the back-EMF is beyond the supply the demand is out of reach, which turns no current round.
+  // A back-EMF above the supply voltage makes the demand impossible, but does not reverse the current.
   const double most_A = std::max(0.0, (robot.available_V() - back_emf_V) / loop_ohm);
   const double least_A = std::min(0.0, (-robot.available_V() - back_emf_V) / loop_ohm);
   point.current_A = std::clamp(wanted_A, -robot.current_limit_A, robot.current_limit_A);
@@ -61,13 +61,13 @@ double driver_voltage_V(const MotorValues& motor, const Robot& robot, const Driv
 }
 
 double heating_factor(const Robot& robot) {
-  // 0.75·R·Î² against R·I² at equal torque, Î = I/(√3·π/6), is (3/π)².
+  // 0.75·R·Î² relative to R·I² at equal torque, with Î = I/(√3·π/6), is (3/π)².
   return robot.commutation == Commutation::sinusoidal ? 3.0 / std::numbers::pi : 1.0;
 }
 
 OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C) {
   const double speed_rad_per_s = std::abs(point.motor_speed_rad_per_s);
-  // Driving, the back-EMF stands against the supply; braking, it helps.
+  // The back-EMF opposes the supply when driving and supports it when braking.
   const double back_emf_V =
       motor.torque_constant_Nm_per_A * speed_rad_per_s * (point.current_A * point.motor_speed_rad_per_s >= 0.0 ? 1.0 : -1.0);
   OperatingPoint<double> at = machine_point<double>(motor, robot, point.current_A, point.motor_speed_rad_per_s,

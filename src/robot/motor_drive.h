@@ -1,5 +1,4 @@
-// From what a wheel must do to what its motor gets: torque and speed to current, within the limits of voltage
-// and current.
+// Converts torque and speed of a wheel to the current of its motor, within the voltage and current limits.
 #pragma once
 
 #include "motor/datasheet_network.h"
@@ -10,54 +9,54 @@
 
 namespace heatsoak {
 
-/// Demand on one wheel. Torque and speed are positive in the same direction; torque · speed > 0 drives.
+/// Demand on one wheel. Torque and speed are positive in the same direction; torque · speed > 0 is driving.
 struct WheelLoad {
   double torque_Nm = 0.0;
   double speed_rad_per_s = 0.0;
 };
 
-/// What cuts the current: nothing, the available voltage (at 25 °C), or the driver's current limit.
+/// What limits the current: nothing, the available voltage (with a winding at 25 °C), or the driver's current limit.
 enum class DriveLimit { none, voltage, current };
 
 struct DrivePoint {
-  double current_A = 0.0;  ///< that flows, equivalent DC current of block commutation, signed like the torque
+  double current_A = 0.0;  ///< after limits; equivalent DC current of block commutation, with the sign of the torque
   double current_wanted_A = 0.0;
   double motor_speed_rad_per_s = 0.0;
-  double motor_torque_Nm = 0.0;  ///< at the shaft, of the current that flows
+  double motor_torque_Nm = 0.0;  ///< at the shaft, from current_A
   DriveLimit limit = DriveLimit::none;
 };
 
-/// Current for a motor torque at a speed: (M + K_t·I_0·sign ω)/K_t, so that drag helps when braking; clamped to
-/// |I| ≤ current limit and to |I·(R25 + R_driver) + K_t·ω| ≤ available voltage; 0 where the back-EMF alone is more than that.
-/// The cold resistance lets more current through than a hot winding would: the error is on the hot side.
+/// Current for a wheel torque at a speed: (M + K_t·I_0·sign ω)/K_t, so that drag helps when braking. It is limited to |I| ≤ current limit
+/// and |I·(R25 + R_driver) + K_t·ω| ≤ available voltage; 0 if the back-EMF alone exceeds the voltage. The cold resistance allows more
+/// current than a hot winding would, so temperatures are overestimated.
 DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load);
 
-/// The same for a prescribed current, which is clamped too.
+/// The same for a prescribed current, which is limited too.
 DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s);
 
-/// A current at a motor speed, clamped to what the driver and the available voltage let through.
+/// The same for a current at a motor speed.
 DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s);
 
-/// Motor torque per wheel torque: a gear loses torque on the way to the wheel when driving, on the way back when braking.
+/// Returns motor torque per wheel torque: 1/(η·ratio) when driving, η/ratio when braking.
 double shaft_torque_factor(const Robot& robot, bool drives);
 
-/// Terminal voltage that the point needs with the winding at a temperature; signed like the torque.
+/// Returns the terminal voltage of the point for a winding temperature, with the sign of the torque.
 double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C);
 
-/// The driver's voltage for it: what the switches and traces take is added.
+/// Returns the driver's voltage for the point: the terminal voltage plus the drop across the series resistance.
 double driver_voltage_V(const MotorValues& motor, const Robot& robot, const DrivePoint& point, double winding_C);
 
-/// Current that heats as much through the terminal resistance, per current that makes the torque.
+/// Returns the equivalent heating current per torque-producing current: 1 for block commutation, 3/π for sinusoidal.
 double heating_factor(const Robot& robot);
 
-/// Electrical power into the motor: copper loss at 25 °C, drag and what leaves at the shaft. `speed_rad_per_s` is |ω|.
+/// Returns the electrical power into the motor: copper loss at 25 °C, drag and shaft power. `speed_rad_per_s` is |ω|.
 template <class S>
 S input_power_W(const MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s) {
   return heating_current_A * heating_current_A * motor.terminal_resistance_ohm + shaft_power_W + drag_torque_Nm(motor) * speed_rad_per_s;
 }
 
-/// What of an operating point follows from current and speed alone, for numbers and for formulas: no headroom, no vehicle.
-/// `current_A` and `velocity_rad_per_s` have the same sign where the motor drives.
+/// The part of an operating point that follows from current and speed alone; without headroom and vehicle speed. S is a number or a
+/// formula. `current_A` and `velocity_rad_per_s` have the same sign when driving.
 template <class S>
 OperatingPoint<S> machine_point(const MotorValues& motor, const Robot& robot, const S& current_A, const S& velocity_rad_per_s,
                                 const S& shaft_power_W) {
@@ -75,8 +74,8 @@ OperatingPoint<S> machine_point(const MotorValues& motor, const Robot& robot, co
   return at;
 }
 
-/// What the thermal network sees of it. Voltage and input power are those of a winding at 25 °C; the vehicle is as fast as
-/// the wheel rolls, an estimate where wheels stand askew. Nothing is known of neighbours, and the motor is new.
+/// The operating point for the thermal network. Voltage and input power assume a winding at 25 °C. The vehicle speed is the rolling speed
+/// of the wheel, an estimate for wheels at an angle. Neighbours are unknown, and the motor is new.
 OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C);
 
 }  // namespace heatsoak

@@ -11,12 +11,12 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kElectricTables{"drive", "battery"};
 
-// Places in Motion::body.
+// Indices in Motion::body.
 constexpr int kPose = 0;
 constexpr int kVelocity = 3;
 constexpr int kCharge = 6;
 constexpr int kBodySize = 7;
-/// In m, m/s, rad, rad/s or A s: far below what counts beside the grain of a double.
+/// In m, m/s, rad, rad/s or A s: far below the resolution of any state.
 constexpr double kRest = 1e-60;
 
 /// State or rate of change: x, y, yaw, v_x, v_y, yaw rate, charge, and wheel speeds.
@@ -43,7 +43,7 @@ Motion moved(const Motion& from, double factor, const Motion& by) {
   return made;
 }
 
-/// What dies away is at rest in the end: arithmetic with the smallest of numbers takes a hundred times as long.
+/// Sets decayed values to 0, because arithmetic with denormal numbers is about a hundred times slower.
 double or_rest(double value) { return std::abs(value) < kRest ? 0.0 : value; }
 
 void unpack(const Motion& motion, PlantState& state) {
@@ -112,7 +112,7 @@ Electrics motors_at(const Held& held, const DriverDemands& demands, const Wheels
   return made;
 }
 
-/// The bus voltage that the motors it limits bring about: V + R·P(V)/V = E, by the Illinois rule.
+/// Finds the bus voltage when the motors are voltage-limited: V + R·P(V)/V = E, by the Illinois method.
 Electrics sagging_bus(const Held& held, const Wheels& back_emf_V, double source_V) {
   const auto excess_V = [&](const Electrics& at, double bus_V) {
     return bus_V - source_V + held.plant.battery.internal_resistance_ohm * at.power_W / bus_V;
@@ -121,7 +121,7 @@ Electrics sagging_bus(const Held& held, const Wheels& back_emf_V, double source_
   double high_V = source_V;
   Electrics at = motors(high_V);
   double high_excess_V = excess_V(at, high_V);
-  // The current that the full voltage draws sags too far, unless motors short of their limit draw more at less.
+  // The current at full voltage gives a voltage that is too low, unless motors below their limit draw more current at less voltage.
   double low_V = std::max(high_V - high_excess_V, 0.01 * source_V);
   double low_excess_V = excess_V(motors(low_V), low_V);
   if (low_excess_V > 0.0) {
@@ -129,7 +129,7 @@ Electrics sagging_bus(const Held& held, const Wheels& back_emf_V, double source_
     low_excess_V = excess_V(motors(low_V), low_V);
   }
   if (high_excess_V <= 0.0 || low_excess_V >= 0.0) {
-    return at;  // braking lifts the bus: it limits nobody in the end
+    return at;  // braking raises the bus voltage, so it is no limit
   }
   for (int round = 0; round < 60 && high_V - low_V > 1e-12 * source_V; ++round) {
     const double bus_V = high_V - high_excess_V * (high_V - low_V) / (high_excess_V - low_excess_V);
@@ -153,7 +153,7 @@ Electrics sagging_bus(const Held& held, const Wheels& back_emf_V, double source_
 
 DriverDemands all_open(const Held& held) { return driver_demands(held.plant.driver, {}, held.plant.body.kinematics.wheel_count); }
 
-/// Not even the drivers' own electronics run any more.
+/// The battery is empty: even the drivers' electronics are off.
 Electrics nothing_runs(const Held& held, double charge_A_s, const Wheels& back_emf_V) {
   Electrics made = motors_at(held, all_open(held), back_emf_V, 0.0);
   made.power_W = made.standby_W = 0.0;
@@ -170,7 +170,7 @@ Electrics nothing_runs(const Held& held, double charge_A_s, const Wheels& back_e
   }
   Electrics made = motors_at(held, held.demands, back_emf_V, source_V);
   made.battery = battery_load(battery, charge_A_s, made.power_W);
-  // With the bus found, what it limits is limited by it; else only whoever is between source and bus.
+  // The bus limits a motor only if its bridge voltage reaches the lower of source and terminal voltage.
   if (made.highest_bridge_V >= std::min(source_V, made.battery.terminal_V)) {
     made = sagging_bus(held, back_emf_V, source_V);
     made.battery = battery_load(battery, charge_A_s, made.power_W);
@@ -183,7 +183,7 @@ Electrics nothing_runs(const Held& held, double charge_A_s, const Wheels& back_e
   return made;
 }
 
-/// Motors and battery at the voltage that they bring about together.
+/// Returns motors and battery at their common bus voltage.
 template <Half kHalf>
 Electrics settle_electrics(const Held& held, double charge_A_s, const Wheels& back_emf_V, PlantOutput& out) {
   const double source_V = open_circuit_V(held.plant.battery, charge_A_s);
@@ -216,7 +216,7 @@ struct Contacts {
   Wrench ground;               ///< of all forces along rolling directions and axles
 };
 
-/// Contacts: their forces per normal force are known, the loads follow from the forces: F = Σ N_i(F)·g_i, a 2×2 system.
+/// Forces per normal force are known; the normal loads depend on the forces: F = Σ N_i(F)·g_i, a 2×2 system.
 template <Half kHalf>
 Contacts settle_contacts(const Held& held, const BodyVelocity& velocity, const Wheels& rim_m_per_s, PlantOutput& out) {
   const WheelArrays& wheels = held.wheels;
@@ -264,7 +264,7 @@ struct Stiffness {
   Wheels resistance_Nm_s_per_rad;  ///< slope of motor and friction torque over the wheel's speed
 };
 
-/// Wheels: motor through gear against friction, rolling loss and ground. Returns accelerations in rad/s². `dry_Nm` is the
+/// Motor through gear against friction, rolling loss and ground force. Returns accelerations of the wheels in rad/s². `dry_Nm` is the
 /// magnitude of the dry friction torque.
 template <Half kHalf>
 Wheels accelerate_wheels(const Held& held, const Wheels& speed_rad_per_s, const Wheels& motor_current_A, const Wheels& dry_Nm,
@@ -276,7 +276,7 @@ Wheels accelerate_wheels(const Held& held, const Wheels& speed_rad_per_s, const 
   const Wheels sign = speed_rad_per_s * per_root_s_per_rad;
   const Wheels drag_Nm = plant.motor.drag_torque_Nm * sign;
   const Wheels motor_Nm = held.circuits.torque_constant_Nm_per_A * motor_current_A - drag_Nm;
-  // A gear's input when it drives is the motor, when it brakes the wheel: loss by the motor's torque either way.
+  // The gear's input is the motor when driving and the wheel when braking; the loss is computed from the motor's torque in both cases.
   const Wheels geared_Nm = motor_Nm * plant.gear_ratio;
   const Wheels gear_loss_Nm = loss_torque_Nm(1.0 - plant.gear_efficiency, 1.0 / plant.gear_efficiency - 1.0, geared_Nm, sign);
   const Wheels wheel_Nm = geared_Nm - gear_loss_Nm;
@@ -325,9 +325,9 @@ Motion evaluate(const Held& held, const Motion& at, PlantOutput& out, Stiffness&
           accelerate_wheels<kHalf>(held, at.wheels, electrics.motors.current_A, dry_Nm, contacts, out, stiffness)};
 }
 
-/// (1 − γ·h·A)·k = b, where A holds what is stiff: the contacts, k_i·(r·ω_i − J_i·v), which couple wheels and body, and
-/// what resists each wheel. The wheels are eliminated; three equations for the body's velocity remain. Multiplied by mass
-/// and inertia they are symmetric.
+/// Solves (1 − γ·h·A)·k = b. A holds the stiff terms: the contacts, k_i·(r·ω_i − J_i·v), which couple wheels and body, and the resistance
+/// of each wheel. The wheels are eliminated, which leaves three equations for the body's velocity. Multiplied by mass and inertia they are
+/// symmetric.
 class StiffPart {
  public:
   StiffPart(const Held& held, const Stiffness& stiffness) : held_(held) {
@@ -368,7 +368,7 @@ class StiffPart {
   }
 
  private:
-  /// Inverts a symmetric 3×3 matrix by its cofactors; z stands for yaw.
+  /// Inverts a symmetric 3×3 matrix by cofactors; z is yaw.
   void invert(double xx, double xy, double xz, double yy, double yz, double zz) {
     inverse_xx_ = yy * zz - yz * yz;
     inverse_xy_ = xz * yz - xy * zz;
@@ -421,7 +421,7 @@ double heat_W(const PlantOutput& output) {
   return sum_W;
 }
 
-// Inlined as a whole: values of the wheels stay in registers, which saves a tenth of the time.
+// Inlined completely: values of the wheels stay in registers, which saves about 10 % of the time.
 [[gnu::flatten]] void step(const PlantConfig& plant, PlantState& state, const PlantInput& input, PlantOutput& output) {
   // y₁ = y + h·(3/2·k₁ + 1/2·k₂), (1 − γ·h·A)·k₁ = f(y), (1 − γ·h·A)·k₂ = f(y + h·k₁) − 2·k₁, γ = 1 − 1/√2.
   const double h_s = plant.period_s;

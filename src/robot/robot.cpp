@@ -12,7 +12,7 @@
 namespace heatsoak {
 namespace {
 
-/// Ranges hold whatever anybody builds for a lab floor, and leave out what another unit makes of it.
+/// The ranges include any robot for a lab floor and exclude values with a wrong unit.
 constexpr std::array<RobotFigureSpec, 29> kSpecs{{
     {"body",
      {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0), "about the vertical through the centre of gravity; mind g cm2 and kg m2"},
@@ -99,14 +99,14 @@ std::string wheel_figure_key(std::size_t wheel, const WheelFigureSpec& figure) {
   return fmt::format("friction.heading.wheel[{}].{}", wheel, figure.spec.key);
 }
 
-/// Where friction would drive the wheel on some direction of travel.
+/// Adds a problem if the friction would drive the wheel in some direction of travel.
 void check_sign(Reader& reader, double constant_Nm, double sine_Nm, double double_angle_Nm) {
   if (constant_Nm + std::min(0.0, sine_Nm) < double_angle_Nm) {
     reader.problem("constant", "is smaller than what the other parts take off on some direction, so that friction would drive the wheel");
   }
 }
 
-/// [[friction.heading.wheel]], wheel 1 first.
+/// Reads [[friction.heading.wheel]], wheel 1 first.
 void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double double_angle_Nm) {
   for (Reader& reader : wheels) {
     HeadingWheel& wheel = robot.heading_wheels.emplace_back();

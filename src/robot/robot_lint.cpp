@@ -14,7 +14,7 @@ namespace {
 
 std::string in_mm(double length_m) { return fmt::format("{:.0f} mm", 1e3 * length_m); }
 
-/// The smallest angle between the axles of two wheels.
+/// Returns the smallest angle between the axles of two wheels.
 double closest_axles_rad(const Robot& robot) {
   std::vector<double> sorted_rad;
   for (const double each_rad : robot.wheel_axis_rad) {
@@ -28,10 +28,10 @@ double closest_axles_rad(const Robot& robot) {
   return closest_rad;
 }
 
-/// A wheel is a disc that touches the circle of the contact points; two of them meet where their planes do.
+/// Wheels are discs that touch the contact circle; two of them overlap if their radius reaches the intersection of their planes.
 void check_wheels(const Robot& robot, std::vector<LintFinding>& findings) {
   const double room_m = robot.wheel_contact_radius_m * std::tan(0.5 * std::min(closest_axles_rad(robot), 0.9 * std::numbers::pi));
-  // Wheels of known robots have 0.35 to 0.42 of the contact radius.
+  // Known robots have wheels of 0.35 to 0.42 of the contact radius.
   constexpr double kLargestShare = 0.6;
   const bool is_overlap = robot.wheel_radius_m > room_m;
   if (is_overlap || robot.wheel_radius_m > kLargestShare * robot.wheel_contact_radius_m) {
@@ -63,7 +63,7 @@ void check_battery(const Robot& robot, std::vector<LintFinding>& findings) {
   }
 }
 
-/// A disc that reaches to the contact points has half of mass times radius squared; a ring that is twice as wide eight times as much.
+/// A disc with the contact radius has 0.5 of mass times radius squared, a ring of twice the radius has 4.
 void check_inertia(const Robot& robot, std::vector<LintFinding>& findings) {
   constexpr double kLeast = 0.15;
   constexpr double kMost = 4.0;

@@ -1,4 +1,4 @@
-// What only the use of a robot's file would find.
+// Checks a robot's file for faults that otherwise only its use would reveal.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace heatsoak {
 
-/// Whether the robot can stand and drive, and whether its motor is one of `known_motors`. Throws Failure (bad_input) where a robot that
-/// states its body cannot be built from it.
+/// Checks wheels, battery, inertia, the ability to stand and drive, and that the motor is one of `known_motors`. Throws Failure (bad_input)
+/// if a robot that states its body cannot be built from it.
 std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors);
 
 }  // namespace heatsoak

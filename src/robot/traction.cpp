@@ -7,7 +7,7 @@
 namespace heatsoak {
 namespace {
 
-/// Loads of the wheels in `standing` as a plane over their contact points; three wheels leave no choice.
+/// Computes loads of the wheels in `standing`, linear in the contact position; for three wheels they are determinate.
 bool plane_loads(const WeightConfig& weight, const LoadMoment& moment, const std::array<bool, kMostWheels>& standing, PerWheel& force_N) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   for (int i = 0; i < weight.wheel_count; ++i) {
@@ -36,7 +36,7 @@ void scale_to_weight(const WeightConfig& weight, PerWheel& force_N) {
   }
 }
 
-/// Off the ground: the wheel with the least load of a plane under all.
+/// Loads after lift-off: the wheel with the smallest load in the four-wheel solution is lifted.
 NormalLoads loads_with_a_wheel_lifted(const WeightConfig& weight, const LoadMoment& moment, const PerWheel& all_N) {
   NormalLoads loads{all_N, true};
   if (weight.wheel_count == kMostWheels) {

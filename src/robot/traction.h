@@ -1,4 +1,4 @@
-// How the robot's weight stands on its wheels, and what force a contact can pass on.
+// Distribution of the robot's weight on its wheels, and the forces that a ground contact can transmit.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@ namespace heatsoak {
 
 inline constexpr double kGravity_m_per_s2 = 9.80665;
 
-/// Mass on wheels. Four stiff wheels on a plane leave one load open; equal springs under equal wheels settle it, so
-/// the loads are a plane over the contact points.
+/// Mass on wheels. Four rigid wheels on a plane are statically indeterminate; equal springs under all wheels are assumed, so the loads are
+/// a linear function of the contact position.
 struct WeightConfig {
   double mass_kg = 0.0;
   double center_of_gravity_height_m = 0.0;
@@ -32,8 +32,8 @@ struct LoadMoment {
   double y_Nm = 0.0;
 };
 
-/// S = m·g·c − h·F + (h_e − h)·F_e: the ground's force F acts below the centre of gravity (height h, offset c), so
-/// accelerating forward loads the rear wheels; a push F_e from outside at the height h_e tips the other way.
+/// S = m·g·c − h·F + (h_e − h)·F_e. The ground force F acts below the centre of gravity (height h, offset c), so forward acceleration loads
+/// the rear wheels. An external force F_e at the height h_e tips the robot the other way.
 inline LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, const Wrench& external, double external_height_m) {
   const double weight_N = weight.mass_kg * kGravity_m_per_s2;
   const double height_m = weight.center_of_gravity_height_m;
@@ -42,7 +42,7 @@ inline LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, 
           weight_N * weight.center_of_gravity_y_m - height_m * ground.y_N + above_m * external.y_N};
 }
 
-/// Loads in N as a plane over the contact points. A load below 0 means that the wheel has left the ground: see normal_loads().
+/// Returns the loads in N, linear in the contact position. A negative load means that the wheel lifts off: see normal_loads().
 inline Wheels plane_loads_N(const WeightConfig& weight, const LoadMoment& moment) {
   return as_wheels(weight.level_share) * (weight.mass_kg * kGravity_m_per_s2) + as_wheels(weight.along_x_per_m) * moment.x_Nm +
          as_wheels(weight.along_y_per_m) * moment.y_Nm;
@@ -52,27 +52,26 @@ struct NormalLoads {
   PerWheel force_N{};   ///< at least 0; the sum is the weight
   bool lifted = false;  ///< a wheel has left the ground, or the robot would tip over
 };
-/// A wheel that would have to pull on the ground has 0, and the others carry the moment; where three or fewer
-/// cannot, the robot tips: the remaining loads are scaled to the weight.
+/// A wheel with a negative load gets 0, and the others carry the moment. If three or fewer wheels cannot carry it, the robot tips over: the
+/// remaining loads are scaled to the weight.
 NormalLoads normal_loads(const WeightConfig& weight, const LoadMoment& moment);
 
-/// What a contact of rubber rollers passes on: along the rolling direction
-///   f_t = μ·N·s/√(s² + s_0²),                     s = r·ω − t·v (slip, > 0 drives),
-/// which is linear creep at small slip and Coulomb friction at large, and along the axle
-///   f_n = −c·N·u/√(u² + (κ·s)² + u_0²),           u = e·v,
-/// the drag of the roller's bearing and rolling, c ≪ μ, as long as the contact does not slide. Where it slides along
-/// the rolling direction, its friction points against the whole sliding velocity and only μ·N·u/s of it along the axle,
-/// so the roller stands still: the form above with κ = c/μ is the smooth lesser of both. The two forces stay within
-/// √(μ² + c²)·N.
-/// Both take energy only: f_t·s ≥ 0 is slip heat, −f_n·u ≥ 0 is roller heat.
+/// Forces of a contact with rubber rollers. Along the rolling direction
+///   f_t = μ·N·s/√(s² + s_0²),                     s = r·ω − t·v (slip, > 0 drives):
+/// linear creep at small slip, Coulomb friction at large slip. Along the axle
+///   f_n = −c·N·u/√(u² + (κ·s)² + u_0²),           u = e·v:
+/// the drag of the roller's bearing and rolling, c ≪ μ, as long as the contact does not slide. If it slides along the rolling direction,
+/// friction opposes the whole sliding velocity and the roller stands still; only μ·N·u/s acts along the axle. The form above with κ = c/μ
+/// is a smooth minimum of both. The two forces together stay within √(μ² + c²)·N.
+/// Both forces dissipate energy: f_t·s ≥ 0 is slip heat, −f_n·u ≥ 0 is roller heat.
 struct TractionConfig {
   double traction_ratio = 0.7;         ///< μ, largest rolling force per normal force
-  double slip_speed_m_per_s = 0.05;    ///< s_0: slip that uses 0.71 of it
-  double roller_drag_ratio = 0.0;      ///< c, axle-wise drag per normal force
-  double roller_speed_m_per_s = 0.01;  ///< u_0: where the sign of u is smoothed
+  double slip_speed_m_per_s = 0.05;    ///< s_0: slip at which 0.71 of μ is used
+  double roller_drag_ratio = 0.0;      ///< c, drag along the axle per normal force
+  double roller_speed_m_per_s = 0.01;  ///< u_0: speed over which the sign of u is smoothed
 };
 
-/// Force per normal force, and its slope over the slip. S is double for one contact, Wheels for all.
+/// Force per normal force, and its derivative with respect to slip. S is double for one contact, Wheels for all.
 template <class S>
 struct ContactRatios {
   S rolling_ratio;

@@ -1,4 +1,4 @@
-// The wheels of a robot as one array, so that a law is evaluated for all of them at once.
+// Values of all wheels as one array, so that a law is evaluated for all of them at once.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace heatsoak {
 
-/// One value per wheel with element-wise arithmetic. With three wheels the last value is 0, as in PerWheel.
+/// One value per wheel with element-wise arithmetic. The fourth value is 0 for a robot with three wheels, as in PerWheel.
 using Wheels = Eigen::Array<double, kMostWheels, 1>;
 
 inline Eigen::Map<const Wheels> as_wheels(const PerWheel& values) { return Eigen::Map<const Wheels>(values.data()); }
@@ -15,14 +15,14 @@ inline Eigen::Map<Wheels> as_wheels(PerWheel& values) { return Eigen::Map<Wheels
 
 inline PerWheel per_wheel(const Wheels& values) { return {values[0], values[1], values[2], values[3]}; }
 
-/// Directions of all wheels; 0 for a wheel that does not exist.
+/// Directions of all wheels; 0 for a missing wheel.
 struct WheelArrays {
   Wheels rolling_x_share;
   Wheels rolling_y_share;
   Wheels axle_x_share;
   Wheels axle_y_share;
   Wheels arm_m;          ///< contact radius
-  Wheels present_share;  ///< 1 for a wheel that exists, else 0
+  Wheels present_share;  ///< 1 for an existing wheel, else 0
 };
 inline WheelArrays wheel_arrays(const Kinematics& kinematics) {
   const auto& w = kinematics.wheels;

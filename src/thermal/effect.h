@@ -1,8 +1,7 @@
-// What an effect is: one physical law, the parameters it has, and how it books heat.
+// Effects: an effect is one physical law with its parameters and the heat that it books into nodes.
 //
-// Sign convention, here and nowhere else: heat is in watts and positive *into* a node. A law books through
-// two verbs only. flow(from, to, W) moves heat and so cannot create any; source(into, W) makes heat, which
-// only losses do.
+// Sign convention of the whole program: heat is in watts and positive *into* a node. A law books heat in two ways only. flow(from, to, W)
+// moves heat between nodes and so conserves energy; source(into, W) generates heat and is used by losses.
 #pragma once
 
 #include <string_view>
@@ -16,8 +15,8 @@
 
 namespace heatsoak {
 
-/// What a law may look at: the operating point, its own parameters and the temperatures of its nodes,
-/// both by their place in the effect's declaration.
+/// The inputs of a law: the operating point, its own parameters and the temperatures of its nodes. Parameters and nodes are numbered in the
+/// order of the effect's declaration.
 template <class S>
 class Situation {
  public:
@@ -51,7 +50,7 @@ class HeatBook {
   const int* node_index_;
 };
 
-/// Heat as formulas, moved and made apart: only what is made grows with a reserve.
+/// Heat as formulas. Moved and generated heat are kept apart, because a safety factor on heat applies to generated heat only.
 struct TracedHeat {
   Traced moved_W;
   Traced made_W;
@@ -73,7 +72,7 @@ class HeatBook<Traced> {
   const int* node_index_;
 };
 
-/// One law for every scalar the network runs on; filled by laws<Law>() from one template.
+/// One law compiled for every scalar type that the network uses; laws<Law>() fills it from one template.
 struct Laws {
   void (*one)(const Situation<double>&, HeatBook<double>&) = nullptr;
   void (*lanes)(const Situation<Lanes>&, HeatBook<Lanes>&) = nullptr;
@@ -90,56 +89,56 @@ constexpr Laws laws() {
 }
 
 struct NodeRole {
-  std::string_view role;          ///< key in a file that names another node
-  std::string_view default_node;  ///< node that plays the role unless the file says otherwise
-  /// Place of the parameter that is the node's heat capacity, where the effect brings a node of its own; -1 otherwise.
+  std::string_view role;          ///< key in a motor file by which another node can play the role
+  std::string_view default_node;  ///< node that plays the role by default
+  /// Index of the parameter that is the node's heat capacity if the effect adds a node of its own; -1 if it does not.
   int own_capacity = -1;
 };
 
-/// How an effect enters where a model may lack it: its parameters at the typical size of a motor of some 50 W, once for
-/// every shape worth telling apart.
+/// How an effect is proposed when a model may lack it: parameter values typical for a motor of about 50 W, one variant for each
+/// distinguishable shape of the law.
 struct Candidacy {
-  /// Place of the parameter that the heat is proportional to; 0 there is the model without the effect. -1: never a candidate.
+  /// Index of the parameter that the heat is proportional to; 0 is the model without the effect. -1: the effect is never a candidate.
   int size_parameter = -1;
   std::vector<std::vector<double>> variants;
-  std::string_view family;      ///< what it can be called while the exact law is open: "speed loss at the stator"
-  std::string_view experiment;  ///< what to record so that its look-alikes separate
-  bool is_anywhere = false;     ///< looked for at every node, also where the network has two only
+  std::string_view family;      ///< name of the group while the exact law is undetermined: "speed loss at the stator"
+  std::string_view experiment;  ///< measurement that separates it from the effects it is confounded with
+  bool is_anywhere = false;     ///< tried at every node, also in a network of only two nodes
 };
 
-/// Numbers computed by hand beside the equation; run as a test for every effect.
+/// A hand-calculated example of the equation; a test runs it for every effect.
 struct WorkedExample {
-  std::vector<double> parameters;  ///< in the declared order
+  std::vector<double> parameters;  ///< in the order of declaration
   OperatingPoint<double> at;
   std::vector<double> temperature_C;    ///< one per role
   std::vector<double> expected_heat_W;  ///< one per role, positive into the node
 };
 
-/// Of a choice of signals: a column of the log, which the motor file names beside it.
+/// Name of the choice "a column of the log"; the motor file names the column.
 inline constexpr std::string_view kColumnChoice = "column";
 
 struct EffectType {
-  std::string_view name;  ///< the file's name; set by find_effect()
+  std::string_view name;  ///< name in motor files; set by find_effect()
   std::string_view summary;
   std::string_view equation;
   std::string_view reference;
   std::vector<NodeRole> nodes;
   std::vector<ParameterSpec> parameters;
-  std::string_view typical;     ///< size for a motor of some 50 W
-  std::string_view look_alike;  ///< effects that leave a similar trace, and what tells them apart
+  std::string_view typical;     ///< typical size for a motor of about 50 W
+  std::string_view look_alike;  ///< effects that it is confounded with, and what separates them
   WorkedExample example;
   Laws laws;
   std::vector<Signal> needs = {};
   Candidacy candidacy = {};
-  /// Where it hangs on a choice: what one with these parameters needs of `needs`; null: all.
+  /// Signals needed with these parameters, for an effect whose signals depend on a choice; null: all of `needs`.
   std::vector<Signal> (*needs_of)(std::span<const double> parameters) = nullptr;
 
   [[nodiscard]] std::vector<Signal> needed_with(std::span<const double> values) const { return needs_of ? needs_of(values) : needs; }
 };
 
-/// All effects, sorted by name. The list lives as long as the program.
+/// Returns all effects, sorted by name. The list lives as long as the program.
 const std::vector<EffectType>& all_effects();
-/// Nothing where there is no effect of that name.
+/// Returns the effect of that name, or null if there is none.
 const EffectType* find_effect(std::string_view name);
 
 }  // namespace heatsoak

@@ -18,7 +18,7 @@ double longest_step_s(const Network& network, std::span<const Lanes> parameters,
     state_C[i] = at.ambient_C + rise_K * static_cast<double>(states - i);
   }
   network.rate_K_per_s<Lanes>(moment, parameters, state_C, rate);
-  // Gershgorin: no eigenvalue is larger than the largest sum of a row's absolute entries.
+  // Gershgorin's theorem: no eigenvalue exceeds the largest row sum of absolute entries.
   std::vector<Lanes> row_sum(states, Lanes::Zero());
   for (std::size_t i = 0; i < states; ++i) {
     state_C[i] += 1.0;
@@ -54,8 +54,8 @@ void EnsembleRun::over(double duration_s, const OperatingPoint<Lanes>& at, doubl
 
 void EnsembleRun::one_step(double step_s) {
   struct Stage {
-    double share;   ///< of the step, where the stage looks
-    double weight;  ///< of its rate in the result
+    double share;   ///< time of the stage as a share of the step
+    double weight;  ///< weight of the stage's rate in the result
   };
   constexpr Stage kClassical[] = {{0.0, 1.0 / 6.0}, {0.5, 1.0 / 3.0}, {0.5, 1.0 / 3.0}, {1.0, 1.0 / 6.0}};
   const std::size_t states = state_C_.size();

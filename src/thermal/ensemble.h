@@ -1,5 +1,5 @@
-// Many parameter samples over one duty at once: kLanes of them side by side, a fixed step that the network's
-// own speed decides. Checked against the reference in tests/thermal/ensemble_test.cpp.
+// Simulates many parameter samples over one duty: kLanes of them at once, with a fixed step chosen from the time constants of the network.
+// tests/thermal/ensemble_test.cpp compares it with the reference solver.
 #pragma once
 
 #include <span>
@@ -9,20 +9,20 @@
 
 namespace heatsoak {
 
-/// More steps than this for one run are refused: the network is far too fast for the duty.
+/// Maximum number of steps of one run; more would mean a time constant far too small for the duty.
 inline constexpr long kMostSteps = 2'000'000;
 
-/// The longest step with which the classical Runge-Kutta method stays below 1e-5 of the fastest
-/// transient, from a bound on the network's eigenvalues at `at`, with the last state node `rise_K` above ambient and each
-/// node before it as much above the next: convection and radiation are faster the hotter it is.
+/// Returns the longest step with which the classical Runge-Kutta method keeps its error below 1e-5 of the fastest transient. It uses a
+/// bound on the eigenvalues of the network at `at`. The last state node is taken at `rise_K` above ambient and each node before it another
+/// `rise_K` higher, because convection and radiation are faster at higher temperatures.
 double longest_step_s(const Network& network, std::span<const Lanes> parameters, const OperatingPoint<Lanes>& at, double rise_K = 0.0);
 
-/// A running integration of kLanes samples. Temperatures stop at kDestroyed_C.
+/// A running integration of kLanes samples. Temperatures are clamped to kDestroyed_C.
 class EnsembleRun {
  public:
   EnsembleRun(const Network& network, std::span<const Lanes> parameters, std::span<const Lanes> start_C);
 
-  /// Goes on over an interval, in equal steps no longer than `longest_step_s`.
+  /// Integrates over an interval in equal steps no longer than `longest_step_s`.
   void over(double duration_s, const OperatingPoint<Lanes>& at, double longest_step_s);
   [[nodiscard]] const std::vector<Lanes>& state_C() const { return state_C_; }
   [[nodiscard]] const std::vector<Lanes>& peak_C() const { return peak_C_; }

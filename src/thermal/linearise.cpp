@@ -9,7 +9,7 @@ namespace {
 constexpr int kMostRoles = Network::kMostRoles;
 constexpr int kMostParameters = Network::kMostParameters;
 
-/// What the copper loss of this moment depends on, for the laws that look at it.
+/// The copper loss at this moment and its derivatives, for laws that depend on it.
 struct CopperGradient {
   const EffectInPlace* effect = nullptr;
   double heat_W = 0.0;
@@ -17,7 +17,7 @@ struct CopperGradient {
   std::array<double, kMostParameters> by_parameter{};
 };
 
-/// Numbers with derivatives are large, and clearing those that no law asks for costs more than the laws: they are kept.
+/// Scratch memory kept between calls: clearing unused derivatives would cost more than evaluating the laws.
 struct Workspace {
   std::array<Tangent, kMostRoles> temperature_C;
   std::array<Tangent, kMostParameters> parameter;
@@ -25,7 +25,7 @@ struct Workspace {
   OperatingPoint<Tangent> seen;
 };
 
-/// One effect with its temperatures, its parameters and the copper loss as numbers that carry derivatives, eight at a time.
+/// Evaluates one effect with derivatives with respect to its temperatures, its parameters and the copper loss, kDirections at a time.
 class LocalLaw {
  public:
   LocalLaw(const EffectInPlace& effect, std::span<const double> parameters, const double* temperature_C, Workspace& workspace)
@@ -43,10 +43,10 @@ class LocalLaw {
     }
   }
 
-  /// Roles, then parameters, then the copper loss.
+  /// Number of derivative directions, ordered: node roles, parameters, copper loss.
   [[nodiscard]] int direction_count() const { return roles_ + count_ + 1; }
 
-  /// Heat per role with its derivatives in the directions from `first` on.
+  /// Computes the heat per role and its derivatives in kDirections directions, starting at direction `first`.
   void book(OperatingPoint<Tangent>& at, int first) {
     for (int role = 0; role < roles_; ++role) {
       seed(temperature_C_[role], role - first);
@@ -116,7 +116,7 @@ class Linearisation {
   }
   void set_copper(const CopperGradient& copper) { copper_ = copper; }
 
-  /// From heat to rates: everything so far is in watts.
+  /// Divides heat in W by the heat capacities, so that rates and derivatives are per second.
   void divide_by(std::span<const int> capacity_index) {
     for (int node = 0; node < states_; ++node) {
       const int place = capacity_index[node];
@@ -178,7 +178,7 @@ void Network::linearise(const OperatingPoint<double>& at, std::span<const double
   temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
   static thread_local Workspace workspace;
   OperatingPoint<Tangent>& seen = workspace.seen;
-  // Only the copper loss ever has derivatives, and those are seeded anew for every law.
+  // Only the copper loss ever carries derivatives here; they are set again for every law.
   for_each_quantity([](Tangent& to, const double& from) { to.a = from; }, seen, at);
   seen.copper_loss_W.v.setZero();
   Linearisation linearisation(parameters, temperature_C.data(), state_count(), workspace, out);

@@ -106,7 +106,7 @@ S Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, con
   const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
   const S hot_ratio = resistance_ratio(parameters[copper.parameter_index[1]], temperature_C[copper.node_index[0]]);
   const S loop_ohm = parameters[copper.parameter_index[0]] * hot_ratio + at.series_resistance_ohm;
-  // A trial step of a solver may look where copper's line is below zero: an infinite headroom must not turn into -inf A there.
+  // A solver may try temperatures at which the linear resistance is negative; an infinite headroom must not give -inf A there.
   constexpr double kLeast_ohm = std::numeric_limits<double>::min();
   if constexpr (std::is_same_v<S, double>) {
     return std::min(at.current_rms_A, at.resistive_headroom_V / std::max(loop_ohm, kLeast_ohm));

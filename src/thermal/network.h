@@ -1,4 +1,4 @@
-// Nodes that store heat, effects that book it, and the parameters of both in one flat list.
+// A thermal network: nodes that store heat, effects that book heat, and one flat list of all their parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,59 +16,59 @@ struct NetworkParameter {
   std::string_view unit;
   Range range;
   double value = 0.0;
-  std::span<const Choice> choices = {};  ///< where there are any, the value is the place of one: no number to sample or to fit
+  std::span<const Choice> choices = {};  ///< if not empty, the value is the index of a choice, which is neither sampled nor fitted
 };
 
-/// An effect in place: which nodes play its roles, where its parameters stand in the flat list.
+/// An effect in a network: the nodes of its roles and the indices of its parameters in the flat list.
 struct EffectInPlace {
-  std::string name;  ///< of this instance, unique in the network
+  std::string name;  ///< name of this instance, unique in the network
   const EffectType* type = nullptr;
   std::vector<int> node_index;
   std::vector<int> parameter_index;
 };
 
-/// Rates of the state nodes and their derivatives at one moment; n state nodes, p parameters.
+/// Rates of the state nodes and their exact derivatives at one moment; n state nodes, p parameters.
 struct Linearised {
   Eigen::VectorXd rate_K_per_s;  ///< n
   Eigen::MatrixXd by_state;      ///< n × n, 1/s
   Eigen::MatrixXd by_parameter;  ///< n × p, K/s per unit of the parameter
 };
 
-/// The structure is shared by all samples; the values of the parameters are passed in, so that one network
-/// serves single runs, ensembles and fits. Ambient is the last node; its temperature is prescribed.
+/// The structure is shared by all samples; parameter values are passed to each call, so that one network serves single runs, ensembles and
+/// fits. Ambient is the last node and has a prescribed temperature.
 class Network {
  public:
   static constexpr std::string_view kAmbient = "ambient";
-  /// Ambient included. Bounded so that rates, which are asked for a million times, find room on the stack.
+  /// Includes ambient. The bound lets rate_K_per_s(), which is called millions of times, keep its arrays on the stack.
   static constexpr int kMostNodes = 16;
-  static constexpr int kMostRoles = 4;        ///< of one effect
-  static constexpr int kMostParameters = 16;  ///< of one effect
+  static constexpr int kMostRoles = 4;        ///< per effect
+  static constexpr int kMostParameters = 16;  ///< per effect
 
-  /// Returns the node's index. `heat_capacity_J_per_K` > 0.
+  /// Adds a state node and returns its index. Throws std::logic_error for a capacity ≤ 0, a known name or too many nodes.
   int add_node(std::string name, double heat_capacity_J_per_K);
-  /// `nodes` and `parameters` in the order of the type's declaration. Nodes must exist, but for a node of the effect's
-  /// own, which is added under the name given in its place.
+  /// Adds an effect. `nodes` and `parameters` are in the order of the type's declaration. All nodes must exist, except a node of the
+  /// effect's own: it is added under the name given for its role. Throws std::logic_error on a mismatch or a value out of range.
   void add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters);
 
-  /// Names the copper loss: its heat is the copper_loss_W that other laws see, and the current is cut to what the operating
-  /// point's headroom drives through its R25·(1+α·(T−25 °C)).
-  /// `copper_effect` is the name of an effect with terminal_resistance and temperature_coefficient as its parameters.
+  /// Selects the copper loss, an effect with the parameters terminal_resistance and temperature_coefficient. Its heat becomes the
+  /// copper_loss_W of all other laws. The current is limited to the operating point's resistive headroom divided by R25·(1+α·(T−25 °C))
+  /// plus the series resistance. Throws std::logic_error if there is no such effect.
   void limit_current_by(std::string_view copper_effect);
 
   [[nodiscard]] int state_count() const { return static_cast<int>(node_names_.size()); }
   [[nodiscard]] int node_count() const { return state_count() + 1; }
-  /// -1 where there is no such node; ambient is state_count().
+  /// Returns -1 if there is no such node, state_count() for ambient.
   [[nodiscard]] int find_node(std::string_view name) const;
   [[nodiscard]] std::string_view node_name(int node) const;
-  /// Place of a state node's heat capacity in the list of parameters.
+  /// Index of a state node's heat capacity in the list of parameters.
   [[nodiscard]] int capacity_index(int node) const { return capacity_index_.at(static_cast<std::size_t>(node)); }
   [[nodiscard]] std::span<const EffectInPlace> effects() const { return effects_; }
   [[nodiscard]] std::span<const NetworkParameter> parameters() const { return parameters_; }
   [[nodiscard]] std::vector<double> values() const;
 
-  /// dT/dt of every state node in K/s. `temperature_C` has node_count() entries; the last one is ignored and
-  /// overwritten with the point's ambient. S is double or Lanes. Works on the point's current and copper loss, for copies
-  /// of it would take half the time, and leaves them as they were.
+  /// Writes dT/dt of every state node in K/s. `temperature_C` has node_count() entries; the last one is overwritten with the ambient
+  /// temperature of the operating point. S is double or Lanes. `at` is modified during the call and restored, because copying it would
+  /// double the run time.
   template <class S>
   void rate_K_per_s(OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const;
   template <class S>
@@ -77,28 +77,28 @@ class Network {
     rate_K_per_s<S>(own, parameters, temperature_C, rate);
   }
 
-  /// Exact derivatives of the laws. The current is taken as given: the operating point's headroom must be infinite.
-  /// `state_C` has state_count() entries. Does not allocate where `out` has its shapes already.
+  /// Computes the rates and their exact derivatives. The current is not limited: the headroom of the operating point must be infinite.
+  /// `state_C` has state_count() entries. Does not allocate if `out` already has the right shapes.
   void linearise(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                  Linearised& out) const;
 
-  /// The laws as formulas, with the network's own parameters as constants: heat of every node at node_heat[n], node_count() entries.
-  /// `temperature_C` has as many, ambient last. The current is taken as given: the operating point's headroom must be infinite.
+  /// Evaluates the laws as formulas with the network's parameters as constants and writes the heat of every node to node_heat[n].
+  /// `node_heat` and `temperature_C` have node_count() entries, ambient last. The headroom of the operating point must be infinite.
   void trace(const OperatingPoint<Traced>& at, std::span<const Traced> temperature_C, std::span<TracedHeat> node_heat) const;
 
-  /// Heat in W that effect e books into node n, at heat_W[e · node_count() + n]; positive into the node.
+  /// Writes the heat in W that effect e books into node n to heat_W[e · node_count() + n]; positive into the node.
   void balance_W(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                  std::span<double> heat_W) const;
 
-  /// What of the point's current in A its headroom lets through at these temperatures (state_count() entries at least); all of it
-  /// where no copper loss is named.
+  /// Returns the current in A after the voltage limit: the part of the operating point's current that its headroom allows at these
+  /// temperatures (at least state_count() entries). Without limit_current_by() all of it.
   template <class S>
   [[nodiscard]] S within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
 
  private:
   int add_parameter(NetworkParameter parameter);
   int add_state(std::string name, int capacity_index);
-  /// Effects in the order in which they are booked: the copper loss first, for others look at its heat.
+  /// Index of the effect that is booked at position `turn`: the copper loss comes first because other laws use its heat.
   [[nodiscard]] std::size_t booked_at(std::size_t turn) const;
 
   std::vector<std::string> node_names_;

@@ -11,7 +11,7 @@
 namespace heatsoak {
 namespace {
 
-/// One cycle as a map of the state before it to the state after it.
+/// One cycle as a map from the state before it to the state after it.
 class CycleMap {
  public:
   CycleMap(const Network& network, std::span<const Interval> cycle)
@@ -25,12 +25,12 @@ class CycleMap {
       fastest_per_s = std::max(fastest_per_s, slope.by_state.cwiseAbs().rowwise().sum().maxCoeff());
       cycle_s += interval.duration_s;
     }
-    // What changes in a shorter cycle drowns in the rounding of the temperatures.
+    // A shorter cycle would change the temperatures by less than their rounding error.
     constexpr double kShortest = 1e-6;
     for (Interval& interval : cycle_) {
       interval.duration_s *= std::max(1.0, kShortest / (cycle_s * fastest_per_s));
     }
-    // An explicit method needs a step per fastest time constant, also where nothing changes any more.
+    // An explicit method needs a step per fastest time constant even in the steady state.
     constexpr double kLong = 1e4;
     options_.method = cycle_s * fastest_per_s > kLong ? OdeMethod::cvodes_bdf : OdeMethod::arkode_erk;
     options_.tolerances = {1e-11, 1e-11};
@@ -43,7 +43,7 @@ class CycleMap {
     return run_transient(network_, values_, cycle_, options_, observer);
   }
 
-  /// Nothing where it destroys the motor.
+  /// Returns the state after the cycle, or nothing if a temperature exceeds kDestroyed_C.
   std::optional<Eigen::VectorXd> operator()(const Eigen::VectorXd& start_C) {
     if (!(start_C.maxCoeff() < kDestroyed_C)) {
       return std::nullopt;
@@ -53,7 +53,7 @@ class CycleMap {
                             : std::optional<Eigen::VectorXd>(Eigen::Map<const Eigen::VectorXd>(result.end_C.data(), start_C.size()));
   }
 
-  /// Differences over 1 K downwards, where nothing can be destroyed that was not before.
+  /// Finite differences over 1 K downwards: a cooler start cannot exceed kDestroyed_C if this one does not.
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& start_C, const Eigen::VectorXd& end_C) {
     Eigen::MatrixXd result(start_C.size(), start_C.size());
     for (Eigen::Index i = 0; i < start_C.size(); ++i) {
@@ -66,7 +66,7 @@ class CycleMap {
     return result;
   }
 
-  /// Each step of the solver as the cubic that its ends and their slopes make.
+  /// Integrates the cubic Hermite interpolation of each solver step. Returns the mean temperatures and writes the peaks.
   std::vector<double> mean_C(const Eigen::VectorXd& start_C, std::vector<double>& peak_C) {
     const auto states = static_cast<std::size_t>(network_.state_count());
     std::vector<double> temperature_C(states + 1);
@@ -99,19 +99,19 @@ class CycleMap {
   TransientOptions options_;
 };
 
-/// Nothing where there is no stable cycle.
+/// Returns the start of the stable cycle, or nothing if there is none.
 std::optional<Eigen::VectorXd> repeating_start_C(CycleMap& map, Eigen::VectorXd end_C) {
   constexpr int kMostIterations = 100;
-  constexpr double kAlike_K = 1e-3;  // the step after one so short is far below it
+  constexpr double kAlike_K = 1e-3;  // convergence: Newton's next step is far shorter still
   constexpr double kLongestStep_K = 200.0;
   constexpr double kShortestShare = 1.0 / 64.0;
-  constexpr double kRounding = 1e-11;  // a body that nothing touches stays as it is, but for rounding
+  constexpr double kRounding = 1e-11;  // tolerance for a node without heat exchange, whose eigenvalue is 1 except for rounding
   Eigen::VectorXd start_C = map.ambient_C();
   for (int i = 0; i < kMostIterations; ++i) {
     Eigen::MatrixXd left = -map.jacobian(start_C, end_C);
     const double growth = left.eigenvalues().cwiseAbs().maxCoeff();
     const bool stable = growth < 1.0 + kRounding;
-    // Where a disturbance grows, Newton would go back to what repels: so many cycles on instead as double it.
+    // Newton's method would return to an unstable cycle. This step leads away from it and doubles the distance instead.
     left.diagonal().array() += stable ? 1.0 : 2.0 * growth - 1.0;
     Eigen::VectorXd step_K = left.completeOrthogonalDecomposition().solve(end_C - start_C);
     const double longest_K = step_K.cwiseAbs().maxCoeff();

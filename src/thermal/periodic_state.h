@@ -1,4 +1,4 @@
-// What a network comes to under inputs that repeat for ever.
+// Periodic steady state of a network under inputs that repeat for ever.
 #pragma once
 
 #include <optional>
@@ -9,20 +9,20 @@
 
 namespace heatsoak {
 
-/// Per state node, over one cycle once all cycles are alike.
+/// Temperatures over one cycle after all transients have decayed; one entry per state node.
 struct PeriodicState {
-  /// No cycle that repeats itself stays below kDestroyed_C: thermal runaway, or heat that nothing bears. There are no temperatures then.
+  /// True if no periodic solution stays below kDestroyed_C (thermal runaway or excessive heat). The temperatures are then empty.
   bool runaway = false;
-  /// Where the very first cycle from ambient passes kDestroyed_C: when.
+  /// Time at which the first cycle from ambient exceeds kDestroyed_C; nothing if it does not.
   std::optional<double> destroyed_s;
   std::vector<double> start_C;
   std::vector<double> mean_C;
-  std::vector<double> peak_C;  ///< between the steps of the solver too
+  std::vector<double> peak_C;  ///< includes maxima between the steps of the solver
 };
 
-/// Solves state after a cycle = state before it by Newton's method, from the ambient temperature of the first interval upwards; an
-/// unstable cycle is left behind. A cycle shorter than a millionth of the fastest time constant is taken as one of that length.
-/// Throws Failure (numerics_failed) where the iteration does not converge.
+/// Finds the state that one cycle maps to itself, by Newton's method from the ambient temperature of the first interval upwards. Unstable
+/// cycles are passed over. A cycle shorter than a millionth of the fastest time constant is stretched to that length. Throws Failure
+/// (numerics_failed) if the iteration does not converge.
 PeriodicState periodic_state(const Network& network, std::span<const Interval> cycle);
 
 }  // namespace heatsoak

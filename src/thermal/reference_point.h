@@ -1,4 +1,4 @@
-// Where the sizes of effects are quoted, so that one watt means the same in every file and a size is near one.
+// Reference operating point of effect sizes, so that sizes are comparable between files and close to one.
 #pragma once
 
 namespace heatsoak {

@@ -21,7 +21,7 @@ class Rates {
     return rate;
   }
 
-  /// Central differences over 2 K: exact but for rounding where a law is linear in temperature.
+  /// Central differences over 2 K: exact except for rounding if the laws are linear in temperature.
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& state_C) {
     Eigen::MatrixXd result(state_C.size(), state_C.size());
     for (Eigen::Index i = 0; i < state_C.size(); ++i) {

@@ -1,4 +1,4 @@
-// Where a network comes to rest under a constant operating point.
+// Steady state of a network at a constant operating point.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,14 @@ struct SteadyState {
   std::vector<double> temperature_C;  ///< one per state node
 };
 
-/// Solves rate = 0 by Newton's method (one step where the network is linear in temperature). Nothing where
-/// there is no stable rest: thermal runaway, the copper loss outgrows what can be led away.
-/// Throws Failure (numerics_failed) where the iteration does not converge.
+/// Solves rate = 0 by Newton's method, in one step if the network is linear in temperature. Returns nothing if there is no stable steady
+/// state (thermal runaway: the copper loss grows faster than the cooling). Throws Failure (numerics_failed) if the iteration does not
+/// converge.
 std::optional<SteadyState> steady_state(const Network& network, const OperatingPoint<double>& at);
 
-/// The equations (8) to (12) of the RoboTeam Twente paper of 2025 for an on/off current, after maxon.
-/// α is meant at 25 °C; for another ambient temperature it is referred to that one together with R, so that
-/// the equations stay the exact steady state of the network: R_TA = R25·(1+α(T_A−25)), α_TA = α·R25/R_TA.
+/// Steady state under an on/off current after maxon: equations (8) to (12) of the RoboTeam Twente paper of 2025. α refers to 25 °C. For
+/// another ambient temperature T_A it is converted together with R, which keeps the equations exact for the network:
+/// R_TA = R25·(1+α(T_A−25)), α_TA = α·R25/R_TA.
 struct OnOffCurrent {
   double current_on_A = 0.0;
   double time_on_s = 0.0;
@@ -34,7 +34,7 @@ struct TwoNodeMotor {
 };
 struct OnOffSteadyState {
   double current_rms_A = 0.0;
-  bool runaway = false;  ///< the denominator of equation (9) is not positive; the temperatures mean nothing then
+  bool runaway = false;  ///< the denominator of equation (9) is not positive; the temperatures are then invalid
   double winding_C = 0.0;
   double stator_C = 0.0;
 };

@@ -1,4 +1,4 @@
-// A number with its derivatives in up to eight directions: a law written for `double` runs on it unchanged.
+// Dual number with up to eight derivative directions (forward-mode differentiation). A law written for `double` also runs on it.
 #pragma once
 
 #include <ceres/jet.h>

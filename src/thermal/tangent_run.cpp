@@ -11,14 +11,14 @@
 namespace heatsoak {
 namespace {
 
-/// Of the fastest eigenvalue's bound: the local error of the method is then below 1e-5 of what changes.
+/// Step size times the bound of the fastest eigenvalue; the local error is then below 1e-5 of the change.
 constexpr double kStepPerTimeConstant = 0.5;
-/// Steps as short as this have no larger error with a stage less.
+/// If interval times eigenvalue is below this, the third-order method has no larger error with one stage less.
 constexpr double kShortStep = 0.12;
 
 struct Stage {
-  double share;   ///< of the step, where the stage looks
-  double weight;  ///< of its rate in the result
+  double share;   ///< time of the stage as a share of the step
+  double weight;  ///< weight of the stage's rate in the result
 };
 constexpr Stage kFourthOrder[] = {{0.0, 1.0 / 6.0}, {0.5, 1.0 / 3.0}, {0.5, 1.0 / 3.0}, {1.0, 1.0 / 6.0}};
 constexpr Stage kThirdOrder[] = {{0.0, 0.25}, {1.0 / 3.0, 0.0}, {2.0 / 3.0, 0.75}};

@@ -1,4 +1,4 @@
-// A network over the rows of a log, with the exact derivatives of what was computed: for fits and for filters.
+// Simulates a network over the rows of a log together with the exact derivatives of the result, for fits and filters.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,27 +9,27 @@
 
 namespace heatsoak {
 
-/// From the start of an interval to its end; n state nodes, w wanted parameters, q heated nodes.
+/// Result of one interval; n state nodes, w wanted parameters, q heated nodes.
 struct NetworkStep {
-  Eigen::VectorXd state_C;       ///< n, at the end
-  Eigen::MatrixXd by_start;      ///< n × n: derivatives of it by the temperatures at the start, the transition matrix
-  Eigen::MatrixXd by_parameter;  ///< n × (w + q): by the wanted parameters, per unit, with the start held; then by heat, in K/W
+  Eigen::VectorXd state_C;       ///< n, temperatures at the end
+  Eigen::MatrixXd by_start;      ///< n × n, derivative of state_C with respect to the start temperatures: the transition matrix
+  Eigen::MatrixXd by_parameter;  ///< n × (w + q), the same for the wanted parameters (per unit), then for the heats (K/W)
 };
 
-/// The classical Runge-Kutta method with its own derivatives; steps short against the fastest time constant. Very short ones are Heun's of
-/// third order.
+/// Classical Runge-Kutta method together with its derivatives; steps are short compared with the fastest time constant. Very short
+/// intervals use Heun's third-order method.
 class TangentRun {
  public:
-  /// `wanted`: places in the network's list of parameters. `heated`: nodes whose response to a heat that nobody knows, held over the
-  /// interval, is asked for.
+  /// `wanted`: indices in the network's list of parameters. `heated`: nodes for which the response to an unknown heat flux, constant over
+  /// the interval, is computed.
   TangentRun(const Network& network, std::span<const double> parameters, std::span<const int> wanted, std::span<const int> heated = {});
 
-  /// The result is valid until the next call. Throws Failure (numerics_failed) where temperatures leave −273 … 1000 °C or the
-  /// network is too fast for any sensible number of steps. Does not allocate.
+  /// The result is valid until the next call. Throws Failure (numerics_failed) if a temperature leaves −273 to 1000 °C or the interval
+  /// would need more than 10 000 steps. Does not allocate.
   const NetworkStep& over(std::span<const double> start_C, double duration_s, const OperatingPoint<double>& at);
 
  private:
-  /// `slope_` is that of the step's beginning already.
+  /// `slope_` must already hold the rates at the beginning of the step.
   void one_step(double step_s, bool is_short, const OperatingPoint<double>& at);
   void set_slope(const OperatingPoint<double>& at, const Eigen::VectorXd& state_C);
 

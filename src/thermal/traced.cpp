@@ -12,13 +12,13 @@
 namespace heatsoak {
 namespace {
 
-// In single precision the functions of the controller, so that host and controller have the same bits.
+// Single precision uses the functions of the controller, so that host and controller give identical bits.
 double exponential_of(double x) { return std::exp(x); }
 float exponential_of(float x) { return heatsoak_exp(x); }
 double power_of(double base, double exponent) { return base > 0.0 ? std::pow(base, exponent) : 0.0; }
 float power_of(float base, float exponent) { return heatsoak_pow(base, exponent); }
 
-// Lane by lane where Eigen's own functions differ in the last digit.
+// Evaluated lane by lane, because Eigen's own functions differ in the last digit.
 Lanes exponential_of(const Lanes& x) { return exponential(x); }
 Lanes power_of(const Lanes& base, const Lanes& exponent) { return power(base, exponent); }
 
@@ -181,7 +181,7 @@ Traced operator*(const Traced& a, const Traced& b) {
 
 Traced operator/(const Traced& a, const Traced& b) {
   if (b.is_constant() && !a.is_constant()) {
-    return a * Traced(1.0 / b.value_);  // the controller divides in 14 cycles and multiplies in one
+    return a * Traced(1.0 / b.value_);  // on the controller a division takes 14 cycles, a multiplication one
   }
   return Traced::joined(Operation::divide, a, b);
 }

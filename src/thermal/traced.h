@@ -1,5 +1,5 @@
-// A number that remembers how it was made: a law written for `double` runs on it unchanged and leaves its arithmetic behind, as
-// straight-line steps that can be run in single precision or printed as C.
+// A number that records how it was computed. A law written for `double` also runs on it and leaves a formula: straight-line code that can
+// be run in single precision or printed as C.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,19 @@ namespace heatsoak {
 
 enum class Operation { constant, input, add, subtract, multiply, divide, magnitude, positive_part, square_root, power, exponential };
 
-/// Steps in the order in which they can be run; each looks at earlier ones only. One that was made before is not made again.
+/// Arithmetic steps in executable order; each uses earlier steps only. Identical steps are stored once.
 class Formula {
  public:
   struct Step {
     Operation operation = Operation::constant;
-    int left = -1;       ///< place of a step, or of the input
-    int right = -1;      ///< place of a step; -1 where the operation takes one
-    double value = 0.0;  ///< of a constant
+    int left = -1;       ///< index of a step, or of the input
+    int right = -1;      ///< index of a step; -1 for operations with one operand
+    double value = 0.0;  ///< value of a constant
   };
 
   [[nodiscard]] std::span<const Step> steps() const { return steps_; }
   [[nodiscard]] std::span<const std::string> inputs() const { return inputs_; }
-  /// For each step whether one of `results` (places of steps) hangs on it.
+  /// Returns for each step whether one of `results` (indices of steps) depends on it.
   [[nodiscard]] std::vector<char> needed_for(std::span<const int> results) const;
 
   int constant(double value);
@@ -38,20 +38,20 @@ class Formula {
 
   std::vector<Step> steps_;
   std::vector<std::string> inputs_;
-  std::map<std::tuple<Operation, int, int, std::uint64_t>, int> known_;  ///< a constant by its bits
+  std::map<std::tuple<Operation, int, int, std::uint64_t>, int> known_;  ///< index of each step by its content; constants by their bits
 };
 
-/// Runs what of a formula some results need, in the precision of Number. Does not allocate once it is made.
+/// Evaluates the steps that some results need, in the precision of Number. run() does not allocate.
 template <class Number>
 class FormulaRun {
  public:
   FormulaRun(const Formula& formula, std::span<const int> results);
 
-  /// `inputs` in the formula's order, `results` as asked for.
+  /// `inputs` in the formula's order, `results` in the order given to the constructor.
   void run(std::span<const Number> inputs, std::span<Number> results);
 
  private:
-  std::vector<Formula::Step> steps_;  ///< those that are neither constant nor input, with places in values_
+  std::vector<Formula::Step> steps_;  ///< all steps except constants and inputs, with indices into values_
   std::vector<Number> values_;        ///< inputs, constants, then one per step
   std::size_t input_count_ = 0;
   std::size_t first_step_ = 0;
@@ -60,16 +60,16 @@ class FormulaRun {
 extern template class FormulaRun<float>;
 extern template class FormulaRun<double>;
 
-/// A constant without a formula until it meets a number that has one; constants are worked out at once.
+/// A constant has no formula until it is combined with a number that has one. Operations on constants are evaluated immediately.
 class Traced {
  public:
   Traced(double value = 0.0) : value_(value) {}  // NOLINT(google-explicit-constructor): laws mix it with numbers
   Traced(Formula& formula, int step) : formula_(&formula), step_(step) {}
 
   [[nodiscard]] bool is_constant() const { return formula_ == nullptr; }
-  /// Of a constant.
+  /// Valid for a constant only.
   [[nodiscard]] double value() const { return value_; }
-  /// Its place in the formula, where a constant gets one too.
+  /// Index of its step in the formula; a constant is added to it.
   [[nodiscard]] int step_in(Formula& formula) const { return is_constant() ? formula.constant(value_) : step_; }
 
   Traced& operator+=(const Traced& other) { return *this = *this + other; }
@@ -95,10 +95,10 @@ Traced operator+(const Traced& a, const Traced& b);
 Traced operator-(const Traced& a, const Traced& b);
 Traced operator*(const Traced& a, const Traced& b);
 Traced operator/(const Traced& a, const Traced& b);
-/// One of the operations that take one number.
+/// Applies an operation with one operand.
 Traced applied(Operation operation, const Traced& x);
 
-// What scalar.h asks of every scalar.
+// The functions of scalar.h.
 inline Traced magnitude(const Traced& x) { return applied(Operation::magnitude, x); }
 inline Traced positive_part(const Traced& x) { return applied(Operation::positive_part, x); }
 inline Traced exponential(const Traced& x) { return applied(Operation::exponential, x); }
@@ -107,7 +107,7 @@ inline Traced soft_positive_part(const Traced& x, double width) {
 }
 inline Traced soft_step(const Traced& x) { return 1.0 / (1.0 + exponential(-x)); }
 Traced power(const Traced& base, const Traced& exponent);
-/// A choice is a constant in every trace.
+/// Throws std::logic_error if the choice is not a constant.
 int chosen(const Traced& parameter);
 
 }  // namespace heatsoak

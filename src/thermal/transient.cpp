@@ -10,8 +10,8 @@
 namespace heatsoak {
 namespace {
 
-/// The network as an initial value problem. With a ledger the heat of every effect is integrated beside the
-/// temperatures by the same method, so that the balance closes to rounding, not to the tolerance.
+/// The network as an initial value problem. With a ledger the heat of every effect is integrated by the same method as the temperatures, so
+/// that the heat balance closes to rounding error and not only to the tolerance.
 class NetworkSystem final : public OdeSystem {
  public:
   NetworkSystem(const Network& network, std::span<const double> parameters, const TransientOptions& options)
@@ -48,10 +48,10 @@ class NetworkSystem final : public OdeSystem {
   std::size_t ledger_size_;
 };
 
-/// Some ten seconds of work; a match has a hundredth of it.
+/// About ten seconds of computing time; a match needs about a hundredth of these steps.
 constexpr long kMostTransientSteps = 10'000'000;
 
-/// Highest value of the cubic through two ends with their slopes, and where it is (0 to 1).
+/// Returns the maximum of the cubic Hermite interpolation and its position, 0 to 1. Slopes are per step.
 std::pair<double, double> hermite_peak(double from, double to, double slope_from, double slope_to) {
   const double a = 2.0 * (from - to) + slope_from + slope_to;
   const double b = 3.0 * (to - from) - 2.0 * slope_from - slope_to;
@@ -123,8 +123,8 @@ class Run {
       advance_to(step.time_s);
       observe(step.time_s, index, false);
       if (step.at_event) {
-        // Where a limit is crossed so slowly that its event is still zero a step of rounding later, SUNDIALS gives up
-        // ("root found at and very near"); begun again, it takes the zero for what it is.
+        // After a very slow crossing the event function is still zero one rounding step later, and SUNDIALS fails ("root found at and very
+        // near"). A restart accepts the zero.
         integrator_.start(step.time_s, y_);
       }
     }
@@ -158,7 +158,7 @@ class Run {
     result_.end_s = time_s;
   }
 
-  /// What root finding cannot see: a limit passed and left again within one step, or left upwards from its very value.
+  /// Adds crossings that root finding misses: a limit exceeded only within one step, or a start exactly at the limit.
   void note_passed_limits() {
     for (std::size_t i = 0; i < options_.limits.size(); ++i) {
       const auto& [node, limit_C] = options_.limits[i];

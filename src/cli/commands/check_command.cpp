@@ -56,14 +56,14 @@ Json json(const Outcome& each) {
           {"column", each.limit.at.column}};
 }
 
-/// All files are read, and all their problems are reported at once.
+/// Reads all files and reports the problems of all of them together.
 std::vector<CheckFile> read_files(const std::vector<std::string>& names, const DataFolders& folders) {
   std::vector<CheckFile> files;
   std::string message;
   std::vector<Diagnostic> problems;
   for (const std::string& name : names) {
     try {
-      // The one of the help came with the program.
+      // The example in the help is a file that came with the program.
       files.push_back(read_check_file(log_named(folders, name), folders));
     } catch (const Failure& failure) {
       if (failure.code() != ExitCode::bad_input) {
@@ -79,7 +79,7 @@ std::vector<CheckFile> read_files(const std::vector<std::string>& names, const D
   return files;
 }
 
-/// A file that was found beside the program is not the user's.
+/// Throws if the file was found beside the program, because it is not the user's.
 void refuse_shipped(const std::filesystem::path& path, const Options& options) {
   if (std::ranges::find(options.files, path.string()) == options.files.end()) {
     throw Failure(ExitCode::bad_input, fmt::format("{} came with the program and is not rewritten; copy it first", path.string()));
@@ -98,8 +98,8 @@ std::string conclusion(const std::vector<Outcome>& outcomes, const Options& opti
   return text;
 }
 
-/// GitHub Actions: a line at each limit that does not hold, and a table on the page of the run. A page that cannot be written is no reason
-/// to fail.
+/// For GitHub Actions: adds an annotation for each violated limit and a table on the page of the run. If the page cannot be written, the
+/// command only warns.
 void tell_github(const std::vector<Outcome>& outcomes, Session& session) {
   if (environment("GITHUB_ACTIONS") == "true") {
     session.say(annotations(outcomes, environment("GITHUB_WORKSPACE")));

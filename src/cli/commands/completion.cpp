@@ -11,7 +11,7 @@
 namespace heatsoak::commands {
 namespace {
 
-/// Kind of value that an option takes. The shell asks the program for ids each time the user completes a word.
+/// Returns the kind of value of an option. The shell asks the program for ids each time the user completes a word.
 std::string_view kind_of(const std::string& option) {
   return option == "--motor" || option == "--motors" ? "motors" : option == "--robot" ? "robots" : option == "--duty" ? "duties" : "";
 }
@@ -53,7 +53,7 @@ complete -F _heatsoak heatsoak
                      fmt::join(verbs, " "), cases, values);
 }
 
-/// For single quotes, and without what zsh's _arguments takes for its own.
+/// Quotes a text for single quotes and replaces characters that zsh's _arguments would interpret.
 std::string zsh_quoted(std::string text) {
   for (const auto& [from, to] : {std::pair("'", "'\\''"), {"[", "("}, {"]", ")"}, {":", ","}}) {
     text = CLI::detail::find_and_replace(text, from, to);

@@ -33,8 +33,8 @@ struct Options {
   std::string robot;
   std::string to = "c_header";
   std::string out;
-  std::string committed;  ///< table of --check
-  std::string compiler;   ///< C compiler that builds the binary of an FMU; empty: the FMU has only sources
+  std::string committed;  ///< file of --check
+  std::string compiler;   ///< C compiler for the binary of an FMU; empty: the FMU contains only sources
   SensorFlags sensor;
 };
 
@@ -51,7 +51,7 @@ const ExporterType& exporter_named(const std::string& name) {
   throw Failure(ExitCode::bad_input, fmt::format("--to {}: expected one of {}{}", name, expected, did_you_mean(name, names)));
 }
 
-/// Allowed at moments of a use that goes on for long.
+/// Times at which the allowed current of a long use is printed.
 constexpr double kMoments_s[] = {1.0, 10.0, 60.0, 600.0};
 
 double current_at_A(const UsePlayed& played, double time_s) {
@@ -67,7 +67,7 @@ std::string table_text(const Derating& derating) {
   text += "   lasting\n";
   for (const UsePlayed& played : derating.uses) {
     if (played.use.on_s > 0.0) {
-      break;  // what is held in the plain case comes first
+      break;  // the plain case, a current held without pauses, comes first
     }
     text += fmt::format("  {:11.0f}", played.use.speed_share * derating.rules.most_speed_rad_per_s);
     for (const double time_s : kMoments_s) {
@@ -130,7 +130,7 @@ Json json(const TablePlace& place) {
           {"stator_C", rounded(place.stator_C, 2)},         {"winding_C", rounded(place.winding_C, 2)}};
 }
 
-/// What changed since the file was written: what is unsafe first, then the rest.
+/// Describes what changed since the file was written: unsafe changes first, then the others.
 std::string comparison_text(const CommittedTable& committed, const Derating& derating, const TableComparison& found, bool is_other_motor,
                             bool holds) {
   std::string text =
@@ -200,7 +200,7 @@ ExitCode run(const Options& options, Session& session) {
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
   const Motor motor = guarded_motor(options.guard, named);
-  // Before the work: a file that is no table needs none.
+  // Read first, so that an invalid file is reported before the computation.
   const std::optional<CommittedTable> committed =
       options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
   Derating derating = derate(motor, *robot, derate_options, progress_bar("looking for the reserve"));

@@ -22,7 +22,7 @@
 namespace heatsoak::commands {
 namespace {
 
-/// What every duty file has besides its shape.
+/// Head that every duty file has in addition to its shape.
 const std::string kDutyHead = R"(summary = "what this load is"
 origin = "who says so, or whose judgement it is"
 ambient = { value = "25 degC", origin = "estimated", derivation = "why this figure", range = ["20 degC", "32 degC"] }
@@ -53,7 +53,7 @@ Json figure_json(std::string_view key, std::string_view unit, const Figure& figu
   return json;
 }
 
-/// "+9"; a bound within one percent with one digit.
+/// Formats a deviation in percent: "+9"; below 1 % with one significant digit.
 std::string percent_off(double bound, double value) {
   const double percent = 100.0 * (bound - value) / std::abs(value);
   return (percent < 0.0 ? "" : "+") + (std::abs(percent) < 1.0 ? significant(percent, 1) : fmt::format("{:.0f}", percent));
@@ -76,7 +76,7 @@ std::string figure_text(std::string_view key, std::string_view unit, const Figur
   return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
 }
 
-/// What the file has beside the laws that every motor has.
+/// Describes the effects that the file adds to those of every motor.
 void describe_own_effects(const Motor& motor, Description& result) {
   result.text += motor.effects.empty() ? "" : "\neffects that the file adds\n";
   for (const MotorEffect& effect : motor.effects) {
@@ -147,7 +147,7 @@ Description describe_motor(const Motor& motor) {
   return result;
 }
 
-/// Of "table.key"; of a wheel's figure "friction.heading.wheel[0].key".
+/// Returns the unit of a robot value by its key "table.key" or "friction.heading.wheel[0].key".
 std::string_view robot_unit(std::string_view key) {
   const std::string_view last = key.substr(key.rfind('.') + 1);
   if (key.find('[') != std::string_view::npos) {
@@ -190,7 +190,7 @@ Description describe_robot(const Robot& robot) {
   return result;
 }
 
-/// Breaks at blanks; lines after the first are indented.
+/// Breaks text at blanks; lines after the first are indented.
 std::string wrapped(std::string_view text, std::size_t indent) {
   constexpr std::size_t kWidth = 120;
   std::string result;
@@ -251,7 +251,7 @@ std::string_view to_string(Signal signal) {
   return kNames.at(static_cast<std::size_t>(signal));
 }
 
-/// Ready to paste, with the typical size.
+/// Returns lines of a motor file with the typical size, ready to paste.
 std::string motor_file_lines(const EffectType& effect) {
   const std::vector<double>& values = effect.candidacy.variants.empty() ? effect.example.parameters : effect.candidacy.variants.front();
   std::string text = effect_table(effect.name);
@@ -329,7 +329,7 @@ Description describe_effect(const EffectType& effect) {
   return result;
 }
 
-/// "Input: pose (m, rad), command_age_s (s)".
+/// Formats as "Input: pose (m, rad), command_age_s (s)".
 std::string signals_text(const SignalGroup& group, robot_core::Blocks readers) {
   std::vector<std::string> signals;
   for (const robot_core::SignalText& signal : group.signals) {
@@ -389,7 +389,7 @@ Description describe_file(const std::filesystem::path& file) {
   return describe_motor(read_motor(file));
 }
 
-/// Names are unique across kinds; a path is looked into by what it holds.
+/// Names are unique across kinds. A path is described by the content of its file.
 Description describe(const std::string& name, const DataFolders& folders) {
   if (name.ends_with(".toml")) {
     return describe_file(name);

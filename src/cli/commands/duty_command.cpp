@@ -35,10 +35,10 @@ struct Options {
   double every_s = 0.01;
   std::uint64_t seed = 1;
   std::string planner = "jerk_limited";
-  std::vector<std::string> given;  ///< the options of the command line
+  std::vector<std::string> given;  ///< options given on the command line
 };
 
-/// An option that would change nothing is a misunderstanding.
+/// Throws if an option was given that has no effect in this case, because the user expects it to have one.
 void refuse(const Options& options, std::initializer_list<std::string_view> unused, const std::string& why) {
   for (const std::string_view option : unused) {
     if (std::ranges::find(options.given, option) != options.given.end()) {
@@ -47,7 +47,7 @@ void refuse(const Options& options, std::initializer_list<std::string_view> unus
   }
 }
 
-/// The duty file beside the CSV, so that the next command is `evaluate --duty FILE.toml`.
+/// Returns the duty file that accompanies the CSV, so that the next command is `evaluate --duty FILE.toml`.
 std::string duty_file(const std::filesystem::path& csv, DutyKind kind, const std::string& summary, const std::string& origin) {
   return fmt::format(
       "summary = {}\norigin = {}\nshape = \"recorded\"\n"
@@ -57,7 +57,7 @@ std::string duty_file(const std::filesystem::path& csv, DutyKind kind, const std
       kind == DutyKind::torque ? "torque" : "current");
 }
 
-/// The rows go to their file as they come; nothing without --out.
+/// Opens the table, whose rows are written as they are produced; nothing without --out.
 std::optional<DutyRows> open_table(const Options& options, std::size_t wheel_count, DutyKind kind, Session& session) {
   if (options.out.empty()) {
     return std::nullopt;
@@ -91,7 +91,7 @@ nlohmann::ordered_json phase_json(const MatchLoad& load) {
   return phases;
 }
 
-/// A duty that is no match: its own rows.
+/// Writes the rows of a duty that is not a match.
 ExitCode put_out(const Options& options, const Robot& robot, const Duty& duty, Session& session) {
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
   session.say(fmt::format("{}: {}\n{}, {:.0f} s\n", duty.id, duty.summary, duty.origin, wheels.front().duration_s()));

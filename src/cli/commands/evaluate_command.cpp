@@ -32,7 +32,7 @@
 namespace heatsoak::commands {
 namespace {
 
-/// From the verdict that is named on, exit 1: those behind it are worse. In the order of Verdict, without pass.
+/// Values of --fail-on in the order of Verdict, without pass. Exit code 1 from the given verdict on.
 const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
 
 struct Options {
@@ -44,14 +44,14 @@ struct Options {
   std::map<std::string, std::string> conditions;
   EvaluateOptions evaluate;
   bool suggests = false;
-  std::optional<int> samples;  ///< nothing: first_samples(), and more until the verdicts are decided
+  std::optional<int> samples;  ///< empty: first_samples(), and more until the verdicts are decided
   bool is_closed_loop = false;
   int games = 3;
   std::string guard = "shadow";
   std::string fail_on = "fail";
 };
 
-/// A file whose name has commas is one motor.
+/// An existing file whose name contains commas is one motor, not a list.
 std::vector<std::string> listed_motors(const Options& options) {
   if (!options.motors) {
     return options.model.empty() ? std::vector<std::string>{"all"} : std::vector<std::string>{};
@@ -65,7 +65,7 @@ std::vector<std::string> listed_motors(const Options& options) {
   return names;
 }
 
-/// A model takes the place of the motor that its fit began with, or stands alone where no motors are named.
+/// A model replaces the motor from which its fit started; without --motors it is evaluated alone.
 std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
   std::vector<std::string> names;
   for (const std::string& name : listed_motors(options)) {
@@ -179,7 +179,7 @@ ExitCode run(Options& options, Session& session) {
   present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
   std::vector<ChangeEffect> changes;
   if (options.suggests) {
-    // The motor that the robot is built with where it is among them, else the best one.
+    // The motor that the robot is built with if it is among the results, else the best one.
     const auto own = std::ranges::find(results, robot.drive_motor, &MotorEvaluation::motor_id);
     const std::string id = own == results.end() ? results.front().motor_id : own->motor_id;
     changes = effects_of_changes(robot, duty, *std::ranges::find(motors, id, &Motor::id), options.evaluate.seed, options.evaluate.threads,

@@ -88,7 +88,7 @@ Json json(const CoreFolder& folder, const Derating& derating, const Motor& motor
 
 ExitCode run(Options& options, Session& session) {
   check_derate_options(options.guard.derate);
-  // All that can be wrong is looked at before the derating, which takes seconds.
+  // All inputs are checked before the derating, which takes seconds.
   check_target_folder(options.out, options.force);
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);

@@ -18,7 +18,7 @@
 namespace heatsoak::commands {
 namespace {
 
-/// Reads the file as what its keys say it is; the findings of a motor's figures are the lint proper.
+/// Reads the file as the kind that its keys indicate and returns its findings.
 std::vector<LintFinding> look_into(const std::filesystem::path& file, const DataFolders& folders) {
   switch (file_kind(file)) {
     case FileKind::duty:
@@ -39,10 +39,10 @@ std::vector<LintFinding> look_into(const std::filesystem::path& file, const Data
   return {};
 }
 
-/// A file, every file of a folder, or the file of an id.
+/// Returns the file itself, every file of a folder, or the file of an id.
 std::vector<std::string> files_named(const std::string& name, const Session& session) {
   std::vector<std::string> files;
-  std::error_code unreachable;  // then reading it says why
+  std::error_code unreachable;  // reading the file then reports the reason
   if (std::filesystem::is_directory(name, unreachable)) {
     for (const std::string& id : ids_in(name)) {
       files.push_back((std::filesystem::path(name) / (id + ".toml")).string());

@@ -24,7 +24,7 @@ struct Row {
   std::string summary;
 };
 
-/// A folder without any is a wrong --db rather than an answer.
+/// Throws if the folder has no files: that indicates a wrong --db.
 std::vector<std::string> some_ids_in(const std::filesystem::path& folder) {
   std::vector<std::string> ids = ids_in(folder);
   if (ids.empty()) {
@@ -51,7 +51,7 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
     }
   } else if (what == "effects") {
     for (const EffectType& effect : all_effects()) {
-      // The first sentence; `describe` has the rest.
+      // First sentence only; `describe` shows the rest.
       const std::size_t end = effect.summary.find(". ");
       result.push_back({std::string(effect.name), std::string(effect.summary.substr(0, end == std::string_view::npos ? end : end + 1))});
     }

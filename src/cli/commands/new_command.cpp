@@ -17,7 +17,7 @@ struct Options {
   std::string file;
 };
 
-/// As a shell takes it for one word.
+/// Quotes a word for the shell if it contains special characters.
 std::string quoted(const std::string& word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
   if (word.find_first_not_of(kPlain) == std::string::npos) {

@@ -41,7 +41,7 @@ struct Options {
   std::map<std::string, std::string> conditions;
 };
 
-/// Mean heat of every effect at every node it books into, the largest first in the sense of the network.
+/// Lists the mean heat of every effect at every node that it books into, in the order of the network.
 std::string balance_text(const Trace& trace) {
   std::string text = "mean heat into the nodes / W (positive: into)\n";
   for (const BookedHeat& each : trace.balance) {
@@ -58,7 +58,7 @@ nlohmann::ordered_json balance_json(const Trace& trace) {
   return rows;
 }
 
-/// A prescribed load of one wheel.
+/// Simulates a prescribed load of one wheel.
 ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor, const Duty& duty, Session& session) {
   if (options.planner != "jerk_limited") {
     throw Failure(ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", duty.id, duty.shape));
@@ -68,7 +68,7 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
     throw Failure(ExitCode::bad_input,
                   fmt::format("--guard and --sensing are for matches, which the drive core drives; {} is {}", duty.id, duty.shape));
   }
-  constexpr double kMostRows = 5e6;  // some 1 GB
+  constexpr double kMostRows = 5e6;  // about 1 GB
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
   const double duration_s = wheels.front().duration_s();
   if (duration_s / options.every_s > kMostRows) {

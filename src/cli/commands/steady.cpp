@@ -31,7 +31,7 @@ struct Options {
   OnOffCurrent current;
 };
 
-/// What a constant current or an on/off current heats: at standstill, so that only copper loss heats, as in the equations.
+/// Returns the cycle of an on/off or constant current at standstill, so that only copper loss heats the motor, as in the equations.
 std::vector<Interval> cycle_of(const OnOffCurrent& current) {
   OperatingPoint<double> on;
   on.current_rms_A = current.current_on_A;
@@ -41,7 +41,8 @@ std::vector<Interval> cycle_of(const OnOffCurrent& current) {
   return {{current.time_on_s, on}, {current.time_off_s, off}};
 }
 
-/// The closed equations, and what stands for them where the motor's file adds effects: the network's rest under the rms current.
+/// Returns the result of the closed-form equations. If the motor's file adds effects, returns the steady state of the network under the RMS
+/// current instead.
 OnOffSteadyState rest_under_rms(const MotorValues& values, const Network& network, bool is_bare, const OnOffCurrent& current) {
   OnOffSteadyState state =
       on_off_steady_state({.terminal_resistance_25C_ohm = values.terminal_resistance_ohm,

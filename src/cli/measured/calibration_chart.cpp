@@ -15,7 +15,7 @@ struct Traces {
   std::string signal;
 };
 
-/// All runs one after the other, with a break between. `shown_as`: fitted, or foretold where the fit never saw the run.
+/// Appends one run to the traces, followed by a gap. `shown_as`: fitted, or predicted for a hold-out run.
 void append(const PredictedRun& before, const PredictedRun& after, Curve shown_as, double offset_s, std::vector<Traces>& traces) {
   for (Traces& each : traces) {
     const auto found = std::ranges::find(after.signals, each.signal, &PredictedSignal::signal);

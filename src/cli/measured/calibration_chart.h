@@ -1,4 +1,4 @@
-// The picture of a calibration: measured temperatures, and the free-running model before and after.
+// Chart of a calibration: measured temperatures, and the free-running model before and after the fit.
 #pragma once
 
 #include "identify/calibration/calibrate.h"

@@ -1,4 +1,4 @@
-// What `diagnose` hands out: JSON, pictures, and a page that holds everything in one file.
+// Output of `diagnose`: JSON, pictures, and a single page that contains everything.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,17 +9,17 @@
 
 namespace heatsoak {
 
-/// heatsoak.diagnosis/1.
+/// Returns the answer in the schema heatsoak.diagnosis/1.
 nlohmann::ordered_json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score);
 
 struct DiagnosisPicture {
-  std::string name;  ///< file stem
+  std::string name;  ///< stem of the file name
   Chart chart;
 };
-/// Residual in K before and after, unknown heat in W before and after, curves that were found.
+/// Returns pictures of the residuals in K before and after, the unknown heat in W before and after, and the curves found.
 std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score);
 
-/// One self-contained HTML page; `svg` by picture name.
+/// Returns one self-contained HTML page; `svg` holds pairs of picture name and content.
 std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score,
                            const std::vector<std::pair<std::string, std::string>>& svg);
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON knows no infinity and no NaN.
+/// NaN and infinity become null, because JSON cannot represent them.
 Json errors_json(const Errors& errors) {
   Json json = Json::object();
   for (const auto& [signal, error] : errors) {
@@ -20,7 +20,7 @@ Json errors_json(const Errors& errors) {
   return json;
 }
 
-/// As the catalogue has them: "constant_heat" for "constant_heat@stator in run4".
+/// Returns the names in the catalogue: "constant_heat" for "constant_heat@stator in run4".
 std::vector<std::string> plain_ids(const std::vector<std::string>& candidates) {
   std::vector<std::string> ids;
   for (const std::string& candidate : candidates) {

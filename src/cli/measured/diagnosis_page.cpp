@@ -22,7 +22,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// Long names in a cell may be broken behind their underscores.
+/// Returns a table row. Long names may be broken after underscores.
 std::string row(const std::vector<std::string>& cells, std::string_view tag = "td") {
   std::string text = "<tr>";
   for (const std::string& cell : cells) {
@@ -58,7 +58,7 @@ std::string heat_in_words(const FoundEffect& effect) {
   return effect.has_heat ? fmt::format("{} / {} W", significant(effect.mean_W, 2), significant(effect.peak_W, 2)) : "none";
 }
 
-/// A curve by what it goes with.
+/// Returns the name of an effect; a curve is named with its input signals.
 std::string named(const FoundEffect& effect) {
   return effect.is_from_catalogue ? effect.id : fmt::format("{} over {}", effect.id, fmt::join(effect.drivers, " times "));
 }
@@ -105,7 +105,7 @@ std::string outcome_of(const Round& round) {
                      round.taken_nats);
 }
 
-/// Variants of an effect differ in where their refit begins.
+/// Keeps the best variant of each effect; variants differ only in the start of their refit.
 std::vector<JudgedCandidate> best_of_each(std::vector<JudgedCandidate> ladder) {
   std::ranges::stable_sort(ladder, std::greater(), &JudgedCandidate::gain_nats);
   std::set<std::string> told;
@@ -156,7 +156,7 @@ std::string balance_table(const Diagnosis& diagnosis) {
   return text + "</table>\n";
 }
 
-/// What of the innovations is not as it should be, and what that means for the figures above.
+/// Describes deviations of the innovations from white noise of the assumed variance, and what they mean for the results.
 std::string tests_in_words(const std::vector<InnovationTests>& tests) {
   constexpr double kWhite_probability = 0.01;
   constexpr double kLow_ratio = 0.7, kHigh_ratio = 1.4;
@@ -194,7 +194,7 @@ std::string test_table(const Diagnosis& diagnosis) {
   return text + "</table>\n" + tests_in_words(diagnosis.tests_after);
 }
 
-/// With its times where a part of the same recording stands on the other side.
+/// Returns the names of the runs, with times if another part of the same recording is in `others`.
 std::vector<std::string> names_of(const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& others) {
   std::vector<std::string> names;
   for (const MeasuredRun& run : runs) {
@@ -204,7 +204,7 @@ std::vector<std::string> names_of(const std::vector<MeasuredRun>& runs, const st
   return names;
 }
 
-/// "windage: no log has speed" for each effect, as one remark for each reason.
+/// Groups "windage: no log has speed" and the like by reason, one remark per reason.
 std::vector<std::string> by_reason(const std::vector<std::string>& not_judged) {
   std::map<std::string, std::vector<std::string>> effects;
   for (const std::string& each : not_judged) {
@@ -262,7 +262,7 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   }
   for (const auto& [name, picture] : svg) {
     const std::size_t begin = picture.find("<svg");
-    // Each picture has its own title.
+    // Removes the XML header; each picture has its own title.
     text += fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
   text += fmt::format(

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
-/// Runs stand behind each other, with a gap between them.
+/// Places runs one after the other on the time axis, with a gap between them.
 struct Axis {
   double begin_min = 0.0;
   double put(const MeasuredRun& run, std::vector<double>& x) const {
@@ -25,7 +25,7 @@ struct Axis {
   }
 };
 
-/// In the order in which they stand behind each other.
+/// Lists the runs in the order in which they are drawn.
 std::string listed(const std::vector<std::string>& runs) {
   constexpr std::size_t kMost = 6;
   return runs.size() > kMost ? fmt::format("{} runs, {} to {}", runs.size(), runs.front(), runs.back())
@@ -133,7 +133,7 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, con
     panel.curves = {{"curve", heat.knots, heat.curve, 0, false}};
     panel.bands = {band};
     chart.panels = {panel};
-    // Two curves may have a node and a driver in common, as one that heats and one that cools.
+    // The number keeps names unique: two curves may share node and input signal, such as a heating and a cooling one.
     pictures.push_back({fmt::format("curve_{}_{}_{}", pictures.size() - 1, heat.node, heat.drivers.front()), chart});
   }
   return pictures;

@@ -1,4 +1,4 @@
-// What single runs of a measurement may deviate in.
+// Topics of the deviations that single runs of a measurement may have.
 #pragma once
 
 #include <vector>

@@ -24,7 +24,7 @@ ChartCurve dots(std::size_t wheel, const std::string& name) {
   return curve;
 }
 
-/// Upright lines of the intervals; the wheels stand beside each other.
+/// Adds the interval as a vertical line at `x`.
 void add_interval(ChartCurve& bars, double x, const Estimate& estimate) {
   if (estimate.is_known()) {
     bars.x.insert(bars.x.end(), {x, x, x});
@@ -32,7 +32,7 @@ void add_interval(ChartCurve& bars, double x, const Estimate& estimate) {
   }
 }
 
-/// f(θ), broken where its sign changes.
+/// f(θ), interrupted where its sign changes.
 ChartCurve fitted_curve(const WheelFriction& wheel, std::size_t index) {
   ChartCurve curve;
   curve.color_index = static_cast<int>(index);
@@ -85,7 +85,7 @@ bool has_points(const ChartPanel& panel) {
   });
 }
 
-/// The legs that are drawn: those that turn a wheel and are used.
+/// The legs that are drawn: those that the fit uses.
 class Drives {
  public:
   Drives(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const FitSettings& settings)
@@ -97,7 +97,7 @@ class Drives {
     }
   }
 
-  /// Figure 4: the straight lines of the heading with the most legs on which all wheels turn.
+  /// Figure 4: the lines of the heading with the most legs; of equal ones the heading in which the slowest wheel turns fastest.
   [[nodiscard]] std::optional<ChartPanel> of_one_heading() const {
     const int number = telling_heading();
     if (number < 0) {
@@ -133,7 +133,7 @@ class Drives {
     return has_line ? std::optional(panel) : std::nullopt;
   }
 
-  /// Legs on the spot, with the lines d·ω ± c.
+  /// Legs of pure rotation, with the lines d·ω ± c.
   [[nodiscard]] std::optional<ChartPanel> of_rotation() const {
     ChartPanel panel;
     panel.title = "Turning on the spot: measured; lines: d ω + c sign(ω)";
@@ -166,7 +166,7 @@ class Drives {
     return panel;
   }
 
-  /// All headings at once: what is left when the friction fitted is taken off is d·ω.
+  /// All headings together: voltage minus the fitted friction leaves d·ω.
   [[nodiscard]] ChartPanel less_friction() const {
     ChartPanel panel;
     panel.title = "All headings: voltage less the fitted friction; lines: d ω";
@@ -198,7 +198,7 @@ class Drives {
   static constexpr double kSameHeading_rad = 2.5 / kDegrees_per_rad;
 
   [[nodiscard]] int telling_heading() const {
-    std::map<int, std::pair<int, double>> worth;  // legs, and the share of its speed that the slowest wheel turns with
+    std::map<int, std::pair<int, double>> worth;  // number of legs, and the share of the travel speed at the slowest wheel
     for (const auto& [part, number] : parts_) {
       double least_share = 1.0;
       for (int i = 0; i < kinematics_.wheel_count; ++i) {

@@ -1,4 +1,4 @@
-// The pictures of a friction test, after figures 4, 6, 7 and 8 of ETDP 2025; one colour per wheel in all of them.
+// Charts of a friction test, after figures 4, 6, 7 and 8 of ETDP 2025; one colour per wheel in all of them.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace heatsoak {
 
-/// Offset of every heading with the fitted f(θ), and damping of every heading, over the direction of travel.
+/// Offset of every heading with the fitted f(θ), and the damping of every heading, over the direction of travel.
 Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std::string& subtitle);
 
-/// Voltage over wheel speed: one heading with the lines whose offsets are the static friction, and all of them less friction.
+/// Voltage over wheel speed: one heading with lines whose offsets are the static friction, and all headings after subtracting the friction.
 Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const std::string& robot,
                     const FitSettings& settings);
 

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLeftOutColor = 6;                 ///< vermilion
-constexpr std::size_t kCurveColors = 6;          ///< before it in the palette
-constexpr double kNarrowestMark_share = 0.0015;  ///< of the width, so that a single sample is seen
+constexpr std::size_t kCurveColors = 6;          ///< colours before it in the palette
+constexpr double kNarrowestMark_share = 0.0015;  ///< share of the width, so that a single sample is visible
 
 struct TimeScale {
   double factor = 1.0;
@@ -31,11 +31,11 @@ TimeScale scale_for(double duration_s) {
   return duration_s > 300.0 ? TimeScale{1.0 / 60.0, "time / min"} : TimeScale{};
 }
 
-/// Channels that share axes: all temperatures, the wheels' speeds, …
+/// Channels that share axes: all temperatures, the speeds of all wheels, …
 struct ChannelGroup {
   std::string title;
   std::string y_label;
-  bool is_of_wheels = false;  ///< then a wheel has its colour and is named once
+  bool is_of_wheels = false;  ///< each wheel has its colour and is named once
   std::vector<std::size_t> channels;
 };
 
@@ -44,7 +44,7 @@ std::string stem_of(const std::string& key) {
   return end != std::string::npos && end + 1 < key.size() && key[end] == '_' ? key.substr(0, end) : key;
 }
 
-/// From 0, of "…_1".
+/// Returns the wheel index, from 0, of a key such as "…_1".
 std::size_t wheel_of(const std::string& key) {
   std::size_t number = 1;
   std::from_chars(key.data() + stem_of(key).size() + 1, key.data() + key.size(), number);
@@ -165,7 +165,7 @@ class LogChart {
     return result;
   }
 
-  /// Of whole rows and of the group's channels, merged.
+  /// Returns the merged time ranges of rejected rows and of rejected samples of the group's channels.
   [[nodiscard]] std::vector<std::pair<double, double>> marks(const ChannelGroup& group) const {
     std::vector<std::pair<double, double>> found;
     for (const auto& [what, entry] : report_.left_out) {
@@ -189,7 +189,7 @@ class LogChart {
     }
     return merged;
   }
-  /// Of the first kept row at this line or after it.
+  /// Returns the time of the first kept row at or after this line.
   [[nodiscard]] double time_of(int line) const {
     const auto row = std::ranges::lower_bound(recording_.line, line);
     return row == recording_.line.end() ? recording_.time_s.back()

@@ -1,4 +1,4 @@
-// The picture of `log inspect`: every channel over time, with what was left out.
+// Chart of `log inspect`: every channel over time, with rejected samples marked.
 #pragma once
 
 #include "identify/measurement/condensed_recording.h"

@@ -160,7 +160,7 @@ std::string log_text(const Recording& recording, const RecordingReport& report, 
   for (const std::string& note : report.notes) {
     text += "note: " + note + "\n";
   }
-  // A log of the one without a trace of the other is not told that it is none of the other.
+  // A thermal log without wheel channels gets no remark about wheels, and a drive log none about heat.
   const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };
   const bool has_wheels = has([](const Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
   const bool has_temperatures = has([](const Channel& channel) { return channel.quantity.kind == QuantityKind::temperature; });

@@ -1,4 +1,4 @@
-// What `log inspect` tells about one log, for people and as JSON.
+// Output of `log inspect` for one log, as text and JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,11 +11,11 @@
 
 namespace heatsoak {
 
-/// `recording`: as much of it as the assessment keeps.
+/// `recording` holds at least the data that the assessment keeps.
 std::string log_text(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
 nlohmann::ordered_json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
 
-/// What was left out, one sentence per channel and reason: "798 samples of winding_C: saturated; line 12-14, 20".
+/// Returns the rejected samples, one sentence per channel and reason: "798 samples of winding_C: saturated; line 12-14, 20".
 std::vector<std::string> left_out_sentences(const RecordingReport& report);
 
 }  // namespace heatsoak

@@ -24,7 +24,7 @@ struct LogPart {
   double to_share = 1.0;
 };
 
-/// "run4.csv@0-60%" is the first 60 % of the time of run4.csv.
+/// Parses "run4.csv@0-60%": the first 60 % of the time of run4.csv.
 LogPart log_part(const std::string& text) {
   const std::size_t at = text.rfind('@');
   if (at == std::string::npos || text.find_first_not_of("0123456789.-% ", at + 1) != std::string::npos) {
@@ -64,7 +64,7 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
     const std::filesystem::path file = log_named(folders, part.file);
     Recording recording = read_recording(file, mapping_for(file, options.map), report);
     const auto tell = [&](std::string note) {
-      // Of several parts of one log it is said once.
+      // Several parts of one log give the same note; it is kept once.
       if (std::ranges::find(notes, note) == notes.end()) {
         notes.push_back(std::move(note));
       }
@@ -87,7 +87,7 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
 
 namespace {
 
-/// Names of files, each with the files that have it.
+/// Names of recordings, each with its files.
 using FilesOfName = std::map<std::string, std::set<std::filesystem::path>>;
 
 void add_files(const std::vector<Recording>& recordings, FilesOfName& files) {
@@ -96,7 +96,7 @@ void add_files(const std::vector<Recording>& recordings, FilesOfName& files) {
   }
 }
 
-/// Recordings that share their name with another file get the shortest tail of the path that no other has.
+/// Recordings that share their name with another file are named by the shortest path suffix that is unique.
 void tell_apart(std::vector<Recording>& recordings, const FilesOfName& files) {
   for (Recording& each : recordings) {
     const std::set<std::filesystem::path>& of_name = files.at(each.name);

@@ -1,4 +1,4 @@
-// Measured logs on the command line: LOG or LOG@0-60%, and how they are read.
+// Measured logs on the command line, LOG or LOG@0-60%, and options for reading them.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -13,20 +13,20 @@ namespace heatsoak {
 
 struct LogOptions {
   std::string map;
-  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< where a log has none
+  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< for logs without an ambient temperature
   bool takes_logs_as_they_are = false;
 };
 
 /// --map, --ambient and --as-is.
 void add_log_options(CLI::App& app, LogOptions& options);
 
-/// `texts` are LOG or LOG@FROM-TO%, that part of its time; see log_named. Notes of the reader are added to `notes`.
-/// Throws Failure (bad_input).
+/// Reads logs. Each text is LOG or LOG@FROM-TO%, a part of its time; names are resolved by log_named(). Appends the reader's notes to
+/// `notes`. Throws Failure (bad_input).
 std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<std::string>& texts, const LogOptions& options,
                                  std::vector<std::string>& notes);
 
-/// Files of one name in different folders are no parts of one run: where there are such, all of the name get that of their folder, too
-/// ("monday/run"). Names of fitted logs do not depend on the held-out ones.
+/// Renames recordings so that files of the same name in different folders differ: all of that name get their folder as a prefix
+/// ("monday/run"). Names of fitted logs do not depend on the hold-out logs.
 void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out);
 
 }  // namespace heatsoak

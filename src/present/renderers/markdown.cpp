@@ -13,7 +13,7 @@ using present::Severity;
 using present::Table;
 using present::Text;
 
-/// What Markdown would take for its own in a cell or a paragraph, and control characters.
+/// Escapes characters that Markdown would interpret, and replaces control characters by '?'.
 std::string escaped(std::string_view text) {
   constexpr std::string_view kSpecial = "\\`*_[]<>|#";
   std::string result;

@@ -25,7 +25,7 @@ using present::wrapped;
 
 constexpr std::size_t kGap = 2;  ///< characters between columns
 
-/// Names of files may hold what a terminal would obey.
+/// Replaces control characters, which could come from file names and control the terminal.
 std::string printable(std::string text) {
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
@@ -42,7 +42,7 @@ std::string toned(const std::string& text, Tone tone, bool with_colors) {
 
 std::string head_of(const Column& column) { return column.unit.empty() ? column.name : fmt::format("{} {}", column.name, column.unit); }
 
-/// Widths of all columns, each as wide as its widest cell.
+/// Returns the width of the widest cell of each column.
 std::vector<std::size_t> widths_of(const Table& table) {
   std::vector<std::size_t> widths;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -55,8 +55,7 @@ std::vector<std::size_t> widths_of(const Table& table) {
   return widths;
 }
 
-/// Columns that fit, in the order of the table; those of priority 0 in any case. A column of low priority never takes the place of an
-/// earlier one.
+/// Returns the columns that fit, in the order of the table; those of priority 0 always. Columns are dropped strictly by priority.
 std::vector<std::size_t> shown_columns(const Table& table, const std::vector<std::size_t>& widths, std::size_t width) {
   std::vector<std::size_t> order(table.columns.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -75,7 +74,7 @@ std::vector<std::size_t> shown_columns(const Table& table, const std::vector<std
   return shown;
 }
 
-/// A cell at its width. One that is too long is cut in the middle: names of one family differ at their ends.
+/// Pads a cell to its width. A longer text is shortened in the middle, because similar names often differ at their ends.
 std::string padded(const std::string& text, std::size_t width, Alignment alignment) {
   const std::size_t own = width_of(text);
   if (own > width) {
@@ -87,7 +86,7 @@ std::string padded(const std::string& text, std::size_t width, Alignment alignme
 
 std::string without_trailing_blanks(std::string line) { return line.substr(0, line.find_last_not_of(' ') + 1) + "\n"; }
 
-/// Narrows the widest left-aligned column where the columns of priority 0 alone are too wide.
+/// Narrows the widest left-aligned column if the columns of priority 0 are too wide.
 void fit(std::vector<std::size_t>& widths, const std::vector<std::size_t>& shown, const Table& table, std::size_t width) {
   constexpr std::size_t kLeastCell = 8;
   std::size_t total = kGap * (shown.size() - 1);
@@ -149,7 +148,7 @@ std::string text_of(const std::vector<Note>& notes, const RenderOptions& options
   return text;
 }
 
-/// Sentence by sentence, so that each keeps its tone; a sentence begins on its own line.
+/// Each sentence starts on its own line and keeps its tone.
 std::string text_of(const std::vector<Text>& headline, const RenderOptions& options) {
   std::string text;
   for (const Text& sentence : headline) {

@@ -1,5 +1,5 @@
-// Draws a laid-out page with VTK's charts. No display and no OpenGL context is needed: the window that the
-// scene asks for is never rendered, the scene is painted through the SVG device.
+// Draws a page layout with VTK's charts. It needs neither a display nor an OpenGL context: the window that the scene requires is never
+// rendered, because the scene is painted by the SVG device.
 #include <vtkAutoInit.h>
 #include <vtkAxis.h>
 #include <vtkBrush.h>
@@ -44,7 +44,7 @@ namespace {
 
 using Color = std::array<unsigned char, 3>;
 
-/// Okabe and Ito's palette; vermilion comes late because limits are red, yellow last because paper is white.
+/// Palette of Okabe and Ito. Vermilion comes late because limits are red, yellow last because the paper is white.
 constexpr std::array<Color, 8> palette{{{0x00, 0x72, 0xB2},
                                         {0xE6, 0x9F, 0x00},
                                         {0x00, 0x9E, 0x73},
@@ -89,7 +89,7 @@ void add_line(vtkChartXY* chart, const std::vector<CurvePoint>& points, const Co
   chart->AddPlot(line);
 }
 
-/// One plot per unbroken piece: vtkPlotArea itself writes "nan" where a band is broken.
+/// Draws one unbroken piece of a band. VTK would write "nan" for a band with gaps.
 void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Color& color, unsigned char opacity) {
   std::vector<double> x_px, low_px, high_px;
   for (const BandPoint& point : points) {
@@ -98,7 +98,7 @@ void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Col
     high_px.push_back(point.high_px);
   }
   if (points.size() == 2) {
-    // vtkPlotArea draws nothing out of two points.
+    // vtkPlotArea does not draw an area of two points.
     x_px.insert(x_px.begin() + 1, 0.5 * (x_px.front() + x_px.back()));
     low_px.insert(low_px.begin() + 1, 0.5 * (low_px.front() + low_px.back()));
     high_px.insert(high_px.begin() + 1, 0.5 * (high_px.front() + high_px.back()));
@@ -116,7 +116,7 @@ void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Col
   chart->AddPlot(area);
 }
 
-/// Ripple as a light area between thin edges, the rest as a line.
+/// Draws ripple as a light area between thin edges, the rest as a line.
 void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color, bool is_dashed) {
   for (const std::vector<BandPoint>& ripple : piece.envelopes) {
     add_area(chart, ripple, color, ripple_opacity);
@@ -131,8 +131,8 @@ void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color,
   }
 }
 
-/// The axis itself counts pixels, so that VTK's transform of the plots is the identity; an SVG matrix with
-/// unequal scales would stretch pens and dashes.
+/// The axis counts pixels, so that VTK's transform of the plots is the identity. An SVG matrix with unequal scales would distort pens and
+/// dashes.
 void set_axis(vtkAxis* axis, const AxisScale& scale, const std::vector<AxisTick>& axis_ticks) {
   vtkNew<vtkDoubleArray> positions;
   vtkNew<vtkStringArray> labels;
@@ -182,7 +182,7 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
   for (const ChartLevel& level : panel.levels) {
     const ChartCurve line{.name = "", .x = {across.range.low, across.range.high}, .y = {level.y, level.y}};
     for (const std::vector<CurvePoint>& piece : reduce(line, across, up)) {
-      // On a white line, so that the dashes stand out from whatever they cross.
+      // White line below, so that the dashes are visible on curves that they cross.
       add_line(chart, piece, {0xFF, 0xFF, 0xFF}, 3.0F, false);
       add_line(chart, piece, std::to_array(limit_color), 1.5F, true);
     }
@@ -190,7 +190,7 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
   scene->AddItem(chart);
 }
 
-/// Titles, labels, names of limits and the legend: vtkChart centres its title and has one legend per chart.
+/// Titles, labels, names of limits and the legend. Drawn here, because vtkChart centres its title and has one legend per chart.
 class Lettering : public vtkContextItem {
  public:
   static Lettering* New();
@@ -217,7 +217,7 @@ class Lettering : public vtkContextItem {
     const auto right_px = static_cast<float>(swatch.x_px + swatch_width_px);
     const auto y_px = static_cast<float>(swatch.y_px);
     if (swatch.is_band) {
-      // A strip, because VTK gives quads and polygons an outline.
+      // A quad strip, because VTK outlines quads and polygons.
       float corners[] = {left_px, y_px - 5, left_px, y_px + 5, right_px, y_px - 5, right_px, y_px + 5};
       painter->GetBrush()->SetColor(color[0], color[1], color[2], band_opacity);
       painter->DrawQuadStrip(corners, 4);
@@ -302,7 +302,7 @@ std::string draw(const Chart& chart) {
                                     {"role", "img"},
                                     {"aria-label", printable(chart.title)}});
   const auto paper = element("rect", {{"width", width}, {"height", height}, {"fill", "#ffffff"}});
-  // Half a pixel: lines on whole pixels then fill one row of them instead of greying two.
+  // Shifted by half a pixel: a line on a whole pixel then fills one row of pixels instead of blurring over two.
   const auto group = element("g", {{"transform", "translate(0.5,0.5)"},
                                    {"fill", "none"},
                                    {"stroke-linejoin", "round"},

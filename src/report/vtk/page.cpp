@@ -22,7 +22,7 @@ constexpr double margin_px = 24.0;
 constexpr double label_line_px = 18.0;
 constexpr double legend_gap_px = 4.0;
 constexpr double tick_row_px = 26.0;
-constexpr double tick_distance_x_px = 70.0;  // at least
+constexpr double tick_distance_x_px = 70.0;  // minimum distance
 constexpr double tick_distance_y_px = 36.0;
 constexpr double least_plot_height_px = 60.0;
 constexpr double headroom = 0.05;
@@ -32,7 +32,7 @@ struct LegendEntry {
   LegendSwatch swatch;
 };
 
-/// Every named curve and band of all panels, the same look under the same name once.
+/// Returns every named curve and band of all panels; entries with the same name and look appear once.
 std::vector<LegendEntry> legend_entries(const Chart& chart) {
   std::vector<LegendEntry> entries;
   const auto add = [&](const std::string& name, const LegendSwatch& swatch) {
@@ -87,7 +87,7 @@ AxisRange y_range(const ChartPanel& panel) {
   return range.with_headroom(headroom);
 }
 
-/// y counts downwards.
+/// Rectangle; y counts downwards.
 struct Box {
   double left_px;
   double right_px;
@@ -99,7 +99,7 @@ bool overlap(const Box& a, const Box& b) {
   return a.left_px < b.right_px && b.left_px < a.right_px && a.top_px < b.bottom_px && b.top_px < a.bottom_px;
 }
 
-/// Whether the line from `a` to `b` passes through the box.
+/// Returns whether the line from `a` to `b` crosses the box.
 bool passes(const CurvePoint& a, const CurvePoint& b, const Box& box) {
   const auto [left, right] = std::minmax(a, b, [](const auto& p, const auto& q) { return p.x_px < q.x_px; });
   const double slope = right.x_px > left.x_px ? (right.y_px - left.y_px) / (right.x_px - left.x_px) : 0.0;
@@ -118,7 +118,7 @@ bool is_taken(const Box& box, const std::vector<Box>& names, const std::vector<s
          });
 }
 
-/// The first free place from `box` to the left.
+/// Moves `box` to the left until it is free; returns nothing if it does not become free.
 std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box>& names,
                               const std::vector<std::vector<CurvePoint>>& curves) {
   constexpr double step_px = 10.0;
@@ -132,7 +132,7 @@ std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box
   return std::nullopt;
 }
 
-/// All unbroken pieces of all curves.
+/// Returns all unbroken pieces of all curves.
 std::vector<std::vector<CurvePoint>> curves_px(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
   std::vector<std::vector<CurvePoint>> all;
   for (const ChartCurve& curve : panel.curves) {
@@ -141,7 +141,7 @@ std::vector<std::vector<CurvePoint>> curves_px(const ChartPanel& panel, const Ax
   return all;
 }
 
-/// Builds a Page from top to bottom; y counts downwards here until `finished` turns it round.
+/// Builds a Page from top to bottom. y counts downwards here; the result is flipped at the end.
 class PageBuilder {
  public:
   explicit PageBuilder(const Chart& chart) : chart_(chart) { page_.width_px = std::max(200, chart.width_px); }
@@ -182,7 +182,7 @@ class PageBuilder {
     y_px_ += 10.0;
   }
 
-  /// All panels share the left and right edge: room for the widest tick label and the longest legend.
+  /// All panels share their left and right edges, which leave room for the widest tick label and the longest legend.
   void find_margins() {
     std::size_t y_label_lines = 0;
     double tick_label_px = 0.0;
@@ -203,7 +203,7 @@ class PageBuilder {
       }
     }
     right_px_ = page_.width_px - margin_px;
-    // Beside several panels a broad legend would leave most of its column empty.
+    // A wide legend beside several panels would leave most of its column empty.
     constexpr double kBroad_share = 0.27;
     is_legend_on_top_ = chart_.panels.size() > 1 && legend_px + swatch_width_px > kBroad_share * page_.width_px;
     if (!entries_.empty() && !is_legend_on_top_) {
@@ -241,7 +241,7 @@ class PageBuilder {
     }
   }
 
-  /// Right of the panel beside the line, or a few lines of text away where other names are.
+  /// Returns a free place to the right of the panel, at the line or up to a few text lines away from it.
   [[nodiscard]] std::optional<Box> place_outside(double line_px, double width_px, const std::vector<Box>& names) const {
     const double left_px = right_px_ + 8.0;
     const double height_px = 1.2 * limit_style.size_px;
@@ -255,8 +255,8 @@ class PageBuilder {
     return std::nullopt;
   }
 
-  /// Just above the line at its right end; below where the top or another level is near; further left where a curve or another
-  /// name is in the way; outside, below the legend, where curves are everywhere.
+  /// Places the name of a level above the right end of its line; below it if the top or another level is near; further left if a curve or a
+  /// name is in the way; to the right of the panel if there is no free place inside.
   void add_level_names(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
     if (panel.levels.empty()) {
       return;
@@ -302,7 +302,7 @@ class PageBuilder {
         text.y_px = outside->bottom_px - 0.24 * limit_style.size_px;
         text.anchor = Anchor::left;
         names.push_back(*outside);
-      } else {  // on a curve or on another level it is still readable, on another name it is not
+      } else {  // a name on a curve or a level is readable, on another name it is not
         std::optional<Box> readable = free_place(top_is_near ? below : above, left_px_, taken, {});
         for (Box lower = below; !readable && lower.bottom_px < vertical.low_px;) {
           readable = free_place(lower, left_px_, names, {});
@@ -324,7 +324,7 @@ class PageBuilder {
     }
   }
 
-  /// Above the panels, as many entries in a row as fit.
+  /// Places the legend above the panels, with as many entries in a row as fit.
   void add_legend_rows() {
     constexpr double kBetween_px = 24.0;
     double x_px = left_px_;

@@ -1,4 +1,4 @@
-// Where everything on the picture goes, before anything is drawn.
+// Layout of a chart: the positions of all elements before anything is drawn.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ namespace heatsoak {
 
 enum class Anchor { left, middle, right };
 
-/// One line of text; `y_px` is the base line.
+/// One line of text; `y_px` is its baseline.
 struct PlacedText {
   std::string text;
   double x_px = 0.0;
   double y_px = 0.0;
   TextStyle style;
   Anchor anchor = Anchor::left;
-  bool is_upright = false;  ///< reads from bottom to top
-  bool has_rim = false;     ///< white rim, for text that stands on curves
+  bool is_upright = false;  ///< rotated, reads from bottom to top
+  bool has_rim = false;     ///< white outline, for text on top of curves
 };
 
-/// The sample of colour and line before a name in the legend; `y_px` is its middle.
+/// The colour and line sample in front of a legend name; `y_px` is its vertical centre.
 struct LegendSwatch {
   double x_px = 0.0;
   double y_px = 0.0;
@@ -33,7 +33,7 @@ struct LegendSwatch {
   bool is_dots = false;
 };
 
-/// The plot area of one panel.
+/// Plot area of one panel.
 struct PanelPlace {
   AxisScale horizontal;
   AxisScale vertical;
@@ -41,11 +41,11 @@ struct PanelPlace {
   std::vector<AxisTick> y_ticks;
 };
 
-/// All pixels count from the lower left corner, as VTK's scene does.
+/// Pixel coordinates start at the lower left corner, as in VTK's scene.
 struct Page {
   int width_px = 0;
   int height_px = 0;
-  std::vector<PanelPlace> panels;  ///< in the order of the chart's
+  std::vector<PanelPlace> panels;  ///< in the order of the chart's panels
   std::vector<PlacedText> texts;
   std::vector<LegendSwatch> swatches;
 };

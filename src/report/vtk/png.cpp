@@ -1,4 +1,4 @@
-// A drawn picture as PNG, by librsvg and cairo: VTK itself needs a display for that.
+// Converts a picture to PNG with librsvg and cairo, because VTK needs a display for that.
 #include <cairo.h>
 #include <librsvg/rsvg.h>
 
@@ -11,7 +11,7 @@
 namespace heatsoak {
 namespace {
 
-/// Two pixels of the PNG for one of the SVG, so that small print stays sharp.
+/// Pixels of the PNG per pixel of the SVG, so that small text stays sharp.
 constexpr double kScale = 2.0;
 
 template <class T, auto release>

@@ -9,19 +9,19 @@
 namespace heatsoak {
 namespace {
 
-/// Hundredths of a pixel: finer is not seen and only makes the file larger.
+/// Rounds to 0.01 px: finer steps are invisible and only enlarge the file.
 double rounded_px(double value_px) { return std::round(value_px * 100.0) / 100.0; }
 
-/// A lone sample is drawn as a dot of this half width, else it would not be seen at all.
+/// Half width of the dot for an isolated sample, which would be invisible as a line.
 constexpr double dot_px = 1.0;
 
-/// Consecutive samples in one column of pixels, by index.
+/// Indices of consecutive samples in the same column of pixels.
 struct PixelColumn {
   std::vector<std::size_t> samples;
   bool starts_piece = false;
 };
 
-/// `is_shown(i)` tells whether sample i is finite.
+/// `is_shown(i)` returns whether sample i is finite.
 template <class IsShown>
 std::vector<PixelColumn> pixel_columns(const std::vector<double>& x, const AxisScale& horizontal, IsShown is_shown) {
   std::vector<PixelColumn> columns;
@@ -33,7 +33,7 @@ std::vector<PixelColumn> pixel_columns(const std::vector<double>& x, const AxisS
       continue;
     }
     const double x_px = horizontal.to_px(x[i]);
-    // A gap narrower than a pixel cannot be seen and would cut noisy logs into thousands of pieces.
+    // A gap narrower than a pixel is invisible and would split noisy logs into thousands of pieces.
     const bool starts_piece = columns.empty() || (gap && std::abs(x_px - previous_px) >= 1.0);
     if (starts_piece || std::floor(x_px) != std::floor(previous_px)) {
       columns.push_back({{}, starts_piece});
@@ -47,13 +47,13 @@ std::vector<PixelColumn> pixel_columns(const std::vector<double>& x, const AxisS
 
 constexpr double window_px = 8.0;
 
-/// Points [begin, end) of a piece within one window of the page's width.
+/// Points [begin, end) of a piece within one window of window_px pixels.
 struct Window {
   std::size_t begin = 0;
   std::size_t end = 0;
   double low_px = 0.0;
   double high_px = 0.0;
-  bool is_ripple = false;  ///< up and down more than once, and by more than a line is wide
+  bool is_ripple = false;  ///< oscillates more than once, by more than a line width
 };
 
 std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
@@ -74,7 +74,7 @@ std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
     window.is_ripple = range_px > kLeast_px && travel_px > kSwings * range_px;
     windows.push_back(window);
   }
-  // Single windows are noise or a peak: ripple goes on.
+  // Ripple lasts for several windows; a few windows alone are noise or a peak.
   constexpr std::ptrdiff_t kLeastWindows = 6;
   for (auto first = windows.begin(); first != windows.end();) {
     const auto last = std::find_if(first, windows.end(), [&](const Window& each) { return each.is_ripple != first->is_ripple; });
@@ -107,7 +107,7 @@ RippledPiece without_ripple(const std::vector<CurvePoint>& piece) {
       if (is_first || was_ripple) {
         result.lines.emplace_back();
         if (window.begin > 0) {
-          // The envelope ends where the line goes on.
+          // The envelope extends to the point where the line continues.
           BandPoint end = result.envelopes.back().back();
           end.x_px = piece[window.begin - 1].x_px;
           result.envelopes.back().push_back(end);

@@ -1,4 +1,4 @@
-// Long curves brought down to what a screen can show.
+// Reduces long curves to the resolution of a screen.
 #pragma once
 
 #include <vector>
@@ -19,18 +19,19 @@ struct BandPoint {
   double high_px = 0.0;
 };
 
-/// Every sample that can be seen as a piece of its own, a line as long as a marker is wide; of several in one pixel one.
+/// Returns one short line, `marker_px` long, for each visible sample; of several samples in one pixel only one is kept.
 std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical,
                                              double marker_px);
 
-/// The unbroken pieces of a curve, with the minimum and maximum of each pixel column and both ends.
+/// Returns the unbroken pieces of a curve, reduced to minimum, maximum, first and last sample of each pixel column.
 std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical);
 std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal, const AxisScale& vertical);
 
-/// A piece of a curve, apart where it swings up and down every few pixels: a line there would be a solid block.
+/// A piece of a curve, split into lines and envelopes. Parts that oscillate within a few pixels become envelopes, because their line would
+/// be a solid block.
 struct RippledPiece {
   std::vector<std::vector<CurvePoint>> lines;
-  std::vector<std::vector<BandPoint>> envelopes;  ///< lowest and highest of the ripple
+  std::vector<std::vector<BandPoint>> envelopes;  ///< minimum and maximum of the ripple
 };
 RippledPiece without_ripple(const std::vector<CurvePoint>& piece);
 

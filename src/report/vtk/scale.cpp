@@ -18,7 +18,7 @@ double round_step(double step) {
   return 10.0 * decade;
 }
 
-/// Plain up to ten digits; beyond that nobody counts the zeros.
+/// Decimal notation up to ten digits, exponential notation beyond.
 std::string tick_label(double value, double step, double largest) {
   if (largest >= 1e10 || step < 1e-6) {
     return fmt::format("{:.6g}", value);
@@ -51,7 +51,7 @@ AxisRange AxisRange::with_headroom(double headroom) const {
   if (low > high) {
     return {0.0, 1.0};
   }
-  // A constant of 0.3 A is shown between 0.285 A and 0.315 A, a constant of 0 between -1 and 1.
+  // A constant gets a range too: 0.3 A is shown from 0.285 to 0.315 A, 0 from -1 to 1.
   const double least_span = std::max(std::abs(low), std::abs(high)) * 1e-9;
   if (high - low <= least_span) {
     const double margin = low == 0.0 ? 1.0 : std::abs(low) * 0.05;
@@ -90,13 +90,13 @@ std::vector<AxisTick> ticks(const AxisRange& range, double count) {
     return logarithmic_ticks(range, count);
   }
   const double step = round_step((range.high - range.low) / std::max(3.0, count));
-  // The last digits of a range come from rounding; they must not cost the outermost tick.
+  // The tolerance keeps an outermost tick that rounding errors would drop.
   const double first = std::ceil(range.low / step - 1e-6);
   const double last = std::floor(range.high / step + 1e-6);
   const double largest = std::max(std::abs(range.low), std::abs(range.high));
   std::vector<AxisTick> result;
   for (int i = 0; first + i <= last; ++i) {
-    const double value = (first + i) * step + 0.0;  // no "-0"
+    const double value = (first + i) * step + 0.0;  // avoids "-0"
     result.push_back({value, tick_label(value, step, largest)});
   }
   return result;

@@ -1,4 +1,4 @@
-// From values on an axis to pixels, and where the ticks are.
+// Maps values on an axis to pixels and chooses its ticks.
 #pragma once
 
 #include <limits>
@@ -7,7 +7,7 @@
 
 namespace heatsoak {
 
-/// The part of an axis that is shown; empty until something finite was included. A logarithmic one takes positive values only.
+/// Visible range of an axis; empty until a finite value was included. A logarithmic axis ignores non-positive values.
 struct AxisRange {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -15,11 +15,11 @@ struct AxisRange {
 
   void include(double value);
   void include(const std::vector<double>& values);
-  /// Wider by `headroom` (a share of the span, of that in decades) at both ends; never empty, never of zero width.
+  /// Returns the range widened at both ends by `headroom`, a share of its span (in decades if logarithmic). Never empty nor of zero width.
   [[nodiscard]] AxisRange with_headroom(double headroom) const;
 };
 
-/// Map of a range to pixels, which count as VTK's scene does: y upwards. What a logarithmic axis cannot show is not finite.
+/// Maps a range to pixels; y counts upwards as in VTK's scene. Values that a logarithmic axis cannot show give a non-finite result.
 struct AxisScale {
   AxisRange range;
   double low_px = 0.0;
@@ -30,11 +30,11 @@ struct AxisScale {
 
 struct AxisTick {
   double value = 0.0;
-  std::string label;  ///< plain notation, as many decimals as the step needs
+  std::string label;  ///< decimal notation with the decimals that the step needs
 };
 
-/// Round values within the range, at most `count` and a few: 1, 2 or 5 times a power of ten apart; on a logarithmic axis powers
-/// of ten, with twice and five times them where there is room.
+/// Returns round values within the range, roughly `count` of them: spaced by 1, 2 or 5 times a power of ten. On a logarithmic axis: powers
+/// of ten, with 2 and 5 times them if there is room.
 std::vector<AxisTick> ticks(const AxisRange& range, double count);
 
 }  // namespace heatsoak

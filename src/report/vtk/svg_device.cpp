@@ -16,7 +16,7 @@ vtkStandardNewMacro(SvgDevice);
 
 void SvgDevice::DrawString(float* point, const vtkStdString& text) {
   const float y_px = this->CanvasHeight - point[1];
-  // The rim keeps text readable on curves and grid lines; drawn first, because paint-order is not known everywhere.
+  // The outline keeps text readable on curves. It is drawn first, because not all viewers support paint-order.
   if (this->TextProp->GetShadow() != 0) {
     add_text(point[0], y_px, text, true);
   }
@@ -25,7 +25,7 @@ void SvgDevice::DrawString(float* point, const vtkStdString& text) {
 
 void SvgDevice::add_text(float x_px, float y_px, const vtkStdString& text, bool is_rim) {
   const double size_px = this->TextProp->GetFontSize();
-  // Viewers disagree on dominant-baseline; a shift by the usual height of capitals is the same in all.
+  // Viewers disagree on dominant-baseline; a shift by the usual cap height is the same in all of them.
   constexpr double capital_height = 0.72;
   const int vertical = this->TextProp->GetVerticalJustification();
   const double shift = vertical == VTK_TEXT_TOP ? 1.0 : vertical == VTK_TEXT_CENTERED ? 0.5 : 0.0;

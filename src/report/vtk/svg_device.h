@@ -1,19 +1,19 @@
-// VTK's SVG painter with text that viewers draw where it belongs.
+// VTK's SVG device with corrected text.
 #pragma once
 
 #include <vtkSVGContextDevice2D.h>
 
 namespace heatsoak {
 
-/// Two things of VTK 9.1 are mended. Text: VTK writes either glyph outlines (large, not searchable) or
-/// <text> with attribute values that SVG does not know ("right", "top"), sizes in pt and turned the wrong
-/// way. Clipping: VTK gives the rectangle in the wrong coordinates; nothing here needs any.
+/// Corrects two faults of VTK 9.1. Text: VTK writes glyph outlines (large, not searchable), or <text> with attribute values that SVG does
+/// not define ("right", "top"), sizes in pt and the wrong rotation. Clipping: VTK uses wrong coordinates for the rectangle; clipping is
+/// switched off because nothing needs it.
 class SvgDevice : public vtkSVGContextDevice2D {
  public:
   static SvgDevice* New();
   vtkTypeMacro(SvgDevice, vtkSVGContextDevice2D)
 
-      /// A text property's "bottom" is the base line; its "shadow" is drawn as a white rim.
+      /// The property "bottom" means the baseline; "shadow" means a white outline.
       void DrawString(float* point, const vtkStdString& text) override;
   using vtkSVGContextDevice2D::DrawString;
 

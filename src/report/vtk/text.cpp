@@ -11,7 +11,7 @@
 namespace heatsoak {
 namespace {
 
-/// Bytes of the valid UTF-8 sequence at `at`; 0 where there is none.
+/// Returns the length of the valid UTF-8 sequence at `at`; 0 if it is invalid.
 std::size_t sequence_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const unsigned lead = byte(at);
@@ -54,7 +54,7 @@ std::string printable(const std::string& text) {
 }
 
 double text_width_px(const std::string& text, const TextStyle& style) {
-  // VTK measures with its own Arial; DejaVu Sans, a common default, is wider.
+  // VTK measures with its built-in Arial; DejaVu Sans, a common default, is wider.
   const double widest_font = style.is_bold ? 1.18 : 1.12;
   vtkNew<vtkTextProperty> property;
   property->SetFontFamilyToArial();
@@ -69,7 +69,7 @@ double text_width_px(const std::string& text, const TextStyle& style) {
 std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_px) {
   std::vector<std::string> lines;
   std::string line;
-  std::size_t breakable = 0;  // bytes of `line` after which it may be broken
+  std::size_t breakable = 0;  // bytes of `line` after which it may be broken; 0: none
   for (std::size_t at = 0; at < text.size();) {
     const std::string character = text.substr(at, sequence_length(text, at));
     at += character.size();

@@ -1,4 +1,4 @@
-// How wide words are and where they may be broken.
+// Width and line breaks of text in a chart.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ struct TextStyle {
   unsigned char color[3] = {0x22, 0x22, 0x22};
 };
 
-/// Valid UTF-8 in one line: what XML cannot hold is replaced, whatever the names of files contain.
+/// Returns valid UTF-8 in one line; invalid bytes, such as in file names, and control characters are replaced.
 std::string printable(const std::string& text);
 
-/// Generous, because the reader's sans-serif font is not known here and may be a wide one.
+/// Returns a width with a safety margin, because the reader's sans-serif font is unknown and may be wider.
 double text_width_px(const std::string& text, const TextStyle& style);
 
-/// Lines no wider than `width_px`, broken after a space or `_`, else anywhere. No text, no line.
+/// Breaks text into lines no wider than `width_px`, after a space or `_` if possible. An empty text gives no line.
 std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_px);
 
 }  // namespace heatsoak

@@ -26,7 +26,7 @@ EffectType load_friction() {
       .parameters = {{"share", "", Range::between(0.0, 1.0), "of the shaft's power that heats the node"}},
       .typical = "0.03 to 0.08 of the mechanical power",
       .look_alike = "speed_dependent_convection with the opposite sign; armature_iron_loss (|I|·ω²).",
-      // 0.05 · |−40 W| = 2 W, braking as driving
+      // 0.05 · |−40 W| = 2 W; braking counts like driving
       .example = {.parameters = {0.05}, .at = {.shaft_power_W = -40.0}, .temperature_C = {40.0}, .expected_heat_W = {2.0}},
       .laws = laws<LoadFriction>(),
       .needs = {Signal::shaft_power},

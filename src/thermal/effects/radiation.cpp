@@ -13,7 +13,7 @@ struct Radiation {
     constexpr double kZero_C = -273.15;
     const S hot_K = x.temperature_C(hot) - kZero_C;
     const S cold_K = x.temperature_C(cold) - kZero_C;
-    // (a⁴ − b⁴) by its factors, so that a small difference of large numbers keeps its digits.
+    // a⁴ − b⁴ in factored form, because the difference of two large powers would lose digits.
     const S sum_K3 = (hot_K + cold_K) * (hot_K * hot_K + cold_K * cold_K);
     heat.flow(hot, cold, kStefanBoltzmann_W_per_m2_K4 * x.parameter(emissive_area) * sum_K3 * (hot_K - cold_K));
   }

@@ -31,7 +31,7 @@ EffectType saturation() {
       .look_alike =
           "A temperature coefficient of the resistance that is too low: both act where the current is high. Where the current was measured "
           "it is in the measurement already.",
-      // at the knee half of it: 0.5 · 0.4 · 30 W = 6 W
+      // half of the excess at the knee current: 0.5 · 0.4 · 30 W = 6 W
       .example = {.parameters = {0.4, 12.0, 0.1},
                   .at = {.current_rms_A = 12.0, .copper_loss_W = 30.0},
                   .temperature_C = {60.0},

@@ -90,7 +90,7 @@ S value_of_driver(const Situation<S>& x) {
   }
 }
 
-/// The curve's largest heat; of a conductance the least.
+/// The value of the curve that gives the highest temperature: the largest heat, or the smallest conductance.
 template <class S>
 S hottest(const Situation<S>& x) {
   const double sign = chosen(x.parameter(form)) == per_difference ? -1.0 : 1.0;
@@ -105,7 +105,7 @@ struct Tabulated {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kLast = kKnots - 1;
-    constexpr double kNoSpan = 1e-30;  // first and last knot in one place: the first value everywhere, not 0/0
+    constexpr double kNoSpan = 1e-30;  // avoids 0/0 if the first and last knot coincide; the curve is then its first value
     const S span = x.parameter(last_knot) - x.parameter(first_knot);
     const S place = kLast * (value_of_driver(x) - x.parameter(first_knot)) * span / (span * span + kNoSpan);
     const S within = kLast - positive_part(kLast - positive_part(place));
@@ -135,7 +135,7 @@ struct Tabulated {
   }
 };
 
-/// In the order of the choices.
+/// Signals of each driver choice, in the order of kDrivers, plus those of the form.
 std::vector<Signal> needs_of(std::span<const double> values) {
   static const std::array<std::vector<Signal>, kDrivers.size()> kOfDriver{{{Signal::speed},
                                                                            {Signal::speed},

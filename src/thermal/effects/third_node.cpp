@@ -37,7 +37,7 @@ EffectType third_node() {
       .laws = laws<ThirdNode>(),
       .needs = {},
       .candidacy = {.size_parameter = conductance,
-                    // A leak of 0 could not be fitted, for shapes are by their logarithm; hardly any body has none.
+                    // A leak of 0 could not be fitted, because shape parameters are fitted in logarithms; hardly any body has none.
                     .variants = {{0.15, 0.1, 60.0}, {0.15, 0.1, 300.0}, {0.15, 0.6, 300.0}},
                     .family = "a body that the motor warms",
                     .experiment = "an hour of soak at constant load and two hours of cool-down"},

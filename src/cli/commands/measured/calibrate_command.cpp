@@ -34,7 +34,7 @@ struct Options {
   bool is_for_forecasts = false;
 };
 
-/// As many digits as the interval carries: its half gets two.
+/// Formats a value with the digits that its interval supports: half the interval width has two.
 std::string with_digits(double value, double half) {
   const double smallest = std::max(half, 1e-6 * std::abs(value));
   const int digits = 2 + static_cast<int>(std::floor(std::log10(std::abs(value)))) - static_cast<int>(std::floor(std::log10(smallest)));
@@ -118,7 +118,7 @@ present::Document document_of(const Motor& motor, const Calibration& result, std
     document.add_note(present::Severity::note,
                       fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why, each.experiment));
   }
-  // What was left out of the logs stands behind what limits the answer.
+  // Notes about rejected samples rank below notes that limit the answer.
   for (const std::string& note : result.notes) {
     const bool is_of_logs = std::ranges::find(of_logs, note) != of_logs.end();
     document.add_note(is_of_logs ? present::Severity::background : present::Severity::note, note);
@@ -135,7 +135,7 @@ nlohmann::ordered_json error_json(const std::vector<ErrorBeforeAfter>& errors, b
   return all;
 }
 
-/// Six significant digits: enough for any use, and the same on every machine.
+/// Rounds to six significant digits, which are the same on every machine.
 nlohmann::ordered_json number(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 nlohmann::ordered_json forecast_json(const Forecast& forecast) {
@@ -208,7 +208,7 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
           {"model", out}};
 }
 
-/// What the logs themselves ask for comes first.
+/// Adds the steps that the logs require, which come before the experiment that the fit suggests.
 void tell_next_steps(std::vector<std::string> steps, std::string& next_experiment) {
   if (!next_experiment.empty()) {
     steps.push_back(next_experiment);

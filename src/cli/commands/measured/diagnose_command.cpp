@@ -41,7 +41,7 @@ std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const
   return all;
 }
 
-/// What is found in runs that no extended model follows either is no effect.
+/// Throws if not even the extended model follows the runs: effects found in them would be meaningless.
 void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInput& input) {
   constexpr double kFar_K = 20.0;
   for (const auto& [signal, error] : diagnosis.after_train) {

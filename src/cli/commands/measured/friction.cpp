@@ -40,7 +40,7 @@ struct Options {
   std::string plot;
 };
 
-/// What both methods work on.
+/// Input of both methods.
 struct Input {
   Robot robot;
   std::optional<MotorValues> motor;
@@ -48,10 +48,10 @@ struct Input {
   std::vector<FrictionLog> logs;
   Findings findings;
   std::vector<std::string> suspicions;
-  std::vector<Diagnostic> spoiling;  ///< of them: units, signs and orders with which the answer would be wrong, were it so
+  std::vector<Diagnostic> spoiling;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
 };
 
-/// The robot's own motor may be in no data base: modulation teaches without it.
+/// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it.
 void find_motor(const Options& options, const DataFolders& folders, Input& input) {
   input.motor_id = options.motor.empty() ? input.robot.drive_motor : options.motor;
   try {
@@ -64,7 +64,7 @@ void find_motor(const Options& options, const DataFolders& folders, Input& input
   }
 }
 
-/// A log that counts twice makes intervals narrower than they are. `seen`: files and what they hold.
+/// Throws if a log is given twice, because it would make the intervals too narrow. `seen` holds files and the hash of their content.
 void refuse_repeated(const Recording& recording, std::vector<std::pair<std::filesystem::path, std::size_t>>& seen) {
   std::size_t held = recording.rows();
   const auto add = [&held](double value) { held = held * 1'000'003 + std::hash<double>{}(value); };
@@ -79,7 +79,7 @@ void refuse_repeated(const Recording& recording, std::vector<std::pair<std::file
   seen.emplace_back(recording.file, held);
 }
 
-/// Figures from a wrong unit would go into the robot's file and from there into its firmware.
+/// Values from a wrong unit would get into the robot's file and from there into its firmware.
 void refuse_what_looks_wrong(const Options& options, const Input& input) {
   if (!input.spoiling.empty() && !options.takes_logs_as_they_are) {
     throw Failure(ExitCode::bad_input,
@@ -130,7 +130,7 @@ Input read_input(const Options& options, const Session& session) {
   return input;
 }
 
-/// null where unknown.
+/// Unknown (NaN) values become null.
 Json json(const Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
 
 std::string text(const Estimate& estimate, int decimals, double scale = 1.0, const std::string& without_interval = "given") {
@@ -165,7 +165,7 @@ std::string source_of(const Options& options) {
                                   : fmt::format("friction test, {} and {} more logs", first, options.logs.size() - 1);
 }
 
-/// The updated robot file, and what it says about itself.
+/// Writes the updated robot file and reports the notes about it.
 void write_robot(const Options& options, const std::string& content, const Findings& notes, Session& session) {
   session.write(options.out, content);
   session.say(findings_text(notes) + fmt::format("written: {}\n", options.out));
@@ -222,7 +222,7 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
   return lines;
 }
 
-/// Wheels of which the law of friction itself is off.
+/// Reports wheels whose measurements contradict the assumed friction law.
 Findings of_another_law(const FrictionFit& fit) {
   Findings found;
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
@@ -236,7 +236,7 @@ Findings of_another_law(const FrictionFit& fit) {
   return found;
 }
 
-/// Why nothing was learned: the commonest reason of the wheels.
+/// Explains why nothing was learned, with the problem of wheel 1 as the example.
 Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
   const std::string suspected = suspicions.empty() ? "" : "\n" + suspicions_text(suspicions);
   if (steady.parts.empty()) {
