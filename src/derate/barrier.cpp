@@ -11,9 +11,9 @@
 namespace heatsoak {
 namespace {
 
-constexpr double kBelow_ratio = 1e-8;  ///< what the answer gives away, so that it lies below the root
+constexpr double kBelow_ratio = 1e-8;  ///< relative reduction that keeps the result below the root
 
-/// Largest x up to `most_A2` with margin(x) ≥ 0; see Barrier::square_A2().
+/// Returns the largest x up to `most_A2` with margin(x) ≥ 0; see Barrier::square_A2().
 template <class Margin>
 double largest_square_A2(const Margin& margin, double most_A2) {
   const double probe_A2 = most_A2 / 64.0;
@@ -22,7 +22,7 @@ double largest_square_A2(const Margin& margin, double most_A2) {
   if (none <= 0.0) {
     return fall > 0.0 ? std::max(-most_A2, none / fall) : -most_A2;
   }
-  // Nearly all laws heat with the square of the current: then the straight line is the answer.
+  // The linear solution is exact for nearly all laws, because they heat with the square of the current.
   const double straight_A2 = fall > 0.0 ? std::min(most_A2, none / fall) : most_A2;
   const double there = margin(straight_A2);
   constexpr double kRounding = 1e-10;
@@ -78,7 +78,7 @@ double Barrier::stator_margin(const HotCase& each, const Place& at, double curre
   const Signals signals = each.signals(rules_, std::sqrt(current_square_A2), at.speed_rad_per_s);
   find_rates(signals, at.stator_C, at.winding_C);
   find_rates(signals, at.stator_C, at.winding_C + rules_.approach_s * rate_[states::winding]);
-  // When the speed rises suddenly the winding still hands on the heat of the lower speed's current.
+  // After a sudden rise of the speed the winding still conducts the heat of the earlier, larger current to the stator.
   constexpr double kHandedOn_K = 0.5;
   return (*rules_.limits.stator_C - kHandedOn_K - at.stator_C) / rules_.stator_approach_s - rate_[states::stator];
 }

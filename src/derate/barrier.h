@@ -1,4 +1,4 @@
-// The exact answer that the derating table stays below: the largest current at which the control barrier holds.
+// Exact allowed current: the largest current at which the control barrier holds. The derating table stays below it.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace heatsoak {
 
-/// Keeps references to the observer and the rules. Not for two threads at once.
+/// Keeps a reference to the rules, which must outlive it. Not thread-safe.
 class Barrier {
  public:
   Barrier(const Observer& observer, const BarrierRules& rules);
 
-  /// Square of the current in A² up to which the barrier holds in every hot case, for laws that heat more with more current. Negative where
-  /// it does not even without current: there the straight line through two currents is continued, so that the answer has no corner at 0.
-  /// Between ±(2·most_current)²; accurate to 1 in 10⁶, from below.
+  /// Returns the square, in A², of the largest current at which the barrier holds in every hot case. Assumes that heat grows with current.
+  /// The result is negative if the barrier is violated even without current: the margin is extrapolated along the line through a current
+  /// of zero and a small one, so that the result has no kink at 0. Range ±(2·most_current)²; accurate to 1 in 10⁶, rounded down.
   double square_A2(double speed_rad_per_s, double stator_C, double winding_C);
-  /// Its root, from 0 to the rules' most current.
+  /// Returns the root of square_A2() in A, limited to the range from 0 to the most current of the rules.
   double current_A(double speed_rad_per_s, double stator_C, double winding_C);
 
  private:
@@ -26,7 +26,7 @@ class Barrier {
     double stator_C;
     double winding_C;
   };
-  /// In K/s: what the winding may still heat more; with a stator limit also what the stator may.
+  /// Margins of the barrier in K/s: the allowed minus the actual heating rate of winding and stator. At least 0 if the barrier holds.
   double winding_margin(const HotCase& each, const Place& at, double current_square_A2);
   double stator_margin(const HotCase& each, const Place& at, double current_square_A2);
   void find_rates(const Signals& signals, double stator_C, double winding_C);
@@ -34,11 +34,11 @@ class Barrier {
   const BarrierRules& rules_;
   std::vector<HotCase> cases_;
   FormulaRun<double> rates_;
-  std::vector<double> signals_;  ///< and temperatures, as the formula takes them
+  std::vector<double> signals_;  ///< inputs of the formula: signals, then node temperatures in °C
   std::vector<double> rate_;
 };
 
-/// Barrier::current_A() at one place.
+/// Barrier::current_A() for a single evaluation; builds the barrier each time.
 double barrier_current_A(const Observer& observer, const BarrierRules& rules, double speed_rad_per_s, double stator_C, double winding_C);
 
 }  // namespace heatsoak

@@ -10,11 +10,11 @@ struct Bounds {
   float high = 0.0F;
 };
 
-/// Wider than what the motor can reach: only a broken sensor leaves them.
+/// Returns bounds wider than the motor's operating range, so that only a faulty sensor exceeds them.
 Bounds bounds(const Derating& derating, firmware::Signal signal) {
   const auto most_current_A = static_cast<float>(derating.rules.most_current_A);
   const auto reachable_rad_per_s = static_cast<float>(derating.reachable_speed_rad_per_s);
-  // The table's last speed too: up to there the allowed current falls without a jump.
+  // The bound includes the table's last speed, up to which the allowed current falls continuously.
   const float fastest_rad_per_s = std::max(1.25F * reachable_rad_per_s, static_cast<float>(derating.table.no_current_speed_rad_per_s));
   switch (signal) {
     case firmware::current:
@@ -22,7 +22,7 @@ Bounds bounds(const Derating& derating, firmware::Signal signal) {
     case firmware::speed:
       return {-fastest_rad_per_s, fastest_rad_per_s};
     case firmware::ambient:
-      // A dead sensor, or a structure that nobody filled in, shows just 0.
+      // A failed sensor or a zero-initialised structure reads exactly 0.
       return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F, 300.0F};
     case firmware::neighbour:
       return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F - kNeighbourBelowAir_K, 1000.0F};

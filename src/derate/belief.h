@@ -1,4 +1,5 @@
-// Which values of a signal the guard believes, and what it assumes where it believes none: the same for generated code and for the host.
+// Plausible range of each input signal, and the values that the guard assumes for an implausible reading. Shared by generated code and
+// host.
 #pragma once
 
 #include <vector>
@@ -7,17 +8,18 @@
 
 namespace heatsoak {
 
-/// A neighbour that reads this much less than the air has no working sensor: the lower bound of its belief moves with the air.
+/// A neighbouring motor that reads this much below the air temperature has a faulty sensor. Its lower bound therefore follows the air.
 inline constexpr float kNeighbourBelowAir_K = 5.0F;
 
-/// In single precision, as the controller compares.
+/// Plausible range of one signal, in the signal's unit. Single precision, because the controller compares in it.
 struct Belief {
   bool is_used = false;  ///< false: no law of the motor depends on the signal
-  float low = 0.0F;      ///< of the neighbour: not used, see kNeighbourBelowAir_K
+  float low = 0.0F;      ///< not used for the neighbour, see kNeighbourBelowAir_K
   float high = 0.0F;
-  std::vector<float> values;  ///< that are possible, among them those that heat winding and bodies most; empty where not used
+  std::vector<float> values;  ///< possible values, including those that heat winding and bodies most; empty if the signal is not used
 };
 
+/// Returns the plausible range of a signal; all members have their defaults if no law of the motor depends on it.
 Belief belief(const Derating& derating, firmware::Signal signal);
 
 }  // namespace heatsoak

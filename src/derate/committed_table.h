@@ -1,4 +1,4 @@
-// A derating table that was written earlier, against a fresh one: does it still hold?
+// Compares a derating table that was written earlier with a newly computed one.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace heatsoak {
 
-/// What a CSV table says of one place.
+/// One row of a CSV table.
 struct CommittedRow {
   double speed_rad_per_s = 0.0;
   double stator_C = 0.0;
@@ -18,22 +18,22 @@ struct CommittedRow {
   double current_A = 0.0;
 };
 
-/// Either a table or rows.
+/// An earlier derating table: from a C header (`table`, `code`) or from a CSV table (`rows`).
 struct CommittedTable {
   std::filesystem::path file;
-  std::optional<CurrentTable> table;  ///< of a C header
-  std::vector<CommittedRow> rows;     ///< of a CSV table, the full grid of its places
-  std::string motor_id;               ///< that the file names at its beginning; empty where it names none
-  std::string robot_id;               ///< the same
-  std::string version;                ///< of the program that wrote the file, "0.1.0"; empty where the file has none
-  std::string code;                   ///< of a C header all of its text, else empty
+  std::optional<CurrentTable> table;  ///< only from a C header
+  std::vector<CommittedRow> rows;     ///< only from a CSV table: the full grid, winding varies fastest
+  std::string motor_id;               ///< named at the beginning of the file; empty if the file names none
+  std::string robot_id;               ///< likewise
+  std::string version;                ///< version of the program that wrote the file, "0.1.0"; empty if not stated
+  std::string code;                   ///< full text of a C header, else empty
 };
 
-/// Reads a C header or a CSV table of `derate`, whichever the content is. Throws Failure (bad_input): unreadable, neither of the two, a
-/// header that is cut off, an axis that does not ascend, a value that cannot be, an incomplete grid, with the line where there is one.
+/// Reads a C header or a CSV table of `derate`; the content decides which. Throws Failure (bad_input), with the line if there is one, for
+/// an unreadable file, another kind of file, a truncated header, an axis that does not ascend, an impossible value or an incomplete grid.
 CommittedTable read_committed_table(const std::filesystem::path& file);
 
-/// Where two tables are furthest apart.
+/// Point at which two tables differ most.
 struct TablePlace {
   double difference_A = 0.0;  ///< ≥ 0
   double committed_A = 0.0;
@@ -44,18 +44,18 @@ struct TablePlace {
 };
 
 struct TableComparison {
-  TablePlace excess;  ///< the committed table allows more: unsafe
-  TablePlace lost;    ///< it allows less: safe, but current is given away
-  /// Of a C header: the first line outside the table, comments apart, that differs from a fresh header, 0 where none does. Then the
-  /// observer of the firmware is not the one that the table was checked with.
+  TablePlace excess;  ///< the committed table allows more current: unsafe
+  TablePlace lost;    ///< the committed table allows less current: safe, but wasteful
+  /// Only for a C header: first line outside of tables and comments that differs from a fresh header, from 1; 0 if none differs. If one
+  /// does, the observer in the firmware is not the observer that the table was checked with.
   int differing_line = 0;
-  std::string differing_text;        ///< of that line
-  std::string differing_fresh_text;  ///< of the fresh header
+  std::string differing_text;        ///< that line
+  std::string differing_fresh_text;  ///< line of the fresh header at the same place
 };
 
-/// A C header over all speeds and temperatures: the squares of both tables are straight between the points of both axes, so the largest
-/// differences are looked for on the grid of all points, and just behind the ends. A CSV table in its rows. Differences below 0.05 % of the
-/// largest current are rounding of the file and count as none; so are numbers of the header's other lines that agree to 1 in 10⁴.
+/// Compares a C header on the grid of all breakpoints of both tables and just beyond the ends of the axes, because both tables are
+/// piecewise linear in the squared current. Compares a CSV table in its own rows. Ignores differences below 0.05 % of the largest current
+/// (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴ count as equal.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 
 }  // namespace heatsoak

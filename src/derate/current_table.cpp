@@ -6,7 +6,7 @@
 namespace heatsoak {
 namespace {
 
-/// Two places of an axis and how far between them; the ends outside of it.
+/// Two neighbouring breakpoints and the position between them, 0 to 1. Values outside of the axis are clamped to its ends.
 template <class Number>
 struct Between {
   std::size_t below = 0;

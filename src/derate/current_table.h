@@ -1,4 +1,4 @@
-// The derating table: the current that may flow at a speed, while a winding and a stator have the temperatures that the observer says.
+// The derating table: allowed current over speed, stator temperature and winding temperature, as estimated by the observer.
 #pragma once
 
 #include <cstddef>
@@ -9,63 +9,64 @@
 
 namespace heatsoak {
 
-/// Beyond the highest speed of the rules the current falls in a straight line, so that a motor that is pushed can still brake and its
-/// current does not jump. It has fallen to none at rules.no_current_speed, at this ratio to the highest speed at least.
+/// Above the highest speed of the rules the allowed current falls linearly, so that a motor that is driven from outside can still brake and
+/// its current has no step. It reaches 0 at rules.no_current_speed, at least at this ratio to the highest speed.
 inline constexpr double kSpeedFadeOut_ratio = 1.1;
 
-/// What holds of a table, against the exact answer (Barrier) on points that are not its own.
+/// Bounds of a table relative to the exact current (Barrier), verified at points that are not breakpoints of the table.
 struct TableBound {
-  /// From CurrentTable::straight_below_A up the table is never above the exact current and at most this share below it.
+  /// Above CurrentTable::straight_below_A the table is at most this share of the exact current below it, and never above it. From 0 to 1.
   double shortfall_ratio = 0.0;
-  // Largest change of the allowed current with one quantity, the others fixed: bounds from the table's own lines.
+  // Upper bounds of the slope of the allowed current with respect to one quantity, computed from the table's own segments.
   double winding_slope_A_per_K = 0.0;
   double stator_slope_A_per_K = 0.0;
   double speed_slope_A_s_per_rad = 0.0;
 };
 
-/// Squares of the allowed current over speed, stator and winding, straight between the places, because copper heats with the square: an
-/// axis with one place does not matter. Below the first place of an axis the first one counts. A stator above its last place counts
-/// winding_per_stator_K times as a hotter winding, above the last place of the winding no current may flow. Every node but the winding is
-/// as hot as the stator's axis says. Squares are negative where not even no current is enough. They are whole numbers of single precision.
+/// Squared allowed current over speed, stator and winding temperature, interpolated linearly, because copper loss grows with the square.
+/// An axis with one breakpoint has no influence. Below the first breakpoint of an axis its value is held. Each kelvin of the stator above
+/// its last breakpoint counts as winding_per_stator_K of the winding; above the winding's last breakpoint the current is 0. The stator axis
+/// stands for all nodes except the winding. A square is negative if the barrier is violated even without current. All squares are exactly
+/// representable in single precision.
 struct CurrentTable {
   std::vector<double> speed_rad_per_s;
   std::vector<double> stator_C;
   std::vector<double> winding_C;
   std::vector<double> square_A2;  ///< [speed][stator][winding]
   double most_current_A = 0.0;
-  /// A current below this is square/straight_below instead of the root, so that it falls to 0 with a finite slope.
+  /// Below this current the table returns square/straight_below_A instead of the root, so that the current reaches 0 with a finite slope.
   double straight_below_A = 1.0;
-  double most_speed_rad_per_s = 0.0;        ///< from here on the current falls in a straight line
-  double no_current_speed_rad_per_s = 0.0;  ///< to none here
+  double most_speed_rad_per_s = 0.0;        ///< above this speed the current falls linearly
+  double no_current_speed_rad_per_s = 0.0;  ///< at this speed it reaches 0
   double winding_per_stator_K = 1.0;
   TableBound bound = {};
 
   [[nodiscard]] std::size_t place(std::size_t speed, std::size_t stator, std::size_t winding) const {
     return (speed * stator_C.size() + stator) * winding_C.size() + winding;
   }
-  /// Single-precision numbers on the controller: places and squares, 4 bytes each.
+  /// Memory on the controller: breakpoints and squares as single-precision numbers, 4 bytes each.
   [[nodiscard]] std::size_t size_bytes() const {
     return sizeof(float) * (speed_rad_per_s.size() + stator_C.size() + winding_C.size() + square_A2.size());
   }
-  /// From 0 to most_current_A, continuous in all three. What is not a number gives 0. In single precision it has the bits of
-  /// robot_core/current_table.h.
+  /// Allowed current in A, from 0 to most_current_A, continuous in all three arguments (rad/s, °C, °C). Any NaN gives 0. In single
+  /// precision the result is bit-identical to robot_core/current_table.h.
   template <class Number>
   [[nodiscard]] Number allowed_A(Number speed, Number stator, Number winding) const;
-  /// The current of a square up to most_current_A, before what a speed above the highest takes away.
+  /// Current in A for a squared current in A², at most most_current_A. Does not include the reduction above most_speed_rad_per_s.
   template <class Number>
   [[nodiscard]] Number current_of_A(Number square) const;
 };
 extern template float CurrentTable::allowed_A<float>(float, float, float) const;
 extern template double CurrentTable::allowed_A<double>(double, double, double) const;
 
-/// What a table should be: as small as the shortfall allows, or as exact as the size allows. With both, the size wins.
+/// Target of a table: the smallest table within the shortfall and the size. If both cannot be met, the size is kept.
 struct TableGoal {
   double shortfall_ratio = 0.01;  ///< 0 < … < 1
   std::size_t most_bytes = 8192;  ///< of the single-precision numbers
 };
 
-/// Places are added one by one where they lessen the largest shortfall most, on the axis where they do, and taken out again where they are
-/// not needed. Squares are lowered until no point of a fine grid and of an independent set lies above the exact answer.
+/// Computes a table for the goal. Adds breakpoints one by one, each on the axis where it reduces the largest shortfall most, and removes
+/// those that turn out to be unnecessary. Lowers squares until no point of a fine grid and of an independent set exceeds the exact current.
 CurrentTable current_table(const Observer& observer, const BarrierRules& rules, const TableGoal& goal = {});
 
 }  // namespace heatsoak

@@ -20,10 +20,10 @@ namespace {
 
 constexpr double kLargestReserve = 16.0;
 constexpr double kReserveTolerance = 0.01;
-/// Streams of chance of the search and of the check, apart from each other.
+/// Offset between the random streams of the search and those of the check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
-/// Of a full battery; a robot that gives none has its nominal voltage always.
+/// Voltage of a full battery in V; the nominal voltage if the robot's file gives none.
 double full_V(const Robot& robot) {
   return std::isnan(robot.battery_full_V) ? robot.battery_V : std::max(robot.battery_V, robot.battery_full_V);
 }
@@ -32,7 +32,7 @@ double full_V(const Robot& robot) {
 
 namespace {
 
-/// A limit that the file gives as a range is kept at its lower end: which of them holds is not known.
+/// Returns the lower end of a limit that the file gives as a range, because its true value is unknown.
 double lowest_limit_C(const Motor& motor, std::string_view key, double nominal_C) {
   const auto figure = motor.figures.find(key);
   return figure != motor.figures.end() && figure->second.spread ? std::min(nominal_C, figure->second.spread->low) : nominal_C;
@@ -55,15 +55,15 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
                               motor.id, rules.limits.winding_C, options.hottest_ambient_C));
   }
   rules.approach_s = options.approach_s;
-  // The stator must not come near its limit faster than a winding without current can let go of it.
+  // The stator must approach its limit more slowly than a winding without current gives off its stored heat.
   constexpr double kWindingTimes = 3.0;
   rules.stator_approach_s = std::max(options.approach_s, kWindingTimes * values.thermal_time_constant_winding_s);
   rules.hottest_ambient_C = options.hottest_ambient_C;
-  // Braking at full speed the back-EMF adds to the supply.
+  // When braking at full speed, the back-EMF adds to the supply voltage.
   rules.most_current_A = std::min(robot.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
-  constexpr double kPushed = 1.1;  // a robot that is pushed may turn its motors faster than its battery can
+  constexpr double kPushed = 1.1;  // a pushed robot may turn its motors faster than its battery can
   rules.most_speed_rad_per_s = kPushed * std::min(full_V(robot), robot.voltage_limit_V) / values.torque_constant_Nm_per_A;
-  // A driver whose command is limited can still be asked for the whole battery by other firmware.
+  // Other firmware may use the full battery voltage of a driver whose command is limited here.
   rules.no_current_speed_rad_per_s =
       std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, kPushed * full_V(robot) / values.torque_constant_Nm_per_A);
   rules.most_vehicle_speed_m_per_s = rules.most_speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m;
@@ -80,7 +80,7 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   OperatingPoint<Lanes> at;
   at.ambient_C = Lanes::Constant(options.hottest_ambient_C);
   at.current_rms_A = Lanes::Constant(rules.most_current_A);
-  // A speed is believed up to less than this (belief.cpp).
+  // The guard accepts speeds up to less than this (belief.cpp).
   const double fastest_rad_per_s = std::max(2.0 * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(fastest_rad_per_s);
   const double longest_s = 0.2 * longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
@@ -100,7 +100,7 @@ void require_samples(const GuaranteeOptions& options) {
   }
 }
 
-/// One reserve with what follows from it.
+/// One safety factor on heat and the results that follow from it.
 struct Attempt {
   Observer observer;
   BarrierRules rules;
@@ -123,7 +123,7 @@ class Search {
   [[nodiscard]] const Network& network() const { return network_; }
   [[nodiscard]] const BarrierRules& reachable() const { return reachable_; }
 
-  /// Nothing where limits are passed without current at most of the speeds.
+  /// Returns nothing if the motor exceeds its limits without current at most speeds, or if the observer itself exceeds them in a use.
   [[nodiscard]] std::optional<Attempt> attempt(double reserve) const {
     Observer observer(network_, motor_.nominal, robot_, reserve);
     BarrierRules rules = reachable_;
@@ -140,7 +140,7 @@ class Search {
     std::vector<UsePlayed> uses(patterns.size());
     in_parallel(uses.size(), options_.guarantee.threads,
                 [&](std::size_t i) { uses[i] = play(observer, table, rules, motor_, robot_, patterns[i], options_.period_s); });
-    // A law over the temperature of a body may heat it again before it is as hot as it would have to be to cool.
+    // With a temperature-dependent law a node may heat again before it reaches the temperature at which it would cool.
     constexpr double kRounding_K = 0.5;
     if (std::ranges::any_of(uses, [&](const UsePlayed& use) { return use.winding_peak_C > rules.limits.winding_C + kRounding_K; })) {
       return std::nullopt;
@@ -148,12 +148,12 @@ class Search {
     return Attempt{std::move(observer), rules, std::move(table), std::move(uses)};
   }
 
-  /// Of motors from that stream of chance on.
+  /// Checks motors drawn from the random streams from `first_stream` on.
   [[nodiscard]] Guarantee checked(const Attempt& attempt, std::uint64_t first_stream) const {
     return check(motor_, reachable_.limits, attempt.uses, options_.guarantee, first_stream);
   }
 
-  /// The smallest reserve with which the share of the search's motors that keep their limits is the confidence.
+  /// Returns the smallest safety factor at which the share of the search's motors that keep their limits reaches the confidence.
   double reserve() {
     constexpr double kGrowth = 1.5;
     return smallest(1.0, kGrowth, [this](double tried) {
@@ -166,9 +166,9 @@ class Search {
     Attempt attempt;
     Guarantee guarantee;
   };
-  /// The smallest reserve from there on whose lower bound on fresh motors is the confidence. All tries see the same motors. A motor that
-  /// keeps its limits keeps them with a larger reserve, so the result is an order statistic of the motors' own reserves, and its certainty
-  /// is that of a single check (Wilks 1941).
+  /// Returns the smallest safety factor, at least `from`, at which the lower bound on independently drawn motors reaches the confidence.
+  /// All attempts use the same motors. A motor that keeps its limits also keeps them at a larger factor. The result is therefore an order
+  /// statistic of the factors that the motors need, and its confidence level is that of a single check (Wilks 1941).
   Promise promise(double from) {
     constexpr double kGrowth = 1.05;
     std::optional<Promise> made;
@@ -193,7 +193,7 @@ class Search {
   }
 
  private:
-  /// A reserve with which the motor passes its limits by itself is none.
+  /// Throws too_hot() if the motor exceeds its limits without current at this safety factor.
   Attempt attempt_or_throw(double reserve) {
     std::optional<Attempt> tried = attempt(reserve);
     if (progress_) {
@@ -206,10 +206,10 @@ class Search {
     return std::move(*tried);
   }
 
-  /// What motors of the database take, the fresh draw included.
+  /// Typical number of attempts for motors of the database, including those of the check.
   static constexpr std::size_t kUsualRounds = 10;
 
-  /// To kReserveTolerance; the last reserve that was found to be enough is the result.
+  /// Returns the smallest sufficient safety factor, at least `from`, to kReserveTolerance. The result was itself found to be sufficient.
   template <class IsEnough>
   [[nodiscard]] double smallest(double from, double growth, const IsEnough& is_enough) const {
     if (is_enough(from)) {

@@ -1,4 +1,4 @@
-// Everything that firmware gets about one motor: its observer, its table, and how far both can be trusted.
+// Derating of one motor for firmware: thermal observer, current table and their statistical guarantee.
 #pragma once
 
 #include <map>
@@ -15,26 +15,26 @@ namespace heatsoak {
 
 struct DerateOptions {
   double hottest_ambient_C = 40.0;
-  double coldest_ambient_C = 0.0;  ///< a sensor that shows less is taken for broken
-  double period_s = 0.01;          ///< between two calls of the firmware
-  double approach_s = 0.5;         ///< over which the winding may come near its limit: shorter lets peaks through for longer
+  double coldest_ambient_C = 0.0;  ///< an air sensor that reads less counts as faulty
+  double period_s = 0.01;          ///< time between two calls in the firmware
+  double approach_s = 0.5;         ///< time constant of the winding's approach to its limit: a shorter one allows peaks for longer
   TableGoal table;
   GuaranteeOptions guarantee;
   std::optional<SensorOptions> sensor = {};
 };
 
-/// What follows from motor, robot and options alone: before any reserve. A limit that the motor's file gives as a range counts at its lower
-/// end. Throws Failure (bad_input) where the winding's limit is not above the hottest air. The highest speed is 1.1·U/(K_t): U of a full
-/// battery within the driver's limit of the command, and 10 % for a push and for magnets weaker than nominal. The current has fallen to
-/// none at 1.1 times that, and at the same of the full battery where the command is limited.
+/// Returns the rules that follow from motor, robot and options, before any safety factor on heat. A limit that the motor's file gives as a
+/// range counts at its lower end. The highest speed is 1.1·U/K_t. U is the voltage of a full battery, at most the driver's command limit.
+/// The 10 % cover external pushing and magnets weaker than nominal. The current reaches 0 at 1.1 times the highest speed, or at the highest
+/// speed without the command limit if that is more. Throws Failure (bad_input) if the winding limit is not above the hottest air.
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options);
 
-/// An effect that the observer reckons with.
+/// An effect of the observer's network.
 struct ActingEffect {
   std::string name;
   std::string type;
   std::string equation;
-  std::string column;  ///< of logs, that the effect goes with: its hottest value counts
+  std::string column;  ///< log column that the effect depends on, represented by its hottest value; empty if none
 };
 
 struct Derating {
@@ -46,35 +46,35 @@ struct Derating {
   BarrierRules rules;
   CurrentTable table;
   DerateOptions options;
-  std::map<std::string, std::string> assumed;  ///< Motor::assumed: where that does not hold, nothing here does
+  std::map<std::string, std::string> assumed;  ///< Motor::assumed: the derating is valid only under these conditions
   std::vector<ActingEffect> effects;
   Guarantee guarantee;
   std::vector<UsePlayed> uses;
-  double reachable_speed_rad_per_s = 0.0;  ///< more than the rules' most speed where beyond it the motor passes a limit without current
-  /// Values of the motor's file without a tolerance, with what the drawn motors have in its place.
+  double reachable_speed_rad_per_s = 0.0;  ///< above rules.most_speed if beyond that the motor exceeds a limit even without current
+  /// Default tolerances of values for which the motor's file gives none.
   std::vector<DefaultSpread> default_spreads = {};
   bool is_brushless = true;
-  double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: current that heats per equivalent DC current
-  MotorValues nominal = {};               ///< of the motor's file
-  std::optional<SensorPlan> sensor = {};  ///< where one is declared
-  Provenance provenance = {};             ///< empty until the caller sets it: derate() reads no files
+  double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: heating current per equivalent DC current
+  MotorValues nominal = {};               ///< nominal values of the motor's file
+  std::optional<SensorPlan> sensor = {};  ///< set if the options declare a sensor
+  Provenance provenance = {};             ///< set by the caller, because derate() reads no files
 };
 
-/// The current that the motor bears for good at every speed and in every hot case, in A ≥ 0: for a wheel whose speed nobody knows.
-/// Derivation: each held use draws all that the table allows, at one speed in one hot case, until the slowest body has settled (four
-/// slowest time constants, 900 s at least). The current that still flows at the end is the one at which the observer, which counts heat
-/// heat_reserve_ratio times, rests at its limits. The smallest of these over all held uses. 0 without held uses. The fastest held use is at
-/// 0.98 of the rules' highest speed: above what a full battery drives, because that is 1.1 times as fast.
+/// Returns the continuous current in A that is allowed at every speed and in every hot case; for a wheel whose speed is unknown. It is the
+/// smallest steady-state current of all continuous uses (Use::on_s is 0), and 0 without such uses. Each of them draws the full allowed
+/// current at constant speed for four of the slowest time constants, but at least 900 s. At the end of it the observer, whose heat is
+/// multiplied by the safety factor, is in steady state at its limits. The fastest continuous use runs at 0.98 of the highest speed, which
+/// is above the speed that a full battery reaches.
 double limp_current_A(const Derating& derating);
 
-/// Motors that must be drawn to show the confidence at all, none of them over a limit: 59 for 0.95.
+/// Smallest number of drawn motors that can show the confidence, if none of them exceeds a limit: 59 for 0.95.
 long least_samples(const GuaranteeOptions& options);
 
-/// Values without a spread get a default one first (with_default_spreads()). Finds the smallest reserve of heat with which the share of
-/// drawn motors that keep every limit in every use is the confidence, and raises it until on motors that the search has not seen the lower
-/// bound of that share (kCertainty_share) is the confidence too. Throws Failure: bad_input
-/// where the period is too long for the motor or the samples are too few for the confidence, limit_exceeded where no reserve helps, because
-/// the motor passes a limit without current.
+/// Computes the derating. Values without a tolerance get a default one first (with_default_spreads()). Finds the smallest safety factor on
+/// heat at which the share of drawn motors that keep every limit in every use reaches the confidence. Then raises the factor until, on
+/// independently drawn motors, the lower bound of that share (kCertainty_share) reaches the confidence as well. Throws Failure: bad_input
+/// if the period is too long for the motor or the samples are too few for the confidence; limit_exceeded if no factor is sufficient,
+/// because the motor exceeds a limit without current.
 Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress = {});
 
 }  // namespace heatsoak

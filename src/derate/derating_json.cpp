@@ -19,7 +19,7 @@ Json rounded(double value, int decimals) {
   return std::isfinite(value) ? Json(std::round(value * scale) / scale) : Json();
 }
 
-/// To 12 digits, so that a unit's conversion shows no rounding error of its own.
+/// Rounds to 12 digits, so that unit conversions do not show their rounding error.
 double short_value(double value) { return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr); }
 
 bool is_datasheet_alone(const Derating& derating) {
@@ -28,7 +28,7 @@ bool is_datasheet_alone(const Derating& derating) {
          });
 }
 
-/// The equations stand beside the numbers, so that a reader needs no other file.
+/// The equations are included, so that the numbers can be used without another file.
 Json observer_json(const Derating& derating) {
   if (!is_datasheet_alone(derating)) {
     return nullptr;
@@ -65,7 +65,7 @@ Json default_spreads(const Derating& derating) {
 }
 
 Json table_json(const CurrentTable& table) {
-  // Rounded down: what is read back allows no more than the table.
+  // Rounded down, so that a table read back from the file never allows more current.
   const auto rounded_down = [](double value) { return std::floor(value * 1e4) / 1e4; };
   Json current = Json::array();
   Json square = Json::array();

@@ -1,4 +1,4 @@
-// The derating as JSON, for the exporter of that name and for the answer of `derate --json`.
+// The derating as JSON, for the exporter `json` and for `derate --json`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace heatsoak {
 
-/// Schema heatsoak.derating/1. The observer's parameters stand in it where they have a closed form, which is the data sheet's network
-/// without own effects; else null.
+/// Returns the derating in schema heatsoak.derating/1. The entry "observer" holds equations and parameters if the network is that of the
+/// data sheet without effects of the motor's own, else null.
 nlohmann::ordered_json derating_json(const Derating& derating);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// What several exporters share: comment lines, checks, and the current of field-oriented control.
+// Shared by several exporters: comment lines, checks, and the current conversion for field-oriented control.
 #pragma once
 
 #include <numbers>
@@ -13,21 +13,23 @@ namespace heatsoak {
 /// is 3·√3/π·E per DC ampere of block commutation and 3/2·E per ampere of i_q.
 inline constexpr double kDcPerIq_ratio = std::numbers::sqrt3 * std::numbers::pi / 6.0;
 
-/// Program, inputs, limit, confidence, conditions and assumed spreads as lines that begin with `comment`. No text of a user ends a line.
+/// Returns program, inputs, limits, confidence, conditions and default tolerances as lines that begin with `comment`. Control characters in
+/// a user's text become spaces, so that it cannot end the comment.
 std::string provenance_lines(const Derating& derating, std::string_view comment);
 
-/// What the confidence means and what showed it, as one sentence without a line break.
+/// Returns the meaning of the confidence and the result of its check as one line.
 std::string confidence_text(const Derating& derating);
 
-/// Prefix of the names in generated code: the id with every other character than letters and digits replaced by "_".
+/// Prefix of the names in generated code: the id with each character other than a letter or digit replaced by "_". Begins with "motor_" if
+/// the id is empty or begins with a digit.
 std::string identifier(std::string_view id);
 
-/// What the ramp gives away and where it is valid, as lines that begin with `comment`. `phase_per_dc_ratio`: the controller's current per
+/// Returns the losses and the validity of the ramp as lines that begin with `comment`. `phase_per_dc_ratio` is the controller's current per
 /// equivalent DC current.
 std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio,
                        std::string_view comment);
 
-/// Effects that are not of the data sheet, "chassis (third_node)"; "no own effects" without any.
+/// Lists the effects that the motor has beyond the data sheet's, such as "chassis (third_node)"; "no own effects" if there are none.
 std::string own_effects_text(const Derating& derating);
 
 /// Throws Failure (bad_input) if a value that is exported is not finite.
@@ -39,7 +41,7 @@ void require_brushless(std::string_view controller, const Derating& derating);
 /// Throws Failure (bad_input) with the signal and the effects if a law depends on a signal other than current, speed and air temperature.
 void require_three_signals(std::string_view controller, const Derating& derating);
 
-/// A current of the controller, rounded down to 1 mA, so that the limit stays on the safe side.
+/// Returns the current rounded down to 1 mA, so that the limit stays on the safe side.
 double rounded_down_A(double current_A);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// What a form of the derating is that leaves this program: one file in src/derate/exporters each.
+// Interface of an output format of the derating. Each format is one file in src/derate/exporters.
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@ struct ExporterType {
   std::string_view name;  ///< the file's name; set by all_exporters()
   std::string_view summary;
   std::string (*write)(const Derating& derating) = nullptr;
-  /// The same with a binary that the named C compiler makes; null where the form has none.
+  /// The same, with a binary built by the named C compiler; null if the format contains no binary.
   std::string (*write_compiled)(const Derating& derating, const std::string& compiler) = nullptr;
 };
 
-/// Sorted by name; they live as long as the program.
+/// Returns all formats, sorted by name. The reference stays valid until the program ends.
 const std::vector<ExporterType>& all_exporters();
 
 }  // namespace heatsoak

@@ -18,7 +18,7 @@ constexpr double kSettled = 4.0;  ///< slowest time constants
 constexpr double kShortest_s = 900.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
 
-/// Drawn from the motor's tolerances, each from a stream of chance of its own.
+/// Draws kLanes motors from the tolerances, each from its own random stream.
 std::vector<Network> drawn_motors(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
   std::vector<Network> networks;
   for (int lane = 0; lane < kLanes; ++lane) {

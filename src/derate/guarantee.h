@@ -1,4 +1,4 @@
-// How far the table can be trusted: motors drawn from every declared tolerance, driven with all the current that it allows.
+// Monte Carlo check of the derating table: motors drawn from the declared tolerances, driven with the full current that the table allows.
 #pragma once
 
 #include <array>
@@ -18,36 +18,36 @@
 
 namespace heatsoak {
 
-/// Always all that is allowed, at one share of the highest speed, in one of the hot cases: held, or in pulses.
+/// A load pattern that always draws the full allowed current, continuously or in pulses, at constant speed in one hot case.
 struct Use {
-  double speed_share = 0.0;
-  double on_s = 0.0;  ///< of a pulse; 0: held
+  double speed_share = 0.0;  ///< of the rules' highest speed
+  double on_s = 0.0;         ///< length of a pulse; 0: continuous
   double off_s = 0.0;
   double off_speed_share = 0.0;  ///< coasting between pulses
   HotCase hot_case = {};
 };
-/// Held and pulsed at several speeds in the plain case, and some of it in every other one.
+/// Returns continuous and pulsed patterns at several speeds: all of them in the plain case, a selection in every other hot case.
 std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules);
 
-/// What the firmware lets through in one use, and what its observer saw.
+/// Result of one use: the current that the firmware allows, and the temperatures of its observer.
 struct UsePlayed {
   Use use;
-  std::vector<Interval> intervals;  ///< as the motor's network sees them
+  std::vector<Interval> intervals;  ///< inputs of the motor's network
   std::vector<double> time_s;       ///< ends of the intervals
-  std::vector<double> current_A;    ///< allowed and flowing, rms of the interval
-  double winding_peak_C = 0.0;      ///< of the observer
+  std::vector<double> current_A;    ///< RMS current of each interval, ≥ 0
+  double winding_peak_C = 0.0;      ///< observer's estimate
   double stator_peak_C = 0.0;
-  std::optional<double> start_C = {};  ///< of every node of the motor; the air of the first interval unless given
+  std::optional<double> start_C = {};  ///< initial temperature of every node of the motor; by default the air of the first interval
 };
 
-/// Joins the periods of a use to intervals with their rms current: as long as the current changes by little, and no longer than a second.
+/// Merges the periods of a use into intervals with their RMS current. HeldCurrent decides where an interval ends.
 class PlayedIntervals {
  public:
-  /// `played` holds the use and gets the intervals; all must outlive this.
+  /// Appends the intervals to `played`, which holds the use. All arguments must outlive this object.
   PlayedIntervals(UsePlayed& played, const Motor& motor, const Robot& robot, const BarrierRules& rules)
       : played_(played), motor_(motor), robot_(robot), rules_(rules) {}
 
-  /// A period that begins at `time_s`.
+  /// Adds a period that begins at `time_s`.
   void take(double time_s, double current_A, double speed_rad_per_s, double period_s);
   /// Ends the last interval.
   void end(double time_s);
@@ -60,44 +60,44 @@ class PlayedIntervals {
   HeldCurrent held_;
 };
 
-/// Four of the slowest time constants of the nominal motor, 900 s at least and 4 h at most.
+/// Duration of a use: four stator time constants of the nominal motor, limited to 900 s to 4 h.
 double use_duration_s(const MotorValues& motor);
 
-/// From a motor as warm as the air until the slowest body has settled, with the arithmetic of the firmware.
+/// Simulates one use for use_duration_s(), from a motor at the temperature of the hottest air. Single precision, as in the firmware.
 UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
                const Use& use, double period_s);
 
-/// The hottest moments of one motor.
+/// Peak temperature of one motor over all uses.
 struct MotorPeak {
   double winding_C = 0.0;
-  bool is_over = false;  ///< winding or stator
+  bool is_over = false;  ///< winding or stator exceeded its limit
 };
-/// Each of kLanes motors, networks of one form, through every use.
+/// Simulates kLanes motors, whose networks have the same structure, through every use.
 std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses);
 
-/// Of the promise: how sure the bounds of shares are.
+/// Confidence level of the one-sided bound on the share of motors that keep their limits.
 inline constexpr double kCertainty_share = 0.95;
 
 struct GuaranteeOptions {
-  double confidence = 0.95;  ///< least share of motors that keep every limit in every use, shown with kCertainty_share
-  int samples = 400;         ///< fresh ones that it is checked on; as many others find the reserve
+  double confidence = 0.95;  ///< required share of motors that keep every limit in every use, shown at the level kCertainty_share
+  int samples = 400;         ///< motors drawn for the check; the same number of other motors finds the safety factor
   std::uint64_t seed = 1;
   int threads = 0;
 };
 
-/// Of fresh samples.
+/// Result of the check on motors that the search did not use.
 struct Guarantee {
   int samples = 0;
-  int over = 0;  ///< pass a limit in one of the uses
+  int over = 0;  ///< motors that exceed a limit in at least one use
   Interval95 over_share;
   /// Lower bound of the share of motors that keep every limit, one-sided with kCertainty_share, exact (Clopper and Pearson 1934).
   double least_kept_share = 0.0;
-  double winding_p50_C = 0.0;  ///< of the hottest moment of the hottest use
+  double winding_p50_C = 0.0;  ///< percentile of the motors' peak temperatures over all uses
   double winding_p95_C = 0.0;
   double winding_most_C = 0.0;
 };
 
-/// Peaks of drawn motors under what was let through; streams of chance from `first_stream` on.
+/// Draws motors and simulates them with the currents of the uses. Uses the random streams from `first_stream` on.
 Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
                 std::uint64_t first_stream, const Progress& progress = {});
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kDeclaration = "static const float ";
 
-/// A word, a number or a sign, and where it stands.
+/// A word, a number or a sign, and its position in the text.
 struct Token {
   std::string_view text;
   std::size_t place = 0;
@@ -20,10 +20,10 @@ struct Token {
 
 bool is_of_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
 
-/// "1.5f", "0x48u", "2.5e-3f": a number in C, without its suffix.
+/// True if the token begins with a digit, as "1.5f", "0x48u" and "2.5e-3f" do.
 bool is_number(std::string_view text) { return std::isdigit(static_cast<unsigned char>(text.front())) != 0; }
 
-/// Of a whole decimal literal with or without "f"; NaN for anything else, so that "12.4f * 8" is not taken for 12.4.
+/// Returns the value of a decimal literal with or without "f"; NaN for anything else, so that "12.4f * 8" is not read as 12.4.
 double number(std::string_view text) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double value = kNone;
@@ -33,7 +33,7 @@ double number(std::string_view text) {
   return error == std::errc() && is_whole ? value : kNone;
 }
 
-/// The end of a token that begins at `i`. The sign of an exponent belongs to its number.
+/// Returns the end of the token that begins at `i`. The sign of an exponent belongs to its number.
 std::size_t end_of_token(std::string_view text, std::size_t i) {
   std::size_t end = i + 1;
   if (!is_of_word(text[i])) {
@@ -46,17 +46,17 @@ std::size_t end_of_token(std::string_view text, std::size_t i) {
   return end;
 }
 
-/// "#define …VERSION …" is the program's own, which an upgrade changes; a signature changes with the last digit of the safety factor.
+/// True for "#define …VERSION …", which changes with the program, and "…_SIGNATURE …", which changes with the safety factor's last digit.
 bool is_version_line(std::string_view line) {
   line = line.substr(0, line.find('\n'));
   return line.starts_with("#define") &&
          (line.find("VERSION") != std::string_view::npos || line.find("_SIGNATURE ") != std::string_view::npos);
 }
 
-/// Comments, tables and the program's version are left out: they do not run, or are compared by what they allow.
+/// Splits a header into tokens. Skips comments and version lines, and skips derating tables because compare() evaluates them.
 std::vector<Token> tokens(std::string_view text) {
   std::vector<HeaderArray> arrays = header_arrays(text);
-  // What an input may be is no part of the table; the table of the sensed observer is compared number by number.
+  // Keep the candidate values of inputs and the sensed observer's table: both are compared number by number.
   std::erase_if(arrays, [](const HeaderArray& each) {
     return each.name.find("_possible_") != std::string::npos || each.name.find("_sensed_") != std::string::npos;
   });
@@ -86,7 +86,7 @@ bool say_the_same(std::string_view one, std::string_view other) {
   if (one == other) {
     return true;
   }
-  // An include guard carries a check sum of what it guards.
+  // An include guard contains a checksum of the header's inputs.
   const auto is_guard = [](std::string_view text) { return text.starts_with("HEATSOAK_") && text.ends_with("_H"); };
   if (is_guard(one) && is_guard(other)) {
     return true;

@@ -1,4 +1,4 @@
-// The text of a generated C header: its arrays, and whether another header says the same.
+// Parser of generated C headers: reads their arrays and compares two headers.
 #pragma once
 
 #include <cstddef>
@@ -8,23 +8,23 @@
 
 namespace heatsoak {
 
-/// `static const float name[count] = {…};`
+/// An array `static const float name[count] = {…};`.
 struct HeaderArray {
   std::string name;
-  std::vector<double> values;  ///< one that cannot be read is NaN
-  std::size_t begin = 0;       ///< of the declaration in the text
-  std::size_t end = 0;
+  std::vector<double> values;  ///< NaN for a value that cannot be read
+  std::size_t begin = 0;       ///< position of the declaration in the text
+  std::size_t end = 0;         ///< position after its "};"
 };
 std::vector<HeaderArray> header_arrays(std::string_view text);
 
 struct HeaderDifference {
-  int line = 0;            ///< of the first header, from 1; 0 where both say the same
-  std::string text;        ///< of that line
-  std::string other_text;  ///< of the other header at the same place
+  int line = 0;            ///< in the first header, from 1; 0 if both are equal
+  std::string text;        ///< that line, shortened to 100 bytes
+  std::string other_text;  ///< line of the other header at the same place
 };
 
-/// The first word in which two headers differ, outside of comments, of the derating table and of the include guard. Numbers
-/// are the same where they agree to 1 in 10⁴.
+/// Returns the first token in which two headers differ. Ignores comments, derating tables, versions, signatures and include guards. Numbers
+/// that agree to 1 in 10⁴ are equal.
 HeaderDifference first_difference(std::string_view header, std::string_view other);
 
 }  // namespace heatsoak

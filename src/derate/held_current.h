@@ -1,18 +1,18 @@
-// Periods of the firmware as intervals of a motor's network.
+// Merges periods of the firmware into longer intervals for the motor's network.
 #pragma once
 
 #include <cmath>
 
 namespace heatsoak {
 
-/// One interval with its rms current: as long as the current changes by little, and no longer than a second.
+/// One interval and its RMS current. It ends if the current changes by more than 2 %, if the speed changes, or after 1 s.
 struct HeldCurrent {
   double duration_s = 0.0;
   double heat_A2_s = 0.0;
   double first_A = 0.0;
   double speed_rad_per_s = 0.0;
 
-  /// Whether the next period, of magnitude `current_A`, belongs to another interval.
+  /// True if the next period, with current magnitude `current_A`, starts another interval.
   [[nodiscard]] bool is_over(double current_A, double at_rad_per_s) const {
     constexpr double kLongest_s = 1.0;
     constexpr double kLittle_share = 0.02;

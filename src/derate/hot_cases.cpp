@@ -18,7 +18,7 @@ std::vector<double> evenly(double low, double high, int count) {
 
 namespace {
 
-/// The rates at a place, nodes but the winding all equally hot.
+/// Evaluates the observer's rates in K/s with all nodes except the winding at the same temperature.
 class Rates {
  public:
   explicit Rates(const Observer& observer)
@@ -46,7 +46,7 @@ HotCase plain_case(const BarrierRules& rules) {
   return plain;
 }
 
-/// Directions that no law can tell apart count once.
+/// Returns the combinations of signs with different rates; combinations that no law distinguishes appear once.
 std::vector<HotCase> directions(const Observer& observer, const BarrierRules& rules) {
   Rates rates(observer);
   const auto fingerprint = [&](const HotCase& each) {
@@ -102,7 +102,7 @@ struct Hottest {
   double for_bodies = 0.0;
 };
 
-/// Of a signal's values the one that heats the winding most and the one that heats the bodies most, at work with all else plain.
+/// Returns the values of a signal that heat the winding most and the bodies most, at part load with all other signals as in the plain case.
 Hottest hottest(const Observer& observer, const BarrierRules& rules, firmware::Signal signal, std::span<const double> values) {
   Rates rates(observer);
   Signals signals = plain_case(rules).signals(rules, 0.3 * rules.most_current_A, 0.5 * rules.most_speed_rad_per_s);
@@ -125,7 +125,7 @@ Hottest hottest(const Observer& observer, const BarrierRules& rules, firmware::S
   return found;
 }
 
-/// The plain case, the one that heats the winding most, the one that heats the bodies most.
+/// Returns the plain case, the case that heats the winding most and the case that heats the bodies most.
 std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& rules) {
   HotCase for_winding = plain_case(rules);
   HotCase for_bodies = for_winding;
@@ -141,7 +141,7 @@ std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& 
   return is_any ? std::vector{plain_case(rules), for_winding, for_bodies} : std::vector{plain_case(rules)};
 }
 
-/// With the two between the first and the last that heat winding and bodies most, found on a fine grid.
+/// Adds the two values that heat winding and bodies most, searched on a fine grid between the first and the last value.
 std::vector<double> with_hottest(std::vector<double> values, const Observer& observer, const BarrierRules& rules, firmware::Signal signal) {
   constexpr int kFine = 2001;
   const Hottest found = hottest(observer, rules, signal, evenly(values.front(), values.back(), kFine));
@@ -210,7 +210,7 @@ double bearable_speed_rad_per_s(const Observer& observer, const BarrierRules& ru
     const Signals signals = each.signals(rules, 0.0, speed_rad_per_s);
     for (int i = 1; i <= kBodies; ++i) {
       const double body_C = std::lerp(rules.hottest_ambient_C, hottest_body_C, static_cast<double>(i) / kBodies);
-      // A stator with a limit of its own keeps the winding colder than the winding's.
+      // A stator limit of its own keeps the winding below the winding limit.
       const std::span<const double> found = rates.at(signals, rules.limits.stator_C ? body_C : winding_C, body_C);
       if (std::ranges::all_of(found, [](double rate) { return rate <= 0.0; })) {
         return true;

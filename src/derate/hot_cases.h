@@ -1,4 +1,4 @@
-// What else a motor may meet while it carries a current at a speed: directions, neighbours, age, what nobody can promise.
+// Worst-case conditions for a given current and speed: their directions, and signals that are not measured, such as neighbour and age.
 #pragma once
 
 #include <array>
@@ -15,28 +15,28 @@ struct TemperatureLimits {
   std::optional<double> stator_C = {};
 };
 
-/// A control barrier (Ames et al., Control barrier function based quadratic programs for safety critical systems, IEEE Trans. Autom.
-/// Control 62 (2017)): at the allowed current the winding gets hotter by no more than (limit − T)/approach_s per second, so it comes near
-/// its limit and never passes it, in Euler steps up to approach_s too. The stator, which the current reaches through the winding only,
-/// has the same with stator_approach_s, looked at one approach_s ahead.
+/// Parameters of a control barrier (Ames et al., Control barrier function based quadratic programs for safety critical systems, IEEE Trans.
+/// Autom. Control 62 (2017)). At the allowed current the winding heats by at most (limit − T)/approach_s, in K/s. It approaches its limit
+/// without exceeding it, also with Euler steps up to approach_s. The same holds for the stator with stator_approach_s; its rate is
+/// evaluated one approach_s ahead, because the current heats it only through the winding.
 struct BarrierRules {
   TemperatureLimits limits;
   double approach_s = 0.5;
   double stator_approach_s = 10.0;
   double hottest_ambient_C = 40.0;
   double most_current_A = 0.0;        ///< current limit of the motor driver
-  double most_speed_rad_per_s = 0.0;  ///< of the motor: up to here limits are kept for good
-  /// Where the allowed current has fallen to none, more than the highest speed; 0: as near to it as the table lets (current_table.h).
+  double most_speed_rad_per_s = 0.0;  ///< of the motor: up to this speed the limits are kept
+  /// Speed at which the allowed current reaches 0, above the highest speed; 0: kSpeedFadeOut_ratio times the highest speed.
   double no_current_speed_rad_per_s = 0.0;
   double most_vehicle_speed_m_per_s = 0.0;
 };
 
-/// Both ends and what lies between at equal distances; two or more.
+/// Returns `count` ≥ 2 equidistant values from `low` to `high`, both included.
 std::vector<double> evenly(double low, double high, int count);
 
 using Signals = std::array<double, firmware::kSignalCount>;
 
-/// Directions of current and speed, and the signals that no table has an axis for.
+/// One combination of the signs of current and speed and of the signals that are not axes of the table.
 struct HotCase {
   double current_sign = 1.0;
   double speed_sign = 1.0;
@@ -45,20 +45,21 @@ struct HotCase {
   double age_h = 0.0;
   double acceleration_rad_per_s2 = 0.0;
 
-  /// In air as hot as declared; magnitudes of current and speed.
+  /// Returns all signals, with the hottest declared air, for magnitudes of current and speed.
   [[nodiscard]] Signals signals(const BarrierRules& rules, double current_A, double speed_rad_per_s) const;
 };
 
-/// The plain case first (driving, no wind, a new motor beside one as cold as the air), then those that the laws can tell from it: other
-/// directions, and of each signal what heats the winding most and what heats the bodies most, found by a scan over all it may be.
+/// Returns the plain case first: driving, no wind, a new motor whose neighbour is at air temperature. Then those that differ from it under
+/// the motor's laws: other directions, and the values of each signal that heat the winding most and the bodies most, found by a scan.
 std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules);
 
-/// What a signal may be where nothing is known of it, over all its range and with what heats the most; currents and speeds in both
-/// directions up to the rules' most.
+/// Returns candidate values of an unknown signal, ascending: samples of its range, including the values that heat winding and bodies most.
+/// Current and speed range over both directions up to the maxima of the rules; the air is always the hottest declared.
 std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, firmware::Signal signal);
 
-/// The speed up to which, in every case, a winding at its limit cools without current and the bodies it heats stay below a temperature
-/// towards which it does; beyond it no table can help. At most the rules' most speed, 0 where it is so at rest.
+/// Returns the highest speed in rad/s up to which, in every hot case, all nodes stop heating without current at some temperature of the
+/// bodies within the limits. Beyond it the motor overheats even without current. At most rules.most_speed; 0 if the condition fails at
+/// rest.
 double bearable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// What runs in the firmware beside the motor: its thermal network, traced into straight-line arithmetic, and one step of it.
+// Thermal observer of the firmware: the motor's network traced into straight-line arithmetic, and its time step.
 #pragma once
 
 #include <array>
@@ -16,18 +16,19 @@
 
 namespace heatsoak {
 
-/// What the firmware tells its observer, in the order of the formula's first inputs.
+/// Input signals of the observer, in the order of the formula's first inputs.
 namespace firmware {
 enum Signal : int { current, speed, ambient, vehicle_speed, neighbour, age, acceleration };
 struct SignalSpec {
-  std::string_view name;     ///< of the field
-  std::string_view meaning;  ///< with sign
+  std::string_view name;     ///< field name in generated code
+  std::string_view meaning;  ///< description with sign convention
 };
 std::span<const SignalSpec> signals();
 inline constexpr std::size_t kSignalCount = 7;
 }  // namespace firmware
 
-/// What the motor's network sees of the signals, for numbers and for formulas: the battery is full.
+/// Converts the signals to the operating point of the motor's network, for numbers and for traced formulas. The bus has the voltage of a
+/// full battery, if the robot gives one.
 template <class S>
 OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, firmware::kSignalCount> signals) {
   const S& current_A = signals[firmware::current];
@@ -46,20 +47,20 @@ OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, 
   return at;
 }
 
-/// Heat that is made counts `heat_reserve_ratio` times (≥ 1), so that a motor worse than its nominal figures is covered; heat that
-/// moves does not. Winding and stator are the first states, as in every motor's network.
+/// Rates of the network's temperatures as formulas. Generated heat is multiplied by the safety factor `heat_reserve_ratio` ≥ 1, so that
+/// motors worse than nominal are covered; conducted heat is not. Winding and stator are the first states, as in every motor's network.
 class Observer {
  public:
   Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_reserve_ratio);
 
   [[nodiscard]] const Formula& formula() const { return formula_; }
-  /// One step of the formula per state: dT/dt in K/s.
+  /// Index of the formula step that computes dT/dt in K/s, one per state.
   [[nodiscard]] std::span<const int> rate_steps() const { return rate_steps_; }
-  /// The same of the nominal motor, whose heat counts once: temperatures to show, not to guard by.
+  /// The same without the safety factor: estimates for display, not for protection.
   [[nodiscard]] std::span<const int> nominal_rate_steps() const { return nominal_rate_steps_; }
   [[nodiscard]] std::span<const std::string> state_names() const { return state_names_; }
   [[nodiscard]] std::size_t state_count() const { return state_names_.size(); }
-  /// Whether a law looks at it; the first three always count as used.
+  /// True if a law depends on the signal; always true for current, speed and ambient.
   [[nodiscard]] bool uses(firmware::Signal signal) const { return is_used_[static_cast<std::size_t>(signal)] != 0; }
   [[nodiscard]] double heat_reserve_ratio() const { return heat_reserve_ratio_; }
 
@@ -72,17 +73,17 @@ class Observer {
   double heat_reserve_ratio_ = 1.0;
 };
 
-/// The observer at work, as the generated code does it: explicit Euler steps of one period with the rounding of each step carried to the
-/// next (Kahan 1965), for in single precision a step of a slow stator is less than the last digit of its temperature.
+/// Runs the observer as the generated code does: explicit Euler steps of one period with compensated summation (Kahan 1965). In single
+/// precision a step of a slow stator is smaller than the last digit of its temperature.
 template <class Number>
 class ObserverRun {
  public:
   ObserverRun(const Observer& observer, Number period_s, Number start_C);
 
-  /// Over one period; `signals` are its means, in the order of firmware::Signal.
+  /// Advances one period. `signals` are the means over it, in the order of firmware::Signal.
   void step(std::span<const Number, firmware::kSignalCount> signals);
   [[nodiscard]] std::span<const Number> state_C() const { return state_C_; }
-  /// Of the hottest node but the winding: what the table takes for the stator.
+  /// Temperature of the hottest node except the winding: the stator input of the table.
   [[nodiscard]] Number hottest_body_C() const;
 
  private:

@@ -1,4 +1,4 @@
-// Which program and which inputs an exported file comes from.
+// Records the program and the inputs that an exported file was made from.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct Provenance {
   std::string input_hash;       ///< kInputHash over the texts of both files and the options
 };
 
-/// Reads the files of robot and motor again. Throws Failure (bad_input) where one cannot be read.
+/// Reads the files of robot and motor again to compute their hash. Throws Failure (bad_input) if one cannot be read.
 Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options);
 
 }  // namespace heatsoak

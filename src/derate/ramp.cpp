@@ -13,7 +13,7 @@
 namespace heatsoak {
 namespace {
 
-/// The places of an axis that are not above `most`, and `most` itself.
+/// Returns the breakpoints of an axis below `most`, and `most` itself.
 std::vector<double> places_up_to(std::vector<double> axis, double most) {
   std::erase_if(axis, [&](double place) { return place >= most; });
   axis.push_back(most);
@@ -22,8 +22,8 @@ std::vector<double> places_up_to(std::vector<double> axis, double most) {
 
 double hottest_C(const Derating& derating) { return std::floor(derating.rules.limits.winding_C); }
 
-/// Where bound and ramp have corners: between two of them the bound is a minimum of concave curves, for the table's squares are straight,
-/// and the ramp is a straight line. Above the stator's axis the bound is 0.
+/// Returns the temperatures at which it suffices to compare bound and ramp. Between two of them the bound is a minimum of concave curves,
+/// because the table's squares are linear there, and the ramp is linear. Above the stator's axis the bound is 0.
 std::vector<double> corners_C(const Derating& derating, RampSignal signal) {
   if (signal == RampSignal::winding) {
     return derating.table.winding_C;
@@ -48,7 +48,7 @@ std::vector<BoundPoint> bound_points(const Derating& derating, RampSignal signal
   return points;
 }
 
-/// The largest full current of a ramp from `start_C` to `end_C` that stays below the bound.
+/// Returns the largest full current in A of a ramp from `start_C` to `end_C` that stays below the bound.
 double most_current_A(const std::vector<BoundPoint>& points, double full_until_C, double bound_there_A, double start_C, double end_C) {
   double most_A = bound_there_A;
   for (const BoundPoint& point : points) {
@@ -61,12 +61,12 @@ double most_current_A(const std::vector<BoundPoint>& points, double full_until_C
   return most_A;
 }
 
-/// Mean of a ramp over an interval that it starts within.
+/// Returns the mean current of a ramp over an interval that contains its start.
 double mean_A(const CurrentRamp& ramp, double from_C, double to_C) {
   return ramp.most_current_A * (ramp.start_C - from_C + 0.5 * (ramp.end_C - ramp.start_C)) / (to_C - from_C);
 }
 
-/// Nodes other than winding and stator on which one of the states' rates depends.
+/// Returns the nodes other than winding and stator on which the rates of the first `states` nodes depend.
 std::set<std::string> hidden_nodes(const Observer& observer, std::size_t states) {
   const std::vector<char> needed = observer.formula().needed_for(observer.rate_steps().first(states));
   std::set<std::string> nodes;

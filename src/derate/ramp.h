@@ -1,4 +1,4 @@
-// A linear ramp of current over one temperature, as motor controllers have it, fitted below the derating table.
+// Linear ramp of the current limit over one temperature, as built into motor controllers, fitted below the derating table.
 #pragma once
 
 #include "derate/derating.h"
@@ -11,7 +11,7 @@ enum class RampSignal {
   winding  ///< the observer's winding; stator and speed are known to the observer, but not to the ramp
 };
 
-/// Full current up to `start_C`, none from `end_C` on, a straight line between. Whole degrees, because VESC stores one byte each.
+/// Full current up to `start_C`, 0 from `end_C` on, linear between. Whole degrees, because VESC stores one byte each.
 struct CurrentRamp {
   double start_C = 0.0;
   double end_C = 0.0;
@@ -22,38 +22,37 @@ struct CurrentRamp {
   [[nodiscard]] double current_A(double signal_C) const;
 };
 
-/// The most that any ramp may allow at a temperature of its signal: the smallest current of the table over all speeds up to
-/// rules.most_speed and over every value of what the ramp does not see.
-/// stator: over every winding temperature up to its limit. The smallest current is that of a winding at its limit, at which the winding
-/// does not get warmer (Nagumo 1942): so a ramp below it keeps the limit whatever the winding did before. A held current meets the same
-/// bound, because its winding settles long before the stator does. Only short peaks of a cold winding are lost.
+/// Upper bound in A of any ramp at a temperature of its signal: the smallest current of the table over all speeds up to rules.most_speed
+/// and over every value of the temperature that the ramp does not measure.
+/// stator: over every winding temperature up to the limit. The smallest current occurs with the winding at its limit, where it stops
+/// heating (Nagumo 1942), so a ramp below it keeps the limit for any load before. A continuous load loses nothing, because the winding
+/// settles long before the stator. Only short peaks of a cold winding are lost.
 /// winding: over every stator temperature up to the winding's limit.
-/// 0 above the table; below its first temperature as at it.
+/// Returns 0 above the table's last temperature; below its first one the value there is held.
 double ramp_bound_A(const Derating& derating, RampSignal signal, double signal_C);
 
-/// The ramp of whole degrees that stays below ramp_bound_A() everywhere and has the largest mean current from the hottest declared air to
-/// the winding's limit. The search is exhaustive. Its current is 0 if the bound is 0 in the hottest air.
+/// Returns the ramp with whole degrees that stays below ramp_bound_A() and has the largest mean current between the hottest declared air
+/// and the winding's limit. The search is exhaustive. The current is 0 if the bound is 0 in the hottest air.
 CurrentRamp fit_ramp(const Derating& derating, RampSignal signal, double full_beyond_K = 0.0);
 
-/// What the ramp gives away, over the signal's temperatures from the hottest declared air to the winding's limit.
+/// Current that the ramp loses against ramp_bound_A(), between the hottest declared air and the winding's limit.
 struct RampLoss {
   double from_C = 0.0;
   double to_C = 0.0;
   double bound_mean_A = 0.0;  ///< of ramp_bound_A()
   double ramp_mean_A = 0.0;
-  double most_A = 0.0;  ///< largest distance between both
+  double most_A = 0.0;  ///< largest difference, bound minus ramp
   double most_at_C = 0.0;
-  double peak_A = 0.0;  ///< allowed by the table at standstill to a motor as warm as the hottest air
+  double peak_A = 0.0;  ///< allowed by the table at standstill with the whole motor at the hottest air temperature
 
   [[nodiscard]] double mean_A() const { return bound_mean_A - ramp_mean_A; }
   [[nodiscard]] double mean_percent() const { return bound_mean_A > 0.0 ? 100.0 * mean_A() / bound_mean_A : 0.0; }
 };
 RampLoss ramp_loss(const Derating& derating, RampSignal signal, const CurrentRamp& ramp);
 
-/// A fitted ramp for a controller of that name. Throws Failure (bad_input), with the names of controller and effect, if the ramp cannot
-/// protect the motor: a speed at which the motor exceeds its limit without current; a node other than the stator that heats the winding,
-/// which no sensor of the controller sees; a limit of the stator, which a ramp over the winding does not see; no current in the hottest
-/// air.
+/// Returns the fitted ramp for the named controller. Throws Failure (bad_input), with the names of controller and effect, if no ramp can
+/// protect the motor: the motor exceeds its limit without current at some speed; a node without a sensor heats the winding (ramp over the
+/// stator); the stator has a limit (ramp over the winding); or no current is allowed in the hottest air.
 CurrentRamp ramp_for(std::string_view controller, const Derating& derating, RampSignal signal, double full_beyond_K = 0.0);
 
 }  // namespace heatsoak

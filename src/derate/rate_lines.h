@@ -1,4 +1,4 @@
-// The observer's rates as straight-line statements of a C-like language, for generated code.
+// Generates the observer's rates as straight-line statements of a C-like language.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace heatsoak {
 
-/// How the target language writes what the statements need.
+/// Syntax of the target language.
 struct LineStyle {
   std::string (*literal)(double value) = nullptr;            ///< in the precision of `number`; in parentheses where negative
   std::string (*signal)(firmware::Signal signal) = nullptr;  ///< an input
@@ -19,17 +19,17 @@ struct LineStyle {
   std::string_view power = "heatsoak_pow";                   ///< of a base and an exponent; 0 for a base that is not positive
 };
 
-/// The steps that the rates need, a line each: "  const float t7 = …;", then "  rate_K_per_s[node] = …;". Temperatures are state_C[node].
-/// In single precision without contraction they have the bits of FormulaRun<float>.
+/// One line per step that the rates depend on, "  const float t7 = …;", then one per node, "  rate_K_per_s[node] = …;". Temperatures are
+/// state_C[node]. In single precision without contraction (FMA) the results are bit-identical to FormulaRun<float>.
 class RateLines {
  public:
   /// `rate_steps`: one of the observer's sets, one step per state.
   RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style);
 
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// Whether a law needs the square root, which is one instruction and has the same bits everywhere.
+  /// True if a law uses the square root, which IEEE 754 rounds correctly and is therefore bit-identical everywhere.
   [[nodiscard]] bool calls_square_root() const { return calls_square_root_; }
-  /// Whether a law needs the exponential or the power of robot_core/thermal_math.h.
+  /// True if a law uses the exponential or the power of robot_core/thermal_math.h.
   [[nodiscard]] bool calls_thermal_math() const { return calls_thermal_math_; }
 
  private:

@@ -1,4 +1,4 @@
-// current_table(): the places, then what holds of the table on points that are not its own.
+// current_table(): computes the breakpoints, then verifies the table at points that are not its own.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,7 +8,7 @@
 namespace heatsoak {
 namespace {
 
-/// A number of few digits in single precision that is not above `value`, nor above it by the rounding of the controller's interpolation.
+/// Rounds down to five digits in single precision. Includes a margin for the rounding of the controller's interpolation.
 double rounded_down(double value, double largest_A2) {
   constexpr int kDigits = 5;
   constexpr double kInterpolation_ratio = 5e-7;
@@ -38,8 +38,8 @@ struct CheckPoint {
   double winding_C;
 };
 
-/// Points that fill the axes evenly without being on a grid (Roberts 2018, the R3 sequence); of three, one within 8 K and one within 1.5 K
-/// of the limits, where the relative error is largest.
+/// Adds quasi-random points that fill the axes evenly (Roberts 2018, the R3 sequence). A third of them lies within 8 K and a third within
+/// 1.5 K of the limits, where the relative error is largest.
 void add_scattered(std::vector<CheckPoint>& points, const CurrentTable& table, const BarrierRules& rules) {
   constexpr int kPoints = 4500;
   constexpr double kStep[] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
@@ -52,7 +52,7 @@ void add_scattered(std::vector<CheckPoint>& points, const CurrentTable& table, c
   }
 }
 
-/// The middle of all that a segment of an axis has, and a quarter from both ends.
+/// Returns three points at 1/4, 1/2 and 3/4 of every segment of an axis, limited to `most`.
 std::vector<double> inside_of(const std::vector<double>& axis, double most) {
   std::vector<double> places;
   if (axis.size() == 1) {
@@ -66,7 +66,7 @@ std::vector<double> inside_of(const std::vector<double>& axis, double most) {
   return places;
 }
 
-/// 27 points in every cell, and along the cold and the hot end of the stator's axis a point every quarter of a kelvin.
+/// Returns scattered points, 27 points in every cell, and points every 0.25 K of the winding at the cold and hot end of the stator's axis.
 std::vector<CheckPoint> check_points(const CurrentTable& table, const BarrierRules& rules) {
   std::vector<CheckPoint> points;
   add_scattered(points, table, rules);
@@ -96,14 +96,14 @@ std::size_t segment_of(const std::vector<double>& axis, double x) {
   return below;
 }
 
-/// A cell of the table: the first of its two places on every axis.
+/// A cell of the table, given by the lower of its two breakpoints on every axis.
 struct Cell {
   std::size_t speed = 0;
   std::size_t stator = 0;
   std::size_t winding = 0;
 };
 
-/// Places of the squares at its corners; fewer than eight where an axis has one place.
+/// Returns the indices of the squares at the corners of a cell; fewer than eight if an axis has one breakpoint.
 std::vector<std::size_t> corners(const CurrentTable& table, const Cell& cell) {
   std::vector<std::size_t> places;
   for (std::size_t i = cell.speed; i < std::min(cell.speed + 2, table.speed_rad_per_s.size()); ++i) {
@@ -116,12 +116,13 @@ std::vector<std::size_t> corners(const CurrentTable& table, const Cell& cell) {
   return places;
 }
 
-/// The square that a current of the table is made of.
+/// Inverse of CurrentTable::current_of_A() below most_current_A.
 double square_of_A2(const CurrentTable& table, double current_A) {
   return current_A < table.straight_below_A ? current_A * table.straight_below_A : current_A * current_A;
 }
 
-/// Lowers cells that allow too much at one of the points, and returns the largest shortfall at the others.
+/// Lowers cells that exceed the exact current at one of the points. Returns the largest relative shortfall at points where the exact
+/// current is at least straight_below_A.
 double check_table(CurrentTable& table, Barrier& barrier, const std::vector<CheckPoint>& points) {
   std::vector<double> exact_A2;
   for (const CheckPoint& at : points) {
@@ -150,7 +151,7 @@ double check_table(CurrentTable& table, Barrier& barrier, const std::vector<Chec
   return shortfall_ratio;
 }
 
-/// So many kelvins of a hotter winding stand for one of a stator above its axis that the barrier holds there, too.
+/// Returns how many kelvins of the winding must stand for one of a stator above its axis so that the barrier holds: a power of 2, up to 32.
 double winding_per_stator_K(CurrentTable table, Barrier& barrier, const BarrierRules& rules) {
   constexpr double kMost_K = 32.0;
   constexpr int kWindings = 24;
@@ -179,7 +180,7 @@ double winding_per_stator_K(CurrentTable table, Barrier& barrier, const BarrierR
   return table.winding_per_stator_K;
 }
 
-/// Adds the slopes inside of a cell: at most that of its steepest line at its smallest current.
+/// Raises the bounds to the slopes inside of a cell. The steepest segment, evaluated at the smallest current, is an upper bound.
 void add_slopes(TableBound& bound, const CurrentTable& table, const Cell& cell) {
   const std::vector<std::size_t> places = corners(table, cell);
   double least_A2 = table.square_A2[places.front()];
@@ -230,7 +231,7 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
   table.most_current_A = static_cast<float>(rules.most_current_A);
   table.most_speed_rad_per_s = rules.most_speed_rad_per_s;
   table.no_current_speed_rad_per_s = std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
-  // Points between those of the fine grid find a little more: then the grid has to do better.
+  // Points between those of the fine grid show a slightly larger shortfall, so each attempt tightens the goal on the grid.
   constexpr int kMostTries = 6;
   constexpr double kBetter = 0.75;
   double grid_goal = 0.97 * goal.shortfall_ratio;

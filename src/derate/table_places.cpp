@@ -10,25 +10,25 @@
 namespace heatsoak {
 namespace {
 
-/// Above its limit the winding's axis ends here: the barrier lets a winding that cools fast enough carry a current for some kelvins.
+/// The winding's axis ends this far above the limit, because the barrier allows current to a winding that cools fast enough.
 constexpr double kAboveLimit_K = 3.0;
 
 enum Axis : std::size_t { speed, stator, winding, kAxes };
 using Index = std::array<std::size_t, kAxes>;
-using Places = std::array<std::vector<std::size_t>, kAxes>;  ///< of a table: which points of the grid, ascending
+using Places = std::array<std::vector<std::size_t>, kAxes>;  ///< per axis of a table: indices of grid points, ascending
 
-/// The exact squares on a fine grid, whose points are the places that a table may have.
+/// Exact squares on a fine grid. Its points are the candidate breakpoints of a table.
 struct ExactGrid {
   std::array<std::vector<double>, kAxes> points;
   std::vector<double> square_A2;  ///< [speed][stator][winding]
-  std::size_t limit = 0;          ///< point of the winding's axis at the winding's limit
+  std::size_t limit = 0;          ///< index of the winding's limit on the winding's axis
 
   [[nodiscard]] std::size_t place(const Index& at) const {
     return (at[speed] * points[stator].size() + at[stator]) * points[winding].size() + at[winding];
   }
 };
 
-/// Whether the exact answer changes with the speed at any of a few temperatures.
+/// True if the exact current changes with the speed at any of nine pairs of temperatures.
 bool depends_on_speed(Barrier& barrier, const BarrierRules& rules) {
   constexpr double kSame_ratio = 1e-6;
   const double span_K = rules.limits.winding_C - rules.hottest_ambient_C;
@@ -48,7 +48,7 @@ bool depends_on_speed(Barrier& barrier, const BarrierRules& rules) {
   return false;
 }
 
-/// From `low` to `high` in about as many equal steps, the points between rounded to halves.
+/// Returns points from `low` to `high` in about `steps` equal steps; inner points are rounded to multiples of 0.5.
 std::vector<double> rounded_steps(double low, double high, int steps) {
   std::vector<double> points = evenly(low, high, steps + 1);
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -81,7 +81,7 @@ ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
   const double last_stator_C = std::min(limit_C, rules.limits.stator_C.value_or(limit_C));
   grid.points[stator] = rounded_steps(std::min(coldest_C, last_stator_C - 1.0), last_stator_C, kStatorSteps);
   grid.points[winding] = rounded_steps(coldest_C, limit_C, kWindingSteps);
-  // Near the limits the current is small, and its relative error large.
+  // Near the limits the current is small, so its relative error is large.
   add_near_end(grid.points[stator], {3.0, 1.0});
   add_near_end(grid.points[winding], {2.0, 1.0, 0.5});
   grid.limit = grid.points[winding].size() - 1;
@@ -97,7 +97,7 @@ ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
   return grid;
 }
 
-/// The part of an axis between two neighbouring places, or all of it where it has one place only.
+/// Part of an axis between two neighbouring breakpoints, or the whole axis if it has one breakpoint.
 struct Segment {
   std::size_t low = 0;  ///< point of the grid
   std::size_t high = 0;
@@ -114,7 +114,7 @@ std::vector<Segment> segments(const std::vector<std::size_t>& places, std::size_
   return all;
 }
 
-/// Squares over chosen places of the grid.
+/// Squares at chosen breakpoints of the grid, lowered so that the interpolation never exceeds the grid; and their shortfall.
 class Fit {
  public:
   Fit(const ExactGrid& grid, Places places, double straight_below_A, double most_current_A)
@@ -169,7 +169,7 @@ class Fit {
     }
   }
 
-  /// Places of the squares at the corners of a cell, the winding's neighbours side by side; the same twice on an axis with one place.
+  /// Indices of the squares at the corners of a cell; neighbours along the winding are adjacent. Repeated on an axis with one breakpoint.
   [[nodiscard]] std::array<std::size_t, 8> corners(const Index& cell) const {
     std::array<std::size_t, 8> places{};
     for (std::size_t which = 0; which < places.size(); ++which) {
@@ -188,7 +188,7 @@ class Fit {
     return low_A2 + share[speed] * (high_A2 - low_A2);
   }
 
-  /// By as much as the cell lies above the exact answer anywhere.
+  /// Lowers the corners of a cell by the largest excess over the exact squares in it.
   void lower(const Index& cell, const std::array<Segment, kAxes>& at) {
     std::array<std::size_t, 8> corner = corners(cell);
     double excess_A2 = 0.0;
@@ -200,8 +200,8 @@ class Fit {
     std::for_each(corner.begin(), end, [&](std::size_t each) { square_A2_[each] -= excess_A2; });
   }
 
-  /// Below 0 for a square below 0, so that a table that allows nothing is still told from one that is nearer; and beyond the most current,
-  /// so that the place between two points of the grid where that is reached counts.
+  /// Negative for a negative square, so that tables which allow nothing can be ranked. Not clamped until 1.1 times the most current, so
+  /// that the point between two grid points at which the most current is reached influences the shortfall.
   [[nodiscard]] double current_A(double square_A2) const {
     const double straight_A2 = straight_below_A_ * straight_below_A_;
     constexpr double kBeyond_ratio = 1.1;
@@ -232,10 +232,10 @@ class Fit {
   Index worst_{};
 };
 
-/// The places with one more of that axis, as near to `wanted` as one is free; nothing where all are taken.
+/// Returns the breakpoints with one more, the free grid point nearest to `wanted`; unchanged if none is free.
 std::vector<std::size_t> with_place(std::vector<std::size_t> places, std::size_t points, std::size_t wanted) {
   if (places.size() == 1 && points > 1) {
-    return {0, points - 1};  // from none that matters to both ends
+    return {0, points - 1};  // an axis without influence gets both ends
   }
   for (std::size_t away = 0; away < points; ++away) {
     for (const std::size_t point : {wanted + away, wanted - away}) {
@@ -253,7 +253,7 @@ double three_digits(double positive) {
   return static_cast<float>(unit * std::round(positive / unit));
 }
 
-/// Adds places until the goal is reached.
+/// Adds breakpoints until the goal is reached.
 class Search {
  public:
   Search(const ExactGrid& grid, const BarrierRules& rules, const TableGoal& goal)
@@ -284,7 +284,7 @@ class Search {
  private:
   [[nodiscard]] Fit of(Places places) const { return {grid_, std::move(places), straight_below_A_, most_current_A_}; }
 
-  /// Of one more place on each axis the one that lessens the shortfall most for what it costs.
+  /// Tries one more breakpoint on each axis. Returns the fit that reduces the shortfall most per stored number; nothing if none fits.
   [[nodiscard]] std::optional<Fit> refined(const Fit& fit) const {
     std::optional<Fit> best;
     double best_gain = -std::numeric_limits<double>::infinity();
@@ -327,7 +327,7 @@ class Search {
 
   static std::size_t size_bytes(const Fit& fit) { return sizeof(float) * fit.number_count(); }
 
-  /// Takes out the place that is missed least, until the table fits.
+  /// Removes the breakpoint that increases the shortfall least until the table fits the size.
   [[nodiscard]] Fit reduced_to_size(Fit fit) const {
     while (size_bytes(fit) > goal_.most_bytes) {
       std::optional<Fit> best;
@@ -352,7 +352,7 @@ class Search {
     return fit;
   }
 
-  /// Moves single places by a few points of the grid as long as that lessens the shortfall, where the goal is not reached.
+  /// Moves single breakpoints by up to four grid points while that reduces the shortfall. Does nothing if the goal is reached.
   [[nodiscard]] Fit settled(Fit fit) const {
     constexpr std::size_t kFurthest = 4;
     constexpr int kMostRounds = 20;
@@ -385,7 +385,7 @@ class Search {
     }
   }
 
-  /// While places are added; afterwards those that are missed least are taken out again.
+  /// Factor by which the size may exceed the goal while breakpoints are added; reduced_to_size() removes the surplus.
   static constexpr std::size_t kOvershoot = 4;
 
   const ExactGrid& grid_;
@@ -407,7 +407,7 @@ void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& ru
       axes.at(axis)->push_back(grid.points[axis][place]);
     }
   }
-  // An axis that does not matter still says how far it goes.
+  // The stator's axis keeps its end even with one breakpoint, because allowed_A() needs it.
   table.stator_C.back() = grid.points[stator].back();
   table.square_A2 = fit.square_A2();
   table.straight_below_A = search.straight_below_A();

@@ -1,4 +1,4 @@
-// Where the places of a derating table are, and the squares in them.
+// Chooses the breakpoints of a derating table and computes the squared currents there.
 #pragma once
 
 #include "derate/barrier.h"
@@ -6,8 +6,8 @@
 
 namespace heatsoak {
 
-/// Sets axes, squares, straight_below and the shortfall on a fine grid. Places are added one by one where they lessen the largest shortfall
-/// most for what they cost, and taken out again where they are not needed. No square of the grid lies below that of the table.
+/// Sets axes, squares, straight_below_A and the shortfall relative to a fine grid. Adds breakpoints one by one, each on the axis where it
+/// reduces the largest shortfall most per stored number, and removes unnecessary ones. The table never exceeds the grid's exact squares.
 void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal);
 
 }  // namespace heatsoak

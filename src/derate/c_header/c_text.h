@@ -1,4 +1,4 @@
-// Small pieces of C text: literals, arrays, comments, and patterns in which words are replaced.
+// Helpers for C text: literals, arrays, comments and replacement of placeholders.
 #pragma once
 
 #include <string>
@@ -10,23 +10,23 @@
 
 namespace heatsoak::c_header {
 
-/// Shortest decimal that reads back to the same single-precision number: "0.01f"; in parentheses if negative. A value that is not finite
-/// is a bug of the caller.
+/// Returns the shortest decimal that reads back to the same single-precision number, such as "0.01f"; in parentheses if negative. The value
+/// must be finite.
 std::string literal(double value);
 
-/// "static const float name[count] = {…};" with its line break.
+/// Returns "static const float name[count] = {…};" and a line break.
 std::string array(std::string_view name, const std::vector<double>& values);
 
-/// The text without line breaks and without the end of a comment.
+/// Returns the text without line breaks and without "*/", so that it can stand in a comment.
 std::string in_comment(std::string text);
 
 std::string in_capitals(std::string name);
 
 using Words = std::vector<std::pair<std::string, std::string>>;
-/// The pattern with each first word replaced by its second, in their order.
+/// Replaces every first word of a pair in the pattern by the second one, pair by pair.
 std::string replaced(std::string_view pattern, const Words& words);
 
-/// How the header writes the laws: an input is a field of `input`.
+/// Syntax of the laws in the C header; an input is a field of `input`.
 const LineStyle& line_style();
 
 }  // namespace heatsoak::c_header

@@ -19,7 +19,7 @@ std::string conditions_text(const Derating& derating) {
   return text;
 }
 
-/// What nobody stated and this program assumed, a line per value.
+/// Default tolerances that this program assumed, one line per value.
 std::string default_spreads_text(const Derating& derating) {
   if (derating.default_spreads.empty()) {
     return {};

@@ -146,7 +146,7 @@ static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *pea
 
 )";
 
-/// With a save at regular intervals the motor has been driven since: as hard as the guard can have allowed.
+/// With saves at regular intervals the motor may have run since the last one. Assumes the highest load that the guard can have allowed.
 constexpr std::string_view kUnsaved = R"(/* All that the driver can give at the highest speed, up to the limit that the guard has kept. */
 static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
   @_input on;
@@ -219,7 +219,7 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
 
 )";
 
-/// What a motor may meet that nobody watches: a neighbour at its limit, a contact as old as it may get.
+/// Assigns worst-case values to signals that are unknown without power: a neighbour at its limit, and the largest age.
 std::string unwatched_signals(const Source& source, std::string_view input) {
   std::string text;
   for (const firmware::Signal signal : source.signals) {

@@ -1,4 +1,4 @@
-// The parts of the generated C header in the order of the file: one source file each.
+// Generators for the parts of the C header, in the order of the file. Each part has its own source file.
 #pragma once
 
 #include <string>
@@ -9,42 +9,43 @@
 
 namespace heatsoak::c_header {
 
-/// What every part needs.
+/// Inputs of every part.
 struct Source {
   const Derating& derating;
-  std::string prefix;                     ///< of functions, types and tables
-  std::string capital;                    ///< of constants
+  std::string prefix;                     ///< prefix of functions, types and tables
+  std::string capital;                    ///< prefix of constants
   std::vector<firmware::Signal> signals;  ///< fields of the input, in the order of firmware::Signal
 };
 
 std::string_view name_of(firmware::Signal signal);
-/// That a law of the motor depends on; current, speed and air always.
+/// Returns the signals that a law of the motor depends on; always current, speed and air.
 std::vector<firmware::Signal> used_signals(const Observer& observer);
 
-/// What the file is for, what was assumed, how to call it.
+/// Head comment: purpose of the file, assumptions, and usage.
 std::string head_comment(const Source& source);
-/// "#define" lines: period, limits, what the table covers.
+/// "#define" lines: period, limits, and constants of the table.
 std::string constants(const Source& source);
-/// Equivalent DC current from i_q; empty for a brushed motor.
+/// Conversion of i_q to the equivalent DC current; empty for a brushed motor.
 std::string foc_conversion(const Source& source);
-/// Input, state, reason and output of a step.
+/// Types of a step: input, state, reason and output.
 std::string structures(const Source& source);
-/// The derating table, and in allowed_function() its interpolation.
+/// The derating table; allowed_function() is its interpolation.
 std::string tables(const Source& source);
 std::string allowed_function(const Source& source);
 struct Rates {
   std::string text;
   bool calls_thermal_math = false;
 };
-/// dT/dt of every node, of the guard and of the nominal motor.
+/// Functions for dT/dt of every node, with the safety factor and for the nominal motor.
 Rates rates(const Source& source);
-/// Candidate values of the signals that are swept when they are not believed.
+/// Arrays of the values that the guard tries if a signal's reading is implausible.
 std::string candidates(const Source& source);
-/// start and step with their helpers.
+/// Functions `start` and `step` with their helpers.
 std::string step_functions(const Source& source);
-/// The step with a sensor; empty without one.
+/// The step function with a temperature sensor; empty if none is declared.
 Rates sensor_functions(const Source& source);
-/// save and restore over power-off. `signature`: of this motor's guard, so that a buffer of another one is refused.
+/// Functions that save the state before power-off and restore it. `signature` identifies this guard, so that a buffer of another one is
+/// refused.
 std::string memory_functions(const Source& source, unsigned signature);
 
 }  // namespace heatsoak::c_header

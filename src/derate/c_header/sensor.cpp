@@ -316,7 +316,7 @@ std::string comment(const SensorPlan& plan) {
       plan.over, plan.dropped, plan.lying_nominal_C, plan.lying_over);
 }
 
-/// The table for the lower safety factor, under the same rules.
+/// The table for the lower safety factor, computed with the same rules.
 std::string sensed_table(const Source& source, const SensorPlan& plan) {
   const CurrentTable& table = plan.table;
   const std::string name = source.prefix + "_sensed";
@@ -354,7 +354,7 @@ Rates sensor_functions(const Source& source) {
                     {"@ADVANCE_LAG@", lags ? fmt::format("  state->lag_C += {} * ({} - state->lag_C);\n",
                                                          literal(source.derating.options.period_s / plan.options.lag_s), node)
                                            : ""},
-                    // A resistance has no reading most of the time: only what was read and not used counts.
+                    // The resistance has no reading most of the time, so only readings that were rejected count.
                     {"@REJECTED@", plan.resistance ? "    if (out.sensor != @_sensor_silent) {\n      state->rejected += 1u;\n    }\n"
                                                    : "    state->rejected += 1u;\n"},
                     {"@GAINS@", gains},

@@ -107,7 +107,7 @@ constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node)
   }
 )";
 
-/// A signal that may be one value only has it already: there is nothing to compare.
+/// Returns the signals with several candidate values; a signal with a single one needs no sweep.
 std::vector<firmware::Signal> swept_signals(const Source& source) {
   std::vector<firmware::Signal> swept = source.signals;
   std::erase_if(swept, [&](firmware::Signal signal) { return belief(source.derating, signal).values.size() < 2; });
@@ -116,7 +116,7 @@ std::vector<firmware::Signal> swept_signals(const Source& source) {
 
 unsigned bit(firmware::Signal signal) { return 1U << static_cast<unsigned>(signal); }
 
-/// First every signal that is not believed gets some value, because a rate of what is not a number is none.
+/// Generates the checks that replace implausible readings. Each gets a value before the sweeps, because a NaN would spoil every rate.
 std::string beliefs(const Source& source) {
   std::string text;
   for (const firmware::Signal signal : source.signals) {
@@ -129,7 +129,7 @@ std::string beliefs(const Source& source) {
   return text;
 }
 
-/// Two passes where there are several: a signal's hottest value may depend on another's.
+/// Generates the sweeps over candidate values. Several signals need two passes, because the hottest value of one may depend on another.
 std::string sweeps(const Source& source, const std::vector<firmware::Signal>& swept) {
   const std::string indent = swept.size() > 1 ? "    " : "  ";
   std::string text = swept.size() > 1 ? "  for (pass = 0; pass < 2; ++pass) {\n" : "";

@@ -14,7 +14,7 @@
 namespace heatsoak::exporters {
 namespace {
 
-/// Differs between guards. In the include guard it lets the compiler report two headers that define the same names.
+/// Returns a checksum that differs between guards. In the include guard it makes the compiler report two headers with the same names.
 unsigned signature_of(const Derating& derating) {
   const std::string all =
       fmt::format("{}|{}|{}|{}", derating.motor_id, derating.robot_id, derating.options.period_s, derating.observer.heat_reserve_ratio());
@@ -35,7 +35,7 @@ std::string write(const Derating& derating) {
   const unsigned signature = signature_of(derating);
   const c_header::Rates rates = c_header::rates(source);
   const c_header::Rates sensor = c_header::sensor_functions(source);
-  // A reading that is none is NAN.
+  // A missing reading is NAN, which needs <math.h>.
   const bool has_nan = derating.sensor && derating.sensor->resistance;
   return c_header::head_comment(source) +
          fmt::format("#ifndef {0}\n#define {0}\n\n", fmt::format("HEATSOAK_{}_{:08X}_H", source.capital, signature)) +

@@ -22,8 +22,8 @@ using integer_form::FixedPoint;
 using integer_form::IntegerLines;
 using integer_form::QuantisedTable;
 
-constexpr int kStoredBits = 32;             ///< of a stored temperature's fraction
-constexpr std::int32_t kReadHotter_mC = 3;  ///< the table is read that much hotter: more than all that rounding may hide
+constexpr int kStoredBits = 32;             ///< fraction bits of a stored temperature
+constexpr std::int32_t kReadHotter_mC = 3;  ///< added to temperatures before the table lookup; larger than all rounding errors
 
 struct InputField {
   firmware::Signal signal;
@@ -53,13 +53,13 @@ std::vector<std::int64_t> widened(const std::vector<Number>& values) {
   return {values.begin(), values.end()};
 }
 
-/// Added to a node's rate, in its own steps, so that rounding never makes it cooler.
+/// Returns the heat that is added to a node's rate, in units of that rate, so that rounding never makes the node cooler.
 std::int64_t heat_for_rounding(const FixedPoint& rate) {
   const double most = std::max(std::abs(rate.low), std::abs(rate.high));
   return static_cast<std::int64_t>(std::ceil(std::ldexp(rate.absolute + std::ldexp(most, -29), rate.bits))) + 1;
 }
 
-/// By how much the temperatures of this form may lie above the exact ones, in K: what heats for rounding, until all has settled.
+/// Returns how far, in K, the temperatures may lie above the exact ones because of the heat added for rounding, over a warm-up of 4 h.
 double temperature_excess_K(const Derating& derating, const IntegerLines& lines) {
   const Observer& observer = derating.observer;
   FormulaRun<double> run(observer.formula(), observer.rate_steps());
@@ -200,7 +200,7 @@ constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node)
   }
 )";
 
-/// Of several lines: nothing of a user's text ends the comment.
+/// Formats text as comment lines; "*/" in a user's text cannot end the comment.
 std::string comment_lines(std::string text) {
   for (std::size_t at = text.find("*/"); at != std::string::npos; at = text.find("*/")) {
     text.replace(at, 2, "* /");
@@ -259,7 +259,7 @@ std::string table_text(const QuantisedTable& table, const std::string& prefix) {
              table.straight_below_mA, table.most_speed_mrad_per_s, table.no_current_speed_mrad_per_s, table.winding_per_stator_K);
 }
 
-/// Change of every node over a period, in 2^-kStoredBits K, with what rounding could hide added.
+/// Generates the function that computes each node's change over a period, in 2^-kStoredBits K, with the heat added for rounding.
 std::string changes_function(const Derating& derating, const std::string& prefix, const IntegerLines& lines) {
   const double period_s = derating.options.period_s;
   const int period_bits = 29 - static_cast<int>(std::floor(std::log2(period_s)));

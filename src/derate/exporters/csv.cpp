@@ -9,7 +9,7 @@
 namespace heatsoak::exporters {
 namespace {
 
-/// The places of an axis with more between them, so that straight lines between the rows follow the table.
+/// Returns the breakpoints of an axis with intermediate points, so that linear interpolation between the rows follows the table.
 std::vector<double> sampled(const std::vector<double>& axis, int parts) {
   std::vector<double> points{axis.front()};
   for (std::size_t i = 1; i < axis.size(); ++i) {

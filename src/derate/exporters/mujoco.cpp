@@ -13,7 +13,7 @@
 namespace heatsoak::exporters {
 namespace {
 
-/// No user's text ends the comment.
+/// Removes "--", so that a user's text cannot end the XML comment.
 std::string in_comment(std::string text) {
   for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--")) {
     text.replace(at, 2, "- ");
@@ -39,7 +39,7 @@ void require_datasheet_alone(const Derating& derating) {
   }
 }
 
-/// MuJoCo: dT/dt = (R·i² − T/R_th)/C with R growing with the temperature. Heat that counts r times is R_th·r and C/r.
+/// MuJoCo: dT/dt = (R·i² − T/R_th)/C with R growing with the temperature. A safety factor r on heat becomes R_th·r and C/r.
 std::string write(const Derating& derating) {
   require_finite(derating);
   require_datasheet_alone(derating);

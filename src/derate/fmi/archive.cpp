@@ -40,7 +40,7 @@ std::string zip_archive(const std::vector<FmuFile>& files) {
     constexpr __LA_MODE_T kMode = 0644;
     archive_entry_set_perm(entry.get(), kMode);
     archive_entry_set_size(entry.get(), static_cast<la_int64_t>(file.content.size()));
-    // Without a time libarchive writes the first one of ZIP, 1980-01-01, in every time zone.
+    // No time is set, so libarchive writes 1980-01-01 in every time zone and the archive is reproducible.
     require(zip.get(), archive_write_header(zip.get(), entry.get()));
     if (archive_write_data(zip.get(), file.content.data(), file.content.size()) != static_cast<la_ssize_t>(file.content.size())) {
       throw Failure(ExitCode::bug, fmt::format("the archive cannot be made: {}", archive_error_string(zip.get())));

@@ -42,7 +42,7 @@ class TemporaryFolder {
 constexpr std::string_view kSaid = "compiler.txt";
 constexpr std::size_t kLargest_bytes = 16U << 20U;
 
-/// Runs the words in the folder, both outputs to kSaid. Returns the exit code, -1 where it could not be run.
+/// Runs the command in the folder with both outputs redirected to kSaid. Returns its exit code, -1 if it could not be started.
 int run(std::vector<std::string> words, const fs::path& folder) {
   std::vector<char*> arguments;
   std::ranges::transform(words, std::back_inserter(arguments), [](std::string& word) { return word.data(); });
@@ -62,7 +62,7 @@ int run(std::vector<std::string> words, const fs::path& folder) {
   return WEXITSTATUS(status);
 }
 
-/// Of the machine that this program runs on; empty where the version of FMI has no name for it.
+/// FMI platform name of this machine; empty if the FMI version defines none.
 std::string_view platform(FmiVersion version) {
 #if defined(__x86_64__)
   return version == FmiVersion::fmi2 ? "linux64" : "x86_64-linux";
@@ -82,7 +82,7 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
                   "this version of FMI has no name for this machine; leave --compiler out, the file then holds sources");
   }
   const TemporaryFolder folder;
-  // Names without a folder, so that nothing of this machine's paths gets into the library.
+  // File names without a folder, so that the library contains no paths of this machine.
   std::vector<std::string> words{compiler, "-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden",
                                  "-o",     "unit.so"};
   constexpr std::string_view kSources = "sources/";

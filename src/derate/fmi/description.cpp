@@ -11,9 +11,9 @@ namespace heatsoak {
 namespace {
 
 struct FmuUnit {
-  std::string_view suffix;  ///< of names of variables, the longest first
+  std::string_view suffix;  ///< suffix of variable names; longer suffixes come first
   std::string_view name;
-  std::string_view base;  ///< attributes of the element BaseUnit, the same in both versions
+  std::string_view base;  ///< attributes of the element BaseUnit, the same in FMI 2.0 and 3.0
 };
 constexpr std::array kUnits{FmuUnit{"_rad_per_s2", "rad/s2", R"(rad="1" s="-2")"},
                             FmuUnit{"_rad_per_s", "rad/s", R"(rad="1" s="-1")"},
@@ -74,7 +74,7 @@ std::string items(const FmuModel& model) {
 struct Words {
   std::string_view causality;
   std::string_view variability;
-  std::string_view initial;  ///< empty where the standard allows none
+  std::string_view initial;  ///< empty if the standard allows none
 };
 Words words(const FmuVariable& variable) {
   const bool is_discrete = variable.is_sampled || variable.type != FmuType::real;
@@ -116,7 +116,7 @@ std::string default_experiment(const FmuModel& model) {
 
 std::string tool() { return fmt::format("heatsoak {}", program_version()); }
 
-/// Calls visit(place) for every output.
+/// Calls visit(index) for every output variable.
 template <class Visit>
 void for_each_output(const FmuModel& model, const Visit& visit) {
   for (std::size_t i = 0; i < model.variables.size(); ++i) {

@@ -1,4 +1,4 @@
-// modelDescription.xml of both versions of FMI.
+// Generates modelDescription.xml for FMI 2.0 and 3.0.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace heatsoak {
 
-/// `compiled`: names of the C files.
+/// `compiled` lists the names of the C source files.
 std::string description_fmi2(const FmuModel& model, std::span<const std::string> compiled);
 std::string description_fmi3(const FmuModel& model);
 std::string build_description_fmi3(const FmuModel& model, std::span<const std::string> compiled);

@@ -14,15 +14,15 @@ enum class FmiVersion { fmi2, fmi3 };
 enum class FmuCausality { independent, input, parameter, output, constant };
 enum class FmuType { real, boolean, enumeration };
 
-/// Its place in the list is its value reference.
+/// A variable of the unit. Its index in the list is its value reference.
 struct FmuVariable {
-  std::string name;       ///< an identifier of C
-  std::string_view unit;  ///< one of fmu_units(); empty for none
+  std::string name;       ///< a C identifier
+  std::string_view unit;  ///< as fmu_unit() returns it; empty if none
   FmuCausality causality = FmuCausality::input;
   FmuType type = FmuType::real;
-  double value = 0.0;  ///< at the start; not of outputs
+  double value = 0.0;  ///< start value; ignored for outputs
   std::string description;
-  bool is_sampled = false;  ///< of an output: changes at calls of the firmware only
+  bool is_sampled = false;  ///< an output that changes only when the firmware is called
 };
 
 struct FmuItem {
@@ -35,41 +35,41 @@ struct FmuFile {
   std::string content;
 };
 
-/// What both versions of FMI have in common.
+/// Model data that do not depend on the FMI version.
 struct FmuModel {
-  std::string identifier;   ///< of files and of the shared library
+  std::string identifier;   ///< name of files and of the shared library
   std::string description;  ///< one line
-  std::string token;        ///< guid, instantiation token: kind, program and hash of the inputs
-  std::string provenance;   ///< lines for people
+  std::string token;        ///< GUID or instantiation token: kind, program and hash of the inputs
+  std::string provenance;   ///< human-readable lines
   std::vector<FmuVariable> variables;
-  std::vector<FmuItem> items;  ///< of the only enumeration, from 0
+  std::vector<FmuItem> items;  ///< values of the only enumeration, from 0
   std::vector<FmuFile> sources;
-  double step_s = 0.1;  ///< of the default experiment
+  double step_s = 0.1;  ///< step size of the default experiment
   std::optional<double> fixed_step_s;
 };
 
-/// Motor with its effects, nominal values: current, speed and air in, temperatures of all nodes out. Throws Failure (bad_input) with the
-/// name of an effect that no simulation can feed, because it goes with a column of logs.
+/// Model of the nominal motor with its effects. Inputs: current, speed and air; outputs: temperatures of all nodes. Throws Failure
+/// (bad_input) with the effect's name if an effect depends on a log column, which a simulation cannot provide.
 FmuModel motor_fmu(const Derating& derating, std::string_view exporter);
 
-/// The firmware's guard: the exported C header compiled in.
+/// Model of the firmware's guard, which contains the exported C header.
 FmuModel guard_fmu(const Derating& derating, std::string_view exporter);
 
-/// Variables, start values and kinds as C, and what `more` adds to the header of them.
+/// Generates C files with variables, start values and types; appends the text `more` to their header.
 std::vector<FmuFile> fmu_tables(const FmuModel& model, std::string_view more);
 
-/// "0.5", "25.0": shortest text that reads back the same, in parentheses where negative.
+/// Returns the shortest text that reads back to the same value, such as "0.5" or "25.0"; in parentheses if negative.
 std::string fmu_number(double value);
 std::string_view fmu_unit(std::string_view variable);
 
-/// Every file of the unit, sources and description, in the order of their paths.
+/// Returns every file of the unit, sources and description, sorted by path.
 std::vector<FmuFile> fmu_files(const FmuModel& model, FmiVersion version);
 
-/// With the shared library for this machine that `compiler` (a C99 compiler: "cc") makes of the sources. Throws Failure (bad_input) with
-/// the compiler's words where it makes none.
+/// Adds the shared library for this machine, built from the sources with a C99 compiler such as "cc". Throws Failure (bad_input) with the
+/// compiler's output if the build fails.
 std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& model, FmiVersion version, const std::string& compiler);
 
-/// A ZIP archive: the same bytes for the same files.
+/// Returns a ZIP archive. Its bytes depend only on the files.
 std::string zip_archive(const std::vector<FmuFile>& files);
 
 }  // namespace heatsoak

@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 3> kTypes{"type_real", "type_boolean", "t
 
 bool is_motor(const FmuModel& model) { return model.items.empty(); }
 
-/// Files of sources/ that this version and kind of unit have.
+/// True if the file of sources/ is part of a unit of this FMI version and kind.
 bool belongs(std::string_view name, const FmuModel& model, FmiVersion version) {
   if (name.starts_with("fmi")) {
     return name.starts_with(version == FmiVersion::fmi2 ? "fmi2" : "fmi3");

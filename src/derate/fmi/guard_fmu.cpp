@@ -21,7 +21,7 @@ std::vector<FmuVariable> variables(const Derating& derating) {
   for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
       const std::string name(firmware::signals()[i].name);
-      // Whoever connects nothing gets the case that the guard is built for.
+      // An unconnected input has the worst-case value for which the guard is designed.
       const double start = i == firmware::ambient     ? derating.rules.hottest_ambient_C
                            : i == firmware::neighbour ? derating.rules.limits.winding_C
                                                       : 0.0;

@@ -13,8 +13,8 @@
 namespace heatsoak::integer_form {
 namespace {
 
-constexpr int kNumberBits = 30;  ///< of a magnitude: sums of two still fit in 32 bits
-constexpr int kMostBits = 44;    ///< of a fraction, so that no shift of a product exceeds 62
+constexpr int kNumberBits = 30;  ///< bits of a magnitude, so that the sum of two fits in 32 bits
+constexpr int kMostBits = 44;    ///< most fraction bits, so that no shift of a product exceeds 62
 constexpr double kHottest_C = 1000.0;
 
 double unit(int bits) { return std::ldexp(1.0, -bits); }
@@ -24,7 +24,7 @@ int bits_for(double low, double high) {
   return most > 0.0 ? std::min(kMostBits, kNumberBits - 1 - static_cast<int>(std::floor(std::log2(most)))) : kMostBits;
 }
 
-/// One run through the steps of a formula.
+/// Writes the statements in one pass over the steps of a formula.
 class Writer {
  public:
   Writer(const Derating& derating, const std::string& prefix)
@@ -98,7 +98,7 @@ class Writer {
     const auto signal = static_cast<firmware::Signal>(input);
     const Belief believed = belief(derating_, signal);
     FixedPoint made{.low = believed.low, .high = believed.high, .bits = bits_for(believed.low, believed.high), .absolute = 0.0};
-    // Thousandths times 2^bits/1000, a number of 30 bits with a shift of its own.
+    // The factor 2^bits/1000 has 30 bits and its own shift.
     const double per_thousandth = std::ldexp(1.0 / kThousandths_ratio, made.bits);
     const int shift = bits_for(per_thousandth, per_thousandth);
     made.absolute = unit(made.bits) + std::max(std::abs(made.low), std::abs(made.high)) * std::ldexp(1.0, -kNumberBits);

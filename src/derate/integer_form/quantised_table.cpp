@@ -35,7 +35,7 @@ QuantisedTable::QuantisedTable(const CurrentTable& exact)
   }
   unit_mA2 = static_cast<std::uint32_t>(std::ceil(kPerUnit * kPerUnit * largest_A2 / (kMost - 1.0)));
   for (const double square_A2 : exact.square_A2) {
-    // One less for places that are rounded to thousandths.
+    // Subtract one unit, because the breakpoints are rounded to thousandths.
     square.push_back(static_cast<std::int16_t>(std::floor(kPerUnit * kPerUnit * square_A2 / unit_mA2) - 1.0));
   }
 }

@@ -1,4 +1,4 @@
-// The derating table with 16-bit squares, and how far it stays below the one in single precision.
+// Derating table with 16-bit squares, and its shortfall relative to the table in single precision.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace heatsoak::integer_form {
 
-/// Owns what its table() points to.
+/// Quantised copy of a table, in thousandths of the units (mA, mrad/s, 0.001 °C). Owns the arrays that table() points to.
 struct QuantisedTable {
   explicit QuantisedTable(const CurrentTable& exact);
 
@@ -27,8 +27,8 @@ struct QuantisedTable {
   [[nodiscard]] heatsoak_integer_table table() const;
 };
 
-/// Largest share by which the quantised table is below `exact` where that allows straight_below or more, on a grid of temperatures half a
-/// kelvin apart and ten speeds.
+/// Returns the largest relative shortfall of the quantised table against `exact` where that allows at least straight_below_A, on a grid of
+/// ten speeds and of temperatures 0.5 K apart.
 double quantised_shortfall_ratio(const CurrentTable& exact, const QuantisedTable& quantised);
 
 }  // namespace heatsoak::integer_form

@@ -12,7 +12,7 @@ namespace {
 using LaneSignals = std::array<Lanes, firmware::kSignalCount>;
 using LaneFlags = std::array<bool, kLanes>;
 
-/// Rates of an observer for eight motors, and Euler steps of them.
+/// Rates of an observer for kLanes motors at once.
 class LaneObserver {
  public:
   LaneObserver(const Observer& observer, std::span<const int> rate_steps)
@@ -31,7 +31,7 @@ class LaneObserver {
   std::vector<Lanes> rate_;
 };
 
-/// The guard of eight motors: what it knows of each, and how far it trusts each sensor.
+/// The guards of kLanes motors: the estimated state of each, and whether its sensor is trusted.
 class LaneGuard {
  public:
   explicit LaneGuard(const SensedLoop& loop)
@@ -78,7 +78,7 @@ class LaneGuard {
     }
   }
 
-  /// Where `is_read`.
+  /// Corrects the state by the innovation in lanes with a reading.
   void correct(const Lanes& reading_C, const LaneFlags& is_read) {
     const SensorPlan& plan = loop_.plan;
     const double steps = loop_.step_s / loop_.period_s;
@@ -107,7 +107,7 @@ class LaneGuard {
   std::array<double, kLanes> unread_s_{};
 };
 
-/// What the cross-check has to bear from honest sensors.
+/// Records the extremes that correct sensors show, from which the bounds of the cross-check are derived.
 class Bounds {
  public:
   Bounds(const SensedLoop& loop, std::array<SensedPeak, kLanes>& peaks)
@@ -149,7 +149,7 @@ class Bounds {
   Lanes last_C_;
 };
 
-/// Eight sensors: an offset for good and noise, together within the accuracy.
+/// kLanes sensors with a constant offset and noise, together within the accuracy.
 class LaneSensor {
  public:
   LaneSensor(const SensedLoop& loop, const Lanes& offset_share, std::uint64_t seed, std::uint64_t stream)
@@ -157,7 +157,7 @@ class LaneSensor {
 
   void start(double temperature_C) { shown_C_ = Lanes::Constant(temperature_C); }
 
-  /// Without offset and noise.
+  /// Sensor temperature in °C without offset and noise.
   [[nodiscard]] const Lanes& shown_C() const { return shown_C_; }
 
   Lanes reading_C(const Lanes& true_C) {
@@ -197,7 +197,7 @@ LaneFlags readable(const SensedLoop& loop, const Lanes& current_A, double speed_
   return flags;
 }
 
-/// Networks of the drawn motors, side by side.
+/// Networks of the drawn motors, one per lane.
 struct DrawnMotors {
   std::vector<Network> networks;
   std::vector<Lanes> parameters;

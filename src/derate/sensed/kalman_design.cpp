@@ -8,7 +8,7 @@
 namespace heatsoak {
 namespace {
 
-/// Where the motor works when the guard matters: at the current that it bears for good, hot winding, bodies half way.
+/// Hot operating point for the linearisation: continuous current, winding at its limit, bodies halfway between air and limit.
 struct HotPoint {
   OperatingPoint<double> at;
   std::vector<double> state_C;
@@ -72,7 +72,7 @@ SensorGain sensor_gain(const Motor& motor, const Robot& robot, const BarrierRule
   }
   observer.process_noise = Eigen::MatrixXd::Zero(size, size);
   observer.process_noise.topLeftCorner(states, states) = period_s * period_s * second_moments(motor, nominal, points, samples, seed);
-  // Anywhere within the accuracy: the standard deviation of a uniform distribution.
+  // The sensor error is uniformly distributed within the accuracy.
   observer.sensor_sd_K = options.accuracy_K / std::sqrt(3.0);
   const Eigen::VectorXd gain = steady_kalman_gain(observer);
   return {.gain = {gain.data(), gain.data() + states}, .lag_gain_ratio = lags ? gain[states] : 0.0};

@@ -1,4 +1,4 @@
-// From the spread of drawn motors to the constant gain with which a reading corrects the observer.
+// Designs the constant Kalman gain of the observer from the spread of drawn motors.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,13 @@
 namespace heatsoak {
 
 struct SensorGain {
-  std::vector<double> gain;     ///< of each state
+  std::vector<double> gain;     ///< per state: correction per period and kelvin of innovation
   double lag_gain_ratio = 0.0;  ///< 0 without a lag
 };
 
-/// Steady-state Kalman gain per period of the network linearised while it works hot. Process noise: second moments of the difference
-/// between the rates of drawn motors and of the nominal one. Neither those differences nor the sensor's offset average out over the
-/// motor's time constants, so both count with the same correlation time, which cancels in the gain.
-/// `samples` ≥ 1 motors are drawn.
+/// Returns the steady-state Kalman gain per period of the network linearised at a hot operating point. The process noise is the second
+/// moment of the rate differences between `samples` ≥ 1 drawn motors and the nominal one. Neither these differences nor the sensor's offset
+/// average out over the motor's time constants. Both have the same correlation time, which cancels in the gain.
 SensorGain sensor_gain(const Motor& motor, const Robot& robot, const BarrierRules& rules, const SensorOptions& options, double period_s,
                        double lasting_current_A, int samples, std::uint64_t seed);
 

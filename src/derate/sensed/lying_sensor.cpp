@@ -19,7 +19,7 @@ std::vector<UsePlayed> play_all(const SensorPlan& plan, const Derating& model_on
   return played;
 }
 
-/// The nominal motor in all uses: its hottest winding, and whether it exceeds a limit.
+/// Peak of the nominal motor over all uses.
 struct NominalPeak {
   double winding_C = 0.0;
   bool is_over = false;

@@ -1,4 +1,4 @@
-// The worst that a sensor can do which shows colder than its node and is not noticed.
+// Worst case of a faulty sensor that reads colder than its node and is not detected by the cross-check.
 #pragma once
 
 #include <span>
@@ -8,12 +8,12 @@
 
 namespace heatsoak {
 
-/// The current of one use where the sensor hides all heat: the sensed table's current of a motor as cold as its air, but no
-/// more than `gain_A` above what the guard without a sensor allows, which counts only its own allowed current.
+/// Simulates one use with a sensor that always reads the air temperature. The current is that of the sensed table for a cold motor, at most
+/// `gain_A` above the allowance of the guard without a sensor. That guard integrates only the current that it allows itself.
 UsePlayed play_lying(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot, const Use& use,
                      double gain_A);
 
-/// Sets most_gain_A, lying_nominal_C and lying_over: the largest gain with which the nominal motor keeps its limits.
+/// Sets most_gain_A to the largest gain at which the nominal motor keeps its limits; sets lying_nominal_C and lying_over accordingly.
 void set_lying_sensor(SensorPlan& plan, const Motor& motor, const Robot& robot, const Derating& model_only, std::span<const Use> uses);
 
 }  // namespace heatsoak

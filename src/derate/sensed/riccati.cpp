@@ -21,7 +21,7 @@ Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
     G += A * lu.solve(G) * A.transpose();
     A = A * solved_A;
     H += change;
-    // An unstable state that the sensor does not see grows until its variance is no number.
+    // The variance of an unstable state that is not observable grows until it overflows.
     if (H.norm() < kMost_K2 && change.norm() <= kConverged * H.norm()) {
       return 0.5 * (H + H.transpose());
     }

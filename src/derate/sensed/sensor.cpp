@@ -9,7 +9,7 @@
 namespace heatsoak {
 namespace {
 
-/// Largest relative distance of a spread's ends from the value.
+/// Returns the larger relative distance of the two ends of a tolerance from the value; 0 without a tolerance.
 double half_width_ratio(const Motor& motor, std::string_view key, double value) {
   const std::optional<Spread> spread = spread_or_default(motor, key);
   if (!spread) {
@@ -30,11 +30,11 @@ ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& op
   const double alpha_per_K = values.temperature_coefficient_per_K;
   constexpr double kReference_C = 25.0;
   const double hot_ratio = 1.0 + alpha_per_K * (values.winding_limit_C - kReference_C);
-  // Magnets of NdFeB lose up to 0.12 %/K, and a rotor gets up to 80 K warmer than at the calibration.
+  // NdFeB magnets lose up to 0.12 %/K, and the rotor may be up to 80 K warmer than during calibration.
   constexpr double kWeakening = 0.1;
   const double torque_constant_error_Nm_per_A =
       (half_width_ratio(motor, "torque_constant", values.torque_constant_Nm_per_A) + kWeakening) * values.torque_constant_Nm_per_A;
-  // A winding of less resistance than nominal drops less voltage, so that the same error weighs more.
+  // At less than nominal resistance the voltage drop is smaller, so the same voltage error has a larger effect.
   const double least_ohm = resistance_ohm * (1.0 - std::min(0.5, half_width_ratio(motor, "terminal_resistance", resistance_ohm)));
   const double inductance_H = std::isnan(values.terminal_inductance_H) ? 0.0 : values.terminal_inductance_H;
   const double most_change_A = inductance_H > 0.0 ? options.voltage_error_V * period_s / inductance_H : std::numeric_limits<double>::max();

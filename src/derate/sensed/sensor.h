@@ -1,4 +1,4 @@
-// A temperature sensor in the guard: what is declared of it, and what follows from that for the generated code.
+// A temperature sensor of the guard: the user's declaration and the resulting parameters of the generated code.
 #pragma once
 
 #include <optional>
@@ -12,80 +12,80 @@ namespace heatsoak {
 
 enum class SensorKind {
   thermistor,         ///< at winding or stator
-  winding_resistance  ///< (voltage − K_t·ω)/current of the copper, whose resistance follows its temperature
+  winding_resistance  ///< copper resistance (voltage − K_t·ω)/current, which depends on the winding temperature
 };
 
-/// As the user declares it.
+/// Declaration of the sensor by the user.
 struct SensorOptions {
   SensorKind kind = SensorKind::thermistor;
-  int node = states::stator;      ///< whose temperature is read
+  int node = states::stator;      ///< node whose temperature is measured
   double accuracy_K = 2.0;        ///< largest error, > 0
   double lag_s = 0.0;             ///< time constant between node and reading; 0: none
-  double voltage_error_V = 0.02;  ///< winding_resistance: offset of the terminal voltage
-  double current_error_A = 0.01;  ///< winding_resistance: offset of the current
+  double voltage_error_V = 0.02;  ///< winding_resistance: largest offset of the terminal voltage
+  double current_error_A = 0.01;  ///< winding_resistance: largest offset of the current
 };
 
-/// When the winding's resistance is worth a reading. Resistance is read relative to the first reading after a rest, so that gain errors and
-/// the tolerance of R25 cancel. With R = R25·(1 + α·(T − 25 °C)) an error of the voltage δU makes
-/// δT = (1 + α·(T − 25 °C))/α·δU/(|I|·R), δU = voltage error + current error·R + error of K_t·|ω|. Half of the accuracy is for the
-/// calibration, half for the reading.
+/// Conditions under which the winding's resistance gives a valid reading. Resistance is measured relative to the first reading after a
+/// rest, so that gain errors and the tolerance of R25 cancel. With R = R25·(1 + α·(T − 25 °C)) a voltage error δU causes the error
+/// δT = (1 + α·(T − 25 °C))/α·δU/(|I|·R), where δU = voltage error + current error·R + error of K_t·|ω|. The calibration and the reading
+/// may each use half of the accuracy.
 struct ResistanceReading {
   double resistance_25C_ohm = 0.0;
   double temperature_coefficient_per_K = 0.0;
   double torque_constant_Nm_per_A = 0.0;
-  double least_current_A = 0.0;                ///< at rest
-  double current_per_speed_A_s_per_rad = 0.0;  ///< that is needed beyond it
-  double most_current_change_A = 0.0;          ///< from one period to the next: the inductance's voltage stays below the voltage error
+  double least_current_A = 0.0;                ///< required current at rest
+  double current_per_speed_A_s_per_rad = 0.0;  ///< additional required current per speed
+  double most_current_change_A = 0.0;          ///< per period, so that the inductive voltage stays below the voltage error
 
   [[nodiscard]] bool is_usable(double current_A, double speed_rad_per_s) const;
 };
 
-/// A driver's resistance in series with the winding is taken as known; its tolerance is part of the voltage error.
+/// Computes the conditions for a motor. Treats the driver's series resistance as known; its tolerance is part of the voltage error.
 ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& options, double period_s);
 
-/// What the cross-check of a reading allows. A reading outside of it is not used.
+/// Bounds of the cross-check. A reading outside of them is not used.
 struct ReadingCheck {
-  double most_C = 300.0;           ///< a reading above is none, like one below the coldest air
-  double most_rate_K_per_s = 0.0;  ///< of the node
-  double most_jump_K = 0.0;        ///< between two readings, beyond that rate
-  /// The rise of the node above the air is at least this share of the nominal motor's, less `cold_margin_K`. Where the
-  /// air is not measured it counts as the coldest here, and as the hottest in the nominal motor.
+  double most_C = 300.0;           ///< a reading above this, or below the coldest air, is invalid
+  double most_rate_K_per_s = 0.0;  ///< fastest change of the node
+  double most_jump_K = 0.0;        ///< allowed jump between two readings in addition to that rate
+  /// The node's rise above the air is at least this share of the nominal motor's rise, minus `cold_margin_K`. If the air is not measured,
+  /// the coldest air is assumed for this check and the hottest air for the nominal motor.
   double cold_share = 0.0;
   double cold_margin_K = 0.0;
-  double frozen_band_K = 0.0;    ///< a reading that stays within it …
-  double frozen_K = 0.0;         ///< … while the nominal motor's node changes by more than this is stuck
-  double contradiction_s = 2.0;  ///< for which a contradiction lasts before the sensor is dropped for good
-  double hold_s = 1.0;           ///< after the last reading for which the lower safety factor counts
+  double frozen_band_K = 0.0;    ///< a sensor is stuck if its readings stay within this band …
+  double frozen_K = 0.0;         ///< … while the nominal motor's node changes by more than this
+  double contradiction_s = 2.0;  ///< duration of a contradiction after which the sensor is disabled permanently
+  double hold_s = 1.0;           ///< time after the last reading during which the lower safety factor applies
 };
 
-/// Held for good by the nominal motor, all that is allowed.
+/// Continuous allowed current of the nominal motor at one speed.
 struct LastingCurrent {
   double speed_rad_per_s = 0.0;
-  double without_A = 0.0;  ///< a sensor
-  double with_A = 0.0;
+  double without_A = 0.0;  ///< without the sensor
+  double with_A = 0.0;     ///< with the sensor
 };
 
-/// Everything that the generated code needs beyond the guard without a sensor.
+/// Parameters that the generated code needs in addition to the guard without a sensor, and the results of their check.
 struct SensorPlan {
   SensorOptions options;
   std::optional<ResistanceReading> resistance = {};
-  /// Counts heat by the lower safety factor. Its winding stores winding_speed_ratio times less heat, so that a pulse from cold heats it at
-  /// least as fast as without a sensor: no sensor at the stator sees a pulse in time.
+  /// Observer with the lower safety factor. The heat capacity of its winding is divided by winding_speed_ratio, so that a pulse from cold
+  /// heats it at least as fast as without a sensor, because a sensor at the stator responds too late to a pulse.
   Observer observer;
   double winding_speed_ratio = 1.0;
-  CurrentTable table;           ///< of that observer
-  std::vector<double> gain;     ///< of the states per period and kelvin of innovation
-  double lag_gain_ratio = 0.0;  ///< of the sensor's own temperature, where it lags
-  double most_gain_A = 0.0;     ///< above what the guard without a sensor allows: the most that a lying sensor can add
+  CurrentTable table;           ///< table of that observer
+  std::vector<double> gain;     ///< per state: correction per period and kelvin of innovation
+  double lag_gain_ratio = 0.0;  ///< gain of the sensor's own temperature if it has a lag
+  double most_gain_A = 0.0;     ///< limit of the current above that of the guard without a sensor; bounds the effect of a faulty sensor
   ReadingCheck check = {};
   std::vector<LastingCurrent> lasting = {};
   int samples = 0;  ///< drawn motors, each with a drawn sensor error
-  int over = 0;     ///< of them that exceeded a limit
+  int over = 0;     ///< drawn motors that exceeded a limit
   double winding_p95_C = 0.0;
   double winding_most_C = 0.0;
-  int dropped = 0;               ///< of them whose honest sensor is dropped by the cross-check
-  int lying_over = 0;            ///< of as many that exceed a limit where the sensor lies as much as it can without being noticed
-  double lying_nominal_C = 0.0;  ///< hottest winding of the nominal motor then
+  int dropped = 0;               ///< drawn motors whose correct sensor is rejected by the cross-check
+  int lying_over = 0;            ///< drawn motors that exceed a limit with the worst undetected sensor fault
+  double lying_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault
 };
 
 }  // namespace heatsoak

@@ -14,16 +14,16 @@
 namespace heatsoak {
 namespace {
 
-/// Of the search's loop: a tenth of the time in which the winding may come near its limit.
+/// Simulation steps of the search per approach_s.
 constexpr double kStepsPerApproach = 10.0;
-/// The motors of the guard without a sensor: those of its search first, then those of each check.
+/// Offset between the random streams of the search, which are those of the guard without a sensor, and those of each check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
-/// A pulse from cold heats a winding by safety factor times winding_speed_ratio. With an exponent of 1 that product is the one without a
-/// sensor and pulses decide the safety factor; with 2 the winding is so fast that the steady state gains no more (found on motors drawn for
-/// the ECX FLAT 32 L).
+/// Exponent of winding_speed_ratio over the ratio of safety factors. A pulse from cold heats the winding in proportion to safety factor
+/// times winding_speed_ratio. With an exponent of 1 that product is the same as without a sensor, and pulses determine the safety factor.
+/// With 2 the winding is so fast that the steady state gains nothing more (found on motors drawn for the ECX FLAT 32 L).
 constexpr double kPulseExponent = 1.5;
 
-/// The nominal motor with a winding that stores less heat.
+/// Returns the nominal motor with the winding's heat capacity divided by the ratio.
 Network faster_network(const Motor& motor, double winding_speed_ratio) {
   MotorSample sample = nominal_sample(motor);
   sample.values.thermal_time_constant_winding_s /= winding_speed_ratio;
@@ -90,7 +90,7 @@ class PlanSearch {
     return static_cast<double>(over) <= (1.0 - model_only_.options.guarantee.confidence) * static_cast<double>(peaks.size());
   }
 
-  /// Between 1 and the safety factor without a sensor.
+  /// Returns the smallest sufficient safety factor to 1 %, between 1 and the factor without a sensor.
   [[nodiscard]] double reserve() {
     constexpr double kTolerance = 0.01;
     const double coarse_s = std::max(model_only_.options.period_s, model_only_.options.approach_s / kStepsPerApproach);
@@ -121,7 +121,7 @@ class PlanSearch {
   std::size_t rounds_ = 0;
 };
 
-/// Bounds that at most 1 % of the honest sensors violate.
+/// Sets bounds that at most about 1 % of the correct sensors violate.
 void set_check(SensorPlan& plan, std::span<const SensedPeak> peaks) {
   constexpr double kFalse = 0.01;
   constexpr double kFrozenMargin = 1.5;
@@ -157,7 +157,7 @@ void set_guarantee(SensorPlan& plan, std::span<const SensedPeak> peaks) {
   plan.winding_most_C = winding_C.back();
 }
 
-/// Of the held uses in the plain case, which come first.
+/// Sets the continuous currents of the continuous uses in the plain case, which come first.
 void set_lasting(SensorPlan& plan, const SensedLoop& loop, const Derating& model_only) {
   for (const UsePlayed& each : model_only.uses) {
     if (each.use.on_s > 0.0) {

@@ -1,4 +1,4 @@
-// Adds a sensor to a guard: its gain, the lower safety factor on heat, the cross-check and what a lying sensor can do.
+// Adds a sensor to a guard: gain, lower safety factor on heat, cross-check, and the effect of an undetected sensor fault.
 #pragma once
 
 #include "base/parallel.h"
@@ -7,15 +7,15 @@
 
 namespace heatsoak {
 
-/// `model_only` is the guard of the same motor without a sensor.
+/// Computes the parameters of the sensor. `model_only` is the guard of the same motor without a sensor.
 /// 1. Gain: sensor_gain().
-/// 2. Safety factor: the smallest one, no larger than without a sensor, with which the share of drawn motors that is asked for keeps every
-///    limit in every use, each with a drawn sensor error, checked on motors that the search has not seen.
-/// 3. Cross-check: bounds that at most 1 % of honest sensors at drawn motors violate.
-/// 4. most_gain_A: the largest current above the guard without a sensor with which the nominal motor keeps its limits while the sensor
-/// shows
-///    the coldest that it may.
-/// Throws Failure (bad_input) for a node that the motor lacks or an accuracy that is not positive.
+/// 2. Safety factor: the smallest one, below that without a sensor, at which the required share of drawn motors keeps every limit in every
+///    use. Each motor has a drawn sensor error. The result is checked on motors that the search did not use.
+/// 3. Cross-check: bounds that at most 1 % of the correct sensors on drawn motors violate.
+/// 4. most_gain_A: the largest current above the guard without a sensor at which the nominal motor keeps its limits although the sensor
+///    always reads the air temperature.
+/// Throws Failure: bad_input for a node that the motor lacks or an accuracy that is not positive; cannot_answer if the sensor allows no
+/// lower safety factor.
 SensorPlan plan_sensor(const Motor& motor, const Robot& robot, const Derating& model_only, const SensorOptions& options,
                        const Progress& progress = {});
 
