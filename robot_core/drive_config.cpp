@@ -105,14 +105,14 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     for (int j = i + 1; j < config.wheel_count; ++j) {
       for (int k = j + 1; k < config.wheel_count; ++k) {
         const float pairs[kMostWheels] = {cross(wheel[j], wheel[k]), cross(wheel[k], wheel[i]), cross(wheel[i], wheel[j])};
-        most = larger(most, most_ratio(pairs, kLeastArea));
+        most = larger(most, most_ratio(pairs, kLeastArea_ratio));
       }
     }
   }
   if (config.wheel_count == kMostWheels) {
     const float all[kMostWheels] = {area(wheel[1], wheel[2], wheel[3]), area(wheel[0], wheel[2], wheel[3]),
                                     area(wheel[0], wheel[1], wheel[3]), area(wheel[0], wheel[1], wheel[2])};
-    most = larger(most, most_ratio(all, kLeastArea));
+    most = larger(most, most_ratio(all, kLeastArea_ratio));
   }
   return most * speed_per_rim_per_m * config.derived.geared_constant_V_s_per_rad;
 }

@@ -113,7 +113,7 @@ struct SpeedRange {
 SpeedRange speed_range(const Config& config, const State& state, const Believed& believed, int wheel);
 
 /// Two wheels whose rolling directions differ by less than 8 degrees (sine), or three that span a smaller doubled area, determine no speed.
-inline constexpr float kLeastArea = 0.14F;
+inline constexpr float kLeastArea_ratio = 0.14F;
 /// Twice the signed area of the triangle between the ends of three unit vectors along rolling directions.
 inline float area(const WheelConfig& a, const WheelConfig& b, const WheelConfig& c) {
   return (b.rolling_x_share - a.rolling_x_share) * (c.rolling_y_share - a.rolling_y_share) -

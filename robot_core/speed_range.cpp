@@ -16,7 +16,7 @@ struct Rims {
 /// From two other wheels and the gyro.
 void add_pair(const Config& config, const Rims& rims, int i, int j, int k, float turning_m_per_s, SpeedRange& range) {
   const float determinant = cross(config.wheel[j], config.wheel[k]);
-  if (!rims.is_sensed[j] || !rims.is_sensed[k] || absolute(determinant) < kLeastArea) {
+  if (!rims.is_sensed[j] || !rims.is_sensed[k] || absolute(determinant) < kLeastArea_ratio) {
     return;
   }
   const float of_j = cross(config.wheel[i], config.wheel[k]) * (rims.rim_m_per_s[j] - turning_m_per_s);
@@ -31,7 +31,7 @@ void add_triple(const Config& config, const Rims& rims, int i, SpeedRange& range
   const int l = (i + 3) % kMostWheels;
   const WheelConfig* const wheel = config.wheel;
   const float determinant = area(wheel[j], wheel[k], wheel[l]);
-  if (!rims.is_sensed[j] || !rims.is_sensed[k] || !rims.is_sensed[l] || absolute(determinant) < kLeastArea) {
+  if (!rims.is_sensed[j] || !rims.is_sensed[k] || !rims.is_sensed[l] || absolute(determinant) < kLeastArea_ratio) {
     return;
   }
   const float sum = area(wheel[i], wheel[k], wheel[l]) * rims.rim_m_per_s[j] + area(wheel[j], wheel[i], wheel[l]) * rims.rim_m_per_s[k] +

@@ -3,7 +3,7 @@
  * Inputs CRC-64/XZ 2de2986516dcff92.
  *
  * Winding at most 125 degC, air from 0 to 40 degC; thermal data: estimated.
- * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding never passes its limit. The
+ * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding temperature never exceeds its limit. The
  * safety factor on heat is 2.49, for a confidence of 0.95: of 60 motors drawn from the declared tolerances 0 exceeded a
  * limit in one of the 11 hardest uses (0.0 %, with other draws 0.0 to 6.0 %), the hottest winding reached 125 degC.
  * Computed, not measured; plausible but wrong sensor readings are not covered.
@@ -16,7 +16,7 @@
  *
  * Once, after a long rest:      maxon_ecx_flat_42m_24v_start(&motor, board_C);   what was never started counts as hot as its limit
  * every 0.01 s:                out = maxon_ecx_flat_42m_24v_step(&motor, &in);   then |current| <= out.allowed_current_A until the next call
- * A state that survives a reset in RAM goes on from there. */
+ * A state that is kept in RAM continues after a reset. */
 #ifndef HEATSOAK_MAXON_ECX_FLAT_42M_24V_F967A453_H
 #define HEATSOAK_MAXON_ECX_FLAT_42M_24V_F967A453_H
 

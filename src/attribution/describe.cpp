@@ -24,7 +24,7 @@ std::string errors_in_words(const Errors& before, const Errors& refitted, const 
       text += fmt::format("{} of the {}: {:.2g} K rms before, {}{:.2g} K after.",
                           text.empty() ? fmt::format("On {}, error", where) : std::string(" Error"), signal.substr(0, signal.rfind('_')),
                           error.rmse_K,
-                          own == refitted.end() ? "" : fmt::format("{:.2g} K with its own figures refitted alone, ", own->second.rmse_K),
+                          own == refitted.end() ? "" : fmt::format("{:.2g} K with only its own parameters refitted, ", own->second.rmse_K),
                           found->second.rmse_K);
     }
   }
@@ -100,23 +100,23 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
       if (std::ranges::any_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.has_heat && effect.is_from_catalogue; })) {
         return "The runs show heat that the model does not have, and it follows a known law.";
       }
-      return std::string("The sensors show what is not so, and it follows a known law") +
+      return std::string("The sensors read wrongly, and the error follows a known law") +
              (diagnosis.unexplained.empty() ? "." : "; besides, there is heat that no law of the catalogue explains.");
     case DiagnosisVerdict::nothing_missing:
       return diagnosis.changed.empty()
                  ? "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
                    "smooth heat of the size that every model leaves."
-                 : "No effect is missing that these runs show, but not all of the file's figures hold in them.";
+                 : "No effect is missing that these runs show, but not all of the file's parameters hold in them.";
     case DiagnosisVerdict::unexplained:
       return "The runs show heat that the model does not have, and no law of the catalogue explains it.";
     case DiagnosisVerdict::not_identifiable:
       break;
   }
   if (!diagnosis.changed.empty()) {
-    return "The runs contradict the file's own figures. Whether those have changed since (another mounting, another piece of the motor) or "
-           "an "
-           "effect is missing that acts like such a change, these runs cannot tell; no name is given, and the figures are those of these "
-           "runs.";
+    return "The runs contradict the file's own parameters. These runs do not determine whether they have changed since "
+           "(another mounting, another specimen of the motor) or an effect is missing that acts like such a change. No effect is named, "
+           "and "
+           "the parameters are those of these runs.";
   }
   return !diagnosis.selection.leaves_doubt()
              ? fmt::format(
@@ -132,7 +132,8 @@ std::string changed_in_words(const ChangedFigure& figure) {
   // The interval has the scale of all heat in it, on which the file agrees: where it reaches the file's own figure it would mislead.
   const bool is_beyond_scale = figure.before < figure.low || figure.before > figure.high;
   return fmt::format(
-      "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; as it stands the runs would be e^{:.0f} times less "
+      "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; with the file's value the runs would be e^{:.0f} times "
+      "less "
       "probable.",
       figure.name, figure.before, figure.unit, figure.value, figure.unit,
       is_beyond_scale ? fmt::format(" (95 %: {:.3g} to {:.3g})", figure.low, figure.high) : std::string(), figure.gain_nats);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "attribution/open_loop.h"
 #include "attribution/rounds.h"
@@ -209,7 +210,7 @@ class Selector : Rounds {
       if (with_all_K < rules_.beside_unknown_share * error_with_K(best, others)) {
         kept.push_back(m);
       } else {
-        refuse(best.members[m], "more heat remains than what every model leaves");
+        refuse(best.members[m], "the residual heat stays larger than the model error");
       }
     }
     named = std::move(kept);
@@ -240,7 +241,7 @@ class Selector : Rounds {
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       const double better_share = input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share;
       if (error_with_K(best, named) > better_share * error_with_K(best, others)) {
-        refuse(best.members[named[i]], "whole runs are followed hardly better with it");
+        refuse(best.members[named[i]], "the prediction of whole runs hardly improves with it");
         named = std::move(others);
       }
     }
@@ -301,9 +302,10 @@ class Selector : Rounds {
     }
   }
 
-  /// Sum over the training runs of the mean square error with which a model predicts each from a fit to all others.
-  [[nodiscard]] double left_out_error_K2(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const LatentFlux& flux) const {
-    double sum_K2 = 0.0;
+  /// Mean square error of each training run as a model predicts it from a fit to all others.
+  [[nodiscard]] std::vector<double> left_out_errors_K2(const ExtendedModel& model, const std::vector<MeasuredRun>& runs,
+                                                       const LatentFlux& flux) const {
+    std::vector<double> errors_K2;
     for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
       std::vector<MeasuredRun> others;
       std::vector<std::vector<double>> start_C;
@@ -318,19 +320,24 @@ class Selector : Rounds {
         }
       }
       const RefitResult fit = try_refit(model, others, start_C, own);
-      sum_K2 += std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
-                                                 : std::numeric_limits<double>::infinity();
+      errors_K2.push_back(std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
+                                                           : std::numeric_limits<double>::infinity());
     }
-    return sum_K2;
+    return errors_K2;
   }
 
-  /// Whether the file's values predict the training runs better than values that were refitted to all but the predicted run.
+  /// Whether the file's values predict each training run better than values that were refitted to all other runs.
   [[nodiscard]] bool predicts_best_as_it_is() const {
-    double as_it_is_K2 = 0.0;
-    for (const MeasuredRun& run : input_.runs) {
-      as_it_is_K2 += std::pow(rms_K(open_loop_errors(input_.model, {run}, {})), 2);
+    if (input_.runs.size() < 2) {
+      return false;
     }
-    return input_.runs.size() >= 2 && as_it_is_K2 < left_out_error_K2(out_.own.model, input_.runs, out_.own.flux);
+    const std::vector<double> refitted_K2 = left_out_errors_K2(out_.own.model, input_.runs, out_.own.flux);
+    for (std::size_t r = 0; r < input_.runs.size(); ++r) {
+      if (std::pow(rms_K(open_loop_errors(input_.model, {input_.runs[r]}, {})), 2) >= refitted_K2[r]) {
+        return false;
+      }
+    }
+    return true;
   }
 
   /// Gives the model a curve if that predicts training runs that the fit has not seen.
@@ -342,8 +349,11 @@ class Selector : Rounds {
     }
     std::vector<MeasuredRun> runs = input_.runs;
     set_column(runs, curved->column);
-    if (!(left_out_error_K2(*curved, runs, final_options(judged.best_place).flux) <
-          left_out_error_K2(out_.after.model, runs, out_.after.flux))) {
+    const auto sum_K2 = [&](const ExtendedModel& model, const LatentFlux& flux) {
+      const std::vector<double> errors_K2 = left_out_errors_K2(model, runs, flux);
+      return std::accumulate(errors_K2.begin(), errors_K2.end(), 0.0);
+    };
+    if (!(sum_K2(*curved, final_options(judged.best_place).flux) < sum_K2(out_.after.model, out_.after.flux))) {
       return false;
     }
     RefitResult fit = try_refit(*curved, runs, out_.after.start_C, final_options(judged.best_place));

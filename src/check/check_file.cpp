@@ -106,7 +106,7 @@ class CheckReader {
   static std::optional<double> whole(Reader& table, const ParameterSpec& spec) {
     const std::optional<double> value = table.quantity(spec, Need::optional);
     if (value && *value != std::floor(*value)) {
-      table.problem(spec.key, fmt::format("{} is no whole number", significant_text(*value)));
+      table.problem(spec.key, fmt::format("{} is not a whole number", significant_text(*value)));
       return std::nullopt;
     }
     return value;

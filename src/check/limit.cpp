@@ -55,7 +55,7 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
     return {0.0, {}, fmt::format("\"{}\" limits the wrong side of {}; {}", all, type.name, expected(type))};
   }
   if (!all.starts_with(words) || (all.size() > words.size() && all[words.size()] != ' ')) {
-    return {0.0, {}, fmt::format("\"{}\" is no limit; {}", all, expected(type))};
+    return {0.0, {}, fmt::format("\"{}\" is not a limit; {}", all, expected(type))};
   }
   const std::string_view quantity = trimmed(all.substr(words.size()));
   const ParsedQuantity parsed = parse_quantity(quantity, type.unit);
@@ -67,7 +67,7 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
         0.0, {}, fmt::format("\"{}\" is out of range; expected {}, such as \"{}\"", all, to_string(type.range, type.unit), type.example)};
   }
   if (type.is_whole && parsed.value != std::floor(parsed.value)) {
-    return {0.0, {}, fmt::format("\"{}\" is no whole number; {}", all, expected(type))};
+    return {0.0, {}, fmt::format("\"{}\" is not a whole number; {}", all, expected(type))};
   }
   return {parsed.value, unit_behind(quantity), {}};
 }

@@ -38,7 +38,7 @@ void require_ascending(const CommittedTable& committed, int line, std::string_vi
 }
 
 Failure no_current(const CommittedTable& committed, int line) {
-  return bad_input({committed.file.string(), line, 1}, "current", "the table holds a current that is none; expected numbers");
+  return bad_input({committed.file.string(), line, 1}, "current", "the table contains a current that is not a finite number of at least 0");
 }
 
 /// Throws Failure (bad_input) if an axis does not ascend or a value is missing, not finite or impossible.
@@ -167,8 +167,9 @@ void read_csv_table(CommittedTable& committed) {
                             row.speed_rad_per_s == speeds[i / windings.size() / stators.size()] &&
                             row.stator_C == stators[i / windings.size() % stators.size()] && row.winding_C == windings[i % windings.size()];
     if (!is_of_grid) {
-      throw bad_input({committed.file.string(), lines[i], 1}, "",
-                      "the rows are no full grid of speed, stator and winding in this order; expected a file that `heatsoak derate` wrote");
+      throw bad_input(
+          {committed.file.string(), lines[i], 1}, "",
+          "the rows do not form a full grid of speed, stator and winding in this order; expected a file that `heatsoak derate` wrote");
     }
     if (!(row.current_A >= 0.0) || !std::isfinite(row.current_A)) {
       throw no_current(committed, lines[i]);

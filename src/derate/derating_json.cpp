@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
+#include "derate/export_text.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
@@ -18,9 +18,6 @@ Json rounded(double value, int decimals) {
   const double scale = std::pow(10.0, decimals);
   return std::isfinite(value) ? Json(std::round(value * scale) / scale) : Json();
 }
-
-/// Rounds to 12 digits, so that unit conversions do not show their rounding error.
-double short_value(double value) { return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr); }
 
 bool is_datasheet_alone(const Derating& derating) {
   return derating.observer.state_count() == 2 && std::ranges::all_of(derating.effects, [](const ActingEffect& effect) {
@@ -38,18 +35,18 @@ Json observer_json(const Derating& derating) {
       {"winding_K_per_s", "(r*R25*(1+alpha*(T_winding-25))*(k*I)^2 - (T_winding-T_stator)/R_winding_stator)/C_winding"},
       {"stator_K_per_s",
        "(r*torque_constant*no_load_current*|w| + (T_winding-T_stator)/R_winding_stator - (T_stator-T_ambient)/R_stator_ambient)/C_stator"},
-      {"heat_reserve_ratio_r", short_value(derating.observer.heat_reserve_ratio())},
-      {"heating_current_ratio_k", short_value(derating.heating_current_ratio)},
-      {"terminal_resistance_25C_ohm", short_value(motor.terminal_resistance_ohm)},
-      {"temperature_coefficient_per_K", short_value(motor.temperature_coefficient_per_K)},
-      {"torque_constant_Nm_per_A", short_value(motor.torque_constant_Nm_per_A)},
-      {"no_load_current_A", short_value(motor.no_load_current_A)},
-      {"thermal_resistance_winding_stator_K_per_W", short_value(motor.thermal_resistance_winding_stator_K_per_W)},
-      {"thermal_resistance_stator_ambient_K_per_W", short_value(motor.thermal_resistance_stator_ambient_K_per_W)},
+      {"heat_reserve_ratio_r", rounded_to_12_digits(derating.observer.heat_reserve_ratio())},
+      {"heating_current_ratio_k", rounded_to_12_digits(derating.heating_current_ratio)},
+      {"terminal_resistance_25C_ohm", rounded_to_12_digits(motor.terminal_resistance_ohm)},
+      {"temperature_coefficient_per_K", rounded_to_12_digits(motor.temperature_coefficient_per_K)},
+      {"torque_constant_Nm_per_A", rounded_to_12_digits(motor.torque_constant_Nm_per_A)},
+      {"no_load_current_A", rounded_to_12_digits(motor.no_load_current_A)},
+      {"thermal_resistance_winding_stator_K_per_W", rounded_to_12_digits(motor.thermal_resistance_winding_stator_K_per_W)},
+      {"thermal_resistance_stator_ambient_K_per_W", rounded_to_12_digits(motor.thermal_resistance_stator_ambient_K_per_W)},
       {"heat_capacity_winding_J_per_K",
-       short_value(motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W)},
+       rounded_to_12_digits(motor.thermal_time_constant_winding_s / motor.thermal_resistance_winding_stator_K_per_W)},
       {"heat_capacity_stator_J_per_K",
-       short_value(motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W)}};
+       rounded_to_12_digits(motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W)}};
 }
 
 Json default_spreads(const Derating& derating) {

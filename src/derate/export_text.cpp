@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <span>
 
 #include "base/diagnostic.h"
@@ -120,6 +121,8 @@ void require_three_signals(std::string_view controller, const Derating& derating
     }
   }
 }
+
+double rounded_to_12_digits(double value) { return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr); }
 
 double rounded_down_A(double current_A) { return std::floor(1000.0 * current_A) / 1000.0; }
 

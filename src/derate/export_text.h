@@ -41,6 +41,9 @@ void require_brushless(std::string_view controller, const Derating& derating);
 /// Throws Failure (bad_input) with the signal and the effects if a law depends on a signal other than current, speed and air temperature.
 void require_three_signals(std::string_view controller, const Derating& derating);
 
+/// Returns the value rounded to 12 significant digits, which drops the last digits of conversions: 0.0082 for 0.008199999999999999.
+double rounded_to_12_digits(double value);
+
 /// Returns the current rounded down to 1 mA, so that the limit stays on the safe side.
 double rounded_down_A(double current_A);
 

@@ -133,9 +133,10 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
                                            result.player, kLongestAbsence_s, loads.jumps));
   }
   const double all_s = result.wheels.front().duration_s();
-  result.sentences.push_back(fmt::format(
-      "{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the ground could not pass on the motion in {:.1f} % of the time",
-      result.player, all_s, loads.unseen_s, 100.0 * result.wheels.front().slip_share));
+  result.sentences.push_back(
+      fmt::format("{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the motion needed more grip than the ground gives in "
+                  "{:.1f} % of the time",
+                  result.player, all_s, loads.unseen_s, 100.0 * result.wheels.front().slip_share));
   return result;
 }
 

@@ -364,7 +364,7 @@ std::string to_string(const SmoothingReport& r) {
                           c.acceleration_noise_m_or_rad_per_s2, unit);
     return fmt::format(
         "{}: bandwidth {:.1f} Hz (-3 dB; {:.1f} Hz during the {:.0f} % of the time in which nothing but noise is seen), noise {:.1f} m{}, "
-        "{}, {} outliers had no say",
+        "{}, {} outliers ignored",
         name, c.bandwidth_Hz, c.quiet_bandwidth_Hz, 100.0 * c.quiet_share, 1e3 * c.noise_m_or_rad, unit, trust, c.outliers);
   };
   return fmt::format("{} points at {:.1f} Hz; {}; {}", r.points, r.frame_rate_Hz, channel(r.place, "place", "m"),

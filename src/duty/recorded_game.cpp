@@ -135,7 +135,7 @@ std::vector<std::string> sentences(const ImportReport& r) {
   add(counted(r.bridged_gaps, fmt::format("gaps up to {} s bridged", kLongestBridge_s)));
   add(counted(r.cuts, fmt::format("gaps longer than {} s: tracks cut there", kLongestBridge_s)));
   add(counted(r.teleports, "times a robot went on elsewhere: tracks cut there"));
-  add(counted(r.short_segments, "pieces of track left out: too short"));
+  add(counted(r.short_segments, "track segments left out because they are too short"));
   add(counted(r.clock_jumps, "jumps of the clock: all tracks cut there"));
   add(counted(r.frames_out_of_time, "frames left out: time of capture that no other frame confirms"));
   if (r.full_at_s) {

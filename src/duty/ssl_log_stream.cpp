@@ -100,7 +100,7 @@ bool SslLogStream::find_header() {
       }
       if (candidate == Candidate::yes) {
         bytes_.skip(at);
-        events_.problem(begin, fmt::format("no message begins here; {} bytes passed over", bytes_.offset() - begin));
+        events_.problem(begin, fmt::format("no valid message here; {} bytes skipped", bytes_.offset() - begin));
         return true;
       }
     }

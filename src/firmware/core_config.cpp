@@ -205,7 +205,7 @@ robot_core::Config make_core_config(const Robot& robot, const Motor& motor, cons
   const double periods = derating.options.period_s / options.period_s;
   if (std::round(periods) < 1.0 || std::abs(periods - std::round(periods)) > 1e-3 * periods) {
     throw Failure(ExitCode::bad_input,
-                  fmt::format("the guard's period of {:.6g} ms is no whole number of control periods of {:.6g} ms: choose one that is",
+                  fmt::format("the guard's period of {:.6g} ms is not a whole number of control periods of {:.6g} ms: choose one that is",
                               1e3 * derating.options.period_s, 1e3 * options.period_s));
   }
   robot_core::Config config = make_core_config(robot, motor.nominal, with_cold);

@@ -38,7 +38,7 @@ CoreOptions with_tolerance(CoreOptions options, const Motor& motor);
 robot_core::Config make_core_config(const Robot& robot, const MotorValues& motor, const CoreOptions& options);
 
 /// With the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from the motor's tolerance and
-/// the derating's coldest air. Throws Failure (bad_input) as above, and where the guard period is no whole number of control periods.
+/// the derating's coldest air. Throws Failure (bad_input) as above, and where the guard period is not a whole number of control periods.
 robot_core::Config make_core_config(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
                                     const HostGuard& guard);
 

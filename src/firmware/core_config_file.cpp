@@ -100,7 +100,7 @@ Origins control_origins(const CoreSource& source) {
       {"command_timeout_s", "default of the drive core"},
       {"braking_reserve_K", "heating of the winding by one full stop from speed_limit_m_per_s with robot file: limits.braking"},
       {"limp_current_A",
-       "smallest current that the derating still allows when each use that goes on has warmed everything up, over all speeds and hot "
+       "smallest current that the derating still allows in the steady state of each continuous use, over all speeds and hot "
        "cases"},
       {"warning_time_s", "default of the drive core"},
   };

@@ -15,7 +15,6 @@ bool may_turn_within_rows(const MeasuredRun& run);
 MeasuredRun turning_within_rows(MeasuredRun run);
 
 inline constexpr std::string_view kTurningRowsTold =
-    "speed changes its sign from row to row: what it was in between is taken for a straight line, which these runs find more probable than "
-    "a speed that was held over its row";
+    "speed changes its sign from row to row: it is interpolated linearly within rows, because that has the larger evidence in these runs";
 
 }  // namespace heatsoak

@@ -134,7 +134,7 @@ class Table {
       const std::string quantity = name.substr(0, name.size() - unit->size()) + "_";
       const auto other = std::ranges::find_if(header_, [&](const std::string& each) { return each.starts_with(quantity); });
       if (other != header_.end()) {
-        return fmt::format("; '{}' is in another unit: convert its figures and name the column '{}'", *other, name);
+        return fmt::format("; '{}' is in another unit: convert its values and name the column '{}'", *other, name);
       }
     }
     return did_you_mean(name, header_);

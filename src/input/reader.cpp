@@ -280,7 +280,7 @@ void Reader::read_spread(const ParameterSpec& spec, Figure& figure) {
   if (!(*low <= figure.value && figure.value <= *high)) {
     problem("range", "does not enclose the value; expected lowest ≤ value ≤ highest");
   } else if (!spec.range.contains(*low) || !spec.range.contains(*high)) {
-    problem("range", fmt::format("leaves what is possible; expected {}", to_string(spec.range, spec.unit)));
+    problem("range", fmt::format("is outside the possible range; expected {}", to_string(spec.range, spec.unit)));
   } else {
     figure.spread = {Spread::Kind::range, *low, *high, !is_temperature && *low > 0.0};
   }

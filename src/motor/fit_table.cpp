@@ -130,7 +130,7 @@ MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
   fit.figures = table.texts("figures", Need::required);
   for (const std::string& each : fit.figures) {
     if (std::ranges::find(figures, each) == figures.end()) {
-      table.problem("figures", fmt::format("'{}' is no figure of this file{}", each, did_you_mean(each, figures)));
+      table.problem("figures", fmt::format("'{}' is not a parameter of this file{}", each, did_you_mean(each, figures)));
     }
   }
   fit.correlation = read_correlation(table, fit.figures.size());

@@ -129,7 +129,7 @@ std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& tabl
     waiting.erase(next);
   }
   for (const MotorEffect& effect : waiting) {
-    table.problem(effect.name, "hangs on a node that hangs on this one; expected a chain that ends at winding, stator or ambient");
+    table.problem(effect.name, "depends on a node that depends on this one; expected a chain that ends at winding, stator or ambient");
   }
   return ordered;
 }

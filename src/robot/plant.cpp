@@ -129,7 +129,7 @@ Electrics sagging_bus(const Held& held, const Wheels& back_emf_V, double source_
     low_excess_V = excess_V(motors(low_V), low_V);
   }
   if (high_excess_V <= 0.0 || low_excess_V >= 0.0) {
-    return at;  // braking raises the bus voltage, so it is no limit
+    return at;  // braking raises the bus voltage, so it is not a limit
   }
   for (int round = 0; round < 60 && high_V - low_V > 1e-12 * source_V; ++round) {
     const double bus_V = high_V - high_excess_V * (high_V - low_V) / (high_excess_V - low_excess_V);

@@ -68,7 +68,7 @@ TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
       "[surprise]\n");                             // 14
   for (const char* each : {":3:9: error: check[0].robot: there is no robot 'roboteam_twente_2024'", "did you mean 'roboteam_twente_v2024'?",
                            ":4:11: error: check[0].sampels: is not a key of this table; did you mean 'samples'?",
-                           ":5:8: error: check[0].seed: 3 is a bare number", ":6:11: error: check[0].samples: 3.5 is no whole number",
+                           ":5:8: error: check[0].seed: 3 is a bare number", ":6:11: error: check[0].samples: 3.5 is not a whole number",
                            ":7:10: error: check[0].derate.coldest", "is used by none of this check's limits",
                            ":9:20: error: check[0].limits.winding_peak_p95: \"nan degC\" is not a finite number",
                            ":10:18: error: check[0].limits.winding_peak: there is no such threshold; did you mean 'winding_peak_p95'?",
@@ -95,9 +95,9 @@ TEST_F(CheckFiles, SenselessLimitsAreRefusedAtTheirPlace) {
   const int first = 1 + static_cast<int>(std::ranges::count(kHead, '\n'));
   const std::vector<std::string> expected{"winding_peak_p95: \"at most 70 K\" is out of range; expected -60",
                                           "stator_peak_p95: \"at most -400 degC\" is out",
-                                          "rank: \"at most 1.5\" is no whole number",
+                                          "rank: \"at most 1.5\" is not a whole number",
                                           "current_margin: \"at least 1e30 A\" is out of range",
-                                          "lint_problems: \"at most 0.5\" is no whole number",
+                                          "lint_problems: \"at most 0.5\" is not a whole number",
                                           "time_above: \"at most 1e30 s\" is out",
                                           "derating_excess: \"at most 1e30 A\" is out",
                                           "core_size: \"at most 1e30 byte\" is out",

@@ -27,7 +27,7 @@ TEST(Limit, IsReadInTheUnitOfItsThreshold) {
 TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
   const auto problem = [](std::string_view text, std::string_view name) { return parse_limit(text, threshold(name)).problem; };
   EXPECT_THAT(problem("150 degC", "winding_peak_p95"), HasSubstr("expected at most and a value"));
-  EXPECT_THAT(problem("at mostly 150 degC", "winding_peak_p95"), HasSubstr("is no limit"));
+  EXPECT_THAT(problem("at mostly 150 degC", "winding_peak_p95"), HasSubstr("is not a limit"));
   EXPECT_THAT(problem("at most", "winding_peak_p95"), HasSubstr("does not begin with a number"));
   EXPECT_THAT(problem("at least 150 degC", "winding_peak_p95"), HasSubstr("the wrong side"));
   EXPECT_THAT(problem("at most 150", "winding_peak_p95"), HasSubstr("has no unit"));
@@ -36,7 +36,7 @@ TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
   EXPECT_THAT(problem("at most inf degC", "winding_peak_p95"), HasSubstr("not a finite number"));
   EXPECT_THAT(problem("at most 1e999 degC", "winding_peak_p95"), HasSubstr("too large"));
   EXPECT_THAT(problem("at most 150 %", "probability_over_limit"), HasSubstr("out of range"));
-  EXPECT_THAT(problem("", "rank"), HasSubstr("is no limit"));
+  EXPECT_THAT(problem("", "rank"), HasSubstr("is not a limit"));
 }
 
 TEST(Limit, BothSidesOfAValue) {

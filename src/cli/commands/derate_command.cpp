@@ -60,7 +60,7 @@ double current_at_A(const UsePlayed& played, double time_s) {
 }
 
 std::string table_text(const Derating& derating) {
-  std::string text = "allowed while all of it is used, from a motor as warm as the air, A:\n  speed rad/s";
+  std::string text = "allowed current in A if it is fully used, starting at the temperature of the air:\n  speed rad/s";
   for (const double time_s : kMoments_s) {
     text += fmt::format(" {:>9}", fmt::format("at {}", duration_text(time_s)));
   }
@@ -101,7 +101,7 @@ std::string report(const Derating& derating) {
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
     text += fmt::format(
-        "beyond {:.0f} of {:.0f} rad/s the motor may pass a limit without any current: what is allowed falls to 0 A at {:.0f} rad/s\n",
+        "beyond {:.0f} of {:.0f} rad/s the motor may exceed a limit without current: the allowed current falls to 0 A at {:.0f} rad/s\n",
         derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.no_current_speed_rad_per_s);
   }
   const TableBound& bound = derating.table.bound;
@@ -203,7 +203,7 @@ ExitCode run(const Options& options, Session& session) {
   // Read first, so that an invalid file is reported before the computation.
   const std::optional<CommittedTable> committed =
       options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
-  Derating derating = derate(motor, *robot, derate_options, progress_bar("looking for the reserve"));
+  Derating derating = derate(motor, *robot, derate_options, progress_bar("searching the safety factor on heat"));
   derating.provenance = provenance_of(motor, *robot, derate_options);
   session.say(report(derating) + sensor_text(derating) + default_spreads_text({&motor, 1}) + columns_at_their_hottest({&motor, 1}) +
               effects_under_conditions({&motor, 1}));

@@ -95,7 +95,7 @@ ExitCode run(Options& options, Session& session) {
   const Motor motor = guarded_motor(options.guard, named);
   static_cast<void>(make_core_config(*robot, motor.nominal, options.core));
   options.guard.derate.period_s = guard_period_s(options.core.period_s);
-  const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("looking for the reserve"));
+  const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("searching the safety factor on heat"));
   const CoreFolder folder = core_files(*robot, motor, options.core, derating, fmt::format("heatsoak {}", program_version()));
   const auto staged = std::make_shared<StagedFolder>(options.out, folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });

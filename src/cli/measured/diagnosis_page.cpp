@@ -163,12 +163,11 @@ std::string tests_in_words(const std::vector<InnovationTests>& tests) {
   std::string words;
   for (const InnovationTests& test : tests) {
     if (test.ljung_box_probability < kWhite_probability || test.periodogram_ratio > 1.0) {
-      words +=
-          fmt::format(" What is left of {} can still be foretold from one second to the next: its intervals are less sure.", test.signal);
+      words += fmt::format(" What is left of {} is correlated from one second to the next: its intervals are too narrow.", test.signal);
     }
     if (test.variance_ratio < kLow_ratio || test.variance_ratio > kHigh_ratio) {
-      words += fmt::format(" The noise of {} is {} than what its log was taken to have.", test.signal,
-                           test.variance_ratio < 1.0 ? "smaller" : "larger");
+      words +=
+          fmt::format(" The noise of {} is {} than assumed for its log.", test.signal, test.variance_ratio < 1.0 ? "smaller" : "larger");
     }
   }
   return words.empty() ? "" : "<p>" + words.substr(1) + "</p>\n";
@@ -289,7 +288,7 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   }
   std::ranges::transform(diagnosis.selection.refused, std::back_inserter(remarks), &Refusal::words);
   std::ranges::move(by_reason(diagnosis.selection.not_judged), std::back_inserter(remarks));
-  text += "<h2>What was not judged, and what is taken for granted</h2><ul>";
+  text += "<h2>Effects not tested, and assumptions</h2><ul>";
   for (const std::string& remark : remarks) {
     text += "<li>" + escaped(remark) + "</li>";
   }

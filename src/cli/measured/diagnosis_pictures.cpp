@@ -77,7 +77,7 @@ DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& inp
 
 DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
   Chart chart{"Unknown heat in W before and after",
-              "what must flow into the node besides the model for the temperatures to be as measured; band: 95 % after, given the model",
+              "unknown heat flux into the node that explains the measured temperatures; band: 95 % after, given the model",
               "time / min",
               {}};
   for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {

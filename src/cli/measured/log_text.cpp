@@ -164,8 +164,8 @@ std::string log_text(const Recording& recording, const RecordingReport& report, 
   const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };
   const bool has_wheels = has([](const Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
   const bool has_temperatures = has([](const Channel& channel) { return channel.quantity.kind == QuantityKind::temperature; });
-  text += has_temperatures || !quality.drive.is_good() ? fitness_text("can tell about heat", quality.thermal) : "";
-  text += has_wheels || !quality.thermal.is_good() ? fitness_text("can tell about wheels", quality.drive) : "";
+  text += has_temperatures || !quality.drive.is_good() ? fitness_text("usable for thermal models", quality.thermal) : "";
+  text += has_wheels || !quality.thermal.is_good() ? fitness_text("usable for wheel models", quality.drive) : "";
   return text;
 }
 

@@ -47,7 +47,8 @@ std::string guarantee_text(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return fmt::format(
       " * Winding at most {:.0f} degC{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
-      " * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding never passes its limit. "
+      " * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding temperature never "
+      "exceeds its limit. "
       "The\n"
       " * safety factor on heat is {:.3g}, for a confidence of {:.3g}: of {} motors drawn from the declared tolerances {} exceeded a\n"
       " * limit in one of the {} hardest uses ({:.1f} %, with other draws {:.1f} to {:.1f} %), the hottest winding reached {:.0f} degC.\n"
@@ -77,7 +78,7 @@ std::string head_comment(const Source& source) {
              " * Once, after a long rest:      {0}_start(&motor, board_C);   what was never started counts as hot as its limit\n"
              " * every {1:.9g} s:                out = {0}_step(&motor, &in);   then |current| <= out.allowed_current_A until the next "
              "call\n"
-             " * A state that survives a reset in RAM goes on from there. */\n",
+             " * A state that is kept in RAM continues after a reset. */\n",
              source.prefix, derating.options.period_s);
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/version.h"
+#include "derate/export_text.h"
 
 namespace heatsoak {
 namespace {
@@ -46,7 +47,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-std::string number(double value) { return fmt::format("{}", value); }
+std::string number(double value) { return fmt::format("{}", rounded_to_12_digits(value)); }
 
 std::string units(const FmuModel& model) {
   std::set<std::string_view> used;

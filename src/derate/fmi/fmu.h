@@ -58,7 +58,7 @@ FmuModel guard_fmu(const Derating& derating, std::string_view exporter);
 /// Generates C files with variables, start values and types; appends the text `more` to their header.
 std::vector<FmuFile> fmu_tables(const FmuModel& model, std::string_view more);
 
-/// Returns the shortest text that reads back to the same value, such as "0.5" or "25.0"; in parentheses if negative.
+/// Returns the value with at most 12 digits, such as "0.5" or "25.0"; in parentheses if negative.
 std::string fmu_number(double value);
 std::string_view fmu_unit(std::string_view variable);
 

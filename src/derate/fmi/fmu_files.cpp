@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 
+#include "derate/export_text.h"
 #include "derate/fmi/description.h"
 #include "derate/fmi/fmu.h"
 
@@ -46,7 +47,7 @@ std::string documentation(const FmuModel& model) {
 }  // namespace
 
 std::string fmu_number(double value) {
-  std::string text = fmt::format("{}", value);
+  std::string text = fmt::format("{}", rounded_to_12_digits(value));
   if (text.find_first_of(".en") == std::string::npos) {
     text += ".0";
   }

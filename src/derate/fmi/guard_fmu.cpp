@@ -46,7 +46,7 @@ std::vector<FmuVariable> variables(const Derating& derating) {
 std::string bindings(const Derating& derating) {
   const std::string prefix = identifier(derating.motor_id);
   std::string text = fmt::format(
-      "#include \"motor_guard.h\"\n\n#define MODEL_TAKES_UNKNOWN 1 /* an input that is no number is taken at its hottest */\n"
+      "#include \"motor_guard.h\"\n\n#define MODEL_TAKES_UNKNOWN 1 /* an input that is not a number is replaced by its worst case */\n"
       "#define GUARD_PERIOD_S {1}\n#define guard_start {0}_start\n#define guard_step {0}_step\n\n"
       "typedef {0}_state guard_state;\ntypedef {0}_input guard_input;\ntypedef {0}_output guard_output;\n\n"
       "typedef struct {{\n  guard_state guard;\n  double calls;\n  double start_s;\n}} model_part;\n\n"

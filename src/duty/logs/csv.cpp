@@ -201,7 +201,7 @@ RobotName robot_of(const std::filesystem::path& file, const CsvRow& row) {
     throw Failure(ExitCode::bad_input, "",
                   with_characters({{{file.string(), row.line, row.cells[robot_id]},
                                     "robot_id",
-                                    fmt::format("{} is no robot; expected a whole number from 0 to {}", id, kLargestRobotId)}}));
+                                    fmt::format("{} is not a robot id; expected a whole number from 0 to {}", id, kLargestRobotId)}}));
   }
   return {row.values[team] == 0.0 ? Team::yellow : Team::blue, static_cast<int>(id)};
 }

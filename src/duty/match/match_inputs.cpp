@@ -16,7 +16,7 @@ constexpr Range kAngle = Range::between(0.0, std::numbers::pi);
 
 // clang-format off
 constexpr std::array kSpecs = {
-    MatchInputSpec{{"running_mean", "s", kSeconds, "mean stretch of play between interruptions, unless the half ends first"}, &MatchValues::running_mean_s},
+    MatchInputSpec{{"running_mean", "s", kSeconds, "mean interval of play between interruptions, unless the half ends first"}, &MatchValues::running_mean_s},
     MatchInputSpec{{"stop_mean", "s", kSeconds, "mean length of a stop"}, &MatchValues::stop_mean_s},
     MatchInputSpec{{"stop_shortest", "s", Range::between(0.0, 600.0), "length of the shortest stop, part of the mean"}, &MatchValues::stop_shortest_s},
     MatchInputSpec{{"placement_share", "", kShare, "part of interruptions with ball placement"}, &MatchValues::placement_share},

@@ -415,7 +415,7 @@ class Calibrating {
       const double moves_K = standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
         all_.notes.push_back(fmt::format(
-            "the fitted model is {} K rms off {}, which moves by {} K (standard deviation): do not rely on its figures; is it another "
+            "the fitted model is {} K rms off {}, which moves by {} K (standard deviation): do not rely on its parameters; is it another "
             "motor, or a unit wrong (degrees Fahrenheit, minutes, milliamperes)?",
             significant(each.after.rmse_K, 2), each.signal, significant(moves_K, 2)));
       }

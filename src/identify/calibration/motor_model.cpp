@@ -339,7 +339,7 @@ HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorqu
                          "computed"});
     }
   }
-  throw Failure(ExitCode::bad_input, "the logs do not tell how much heat goes in", std::move(lacking));
+  throw Failure(ExitCode::bad_input, "the logs have no heat input", std::move(lacking));
 }
 
 bool has_remaining_loss(const Motor& motor) {

@@ -33,7 +33,7 @@ struct LossAtUnloggedSpeed {
 const EffectType& loss_at_unlogged_speed() {
   static const EffectType type{
       .name = kLossAtUnloggedSpeed,
-      .summary = "Loss at a speed that no log tells.",
+      .summary = "Loss at a speed that was not logged.",
       .equation = "P_stator = (k + k_driven · [I > I_least]) · P_most",
       .reference = "",
       .nodes = {{"stator", "stator"}},

@@ -77,7 +77,7 @@ class ColumnsOfRobot {
   Column modulated(const Column& modulation) {
     const Column* battery = column("battery_V") ? column("battery_V") : column("bus_V");
     note(battery ? "voltage: modulation × battery voltage"
-                 : fmt::format("voltage: modulation × {} V, the robot's nominal battery voltage; the log has none, and every figure in V "
+                 : fmt::format("voltage: modulation × {} V, the robot's nominal battery voltage; the log has none, and every value in V "
                                "scales with it, beyond its interval",
                                significant(robot_.battery_V, 3)));
     Column voltage_V = modulation;

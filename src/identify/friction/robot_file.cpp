@@ -150,7 +150,7 @@ Lines wheel_table(const WheelFriction& wheel, const DriveConstants& drive, const
               figure(constant, 1e3, "mN m", 0.0, source, "b = " + volts(wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
           "sine = " + figure(sine, 1e3, "mN m", none, source, "a = " + volts(wheel.sine_V) + "; " + conversion),
           "phase = " + figure(converted(wheel.phase_rad, degrees), 1.0, "deg", none, source,
-                              wheel.phase_is_given ? "the wheel's rolling direction: the headings are too few to tell" : "fitted")};
+                              wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
 }
 
 void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::vector<std::string>& notes) {

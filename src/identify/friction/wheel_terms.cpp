@@ -115,14 +115,14 @@ ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const
   }
   if (!is_told(design(points, wheel, terms), terms, WheelTerm::damping)) {
     if (!travels || std::isnan(settings.known_damping_V_s_per_rad)) {
-      chosen.problem = "all its legs have one speed, so that damping and friction cannot be told apart; drive at two speeds or more";
+      chosen.problem = "all its legs have one speed, so that damping and friction are indistinguishable; drive at two speeds or more";
       return chosen;
     }
     std::erase(terms, WheelTerm::damping);
     chosen.damping_is_given = true;
   }
   if (travels && !friction_is_told(points, wheel, terms, chosen.phase_is_given ? settings.phase_doubt_rad : 0.0)) {
-    chosen.problem = "its headings are too few to tell how friction depends on the direction; drive at least six directions all around";
+    chosen.problem = "too few headings to determine how friction depends on the direction; drive at least six directions all around";
   } else if (points.size() < terms.size() + 3) {
     chosen.problem = "it has too few steady legs";
   }

@@ -28,7 +28,7 @@ std::optional<int> whole_number(Reader& reader, const char* key, int lowest, int
   const std::optional<double> value =
       reader.quantity({key, "", Range::between(static_cast<double>(lowest), static_cast<double>(highest)), meaning}, Need::optional);
   if (value && *value != std::floor(*value)) {
-    reader.problem(key, "is no whole number");
+    reader.problem(key, "is not a whole number");
     return std::nullopt;
   }
   return value ? std::optional(static_cast<int>(*value)) : std::nullopt;

@@ -247,7 +247,7 @@ ExitCode run(const Options& options, Session& session) {
 Command calibrate_command() {
   return {
       .name = {},
-      .summary = "Fits the thermal figures of a motor to measured runs, with intervals and what the runs cannot tell; exit 3 if nothing",
+      .summary = "Fits the thermal parameters of a motor to measured runs, with intervals and what the runs cannot tell; exit 3 if nothing",
       .example =
           "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
           "heatsoak calibrate --motor maxon_ec45_flat_70w_24v log.csv --out model.toml --plot calibration.svg",
