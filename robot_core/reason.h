@@ -48,7 +48,7 @@
 //   - Each voltage keeps the current limit for every speed that the wheel may have: the speed of its own sensor, the speeds that each two
 //     other wheels imply with the gyro, and the speed that three other wheels imply. Any two sensors of four wheels and a gyro may be
 //     wrong without more current as long as the wheels roll. With one sensor less (three wheels, or after a fault) any single one may be
-//     wrong; swapped wheel sensors are assumed until enough driving (kMostChecked) has shown that none are swapped. Fault 113 is looked
+//     wrong; swapped wheel sensors are assumed until enough driving (kConfirmations) has shown that none are swapped. Fault 113 is looked
 //     for until then. If no sensor is to spare, every current is limited to limp_current_A (limit 17).
 //   - The bridge opens if the current sensor and the speeds leave no common voltage.
 //   - The stop after a fault of the command (104 to 106) keeps the acceleration limit and uses no braking reserve of the guard.

@@ -23,6 +23,8 @@ constexpr float kSettling_share = 0.15F;
 constexpr float kSwap_s = 0.3F;
 constexpr float kLeastContradiction_share = 0.008F;
 constexpr float kMuchMore_ratio = 4.0F;
+// Share of the least contradiction above which a comparison says something.
+constexpr float kClear_share = 0.1F;
 // Of the least contradiction, as a confirmation while wheels are driven one by one: they slide for a while after it.
 constexpr float kWheelwise_ratio = 10.0F;
 // A wheel that changes its speed faster than this multiple of the limits of acceleration slides.
@@ -197,7 +199,7 @@ void find_responses(const Config& config, State& state, const Believed& believed
 /// controlled: wheels that are driven against each other move as the strongest want.
 void compare_pairs(const Config& config, State& state, const Believed& believed, float since_s) {
   ComparisonState& comparison = state.comparison;
-  if (comparison.checked_comparisons >= kMostChecked) {
+  if (comparison.is_checked != 0) {
     return;  // wires change no places while the robot drives, but pushed robots slide as if they had
   }
   const float keep = 1.0F - smaller(1.0F, since_s / kSwap_s);
@@ -207,8 +209,8 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
   const bool is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
   const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
-  const float least = most;
-  bool is_decided = true;
+  const float clear = kClear_share * most;
+  bool is_checked = true;
   // The body couples its wheels, so a current may well slow its wheel down. Four samples then still fit one motion of the body.
   float& residual_m2_per_s2 = comparison.residual_m2_per_s2;
   residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, believed) - residual_m2_per_s2);
@@ -229,7 +231,13 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
       float& against = comparison.against_V_rad_per_s[pair];
       with = is_wheelwise ? kWheelwise_ratio * most : keep * with + larger(0.0F, product);
       against = is_wheelwise ? 0.0F : keep * against + (grows ? larger(0.0F, -product) : 0.0F);
-      is_decided = is_decided && !is_wheelwise && with + against > least;
+      std::uint8_t& confirmations = comparison.confirmations[pair];
+      if (against > clear) {
+        confirmations = 0;
+      } else if (!is_wheelwise && with > clear && with > kMuchMore_ratio * against && confirmations < kConfirmations) {
+        ++confirmations;
+      }
+      is_checked = is_checked && confirmations >= kConfirmations;
       if (is_contradiction && against > kMuchMore_ratio * with && against > most) {
         most = against;
         worst[0] = i;
@@ -237,8 +245,7 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
       }
     }
   }
-  const int checked = comparison.checked_comparisons + (is_decided && comparison.checked_comparisons < kMostChecked ? 1 : 0);
-  comparison.checked_comparisons = static_cast<std::uint16_t>(worst[0] >= 0 ? 0 : checked);
+  comparison.is_checked = is_checked && worst[0] < 0 ? 1 : 0;
   for (const int i : worst) {
     if (i >= 0) {
       state.wheel[i].speed_fault = code(Reason::wheel_speed_swapped);

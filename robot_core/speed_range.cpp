@@ -53,7 +53,7 @@ void add_triple(const Config& config, const Rims& rims, int i, SpeedRange& range
   }
   // With one sensor to spare, two swapped ones may go unnoticed: until they would have been found, every sample may be this wheel's.
   // Without one, the current is a safe one anyway.
-  const bool is_any_possible = sensed == 4 && state.comparison.checked_comparisons < kMostChecked;
+  const bool is_any_possible = sensed == 4 && state.comparison.is_checked == 0;
   const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
   for (int j = 0; j < config.wheel_count; ++j) {
     if (rims.is_sensed[j] && j == wheel) {
