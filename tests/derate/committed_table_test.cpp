@@ -210,7 +210,7 @@ TEST_F(Tampered, WhatIsNoTableIsRefused) {
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1")),
               HasSubstr("as many as its axes"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_square_A2\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1nan,")),
-              HasSubstr("a current that is none"));
+              HasSubstr("a current that is not a finite number"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$01999.0f,")),
               HasSubstr("does not ascend"));
 }
