@@ -276,8 +276,8 @@ inline constexpr float kSteadyAgain_s = 0.25F;
 inline constexpr float kStanding_s = 0.3F;
 
 /// Comparisons, one in 16 periods, in which the currents of a pair of wheels clearly accelerate the difference of their speeds, after which
-/// its sensors count as not swapped: 0.5 s of such driving at 1 kHz.
-inline constexpr int kConfirmations = 32;
+/// its sensors count as not swapped.
+inline constexpr int kConfirmations = 16;
 
 /// What is known when the robot is switched on.
 struct StartUp {

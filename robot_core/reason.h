@@ -9,7 +9,8 @@
 // | 100 R  | start() found that Config fails its check sum or holds an   | all bridges open                                  | start() with a valid Config     |
 // |        | impossible value                                            |                                                   |                                 |
 // | 101 R  | State fails its check sum (bit flip, never started)         | State is started anew with the sensor faults that | next step; the guard cools down |
-// |        |                                                             | were known, guard as hot as its limit             |                                 |
+// |        |                                                             | were known, guard as hot as its limit; in         |                                 |
+// |        |                                                             | ComparisonState: currents doubted, speeds limp    | sensors agree again             |
 // | 102 R  | Input::elapsed_s not finite or below half a period          | all bridges open for this step                    | next valid step                 |
 // | 103 R  | Input::elapsed_s above kLongestGap_periods periods          | integrators and references start anew; the guard  | next valid step                 |
 // |        |                                                             | heats for the gap with the largest current        |                                 |
@@ -60,9 +61,15 @@
 //     each other. Sliding wheels look the same. A slipping wheel with a wrong speed sensor and no current sensor may exceed its limit.
 //   - More wrong speed sensors than are to spare: the current may exceed its limit for some periods. If all wheel sensors show 0 the robot
 //     accelerates for kStanding_s before it is held to the limp current (115).
+//   - Pushes on a standing robot before swapped sensors are ruled out can look like swapped sensors: two wheels then keep the limp current
+//     until start().
+//   - All wheel sensors dead with noise: they agree with each other, so the robot is not held to the limp current.
 //   - A gyro with a wrong sign, scale or offset: the robot turns wrongly.
-//   - A battery sensor that is wrong by the same factor since the start or since a fault, or sinks more slowly than 0.4 % of the full
-//     battery per second: the current may exceed its limit by that factor.
+//   - A pose that is stuck or jumps: a pose target then leads anywhere. The caller has to send the age of the pose as that of the command.
+//   - An air temperature that is too low since the start: the guard is too cold by as much.
+//   - A timer that is invalid (102) and hides a gap: the heat of that gap is not counted. The watchdog of the firmware bounds it.
+//   - A battery sensor that is wrong by the same factor since the start or since a fault, that sinks more slowly than 0.4 % of the full
+//     battery per second, or that stays too low for minutes: the current may exceed its limit by that factor.
 //   - A command that is wrong but possible.
 // Faults 111, 112 and 121 are found later, or not at all, if the robot's file has no current limit of the driver.
 #pragma once

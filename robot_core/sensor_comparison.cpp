@@ -234,7 +234,7 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
       std::uint8_t& confirmations = comparison.confirmations[pair];
       if (against > clear) {
         confirmations = 0;
-      } else if (!is_wheelwise && with > clear && with > kMuchMore_ratio * against && confirmations < kConfirmations) {
+      } else if (!is_wheelwise && product > clear && with > kMuchMore_ratio * against && confirmations < kConfirmations) {
         ++confirmations;
       }
       is_checked = is_checked && confirmations >= kConfirmations;
@@ -289,11 +289,15 @@ void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(com
 
 void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed) {
   if (believed.robot_fault == Reason::time_jump) {
-    // Nothing of before the gap can be compared with what comes after it.
-    state.comparison = {};
-    for (int i = 0; i < config.wheel_count; ++i) {
-      state.comparison.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
+    // Speeds of before the gap cannot be compared with those after it; what was found stays.
+    ComparisonState after;
+    for (int i = 0; i < kMostWheels; ++i) {
+      after.current_error_s[i] = state.comparison.current_error_s[i];
+      after.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
     }
+    after.standing_s = state.comparison.standing_s;
+    after.is_checked = state.comparison.is_checked;
+    state.comparison = after;
     copy_faults(state);
     seal(state.comparison);
     return;
@@ -304,7 +308,12 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
     return;
   }
   if (state.comparison.check_sum != check_sum_of(state.comparison)) {
-    state.comparison = {};  // what it had found stands in the faults
+    // Speed faults stand in `wheel`. The rest is taken at its worst: currents are doubted and speeds count as dead until they agree again.
+    state.comparison = {};
+    for (float& error_s : state.comparison.current_error_s) {
+      error_s = kStuck_s + kSteadyAgain_s;
+    }
+    state.comparison.standing_s = 2.0F * kStanding_s;
     believed.robot_fault = believed.robot_fault == Reason::period_invalid ? believed.robot_fault : Reason::state_corrupted;
   }
   const float since_s = believed.elapsed_s * static_cast<float>(kStepsPerComparison);

@@ -331,6 +331,18 @@ TEST(FaultTable, wheel_speeds_dead) {
   EXPECT_LE(record.speed_at_end_m_per_s, 1.5 * static_cast<double>(limp_rad_per_s * config.wheel_radius_m));
   // A robot that was at rest, then held: 0.3 s of pushing, then the limp current.
   EXPECT_LT(record.peak_of_wheel_A, 12.0);
+  // A gap in time or a flipped bit every 250 ms does not make the sensors alive again.
+  for (const bool is_gap : {true, false}) {
+    Case upset = test;
+    upset.spoil = [&](Input& input, State& state, int k) {
+      all_zero(input, state, k);
+      if (k > 1000 && k % 250 == 0) {
+        input.elapsed_s = is_gap ? 3.5F * config.period_s : input.elapsed_s;
+        state.comparison.standing_s += is_gap ? 0.0F : 1e-3F;
+      }
+    };
+    EXPECT_LE(run(upset, false).speed_at_end_m_per_s, 1.5 * static_cast<double>(limp_rad_per_s * config.wheel_radius_m)) << is_gap;
+  }
 }
 
 TEST(FaultTable, current_missing) {
