@@ -227,10 +227,8 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
     all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
   }
   add_unexplained(diagnosis, all);
-  if (diagnosis.selection.is_kept) {
-    all.emplace_back(diagnosis.selection.is_as_usual
-                         ? "The file's values stay: the runs are followed as well as those that the file was fitted to."
-                         : "The file's values stay: they predict each training run better than values fitted to the other runs do.");
+  if (diagnosis.selection.is_as_usual) {
+    all.emplace_back("The file's values stay: the runs are followed as well as those that the file was fitted to.");
   }
   const bool is_held_out = !score.before.empty();
   const bool is_more = !diagnosis.effects.empty();

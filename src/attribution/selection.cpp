@@ -87,9 +87,6 @@ class Selector : Rounds {
       keep_what_helps(best, named);
     }
     build(judged, best, named);
-    if (named.empty() && out_.changed.empty() && predicts_best_as_it_is()) {
-      keep_as_it_is(judged);
-    }
   }
 
   void refuse(int member, const std::string& why) {
@@ -223,7 +220,6 @@ class Selector : Rounds {
   }
 
   void keep_as_it_is(const Judged& judged) {
-    out_.is_kept = true;
     RefitOptions as_it_is = final_options(judged.empty_place);
     as_it_is.most_steps = 0;
     as_it_is.around.clear();
@@ -324,20 +320,6 @@ class Selector : Rounds {
                                                            : std::numeric_limits<double>::infinity());
     }
     return errors_K2;
-  }
-
-  /// Whether the file's values predict each training run better than values that were refitted to all other runs.
-  [[nodiscard]] bool predicts_best_as_it_is() const {
-    if (input_.runs.size() < 2) {
-      return false;
-    }
-    const std::vector<double> refitted_K2 = left_out_errors_K2(out_.own.model, input_.runs, out_.own.flux);
-    for (std::size_t r = 0; r < input_.runs.size(); ++r) {
-      if (std::pow(rms_K(open_loop_errors(input_.model, {input_.runs[r]}, {})), 2) >= refitted_K2[r]) {
-        return false;
-      }
-    }
-    return true;
   }
 
   /// Gives the model a curve if that predicts training runs that the fit has not seen.

@@ -72,7 +72,6 @@ struct Selection {
   double nothing_probability = 1.0;      ///< of the empty set
   std::vector<Refusal> refused;
   bool is_as_usual = false;     ///< whole runs are followed as those that the file was fitted to: nothing was changed
-  bool is_kept = false;         ///< the file's values predict runs that a fit has not seen better than refitted ones: they stay
   bool is_unexplained = false;  ///< heat is left that matters, and no effect of the catalogue is it
 
   /// More heat is left than what every model leaves.

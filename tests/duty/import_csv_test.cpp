@@ -65,7 +65,7 @@ TEST(ImportCsv, NamesThePlaceOfWhatIsWrong) {
               HasSubstr("game.csv:5:5: error: team: \"yelow\" is not yellow or blue; did you mean 'yellow'?"));
   EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,zero,0,0\n"),
               HasSubstr("game.csv:5:12: error: x_m: \"zero\" is not a finite number"));
-  EXPECT_THAT(failure_of_table(table(3) + "101,blue,1.5,0,0,0\n"), HasSubstr("game.csv:5:10: error: robot_id: 1.5 is no robot"));
+  EXPECT_THAT(failure_of_table(table(3) + "101,blue,1.5,0,0,0\n"), HasSubstr("game.csv:5:10: error: robot_id: 1.5 is not a robot id"));
   EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,0,0\n"), HasSubstr("game.csv:5:1: error: has 5 cells where the header has 6"));
   EXPECT_THAT(failure_of_table("t_s,team,robot,x_m,y_m,yaw_rad\n0,blue,1,0,0,0\n"), HasSubstr("robot_id: there is no such column"));
   EXPECT_THAT(failure_of_table(kHeader), HasSubstr("holds no row"));

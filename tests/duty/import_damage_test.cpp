@@ -138,7 +138,7 @@ TEST(ImportDamage, PassesOverDamageAndSaysWhere) {
   EXPECT_THAT(sentences(game.report),
               Contains(HasSubstr("byte " + std::to_string(no_protobuf) + ": message of vision that cannot be decoded")));
   EXPECT_THAT(sentences(game.report),
-              Contains("byte " + std::to_string(log.starts()[200]) + ": no message begins here; 5000 bytes passed over"));
+              Contains("byte " + std::to_string(log.starts()[200]) + ": no valid message here; 5000 bytes skipped"));
   ASSERT_EQ(game.tracks.size(), 2U);
   EXPECT_EQ(game.tracks[0].segments.size(), 1U);
 }

@@ -1,7 +1,6 @@
 // A duty file that states only what differs from another one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <filesystem>
