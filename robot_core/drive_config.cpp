@@ -168,7 +168,8 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     derived.current_margin_A = larger(derived.current_margin_A, kCurrent_share * wheel.body_limit_A);
   }
   derived.spread_V_s_per_m = spread_V_s_per_m(config);
-  constexpr float kSensedSlack_share = 0.05F;  // of the driver's limit
+  // Noise of a current sensor as a share of the driver's limit.
+  constexpr float kSensedSlack_share = 0.05F;
   derived.sensed_slack_V = kSensedSlack_share * config.current_limit_A * config.lowest_resistance_ohm;
   config.check_sum = config_check_sum(config);
 }

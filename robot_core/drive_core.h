@@ -178,7 +178,7 @@ struct WheelState {
   float current_squared_A2 = 0.0F;   ///< sum since the guard's last step
   float allowed_A = 0.0F;            ///< by the guard, as the current of a motor with the lowest resistance
   float allowed_braking_A = 0.0F;    ///< the same where the current brakes
-  float conductance_A_per_V = 0.0F;  ///< of the nominal motor at the guard's last step
+  float conductance_A_per_V = 0.0F;  ///< nominal motor: 1/resistance at its winding temperature in the guard's last step
   float current_bound_A = 0.0F;      ///< recent current limit, decaying; a sensed current of 1.3 times this and a margin opens the bridge
   std::uint16_t guard_steps = 0;     ///< periods since the guard's last step
   std::uint16_t same_steps = 0;      ///< periods in which the speed sample has not changed by a bit, up to kMostSameSteps

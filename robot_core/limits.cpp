@@ -27,7 +27,7 @@ struct WheelDemand {
 
 // What is seldom needed stands in functions of its own: the loops over the wheels are unrolled.
 
-/// Of a wheel without speed sensor, or of all wheels if no sensor is left that would show that another one lies.
+/// Limits a wheel without a speed sensor to the limp current; limits every wheel if a wrong sensor would not contradict any other one.
 [[gnu::cold, gnu::noinline]] void limit_to_limp(const Config& config, const WheelState& state, WheelDemand& demand) {
   if (config.limp_current_A < demand.most_A) {
     demand.most_A = config.limp_current_A;
@@ -126,8 +126,8 @@ bool hold_window(const Config& config, const State& state, const Believed& belie
   return demand.most_A > 0.0F && believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= demand.most_A;
 }
 
-/// Holds a voltage within the current limit by what the sensor shows: the current that flowed, changed by the change of the voltage. True
-/// whatever the speed is. The slack is for noise, where the speeds agree and hold the limit already.
+/// Keeps the current within its limit by the sensed current: the new current is the sensed one plus the change of voltage over resistance,
+/// at any speed. Sensor noise within the slack is ignored if the speed estimates agree, because they keep the limit already.
 void hold_sensed_current(const Config& config, const Believed& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
   const BelievedWheel& believed = all.wheel[i];
   if (wheel.is_open != 0) {

@@ -141,7 +141,7 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
       return;
     }
     const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
-    // Where the gyro contradicts wheels that seem to stand, the limits may leave less than the limp current.
+    // The limits may leave less than the limp current if the gyro contradicts wheels that seem to stand.
     const float evidence_V = larger(absolute(driven_V), believed.mode == Mode::coast ? 0.0F : believed.spread_V);
     is_driven = is_driven || evidence_V > config.lowest_resistance_ohm * config.limp_current_A;
   }

@@ -5,7 +5,7 @@
  * Winding at most 125 degC, air from 0 to 40 degC; thermal data: estimated.
  * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding temperature never exceeds its limit. The
  * safety factor on heat is 2.49, for a confidence of 0.95: of 60 motors drawn from the declared tolerances 0 exceeded a
- * limit in one of the 11 hardest uses (0.0 %, with other draws 0.0 to 6.0 %), the hottest winding reached 125 degC.
+ * limit in one of the 11 hardest uses (0.0 %, with other draws 0.0 to 4.9 %), the hottest winding reached 125 degC.
  * Computed, not measured; plausible but wrong sensor readings are not covered.
  *
  * Laws of the model:
@@ -47,7 +47,7 @@ typedef struct {
   heatsoak_axis speed_rad_per_s;
   heatsoak_axis stator_C;
   heatsoak_axis winding_C;
-  const float *square_A2;           /* [speed][stator][winding]; negative: no current is too much already */
+  const float *square_A2; /* [speed][stator][winding]; negative: no current is too much already */
   float most_current_A;
   float straight_below_A;           /* a smaller current is square/straight_below, so that it falls to 0 with a finite slope */
   float most_speed_rad_per_s;       /* from here on the current falls in a straight line */
@@ -62,8 +62,8 @@ typedef struct {
   int32_t next_speed;
   float stator_share; /* 0 to 1, place in the cell */
   float speed_share;
-  float hotter_K; /* that the winding counts hotter, for the stator */
-  float fade_ratio;     /* 0 to 1, current that a speed above the highest leaves */
+  float hotter_K;   /* that the winding counts hotter, for the stator */
+  float fade_ratio; /* 0 to 1, current that a speed above the highest leaves */
 } heatsoak_row;
 
 /* Segment of an axis, from 0, and the place in it, 0 to 1; the ends for what lies outside. */
@@ -97,8 +97,8 @@ static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table
       row.hotter_K = table->winding_per_stator_K * (stator_C - last_stator_C);
     }
     if (speed_rad_per_s > table->most_speed_rad_per_s) {
-      row.fade_ratio = (table->no_current_speed_rad_per_s - speed_rad_per_s) /
-                 (table->no_current_speed_rad_per_s - table->most_speed_rad_per_s);
+      row.fade_ratio =
+          (table->no_current_speed_rad_per_s - speed_rad_per_s) / (table->no_current_speed_rad_per_s - table->most_speed_rad_per_s);
     }
   }
   return row;

@@ -43,8 +43,8 @@ HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux
   return shown;
 }
 
-/// Losses go with two signals of the operation; what goes with a temperature besides is cooling. A temperature alone makes no heat: it says
-/// how strong a loss of the current or of the copper is.
+/// Whether a curve over `driver` may be multiplied by `multiplier`. A loss depends on two operating signals; heat that depends on a
+/// temperature is cooling, or a loss of current or copper whose size varies with that temperature.
 bool goes_with(const Driver& driver, Multiplier multiplier) {
   if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
     return false;

@@ -42,7 +42,7 @@ struct ThresholdType {
   bool is_share = false;  ///< a pure number that people read in per cent
   bool is_whole = false;  ///< counts something: a limit with a fraction is a mistake
   Bound direction = Bound::at_most;
-  Range range = {};         ///< of limits
+  Range range = {};         ///< permitted values of the limit
   Room room = Room::share;  ///< of --update
   double least_size_ratio =
       0.0;  ///< in the unit of the threshold, for --update: a value nearer to its origin gets the room of one that is this far from it

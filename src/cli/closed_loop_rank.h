@@ -15,8 +15,8 @@ struct ClosedLoopRank {
   GameDrives drives;
   double winding_limit_C = 0.0;
   std::optional<double> stator_limit_C;
-  /// infeasible: some game could not be driven (not_driven()), or the file lacks values for motion. fail: the first game or more than half
-  /// of the games exceed a limit. marginal: any other game does.
+  /// infeasible: a game could not be driven (not_driven()), or the file lacks values for motion. fail: the first game exceeds a limit, or
+  /// more than half of the games do. marginal: any other game does.
   Verdict verdict = Verdict::infeasible;
 };
 

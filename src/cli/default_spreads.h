@@ -1,4 +1,4 @@
-// What answers report about values without a stated tolerance.
+// Notes in answers about values without a stated tolerance.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -163,7 +163,7 @@ std::string tests_in_words(const std::vector<InnovationTests>& tests) {
   std::string words;
   for (const InnovationTests& test : tests) {
     if (test.ljung_box_probability < kWhite_probability || test.periodogram_ratio > 1.0) {
-      words += fmt::format(" What is left of {} is correlated from one second to the next: its intervals are too narrow.", test.signal);
+      words += fmt::format(" The residual of {} is correlated from one second to the next: its intervals are too narrow.", test.signal);
     }
     if (test.variance_ratio < kLow_ratio || test.variance_ratio > kHigh_ratio) {
       words +=
