@@ -46,17 +46,17 @@ Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, 
 }
 
 /// Reference of the command for the present: extrapolated by its acceleration and turned into the robot's present heading.
-void follow_command(const Config& config, State& state, const Input& input, const Believed& believed, BodyReference& body) {
-  if (believed.mode == Mode::body_velocity) {
+void follow_command(const Config& config, State& state, const Input& input, const Validated& validated, BodyReference& body) {
+  if (validated.mode == Mode::body_velocity) {
     const Command& command = input.command;
     const float age_s = input.command_age_s;
     const Vector3 continued{command.velocity.x + command.acceleration.x * age_s, command.velocity.y + command.acceleration.y * age_s,
                             command.velocity.yaw + command.acceleration.yaw * age_s};
-    const SineCosine turn = sine_cosine(-believed.yaw_rate_rad_per_s * age_s);
+    const SineCosine turn = sine_cosine(-validated.yaw_rate_rad_per_s * age_s);
     body.velocity = turned(continued, turn);
     body.acceleration = turned(command.acceleration, turn);
     body.push = turned(command.push, turn);
-  } else if (believed.mode == Mode::pose_target) {
+  } else if (validated.mode == Mode::pose_target) {
     if (config.plan_step(config, input.pose, input.command.pose, state.plan_velocity, state.plan_acceleration)) {
       const SineCosine turn = sine_cosine(-input.pose.yaw);
       body.velocity = turned(state.plan_velocity, turn);
@@ -69,12 +69,12 @@ void follow_command(const Config& config, State& state, const Input& input, cons
 
 /// Where limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction, so that the
 /// wheels' errors keep the ratios of that direction.
-void hold_back(State& state, const Vector3& wanted, const Believed& believed, float since_s) {
+void hold_back(State& state, const Vector3& wanted, const Validated& validated, float since_s) {
   if (state.is_limited == 0 && state.speed_share >= 1.0F) {
     return;
   }
   const float square = wanted.x * wanted.x + wanted.y * wanted.y + 1e-6F;
-  const float reached = (wanted.x * believed.velocity.x + wanted.y * believed.velocity.y) / square;
+  const float reached = (wanted.x * validated.velocity.x + wanted.y * validated.velocity.y) / square;
   const float target = clamped(reached + kLead_share, 0.0F, 1.0F);
   if (target < state.speed_share && state.is_limited != 0) {
     state.speed_share += (target - state.speed_share) * smaller(1.0F, since_s / kHoldBack_s);
@@ -83,17 +83,17 @@ void hold_back(State& state, const Vector3& wanted, const Believed& believed, fl
   }
 }
 
-float approach_ratio_of(const Believed& believed) {
-  return believed.command_fault == Reason::none ? kApproach_ratio : kFaultyApproach_ratio;
+float approach_ratio_of(const Validated& validated) {
+  return validated.command_fault == Reason::none ? kApproach_ratio : kFaultyApproach_ratio;
 }
 
 /// The last reference seen from the robot's present heading, moved towards the wanted one.
-void approach(const Config& config, const State& state, const Believed& believed, float since_s, BodyReference& body) {
+void approach(const Config& config, const State& state, const Validated& validated, float since_s, BodyReference& body) {
   // Within a period the robot turns by a tenth of a radian at most, in a gap the reference has been set anew.
-  const float angle_rad = clamped(-believed.yaw_rate_rad_per_s * since_s, -0.3F, 0.3F);
+  const float angle_rad = clamped(-validated.yaw_rate_rad_per_s * since_s, -0.3F, 0.3F);
   const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
   Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
-  const float approach_ratio = approach_ratio_of(believed);
+  const float approach_ratio = approach_ratio_of(validated);
   const float most_m_per_s = approach_ratio * config.acceleration_limit_m_per_s2 * since_s;
   const float most_rad_per_s = approach_ratio * config.yaw_acceleration_limit_rad_per_s2 * since_s;
   if (limit(change, most_m_per_s, most_rad_per_s)) {
@@ -103,17 +103,17 @@ void approach(const Config& config, const State& state, const Believed& believed
   }
 }
 
-void close_loop(const Config& config, State& state, const Believed& believed, float since_s, BodyReference& body) {
-  const float yaw_error_rad_per_s = body.velocity.yaw - believed.yaw_rate_rad_per_s;
+void close_loop(const Config& config, State& state, const Validated& validated, float since_s, BodyReference& body) {
+  const float yaw_error_rad_per_s = body.velocity.yaw - validated.yaw_rate_rad_per_s;
   state.yaw_integral_rad = clamped(state.yaw_integral_rad + yaw_error_rad_per_s * since_s, -kMostYawIntegral_rad, kMostYawIntegral_rad);
   // A robot that is to stand must not turn because its integral was needed on the way.
   if (body.velocity.yaw == 0.0F && length(body.velocity) < kStanding_m_per_s) {
     state.yaw_integral_rad -= state.yaw_integral_rad * smaller(1.0F, since_s / kRelease_s);
   }
-  body.acceleration.x += config.body_gain_per_s * (body.velocity.x - believed.velocity.x);
-  body.acceleration.y += config.body_gain_per_s * (body.velocity.y - believed.velocity.y);
+  body.acceleration.x += config.body_gain_per_s * (body.velocity.x - validated.velocity.x);
+  body.acceleration.y += config.body_gain_per_s * (body.velocity.y - validated.velocity.y);
   body.acceleration.yaw += config.yaw_gain_per_s * yaw_error_rad_per_s + config.yaw_integral_per_s2 * state.yaw_integral_rad;
-  const float approach_ratio = approach_ratio_of(believed);
+  const float approach_ratio = approach_ratio_of(validated);
   const float most_m_per_s2 = approach_ratio * config.acceleration_limit_m_per_s2;
   limit(body.acceleration, most_m_per_s2, approach_ratio * config.yaw_acceleration_limit_rad_per_s2);
   // Every packet corrects the velocity a little at once: as a force that would be a blow.
@@ -129,38 +129,38 @@ void close_loop(const Config& config, State& state, const Believed& believed, fl
 
 }  // namespace
 
-BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Believed& believed) {
+BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Validated& validated) {
   BodyReference body;
   // After a gap or a restart of State the references start anew, and go on for one period.
-  const bool is_anew = believed.robot_fault == Reason::time_jump || believed.robot_fault == Reason::state_corrupted;
-  const float since_s = is_anew ? config.period_s : state.held.since_s + believed.elapsed_s;
+  const bool is_anew = validated.robot_fault == Reason::time_jump || validated.robot_fault == Reason::state_corrupted;
+  const float since_s = is_anew ? config.period_s : state.held.since_s + validated.elapsed_s;
   state.held.since_s = 0.0F;
   if (is_anew) {
-    state.velocity_reference = believed.velocity;
+    state.velocity_reference = validated.velocity;
     state.acceleration_reference = {};
     state.yaw_integral_rad = 0.0F;
   }
-  body.is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
-  body.is_open = believed.mode == Mode::coast || (believed.command_fault != Reason::none && is_standing(believed.velocity));
+  body.is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
+  body.is_open = validated.mode == Mode::coast || (validated.command_fault != Reason::none && is_standing(validated.velocity));
   if (body.is_open || body.is_wheelwise) {
-    state.velocity_reference = believed.velocity;
+    state.velocity_reference = validated.velocity;
     state.acceleration_reference = {};
     state.yaw_integral_rad = 0.0F;
     state.speed_share = 1.0F;
     return body;
   }
-  if (believed.mode != Mode::pose_target) {
+  if (validated.mode != Mode::pose_target) {
     state.plan_velocity = state.plan_acceleration = {};
   }
-  follow_command(config, state, input, believed, body);
+  follow_command(config, state, input, validated, body);
   limit(body.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
-  hold_back(state, body.velocity, believed, since_s);
+  hold_back(state, body.velocity, validated, since_s);
   if (state.speed_share < 1.0F) {
     body.velocity = scaled(body.velocity, state.speed_share, state.speed_share);
   }
-  approach(config, state, believed, since_s, body);
+  approach(config, state, validated, since_s, body);
   state.velocity_reference = body.velocity;
-  close_loop(config, state, believed, since_s, body);
+  close_loop(config, state, validated, since_s, body);
   return body;
 }
 

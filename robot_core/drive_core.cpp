@@ -72,11 +72,11 @@ void spread_guards(const Config& config, State& state) {
 namespace {
 
 /// Stages 2 to 4.
-BodyReference find_references(const Config& config, State& state, const Input& input, const Believed& believed, WheelReferences& wheels,
+BodyReference find_references(const Config& config, State& state, const Input& input, const Validated& validated, WheelReferences& wheels,
                               WheelVoltages& voltage) {
-  const BodyReference body = control_body_velocity(config, state, input, believed);
+  const BodyReference body = control_body_velocity(config, state, input, validated);
   find_wheel_speeds(config, input, body, wheels);
-  feed_forward(config, input, believed, body, wheels, voltage);
+  feed_forward(config, input, validated, body, wheels, voltage);
   HeldReference& held = state.held;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -87,10 +87,10 @@ BodyReference find_references(const Config& config, State& state, const Input& i
 }
 
 /// Once more what stages 2 to 4 found in the last period.
-void hold_references(const Config& config, State& state, const Believed& believed, WheelReferences& wheels, WheelVoltages& voltage) {
+void hold_references(const Config& config, State& state, const Validated& validated, WheelReferences& wheels, WheelVoltages& voltage) {
   HeldReference& held = state.held;
   held.is_fresh = 0;
-  held.since_s += believed.elapsed_s;
+  held.since_s += validated.elapsed_s;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     wheels.wheel[i].speed_rad_per_s = held.speed_rad_per_s[i];
@@ -99,33 +99,33 @@ void hold_references(const Config& config, State& state, const Believed& believe
 }
 
 /// Stages 5 to 7.
-void control_wheels(const Config& config, State& state, const Believed& believed, const BodyReference& body, const WheelReferences& wheels,
-                    WheelVoltages& voltage, Output& out) {
-  control_wheel_speeds(config, state, believed, wheels, voltage);
-  const LimitedVoltages limited = apply_limits(config, state, believed, body, voltage);
-  make_output(config, state, believed, limited, out);
+void control_wheels(const Config& config, State& state, const Validated& validated, const BodyReference& body,
+                    const WheelReferences& wheels, WheelVoltages& voltage, Output& out) {
+  control_wheel_speeds(config, state, validated, wheels, voltage);
+  const LimitedVoltages limited = apply_limits(config, state, validated, body, voltage);
+  make_output(config, state, validated, limited, out);
 }
 
 /// The reference of a body velocity is slow beside the wheels' loops, so it serves two periods; what changes the kind of motion acts at
 /// once.
 void step_valid(const Config& config, State& state, const Input& input, bool was_corrupted, Output& out) {
-  Believed believed = validate_input(config, state, input);
+  Validated validated = validate_input(config, state, input);
   // The bridges stay open where the period is invalid, too.
-  if (was_corrupted && believed.robot_fault != Reason::period_invalid) {
-    believed.robot_fault = Reason::state_corrupted;
+  if (was_corrupted && validated.robot_fault != Reason::period_invalid) {
+    validated.robot_fault = Reason::state_corrupted;
   }
-  run_guards(config, state, input, believed);
+  run_guards(config, state, input, validated);
   WheelReferences wheels;
   WheelVoltages voltage;
-  const bool is_body_velocity = believed.mode == Mode::body_velocity && believed.robot_fault == Reason::none;
+  const bool is_body_velocity = validated.mode == Mode::body_velocity && validated.robot_fault == Reason::none;
   if (is_body_velocity && state.held.is_fresh != 0) {
     static constexpr BodyReference kBodyVelocity;
-    hold_references(config, state, believed, wheels, voltage);
-    control_wheels(config, state, believed, kBodyVelocity, wheels, voltage, out);
+    hold_references(config, state, validated, wheels, voltage);
+    control_wheels(config, state, validated, kBodyVelocity, wheels, voltage, out);
   } else {
-    const BodyReference body = find_references(config, state, input, believed, wheels, voltage);
+    const BodyReference body = find_references(config, state, input, validated, wheels, voltage);
     state.held.is_fresh = is_body_velocity ? 1 : 0;
-    control_wheels(config, state, believed, body, wheels, voltage, out);
+    control_wheels(config, state, validated, body, wheels, voltage, out);
   }
   ++state.steps;
   state.check_sum = state_check_sum(state);

@@ -185,11 +185,11 @@ struct WheelState {
   std::uint8_t speed_fault = 0;      ///< Reason, or 0
   std::uint8_t current_fault = 0;
   std::uint8_t guard_fault = 0;
-  std::uint8_t is_open = 1;             ///< the bridge was open over the last period
-  std::uint8_t has_current = 0;         ///< a sample of the current has been seen: its absence is a fault from then on
-  std::uint8_t is_current_doubted = 0;  ///< the current sensor has contradicted voltage and speed for too long
-  std::uint8_t has_spoken_wrongly = 0;  ///< a sample spoke against itself since the last comparison
-  std::uint8_t has_stator = 0;          ///< a stator temperature has been seen: its absence is a fault from then on
+  std::uint8_t is_open = 1;                ///< the bridge was open over the last period
+  std::uint8_t has_current = 0;            ///< a sample of the current has been seen: its absence is a fault from then on
+  std::uint8_t is_current_distrusted = 0;  ///< the current sensor has contradicted voltage and speed for too long
+  std::uint8_t has_spoken_wrongly = 0;     ///< a sample spoke against itself since the last comparison
+  std::uint8_t has_stator = 0;             ///< a stator temperature has been seen: its absence is a fault from then on
 };
 
 /// Result of stages 2 to 4. With a body velocity it serves two periods.

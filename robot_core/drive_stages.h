@@ -10,7 +10,7 @@ namespace robot_core {
 // Values per wheel are written by every stage for the wheels that the robot has, so they have no values before.
 
 /// Stage 1: what is believed of one wheel.
-struct BelievedWheel {
+struct ValidatedWheel {
   float speed_rad_per_s;    ///< sensed, else implied, else 0
   float implied_rad_per_s;  ///< by the other wheels and the gyro; the sensed speed where they say nothing. Of stage 1 alone
   float current_A;          ///< sensed, else estimated from voltage and speed
@@ -19,8 +19,8 @@ struct BelievedWheel {
   bool is_current_sensed;
 };
 
-struct Believed {
-  BelievedWheel wheel[kMostWheels];
+struct Validated {
+  ValidatedWheel wheel[kMostWheels];
   float yaw_rate_rad_per_s = 0.0F;
   Vector3 velocity;            ///< of the body, local frame
   float battery_V = 0.0F;      ///< for limits: never more than the true one is likely to be
@@ -76,17 +76,17 @@ struct LimitedVoltages {
   LimitedWheel wheel[kMostWheels];
 };
 
-Believed validate_input(const Config& config, State& state, const Input& input);
-BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Believed& believed);
+Validated validate_input(const Config& config, State& state, const Input& input);
+BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Validated& validated);
 void find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body, WheelReferences& wheels);
-void feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
+void feed_forward(const Config& config, const Input& input, const Validated& validated, const BodyReference& body,
                   const WheelReferences& wheels, WheelVoltages& voltage);
-void control_wheel_speeds(const Config& config, State& state, const Believed& believed, const WheelReferences& wheels,
+void control_wheel_speeds(const Config& config, State& state, const Validated& validated, const WheelReferences& wheels,
                           WheelVoltages& voltage);
-LimitedVoltages apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,
+LimitedVoltages apply_limits(const Config& config, State& state, const Validated& validated, const BodyReference& body,
                              const WheelVoltages& voltage);
 /// Writes all of `out`.
-void make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited, Output& out);
+void make_output(const Config& config, const State& state, const Validated& validated, const LimitedVoltages& limited, Output& out);
 
 // Parts of stage 1, in sensor_comparison.cpp.
 
@@ -95,7 +95,7 @@ inline float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_
 }
 
 /// Yaw rate that the sensed wheel speeds imply.
-float yaw_rate_of_wheels(const Config& config, const Believed& believed);
+float yaw_rate_of_wheels(const Config& config, const Validated& validated);
 
 /// Speeds that a wheel has by every smallest set of sensors that determines it: its own, two others and the gyro, or three others. Of
 /// four wheels and a gyro any two may lie: one of these speeds is true, as long as the wheels roll.
@@ -110,7 +110,7 @@ struct SpeedRange {
   bool is_known() const { return slowest_rad_per_s <= fastest_rad_per_s; }
 };
 /// In speed_range.cpp. Empty where no such set is believed.
-SpeedRange speed_range(const Config& config, const State& state, const Believed& believed, int wheel);
+SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel);
 
 /// Two wheels whose rolling directions differ by less than 8 degrees (sine), or three that span a smaller doubled area, determine no speed.
 inline constexpr float kLeastArea_ratio = 0.14F;
@@ -125,7 +125,7 @@ inline float cross(const WheelConfig& a, const WheelConfig& b) {
 }
 
 /// Compares sensors with each other: stuck and swapped ones, and those that are believed again.
-void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed);
+void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated);
 
 /// Copies the faults of wheel speeds and yaw rate to where a flipped bit in the rest of State does not reach them.
 void note_faults(State& state);
@@ -141,6 +141,6 @@ void recall_faults(const KnownFaults& known, State& state);
 void seal(ComparisonState& comparison);
 
 /// Steps the thermal guards that are due: each wheel's once per guard period, spread over the period.
-void run_guards(const Config& config, State& state, const Input& input, const Believed& believed);
+void run_guards(const Config& config, State& state, const Input& input, const Validated& validated);
 
 }  // namespace robot_core

@@ -24,7 +24,7 @@ float friction_V(const Config& config, const WheelConfig& wheel, const Vector3& 
 
 }  // namespace
 
-void feed_forward(const Config& config, const Input& input, const Believed& believed, const BodyReference& body,
+void feed_forward(const Config& config, const Input& input, const Validated& validated, const BodyReference& body,
                   const WheelReferences& wheels, WheelVoltages& voltage) {
   const float speed_m_per_s = square_root(body.velocity.x * body.velocity.x + body.velocity.y * body.velocity.y);
   const float turning_m_per_s = config.contact_radius_m * absolute(body.velocity.yaw);
@@ -39,8 +39,8 @@ void feed_forward(const Config& config, const Input& input, const Believed& beli
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
     const float reference = wheels.wheel[i].speed_rad_per_s;
-    if (believed.mode == Mode::wheel_torque) {
-      voltage.wheel[i].feed_forward_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].speed_rad_per_s +
+    if (validated.mode == Mode::wheel_torque) {
+      voltage.wheel[i].feed_forward_V = config.derived.geared_constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s +
                                         config.derived.volt_per_Nm * input.command.wheel_torque_Nm[i];
       continue;
     }

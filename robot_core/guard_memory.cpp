@@ -15,7 +15,7 @@ void signals_without_power(const GuardModel& model, float* signal) {
   }
   signal[guard_ambient_C] = model.hottest_ambient_C;
   signal[guard_neighbour_C] = model.winding_limit_C;
-  const GuardBelief& age = model.belief[guard_age_h];
+  const PlausibleRange& age = model.plausible_range[guard_age_h];
   for (int i = 0; age.is_used && i < age.possible_count; ++i) {
     signal[guard_age_h] = larger(signal[guard_age_h], age.possible[i]);
   }

@@ -51,24 +51,24 @@ float missing_A2(const State& state, int i) {
 }
 
 /// `periods`: that current_squared_A2 is the sum of.
-void step_wheel_guard(const Config& config, State& state, const Believed& believed, int i, float periods) {
+void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods) {
   WheelState& wheel = state.wheel[i];
   const GuardModel& model = *config.guard;
-  const BelievedWheel& sensed = believed.wheel[i];
+  const ValidatedWheel& sensed = validated.wheel[i];
   const float rms_A = square_root(wheel.current_squared_A2 / periods + missing_A2(state, i));
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
   float signal[kGuardSignals];
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;
   // Of a wheel without a speed nothing is known, but then the current is the limp current, which every speed bears.
   signal[guard_speed_rad_per_s] = sensed.is_speed_known ? speed_rad_per_s : kNoSample;
-  signal[guard_ambient_C] = believed.ambient_C;
+  signal[guard_ambient_C] = validated.ambient_C;
   // Nobody measures it: laws that depend on it take the speed that heats most.
   signal[guard_vehicle_speed_m_per_s] = kNoSample;
-  signal[guard_neighbour_C] = model.belief[guard_neighbour_C].is_used ? hottest_neighbour_C(config, state, i) : 0.0F;
+  signal[guard_neighbour_C] = model.plausible_range[guard_neighbour_C].is_used ? hottest_neighbour_C(config, state, i) : 0.0F;
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
-  wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], believed.ambient_C);
+  wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], validated.ambient_C);
   const float cold_ratio = cold_current_ratio(config, guard.winding_C);
   // A winding bears the limp current for good, but not where it is at its limit already.
   const float limp_A = guard.winding_C + config.braking_reserve_K < model.winding_limit_C ? config.limp_current_A : 0.0F;
@@ -120,17 +120,17 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
 }
 
 /// Steps the guards that are due.
-void run_due_guards(const Config& config, State& state, const Input& input, const Believed& believed, int periods) {
-  const bool is_gap = believed.robot_fault == Reason::time_jump;
+void run_due_guards(const Config& config, State& state, const Input& input, const Validated& validated, int periods) {
+  const bool is_gap = validated.robot_fault == Reason::time_jump;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const int steps = wheel.guard_steps;
     if (is_gap) {
-      heat_for_gap(config, wheel, state.guard[i], believed.elapsed_s);
+      heat_for_gap(config, wheel, state.guard[i], validated.elapsed_s);
     }
     if (steps >= periods) {
       take_stator_sample(*config.guard, state, input, i);
-      step_wheel_guard(config, state, believed, i, static_cast<float>(steps));
+      step_wheel_guard(config, state, validated, i, static_cast<float>(steps));
       // A sum over a period or two more than the guard's counts for its own length: the surplus is kept for the next step.
       wheel.guard_steps = static_cast<std::uint16_t>(steps - periods);
       wheel.current_squared_A2 *= static_cast<float>(steps - periods) / static_cast<float>(steps);
@@ -140,24 +140,24 @@ void run_due_guards(const Config& config, State& state, const Input& input, cons
 
 }  // namespace
 
-void run_guards(const Config& config, State& state, const Input& input, const Believed& believed) {
+void run_guards(const Config& config, State& state, const Input& input, const Validated& validated) {
   if (config.guard == nullptr) {
     return;
   }
   const int periods = periods_per_guard_step(config);
-  const auto weight = static_cast<float>(believed.guard_periods);
+  const auto weight = static_cast<float>(validated.guard_periods);
   int most_steps = 0;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
-    const float current_A = believed.wheel[i].current_A;
+    const float current_A = validated.wheel[i].current_A;
     wheel.current_squared_A2 += weight * current_A * current_A;
-    const int steps = wheel.guard_steps + believed.guard_periods;
+    const int steps = wheel.guard_steps + validated.guard_periods;
     wheel.guard_steps = static_cast<std::uint16_t>(steps);
     most_steps = larger(most_steps, steps);
   }
-  if (most_steps >= periods || believed.robot_fault == Reason::time_jump) {
-    run_due_guards(config, state, input, believed, periods);
+  if (most_steps >= periods || validated.robot_fault == Reason::time_jump) {
+    run_due_guards(config, state, input, validated, periods);
   }
 }
 

@@ -14,29 +14,29 @@ constexpr int kMostSameSteps = 60000;
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
 
-void validate_time(const Config& config, State& state, const Input& input, Believed& believed) {
-  believed.elapsed_s = config.period_s;
-  believed.guard_periods = 1;
+void validate_time(const Config& config, State& state, const Input& input, Validated& validated) {
+  validated.elapsed_s = config.period_s;
+  validated.guard_periods = 1;
   const float elapsed_s = input.elapsed_s;
   constexpr float kShortest_share = 0.5F;
   // Written so that what is no number is invalid.
   if (!(elapsed_s >= kShortest_share * config.period_s) || !is_finite(elapsed_s)) {
-    believed.robot_fault = Reason::period_invalid;
+    validated.robot_fault = Reason::period_invalid;
   } else if (elapsed_s > kLongestGap_periods * config.period_s) {
-    believed.robot_fault = Reason::time_jump;
-    believed.elapsed_s = elapsed_s;
+    validated.robot_fault = Reason::time_jump;
+    validated.elapsed_s = elapsed_s;
   } else {
     // Rounded up, so that nothing is integrated over too short a time; a tenth is the timer's jitter.
     constexpr float kRoundUp_share = 0.9F;
     const float periods = elapsed_s / config.period_s;
-    believed.guard_periods = static_cast<int>(clamped(periods + kRoundUp_share, 1.0F, kLongestGap_periods));
-    const auto whole = static_cast<float>(believed.guard_periods);
-    believed.elapsed_s = whole * config.period_s;
+    validated.guard_periods = static_cast<int>(clamped(periods + kRoundUp_share, 1.0F, kLongestGap_periods));
+    const auto whole = static_cast<float>(validated.guard_periods);
+    validated.elapsed_s = whole * config.period_s;
     // A loop that is always a little late would lose that share of its heat.
     state.late_periods += larger(0.0F, periods - whole);
     if (state.late_periods >= 1.0F) {
       state.late_periods -= 1.0F;
-      ++believed.guard_periods;
+      ++validated.guard_periods;
     }
   }
 }
@@ -71,23 +71,23 @@ bool has_finite_values(const Config& config, const Command& command) {
   return false;
 }
 
-void validate_command(const Config& config, const Input& input, Believed& believed) {
-  believed.mode = input.command.mode;
+void validate_command(const Config& config, const Input& input, Validated& validated) {
+  validated.mode = input.command.mode;
   if (!has_finite_values(config, input.command)) {
-    believed.command_fault = Reason::command_invalid;
+    validated.command_fault = Reason::command_invalid;
   } else if (!(input.command_age_s >= 0.0F && input.command_age_s <= config.command_timeout_s)) {
-    believed.command_fault = Reason::command_stale;
+    validated.command_fault = Reason::command_stale;
   } else if (input.command.mode == Mode::pose_target && (config.plan_step == nullptr || !(sum(input.pose) <= kMostCommand))) {
-    believed.command_fault = Reason::pose_invalid;
+    validated.command_fault = Reason::pose_invalid;
   }
-  if (believed.command_fault != Reason::none && believed.mode != Mode::coast) {
-    believed.mode = Mode::brake;
+  if (validated.command_fault != Reason::none && validated.mode != Mode::coast) {
+    validated.mode = Mode::brake;
   }
 }
 
 /// The battery's voltage for limits, where a lower one is safe, and for the PWM ratio, where a higher one is. A sample that is lower than
 /// the known load explains is no fault: a kicker may charge. The limits take it, the PWM ratio keeps to what the battery has shown.
-void validate_battery(const Config& config, State& state, const Input& input, Believed& believed) {
+void validate_battery(const Config& config, State& state, const Input& input, Validated& validated) {
   const float sample_V = input.battery_V;
   const float sag_V = config.battery_resistance_ohm * larger(0.0F, state.battery_current_A);
   constexpr float kSag_ratio = 1.5F;         // an old battery, and what it has to recover from
@@ -97,39 +97,39 @@ void validate_battery(const Config& config, State& state, const Input& input, Be
   const float shown_V = state.battery_source_V;
   const float least_V = shown_V - kSag_ratio * sag_V;
   // A timer that lies makes no battery empty.
-  const float since_s = smaller(believed.elapsed_s, kLongestGap_periods * config.period_s);
+  const float since_s = smaller(validated.elapsed_s, kLongestGap_periods * config.period_s);
   state.battery_source_V = larger(0.0F, shown_V - kFall_share_per_s * config.battery_full_V * since_s);
   if (!(sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V)) {
-    believed.battery_V = config.battery_lowest_V;
-    believed.pwm_battery_V = 1.1F * config.battery_full_V;
-    believed.robot_fault = believed.robot_fault == Reason::none ? Reason::battery_voltage_missing : believed.robot_fault;
+    validated.battery_V = config.battery_lowest_V;
+    validated.pwm_battery_V = 1.1F * config.battery_full_V;
+    validated.robot_fault = validated.robot_fault == Reason::none ? Reason::battery_voltage_missing : validated.robot_fault;
     return;
   }
-  believed.battery_V = sample_V;
+  validated.battery_V = sample_V;
   if (sample_V >= least_V - kTolerance_share * config.battery_full_V) {
     const float source_V = smaller(sample_V + sag_V, config.battery_full_V);
     const float rise_ratio = state.steps == 0 ? 1.0F : smaller(1.0F, since_s / kRise_s);
     state.battery_source_V += rise_ratio * larger(0.0F, source_V - state.battery_source_V);
-    believed.pwm_battery_V = larger(sample_V, least_V);
+    validated.pwm_battery_V = larger(sample_V, least_V);
   } else {
     // Motors that brake may charge it by as much as the tolerance.
-    believed.pwm_battery_V = smaller(shown_V, config.battery_full_V) + kTolerance_share * config.battery_full_V;
+    validated.pwm_battery_V = smaller(shown_V, config.battery_full_V) + kTolerance_share * config.battery_full_V;
   }
 }
 
 /// Air does not become cold at once: a sample below the last one is approached slowly, in case the sensor has come off.
-void validate_ambient(const Config& config, State& state, const Input& input, Believed& believed) {
+void validate_ambient(const Config& config, State& state, const Input& input, Validated& validated) {
   constexpr float kCooling_K_per_s = 0.02F;
   const float coldest_C = config.guard != nullptr ? config.guard->coldest_ambient_C : -40.0F;
   // A dead sensor shows just 0.
-  const bool is_believed = input.ambient_C >= coldest_C + 0.05F && input.ambient_C <= kHottestAir_C;
-  believed.ambient_C = kNoSample;
-  if (is_believed) {
+  const bool is_plausible = input.ambient_C >= coldest_C + 0.05F && input.ambient_C <= kHottestAir_C;
+  validated.ambient_C = kNoSample;
+  if (is_plausible) {
     const float least_C = state.ambient_C - kCooling_K_per_s * config.period_s;
     state.ambient_C = least_C > input.ambient_C ? least_C : input.ambient_C;
-    believed.ambient_C = state.ambient_C;
-  } else if (state.ambient_C == state.ambient_C && believed.robot_fault == Reason::none) {
-    believed.robot_fault = Reason::ambient_missing;
+    validated.ambient_C = state.ambient_C;
+  } else if (state.ambient_C == state.ambient_C && validated.robot_fault == Reason::none) {
+    validated.robot_fault = Reason::ambient_missing;
   }
 }
 
@@ -166,54 +166,54 @@ struct PlaneFit {
 
 /// All sensors are believed: least squares with a matrix that never changes. Leaving one wheel out multiplies its residual by
 /// 1/(1 − leverage) (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
-void find_from_all(const Config& config, Believed& believed) {
+void find_from_all(const Config& config, Validated& validated) {
   const DerivedConfig& derived = config.derived;
-  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   PerWheel rim_m_per_s = {};
   float x_m_per_s = 0.0F;
   float y_m_per_s = 0.0F;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
-    rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s) - turning_m_per_s;
+    rim_m_per_s[i] = rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s) - turning_m_per_s;
     x_m_per_s += config.wheel[i].rolling_x_share * rim_m_per_s[i];
     y_m_per_s += config.wheel[i].rolling_y_share * rim_m_per_s[i];
   }
-  believed.velocity = {derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s,
-                       derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s, believed.yaw_rate_rad_per_s};
+  validated.velocity = {derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s,
+                        derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s, validated.yaw_rate_rad_per_s};
   float disagreement_m_per_s = 0.0F;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
-        rim_m_per_s[i] - config.wheel[i].rolling_x_share * believed.velocity.x - config.wheel[i].rolling_y_share * believed.velocity.y;
-    believed.wheel[i].implied_rad_per_s =
-        believed.wheel[i].speed_rad_per_s - residual_m_per_s * config.wheel[i].others_factor * config.wheel[i].speed_per_rim_per_m;
-    believed.wheel[i].is_speed_known = true;
+        rim_m_per_s[i] - config.wheel[i].rolling_x_share * validated.velocity.x - config.wheel[i].rolling_y_share * validated.velocity.y;
+    validated.wheel[i].implied_rad_per_s =
+        validated.wheel[i].speed_rad_per_s - residual_m_per_s * config.wheel[i].others_factor * config.wheel[i].speed_per_rim_per_m;
+    validated.wheel[i].is_speed_known = true;
     disagreement_m_per_s += absolute(residual_m_per_s);
   }
-  believed.spread_V = derived.spread_V_s_per_m * disagreement_m_per_s;
+  validated.spread_V = derived.spread_V_s_per_m * disagreement_m_per_s;
 }
 
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
 /// Three wheels, or a sensor that is not believed: at most one more may lie. Each wheel then needs its speed_range().
-[[gnu::cold, gnu::noinline]] void check_redundancy(const Config& config, const State& state, Believed& believed) {
-  const bool is_gyro_believed = state.yaw_fault == 0;
-  int spare = is_gyro_believed ? -2 : -3;
+[[gnu::cold, gnu::noinline]] void check_redundancy(const Config& config, const State& state, Validated& validated) {
+  const bool is_gyro_trusted = state.yaw_fault == 0;
+  int spare = is_gyro_trusted ? -2 : -3;
   for (int i = 0; i < config.wheel_count; ++i) {
-    spare += believed.wheel[i].is_speed_sensed ? 1 : 0;
+    spare += validated.wheel[i].is_speed_sensed ? 1 : 0;
   }
-  believed.is_redundancy_reduced = true;
-  believed.is_checked = spare > 0;
-  believed.spread_V = kUnknown;
+  validated.is_redundancy_reduced = true;
+  validated.is_checked = spare > 0;
+  validated.spread_V = kUnknown;
 }
 
 /// Too few sensors are left: every sample is compared with all the others, although none of them is believed. So sensors come back that
 /// were lost together, and agree with each other again.
-[[gnu::cold]] void compare_samples(const Config& config, const State& state, Believed& believed) {
+[[gnu::cold]] void compare_samples(const Config& config, const State& state, Validated& validated) {
   PerWheel rim_m_per_s = {};
   for (int i = 0; i < config.wheel_count; ++i) {
     rim_m_per_s[i] =
-        rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - config.contact_radius_m * believed.yaw_rate_rad_per_s;
+        rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - config.contact_radius_m * validated.yaw_rate_rad_per_s;
   }
   for (int i = 0; i < config.wheel_count; ++i) {
     PlaneFit others;
@@ -225,56 +225,56 @@ constexpr float kUnknown = std::numeric_limits<float>::infinity();
     const WheelConfig& wheel = config.wheel[i];
     if (others.solve(x_m_per_s, y_m_per_s)) {
       const float implied_m_per_s = wheel.rolling_x_share * x_m_per_s + wheel.rolling_y_share * y_m_per_s;
-      believed.wheel[i].implied_rad_per_s =
+      validated.wheel[i].implied_rad_per_s =
           state.wheel[i].raw_speed_rad_per_s + (implied_m_per_s - rim_m_per_s[i]) * wheel.speed_per_rim_per_m;
     }
   }
 }
 
 /// Some sensors are missing: from those that are left.
-[[gnu::cold]] void find_from_some(const Config& config, const State& state, Believed& believed) {
-  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+[[gnu::cold]] void find_from_some(const Config& config, const State& state, Validated& validated) {
+  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   PlaneFit all;
   PerWheel rim_m_per_s = {};
   for (int i = 0; i < config.wheel_count; ++i) {
-    if (believed.wheel[i].is_speed_sensed) {
-      rim_m_per_s[i] = rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s) - turning_m_per_s;
+    if (validated.wheel[i].is_speed_sensed) {
+      rim_m_per_s[i] = rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s) - turning_m_per_s;
       all.add(config.wheel[i], rim_m_per_s[i], 1.0F);
     }
   }
-  believed.velocity = state.velocity_reference;
-  believed.velocity.yaw = believed.yaw_rate_rad_per_s;
-  const bool is_known = all.solve(believed.velocity.x, believed.velocity.y);
-  believed.are_samples_compared = !is_known;
+  validated.velocity = state.velocity_reference;
+  validated.velocity.yaw = validated.yaw_rate_rad_per_s;
+  const bool is_known = all.solve(validated.velocity.x, validated.velocity.y);
+  validated.are_samples_compared = !is_known;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
-    Vector3 others = believed.velocity;
+    Vector3 others = validated.velocity;
     bool is_implied = is_known;
-    if (believed.wheel[i].is_speed_sensed) {
+    if (validated.wheel[i].is_speed_sensed) {
       PlaneFit rest = all;
       rest.add(wheel, rim_m_per_s[i], -1.0F);
       is_implied = rest.solve(others.x, others.y);
     }
     const float implied_m_per_s = wheel.rolling_x_share * others.x + wheel.rolling_y_share * others.y + turning_m_per_s;
-    float& implied_rad_per_s = believed.wheel[i].implied_rad_per_s;
-    implied_rad_per_s = is_implied ? implied_m_per_s * config.wheel[i].speed_per_rim_per_m : believed.wheel[i].speed_rad_per_s;
-    if (!believed.wheel[i].is_speed_sensed) {
+    float& implied_rad_per_s = validated.wheel[i].implied_rad_per_s;
+    implied_rad_per_s = is_implied ? implied_m_per_s * config.wheel[i].speed_per_rim_per_m : validated.wheel[i].speed_rad_per_s;
+    if (!validated.wheel[i].is_speed_sensed) {
       // Without the gyro three wheels still determine the fourth, two do not.
-      const SpeedRange range = speed_range(config, state, believed, i);
+      const SpeedRange range = speed_range(config, state, validated, i);
       is_implied = range.is_known();
       implied_rad_per_s = is_implied ? clamped(implied_rad_per_s, range.slowest_rad_per_s, range.fastest_rad_per_s) : implied_rad_per_s;
     }
-    believed.wheel[i].is_speed_known = believed.wheel[i].is_speed_sensed || is_implied;
-    if (!believed.wheel[i].is_speed_sensed) {
-      believed.wheel[i].speed_rad_per_s = is_implied ? believed.wheel[i].implied_rad_per_s : 0.0F;
+    validated.wheel[i].is_speed_known = validated.wheel[i].is_speed_sensed || is_implied;
+    if (!validated.wheel[i].is_speed_sensed) {
+      validated.wheel[i].speed_rad_per_s = is_implied ? validated.wheel[i].implied_rad_per_s : 0.0F;
     }
   }
   if (!is_known) {
-    compare_samples(config, state, believed);
+    compare_samples(config, state, validated);
   }
 }
 
-void validate_yaw_rate(const Config& config, State& state, const Input& input, Believed& believed) {
+void validate_yaw_rate(const Config& config, State& state, const Input& input, Validated& validated) {
   const float sample = input.yaw_rate_rad_per_s;
   const bool is_possible = absolute(sample) <= kFastestYaw_rad_per_s;  // false for what is no number
   const bool is_jump = absolute(sample - state.raw_yaw_rate_rad_per_s) > kYawJump_rad_per_s && state.steps != 0;
@@ -287,17 +287,17 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, B
   state.raw_yaw_rate_rad_per_s = is_possible ? sample : 0.0F;
   state.yaw_rate_rad_per_s = state.raw_yaw_rate_rad_per_s;
   if (state.yaw_fault != 0) {
-    const float from_wheels = yaw_rate_of_wheels(config, believed);
+    const float from_wheels = yaw_rate_of_wheels(config, validated);
     state.yaw_rate_rad_per_s =
-        believed.are_all_sensed ? clamped(from_wheels, -kFastestYaw_rad_per_s, kFastestYaw_rad_per_s) : state.velocity_reference.yaw;
-    believed.robot_fault = believed.robot_fault == Reason::none ? static_cast<Reason>(state.yaw_fault) : believed.robot_fault;
+        validated.are_all_sensed ? clamped(from_wheels, -kFastestYaw_rad_per_s, kFastestYaw_rad_per_s) : state.velocity_reference.yaw;
+    validated.robot_fault = validated.robot_fault == Reason::none ? static_cast<Reason>(state.yaw_fault) : validated.robot_fault;
   }
-  believed.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
+  validated.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
 }
 
 /// A sample that speaks against itself (no number, out of range, a jump), that has not changed, or of a sensor with a fault.
 [[gnu::cold]] void take_doubtful_sample(const Config& config, WheelState& wheel, float sample, float jump_rad_per_s,
-                                        BelievedWheel& believed) {
+                                        ValidatedWheel& validated) {
   const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
   const int same = change_rad_per_s == 0.0F ? wheel.same_steps + 1 : 0;
   wheel.same_steps = static_cast<std::uint16_t>(same < kMostSameSteps ? same : kMostSameSteps);
@@ -308,17 +308,17 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, B
     const Reason fault = is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
     wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;
   }
-  believed.is_speed_sensed = wheel.speed_fault == 0;
-  believed.speed_rad_per_s = believed.is_speed_sensed ? sample : 0.0F;
+  validated.is_speed_sensed = wheel.speed_fault == 0;
+  validated.speed_rad_per_s = validated.is_speed_sensed ? sample : 0.0F;
 }
 
-void take_samples(const Config& config, State& state, const Input& input, Believed& believed) {
+void take_samples(const Config& config, State& state, const Input& input, Validated& validated) {
   const float most_rad_per_s = config.fastest_wheel_rad_per_s;
   const float jump_rad_per_s =
       // After a start there is no sample to jump from.
       state.steps == 0 ? 2.0F * most_rad_per_s
-                       : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (believed.elapsed_s - config.period_s);
-  believed.are_all_sensed = true;
+                       : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (validated.elapsed_s - config.period_s);
+  validated.are_all_sensed = true;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
@@ -326,17 +326,17 @@ void take_samples(const Config& config, State& state, const Input& input, Believ
     const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
     const bool is_plain = absolute(sample) <= most_rad_per_s && absolute(change_rad_per_s) <= jump_rad_per_s;
     if (!is_plain || change_rad_per_s == 0.0F || wheel.speed_fault != 0) {
-      take_doubtful_sample(config, wheel, sample, jump_rad_per_s, believed.wheel[i]);
+      take_doubtful_sample(config, wheel, sample, jump_rad_per_s, validated.wheel[i]);
       if (wheel.speed_fault != state.comparison.speed_fault[i]) {
         note_faults(state);
       }
-      believed.are_all_sensed = believed.are_all_sensed && believed.wheel[i].is_speed_sensed;
+      validated.are_all_sensed = validated.are_all_sensed && validated.wheel[i].is_speed_sensed;
       continue;
     }
     wheel.same_steps = 0;
     wheel.raw_speed_rad_per_s = sample;
-    believed.wheel[i].is_speed_sensed = true;
-    believed.wheel[i].speed_rad_per_s = sample;
+    validated.wheel[i].is_speed_sensed = true;
+    validated.wheel[i].speed_rad_per_s = sample;
   }
 }
 
@@ -349,7 +349,7 @@ float estimated_current_A(const Config& config, const WheelState& wheel, float s
   return (wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * wheel.conductance_A_per_V;
 }
 
-void validate_currents(const Config& config, State& state, const Input& input, Believed& believed) {
+void validate_currents(const Config& config, State& state, const Input& input, Validated& validated) {
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
@@ -358,42 +358,42 @@ void validate_currents(const Config& config, State& state, const Input& input, B
     wheel.current_fault = 0;
     if (is_sample) {
       wheel.has_current = 1;
-      if (wheel.is_current_doubted == 0) {
-        believed.wheel[i].is_current_sensed = true;
-        believed.wheel[i].current_A = sample_A;
+      if (wheel.is_current_distrusted == 0) {
+        validated.wheel[i].is_current_sensed = true;
+        validated.wheel[i].current_A = sample_A;
         continue;
       }
       wheel.current_fault = code(Reason::current_implausible);
     } else if (wheel.has_current != 0) {
       wheel.current_fault = code(Reason::current_missing);
     }
-    const float estimate_A = estimated_current_A(config, wheel, believed.wheel[i].speed_rad_per_s);
-    believed.wheel[i].is_current_sensed = false;
-    believed.wheel[i].current_A = is_sample && absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
+    const float estimate_A = estimated_current_A(config, wheel, validated.wheel[i].speed_rad_per_s);
+    validated.wheel[i].is_current_sensed = false;
+    validated.wheel[i].current_A = is_sample && absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
   }
 }
 
 }  // namespace
 
-Believed validate_input(const Config& config, State& state, const Input& input) {
-  Believed believed;
-  validate_time(config, state, input, believed);
-  validate_command(config, input, believed);
-  validate_battery(config, state, input, believed);
-  validate_ambient(config, state, input, believed);
-  take_samples(config, state, input, believed);
-  validate_yaw_rate(config, state, input, believed);
-  if (believed.are_all_sensed) {
-    find_from_all(config, believed);
+Validated validate_input(const Config& config, State& state, const Input& input) {
+  Validated validated;
+  validate_time(config, state, input, validated);
+  validate_command(config, input, validated);
+  validate_battery(config, state, input, validated);
+  validate_ambient(config, state, input, validated);
+  take_samples(config, state, input, validated);
+  validate_yaw_rate(config, state, input, validated);
+  if (validated.are_all_sensed) {
+    find_from_all(config, validated);
   } else {
-    find_from_some(config, state, believed);
+    find_from_some(config, state, validated);
   }
-  if (!believed.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
-    check_redundancy(config, state, believed);
+  if (!validated.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
+    check_redundancy(config, state, validated);
   }
-  compare_sensors(config, state, input, believed);
-  validate_currents(config, state, input, believed);
-  return believed;
+  compare_sensors(config, state, input, validated);
+  validate_currents(config, state, input, validated);
+  return validated;
 }
 
 }  // namespace robot_core

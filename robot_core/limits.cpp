@@ -36,7 +36,7 @@ struct WheelDemand {
 }
 
 /// Without the guard.
-void limit_demand(const Config& config, const WheelState& state, const Believed& believed, const BodyReference& body, int i,
+void limit_demand(const Config& config, const WheelState& state, const Validated& validated, const BodyReference& body, int i,
                   WheelDemand& demand) {
   demand.most_A = config.wheel[i].body_limit_A;
   demand.reason = Reason::none;
@@ -44,7 +44,7 @@ void limit_demand(const Config& config, const WheelState& state, const Believed&
     demand.most_A = config.current_limit_A;
     demand.reason = Reason::driver_current;
   }
-  if (believed.is_redundancy_reduced && (!believed.wheel[i].is_speed_sensed || !believed.is_checked)) {
+  if (validated.is_redundancy_reduced && (!validated.wheel[i].is_speed_sensed || !validated.is_checked)) {
     limit_to_limp(config, state, demand);
   }
 }
@@ -71,9 +71,9 @@ bool apply_guard(const Config& config, State& state, float allowed_A, float elap
 
 /// Share of the power that the battery gives before it sags below its lowest voltage. The power of scaled currents is convex in the
 /// scale, so scaling by this share is enough.
-float share_of_battery(const Config& config, const State& state, const Believed& believed, float power_W) {
+float share_of_battery(const Config& config, const State& state, const Validated& validated, float power_W) {
   const float source_V =
-      smaller(config.battery_full_V, believed.battery_V + larger(0.0F, config.battery_resistance_ohm * state.battery_current_A));
+      smaller(config.battery_full_V, validated.battery_V + larger(0.0F, config.battery_resistance_ohm * state.battery_current_A));
   // A battery that is nearly empty still has to carry the robot home.
   constexpr float kLeastSag_share = 0.03F;
   const float sag_V = larger(source_V - config.battery_lowest_V, kLeastSag_share * config.battery_full_V);
@@ -94,10 +94,10 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   return room_V * config.derived.per_lowest_resistance_A_per_V;
 }
 
-[[gnu::cold, gnu::noinline]] bool move_into_window(const Config& config, const State& state, const Believed& believed,
+[[gnu::cold, gnu::noinline]] bool move_into_window(const Config& config, const State& state, const Validated& validated,
                                                    const WheelDemand& demand, int i, float most_V, float& voltage_V, Reason& reason) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  const SpeedRange range = speed_range(config, state, believed, i);
+  const SpeedRange range = speed_range(config, state, validated, i);
   const float low_V = config.derived.geared_constant_V_s_per_rad * range.fastest_rad_per_s - band_V;
   const float high_V = config.derived.geared_constant_V_s_per_rad * range.slowest_rad_per_s + band_V;
   if (!(demand.most_A > 0.0F) || !(low_V <= high_V)) {
@@ -111,35 +111,35 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
 
 /// Holds a voltage within the current limit for every speed that the wheel may have. False where no voltage does, or where the voltage is
 /// no number. As long as sensors agree about as well as the voltage is within its limit, no single estimate is needed.
-bool hold_window(const Config& config, const State& state, const Believed& believed, const WheelDemand& demand, int i, float most_V,
+bool hold_window(const Config& config, const State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
                  float& voltage_V, Reason& reason) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  return absolute(voltage_V - demand.back_V) + believed.spread_V < band_V ||
-         move_into_window(config, state, believed, demand, i, most_V, voltage_V, reason);
+  return absolute(voltage_V - demand.back_V) + validated.spread_V < band_V ||
+         move_into_window(config, state, validated, demand, i, most_V, voltage_V, reason);
 }
 
 /// Voltage of a wheel of unknown speed: at most the limp current, or the guard's limit if that is smaller, into a standing motor.
-[[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Believed& believed, const WheelDemand& demand, int i,
+[[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Validated& validated, const WheelDemand& demand, int i,
                                                float most_V, float& voltage_V) {
   const float limp_V = smaller(config.lowest_resistance_ohm * demand.most_A, most_V);
   voltage_V = clamped(voltage_V, -limp_V, limp_V);
-  return demand.most_A > 0.0F && believed.wheel[i].is_current_sensed && absolute(believed.wheel[i].current_A) <= demand.most_A;
+  return demand.most_A > 0.0F && validated.wheel[i].is_current_sensed && absolute(validated.wheel[i].current_A) <= demand.most_A;
 }
 
 /// Keeps the current within its limit by the sensed current: the new current is the sensed one plus the change of voltage over resistance,
 /// at any speed. Sensor noise within the slack is ignored if the speed estimates agree, because they keep the limit already.
-void hold_sensed_current(const Config& config, const Believed& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
-  const BelievedWheel& believed = all.wheel[i];
+void hold_sensed_current(const Config& config, const Validated& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
+  const ValidatedWheel& validated = all.wheel[i];
   if (wheel.is_open != 0) {
     return;
   }
-  const float slack_V = believed.is_speed_sensed ? larger(0.0F, config.derived.sensed_slack_V - all.spread_V) : 0.0F;
+  const float slack_V = validated.is_speed_sensed ? larger(0.0F, config.derived.sensed_slack_V - all.spread_V) : 0.0F;
   const float room_V = config.lowest_resistance_ohm * most_A + slack_V;
-  const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * believed.current_A;
+  const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * validated.current_A;
   voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
 }
 
-bool is_overcurrent(const Config& config, const BelievedWheel& sensed, const WheelState& wheel) {
+bool is_overcurrent(const Config& config, const ValidatedWheel& sensed, const WheelState& wheel) {
   return absolute(sensed.current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
 }
 
@@ -158,7 +158,7 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
 /// is pulled along drives for a moment, and without current for it the common factor would leave none to the others. So all wheels may use
 /// the braking reserve while the wanted currents take power out of the body, and do so without the wheel that brakes most: its speed sensor
 /// may lie. A wheel that brakes may always. Returns the new least share.
-[[gnu::cold, gnu::noinline]] float apply_guards(const Config& config, State& state, const Believed& believed, const BodyReference& body,
+[[gnu::cold, gnu::noinline]] float apply_guards(const Config& config, State& state, const Validated& validated, const BodyReference& body,
                                                 float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
   float body_W = 0.0F;
   float most_braking_W = 0.0F;
@@ -173,12 +173,12 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   for (int i = 0; i < config.wheel_count; ++i) {
     const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
     // Nobody asked for the stop that follows a fault of the command: it gets no reserve.
-    const float allowed_A = brakes && believed.command_fault == Reason::none ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
-    would_limit = apply_guard(config, state, allowed_A, believed.elapsed_s, demand[i]) || would_limit;
+    const float allowed_A = brakes && validated.command_fault == Reason::none ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
+    would_limit = apply_guard(config, state, allowed_A, validated.elapsed_s, demand[i]) || would_limit;
     if (are_speeds_dead) {
       demand[i].most_A = smaller(demand[i].most_A, config.limp_current_A);
     }
-    if (believed.wheel[i].is_speed_known) {
+    if (validated.wheel[i].is_speed_known) {
       least = share_of_wheel(config, i, most_V, demand[i], limited.wheel[i].reason, least);
     }
     if (are_speeds_dead) {
@@ -190,20 +190,20 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
 }
 
 /// What every wheel wants and may have, and one factor for all of them, so that the direction of the force is kept.
-float find_demands(const Config& config, State& state, const Believed& believed, const BodyReference& body, const WheelVoltages& voltage,
+float find_demands(const Config& config, State& state, const Validated& validated, const BodyReference& body, const WheelVoltages& voltage,
                    float most_V, WheelDemand* demand, LimitedVoltages& limited) {
   float least = 1.0F;
   float power_W = 0.0F;
   bool is_hot = state.comparison.standing_s > kStanding_s;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
-    const BelievedWheel& sensed = believed.wheel[i];
+    const ValidatedWheel& sensed = validated.wheel[i];
     WheelDemand& each = demand[i];
     each.back_V = config.derived.geared_constant_V_s_per_rad * sensed.speed_rad_per_s;
     each.current_A = (voltage.wheel[i].wanted_V - each.back_V) * config.derived.per_lowest_resistance_A_per_V;
     each.share = 1.0F;
     limited.wheel[i].reason = Reason::none;
-    limit_demand(config, state.wheel[i], believed, body, i, each);
+    limit_demand(config, state.wheel[i], validated, body, i, each);
     // Braking is allowed at least as much.
     is_hot = is_hot || !(state.wheel[i].allowed_A >= each.most_A);
     if (sensed.is_speed_known) {
@@ -212,10 +212,10 @@ float find_demands(const Config& config, State& state, const Believed& believed,
     power_W += (each.back_V + config.lowest_resistance_ohm * each.current_A) * each.current_A;
   }
   if (is_hot) {
-    least = apply_guards(config, state, believed, body, most_V, demand, limited, least);
+    least = apply_guards(config, state, validated, body, most_V, demand, limited, least);
   }
   // The power of the scaled currents is at most as much smaller.
-  const float of_battery = share_of_battery(config, state, believed, least * power_W);
+  const float of_battery = share_of_battery(config, state, validated, least * power_W);
   const float factor = least * of_battery;
   if (factor < 1.0F) {
     for (int i = 0; i < config.wheel_count; ++i) {
@@ -237,20 +237,20 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 }
 
 /// Of a wheel with a current sensor, or without a speed: what is left of the wanted voltage; false if its bridge has to be opened.
-[[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Believed& believed, const WheelDemand& demand, int i,
+[[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i,
                                   float most_V, float& voltage_V, Reason& reason) {
   WheelState& wheel = state.wheel[i];
-  const BelievedWheel& sensed = believed.wheel[i];
-  bool is_held = sensed.is_speed_known ? hold_window(config, state, believed, demand, i, most_V, voltage_V, reason)
-                                       : limp_blindly(config, believed, demand, i, most_V, voltage_V);
+  const ValidatedWheel& sensed = validated.wheel[i];
+  bool is_held = sensed.is_speed_known ? hold_window(config, state, validated, demand, i, most_V, voltage_V, reason)
+                                       : limp_blindly(config, validated, demand, i, most_V, voltage_V);
   if (sensed.is_current_sensed) {
     const float asked_V = voltage_V;
-    hold_sensed_current(config, believed, i, wheel, demand.most_A, voltage_V);
+    hold_sensed_current(config, validated, i, wheel, demand.most_A, voltage_V);
     if (voltage_V != asked_V) {
       reason = reason == Reason::none ? reason_of(config.wheel[i], demand) : reason;
       // A current sensor may lie too: where it and the speeds leave no voltage the bridge is opened.
       const float held_V = voltage_V;
-      is_held = is_held && !(sensed.is_speed_known && (!hold_window(config, state, believed, demand, i, most_V, voltage_V, reason) ||
+      is_held = is_held && !(sensed.is_speed_known && (!hold_window(config, state, validated, demand, i, most_V, voltage_V, reason) ||
                                                        absolute(voltage_V - held_V) > kSlip_V));
     }
   }
@@ -259,36 +259,36 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 }
 
 /// What is left of the wanted voltage of one wheel; true if its bridge has to be opened.
-bool finish_wheel(const Config& config, State& state, const Believed& believed, const WheelDemand& demand, int i, float most_V,
+bool finish_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
                   float& voltage_V, Reason& reason) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
-  const BelievedWheel& sensed = believed.wheel[i];
+  const ValidatedWheel& sensed = validated.wheel[i];
   if (sensed.is_speed_known && !sensed.is_current_sensed) {
     state.wheel[i].current_bound_A = demand.most_A;
-    return !hold_window(config, state, believed, demand, i, most_V, voltage_V, reason);
+    return !hold_window(config, state, validated, demand, i, most_V, voltage_V, reason);
   }
-  return !hold_wheel(config, state, believed, demand, i, most_V, voltage_V, reason);
+  return !hold_wheel(config, state, validated, demand, i, most_V, voltage_V, reason);
 }
 
 }  // namespace
 
-LimitedVoltages apply_limits(const Config& config, State& state, const Believed& believed, const BodyReference& body,
+LimitedVoltages apply_limits(const Config& config, State& state, const Validated& validated, const BodyReference& body,
                              const WheelVoltages& voltage) {
   LimitedVoltages limited;
   WheelDemand demand[kMostWheels];
-  const float most_V = smaller(config.voltage_limit_V, believed.battery_V);
-  const float share = find_demands(config, state, believed, body, voltage, most_V, demand, limited);
-  const bool is_all_open = body.is_open || believed.robot_fault == Reason::period_invalid;
+  const float most_V = smaller(config.voltage_limit_V, validated.battery_V);
+  const float share = find_demands(config, state, validated, body, voltage, most_V, demand, limited);
+  const bool is_all_open = body.is_open || validated.robot_fault == Reason::period_invalid;
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
   // The integrators follow the voltages that the wheels really get.
-  const float feedback_share = smaller(1.0F, believed.elapsed_s * config.derived.per_tracking_time_per_s);
+  const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
     end.allowed_A = demand[i].most_A;
-    end.is_open = finish_wheel(config, state, believed, demand[i], i, most_V, end.voltage_V, end.reason) || is_all_open;
+    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end.voltage_V, end.reason) || is_all_open;
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;
@@ -300,9 +300,9 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Believed&
     }
     wheel.earlier_V = wheel.voltage_V;
     wheel.voltage_V = end.voltage_V;
-    end.reason = believed.wheel[i].is_speed_known ? strongest(wheel, end.reason) : Reason::wheel_speed_unknown;
+    end.reason = validated.wheel[i].is_speed_known ? strongest(wheel, end.reason) : Reason::wheel_speed_unknown;
   }
-  state.battery_current_A = power_W / believed.pwm_battery_V;
+  state.battery_current_A = power_W / validated.pwm_battery_V;
   return limited;
 }
 

@@ -5,7 +5,7 @@ namespace robot_core {
 namespace {
 
 /// The guards check their State when they are stepped; until then a flipped bit must not reach the telemetry as what is no number.
-[[gnu::cold, gnu::noinline]] float doubtful_C(const Config& config, float winding_C) {
+[[gnu::cold, gnu::noinline]] float bounded_C(const Config& config, float winding_C) {
   constexpr float kMost_C = 1000.0F;
   const float limit_C = config.guard != nullptr ? config.guard->winding_limit_C : 0.0F;
   return winding_C <= kMost_C && winding_C >= -kMost_C ? winding_C : limit_C;
@@ -14,14 +14,14 @@ namespace {
 float reported_C(const Config& config, float winding_C) {
   // Positive numbers are ordered like their bits; one comparison of integers finds all that needs a second look.
   constexpr auto kMost = __builtin_bit_cast(std::uint32_t, 1000.0F);
-  return __builtin_bit_cast(std::uint32_t, winding_C) <= kMost ? winding_C : doubtful_C(config, winding_C);
+  return __builtin_bit_cast(std::uint32_t, winding_C) <= kMost ? winding_C : bounded_C(config, winding_C);
 }
 
 }  // namespace
 
-void make_output(const Config& config, const State& state, const Believed& believed, const LimitedVoltages& limited, Output& out) {
+void make_output(const Config& config, const State& state, const Validated& validated, const LimitedVoltages& limited, Output& out) {
   float time_to_limit_s = kLongTime_s;
-  const float per_battery_V = 1.0F / believed.pwm_battery_V;
+  const float per_battery_V = 1.0F / validated.pwm_battery_V;
   for (int i = 0; i < config.wheel_count; ++i) {
     const LimitedWheel& wheel = limited.wheel[i];
     const GuardState& guard = state.guard[i];
@@ -41,7 +41,7 @@ void make_output(const Config& config, const State& state, const Believed& belie
   }
   out.time_to_guard_limit_s = config.guard == nullptr ? kLongTime_s : larger(0.0F, time_to_limit_s);
   out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;
-  out.robot_reason = believed.robot_fault != Reason::none ? believed.robot_fault : believed.command_fault;
+  out.robot_reason = validated.robot_fault != Reason::none ? validated.robot_fault : validated.command_fault;
 }
 
 }  // namespace robot_core

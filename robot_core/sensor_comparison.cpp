@@ -72,13 +72,13 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
 }
 
 /// A current sensor that reads too little would hide heat from the guard, long before it contradicts the motor's equation.
-void compare_heat(const Config& config, State& state, const Believed& believed, float sensed_A, int i, float since_s) {
+void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, int i, float since_s) {
   constexpr float kHeat_s = 1.0F;
   const WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
-  const float back_V = config.derived.geared_constant_V_s_per_rad * believed.wheel[i].speed_rad_per_s;
+  const float back_V = config.derived.geared_constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s;
   const float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - back_V;
-  const bool is_counted = absolute(sensed_A) <= config.derived.most_sensed_A && wheel.is_current_doubted == 0;
+  const bool is_counted = absolute(sensed_A) <= config.derived.most_sensed_A && wheel.is_current_distrusted == 0;
   const float counted_A = is_counted ? sensed_A : driven_V * wheel.conductance_A_per_V;
   const float share = smaller(1.0F, since_s / kHeat_s);
   comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);
@@ -86,41 +86,41 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
 }
 
 /// Speed and current sensor of one wheel against the other wheels and the motor's equation.
-[[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, Believed& believed, int i, float since_s) {
+[[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, Validated& validated, int i, float since_s) {
   WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
   const float sample = wheel.raw_speed_rad_per_s;
   const bool is_same = static_cast<float>(wheel.same_steps) * config.period_s > kStuck_s;
   const float most_apart_rad_per_s = (is_same ? kSameDisagreement_share : kDisagreement_share) * config.fastest_wheel_rad_per_s;
   const bool contradicts = current_contradicts(config, wheel, input.motor_current_A[i], sample);
-  const bool agrees = absolute(sample - believed.wheel[i].implied_rad_per_s) <= most_apart_rad_per_s && !contradicts;
+  const bool agrees = absolute(sample - validated.wheel[i].implied_rad_per_s) <= most_apart_rad_per_s && !contradicts;
   // Up to kSteadyAgain_s beyond the threshold are kept, so that the sensor has to agree for that long before it is believed again.
   float& current_error_s = comparison.current_error_s[i];
   current_error_s = contradicts ? smaller(current_error_s + since_s, kStuck_s + kSteadyAgain_s) : larger(0.0F, current_error_s - since_s);
-  wheel.is_current_doubted = current_error_s > kStuck_s ? 1 : 0;
+  wheel.is_current_distrusted = current_error_s > kStuck_s ? 1 : 0;
   if (wheel.speed_fault == 0) {
     comparison.agreement_s[i] = 0.0F;
     comparison.disagreement_s[i] = agrees ? 0.0F : comparison.disagreement_s[i] + since_s;
     wheel.speed_fault = is_same && comparison.disagreement_s[i] > kStuck_s ? code(Reason::wheel_speed_stuck) : 0;
   } else if (wheel.speed_fault != code(Reason::wheel_speed_swapped)) {
-    const bool is_comparable = believed.wheel[i].is_speed_known || believed.are_samples_compared;
+    const bool is_comparable = validated.wheel[i].is_speed_known || validated.are_samples_compared;
     const bool is_confirmed = agrees && is_comparable && wheel.has_spoken_wrongly == 0;
     comparison.agreement_s[i] = is_confirmed ? comparison.agreement_s[i] + since_s : 0.0F;
     // A sensor that shows the same all the time may do so while no current flows.
     if (comparison.agreement_s[i] >= kSteadyAgain_s && (!is_same || wheel.is_open != 0)) {
       wheel.speed_fault = 0;
       comparison.disagreement_s[i] = 0.0F;
-      believed.wheel[i].is_speed_sensed = believed.wheel[i].is_speed_known = true;
-      believed.wheel[i].speed_rad_per_s = sample;
+      validated.wheel[i].is_speed_sensed = validated.wheel[i].is_speed_known = true;
+      validated.wheel[i].speed_rad_per_s = sample;
     }
   }
   wheel.has_spoken_wrongly = 0;
 }
 
-[[gnu::cold]] void compare_yaw_rate(const Config& config, State& state, const Believed& believed, float since_s) {
+[[gnu::cold]] void compare_yaw_rate(const Config& config, State& state, const Validated& validated, float since_s) {
   ComparisonState& comparison = state.comparison;
-  const float apart_rad_per_s = absolute(state.raw_yaw_rate_rad_per_s - yaw_rate_of_wheels(config, believed));
-  const bool disagrees = believed.are_all_sensed && apart_rad_per_s > kYawDisagreement_rad_per_s;
+  const float apart_rad_per_s = absolute(state.raw_yaw_rate_rad_per_s - yaw_rate_of_wheels(config, validated));
+  const bool disagrees = validated.are_all_sensed && apart_rad_per_s > kYawDisagreement_rad_per_s;
   comparison.yaw_disagreement_s = state.is_yaw_same != 0 && disagrees ? comparison.yaw_disagreement_s + since_s : 0.0F;
   comparison.yaw_agreement_s = state.has_yaw_spoken_wrongly == 0 && !disagrees ? comparison.yaw_agreement_s + since_s : 0.0F;
   if (state.yaw_fault == 0 && comparison.yaw_disagreement_s > kStuck_s) {
@@ -132,7 +132,7 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
 }
 
 /// All speeds at once: sensors that are dead together agree with each other.
-[[gnu::cold]] void compare_standing(const Config& config, State& state, const Believed& believed, float since_s) {
+[[gnu::cold]] void compare_standing(const Config& config, State& state, const Validated& validated, float since_s) {
   bool is_driven = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelState& wheel = state.wheel[i];
@@ -142,7 +142,7 @@ void compare_heat(const Config& config, State& state, const Believed& believed, 
     }
     const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
     // The limits may leave less than the limp current if the gyro contradicts wheels that seem to stand.
-    const float evidence_V = larger(absolute(driven_V), believed.mode == Mode::coast ? 0.0F : believed.spread_V);
+    const float evidence_V = larger(absolute(driven_V), validated.mode == Mode::coast ? 0.0F : validated.spread_V);
     is_driven = is_driven || evidence_V > config.lowest_resistance_ohm * config.limp_current_A;
   }
   // Up to twice the threshold is counted: limited to the limp current, a wheel stays below it.
@@ -157,8 +157,8 @@ struct WheelResponse {
   bool is_usable;
 };
 
-void find_responses(const Config& config, State& state, const Believed& believed, float since_s, WheelResponse* response) {
-  const float turning_rad = believed.yaw_rate_rad_per_s * since_s;
+void find_responses(const Config& config, State& state, const Validated& validated, float since_s, WheelResponse* response) {
+  const float turning_rad = validated.yaw_rate_rad_per_s * since_s;
   const float gripping_m_per_s =
       kGripping_ratio * since_s * (config.acceleration_limit_m_per_s2 + config.contact_radius_m * config.yaw_acceleration_limit_rad_per_s2);
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -166,19 +166,19 @@ void find_responses(const Config& config, State& state, const Believed& believed
     const WheelConfig& at = config.wheel[i];
     float& last_rad_per_s = state.comparison.last_rad_per_s[i];
     // Seen from a robot that turns, its velocity turns without any force.
-    const float turned_m_per_s = turning_rad * (at.rolling_x_share * believed.velocity.y - at.rolling_y_share * believed.velocity.x);
+    const float turned_m_per_s = turning_rad * (at.rolling_x_share * validated.velocity.y - at.rolling_y_share * validated.velocity.x);
     const float gained_rad_per_s = wheel.raw_speed_rad_per_s - last_rad_per_s - turned_m_per_s * at.speed_per_rim_per_m;
     last_rad_per_s = wheel.raw_speed_rad_per_s;
     response[i] = {wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s, gained_rad_per_s,
-                   wheel.is_open == 0 && believed.wheel[i].is_speed_sensed &&
+                   wheel.is_open == 0 && validated.wheel[i].is_speed_sensed &&
                        absolute(rim_speed_m_per_s(config, i, gained_rad_per_s)) <= gripping_m_per_s};
   }
 }
 
 /// Mean square of what is left of the speed samples, as rim speeds, that one motion of the body should explain. 0 for three wheels,
 /// whose speeds and yaw rate any exchange of two samples explains as well.
-[[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const State& state, const Believed& believed) {
-  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+[[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated) {
+  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   float x = 0.0F;
   float y = 0.0F;
   float all = 0.0F;
@@ -197,7 +197,7 @@ void find_responses(const Config& config, State& state, const Believed& believed
 /// Swapped sensors: the difference of two wheels' currents accelerates the difference of their speeds. If the sensors are swapped it
 /// seems to decelerate it: then the control makes the difference grow, until the product of both is large. Only where the body is
 /// controlled: wheels that are driven against each other move as the strongest want.
-void compare_pairs(const Config& config, State& state, const Believed& believed, float since_s) {
+void compare_pairs(const Config& config, State& state, const Validated& validated, float since_s) {
   ComparisonState& comparison = state.comparison;
   if (comparison.is_checked != 0) {
     return;  // wires change no places while the robot drives, but pushed robots slide as if they had
@@ -205,18 +205,18 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
   const float keep = 1.0F - smaller(1.0F, since_s / kSwap_s);
   // Where wheels and gyro contradict each other, one of them lies about the turning.
   const bool is_turning_known =
-      state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, believed) - believed.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
-  const bool is_wheelwise = believed.mode == Mode::wheel_speed || believed.mode == Mode::wheel_torque;
+      state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
+  const bool is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
   const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
   const float clear = kClear_share * most;
   bool is_checked = true;
   // The body couples its wheels, so a current may well slow its wheel down. Four samples then still fit one motion of the body.
   float& residual_m2_per_s2 = comparison.residual_m2_per_s2;
-  residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, believed) - residual_m2_per_s2);
+  residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, validated) - residual_m2_per_s2);
   const bool is_contradiction = config.wheel_count < 4 || residual_m2_per_s2 > kLeastResidual_m_per_s * kLeastResidual_m_per_s;
   WheelResponse response[kMostWheels];
-  find_responses(config, state, believed, since_s, response);
+  find_responses(config, state, validated, since_s, response);
   int worst[2] = {-1, -1};
   int pair = 0;
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -255,10 +255,10 @@ void compare_pairs(const Config& config, State& state, const Believed& believed,
 
 }  // namespace
 
-float yaw_rate_of_wheels(const Config& config, const Believed& believed) {
+float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
   float yaw_rate_rad_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    yaw_rate_rad_per_s += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, believed.wheel[i].speed_rad_per_s);
+    yaw_rate_rad_per_s += config.wheel[i].inverse_yaw_per_m * rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s);
   }
   return yaw_rate_rad_per_s;
 }
@@ -276,7 +276,7 @@ float yaw_rate_of_wheels(const Config& config, const Believed& believed) {
     state.comparison = known.comparison;
     for (int i = 0; i < kMostWheels; ++i) {
       state.wheel[i].speed_fault = known.comparison.speed_fault[i];
-      state.wheel[i].is_current_doubted = known.comparison.current_error_s[i] > kStuck_s ? 1 : 0;
+      state.wheel[i].is_current_distrusted = known.comparison.current_error_s[i] > kStuck_s ? 1 : 0;
     }
     state.yaw_fault = known.comparison.yaw_fault;
   }
@@ -287,8 +287,8 @@ float yaw_rate_of_wheels(const Config& config, const Believed& believed) {
 
 void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(comparison); }
 
-void compare_sensors(const Config& config, State& state, const Input& input, Believed& believed) {
-  if (believed.robot_fault == Reason::time_jump) {
+void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated) {
+  if (validated.robot_fault == Reason::time_jump) {
     // Speeds of before the gap cannot be compared with those after it; what was found stays.
     ComparisonState after;
     for (int i = 0; i < kMostWheels; ++i) {
@@ -314,20 +314,20 @@ void compare_sensors(const Config& config, State& state, const Input& input, Bel
       error_s = kStuck_s + kSteadyAgain_s;
     }
     state.comparison.standing_s = 2.0F * kStanding_s;
-    believed.robot_fault = believed.robot_fault == Reason::period_invalid ? believed.robot_fault : Reason::state_corrupted;
+    validated.robot_fault = validated.robot_fault == Reason::period_invalid ? validated.robot_fault : Reason::state_corrupted;
   }
-  const float since_s = believed.elapsed_s * static_cast<float>(kStepsPerComparison);
+  const float since_s = validated.elapsed_s * static_cast<float>(kStepsPerComparison);
   if (turn == 4) {
-    compare_pairs(config, state, believed, since_s);
+    compare_pairs(config, state, validated, since_s);
   } else {
     const int first = turn == 0 ? 0 : 2;
     for (int i = first; i < first + 2 && i < config.wheel_count; ++i) {
-      compare_wheel(config, state, input, believed, i, since_s);
-      compare_heat(config, state, believed, input.motor_current_A[i], i, since_s);
+      compare_wheel(config, state, input, validated, i, since_s);
+      compare_heat(config, state, validated, input.motor_current_A[i], i, since_s);
     }
     if (turn == 8) {
-      compare_standing(config, state, believed, since_s);
-      compare_yaw_rate(config, state, believed, since_s);
+      compare_standing(config, state, validated, since_s);
+      compare_yaw_rate(config, state, validated, since_s);
     }
   }
   copy_faults(state);

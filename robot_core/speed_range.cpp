@@ -41,25 +41,25 @@ void add_triple(const Config& config, const Rims& rims, int i, SpeedRange& range
 
 }  // namespace
 
-[[gnu::cold]] SpeedRange speed_range(const Config& config, const State& state, const Believed& believed, int wheel) {
+[[gnu::cold]] SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel) {
   SpeedRange range;
   Rims rims;
-  const bool is_gyro_believed = state.yaw_fault == 0;
-  int sensed = is_gyro_believed ? 1 : 0;
+  const bool is_gyro_trusted = state.yaw_fault == 0;
+  int sensed = is_gyro_trusted ? 1 : 0;
   for (int j = 0; j < config.wheel_count; ++j) {
-    rims.is_sensed[j] = believed.wheel[j].is_speed_sensed;
-    rims.rim_m_per_s[j] = rim_speed_m_per_s(config, j, believed.wheel[j].speed_rad_per_s);
+    rims.is_sensed[j] = validated.wheel[j].is_speed_sensed;
+    rims.rim_m_per_s[j] = rim_speed_m_per_s(config, j, validated.wheel[j].speed_rad_per_s);
     sensed += rims.is_sensed[j] ? 1 : 0;
   }
   // With one sensor to spare, two swapped ones may go unnoticed: until they would have been found, every sample may be this wheel's.
   // Without one, the current is a safe one anyway.
   const bool is_any_possible = sensed == 4 && state.comparison.is_checked == 0;
-  const float turning_m_per_s = config.contact_radius_m * believed.yaw_rate_rad_per_s;
+  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   for (int j = 0; j < config.wheel_count; ++j) {
     if (rims.is_sensed[j] && j == wheel) {
-      range.add(believed.wheel[j].speed_rad_per_s);
+      range.add(validated.wheel[j].speed_rad_per_s);
     }
-    for (int k = j + 1; k < config.wheel_count && is_gyro_believed && j != wheel; ++k) {
+    for (int k = j + 1; k < config.wheel_count && is_gyro_trusted && j != wheel; ++k) {
       if (k != wheel) {
         add_pair(config, rims, wheel, j, k, turning_m_per_s, range);
       }
@@ -70,7 +70,7 @@ void add_triple(const Config& config, const Rims& rims, int i, SpeedRange& range
   }
   for (int j = 0; j < config.wheel_count && is_any_possible && range.is_known(); ++j) {
     if (rims.is_sensed[j]) {
-      range.add(believed.wheel[j].speed_rad_per_s);
+      range.add(validated.wheel[j].speed_rad_per_s);
     }
   }
   return range;

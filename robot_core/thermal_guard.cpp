@@ -20,14 +20,14 @@ std::uint64_t check_sum_of(const GuardState& state) {
 }
 
 /// Replaces what is not believed by some possible value; a bit per signal that was replaced.
-unsigned replace_unbelieved(const GuardModel& model, float* signal) {
+unsigned replace_implausible(const GuardModel& model, float* signal) {
   unsigned unknown = 0;
   for (int i = 0; i < kGuardSignals; ++i) {
-    const GuardBelief& belief = model.belief[i];
+    const PlausibleRange& plausible_range = model.plausible_range[i];
     // A neighbour that is colder than the air has no working sensor.
-    const float least = i == guard_neighbour_C ? signal[guard_ambient_C] - 5.0F : belief.least;
-    if (belief.is_used && !is_between(least, signal[i], belief.most)) {
-      signal[i] = belief.possible[0];
+    const float least = i == guard_neighbour_C ? signal[guard_ambient_C] - 5.0F : plausible_range.least;
+    if (plausible_range.is_used && !is_between(least, signal[i], plausible_range.most)) {
+      signal[i] = plausible_range.possible[0];
       unknown |= 1U << static_cast<unsigned>(i);
     }
   }
@@ -36,19 +36,19 @@ unsigned replace_unbelieved(const GuardModel& model, float* signal) {
 
 /// Every node heats as fast as with the worst of the possible values; the signal keeps the value that heats the winding most.
 [[gnu::cold]] void take_hottest(const GuardModel& model, float* signal, int which, const float* state_C, float* most_K_per_s) {
-  const GuardBelief& belief = model.belief[which];
-  float hottest = belief.possible[0];
+  const PlausibleRange& plausible_range = model.plausible_range[which];
+  float hottest = plausible_range.possible[0];
   float hottest_K_per_s = -1e30F;
-  for (int i = 0; i < belief.possible_count; ++i) {
+  for (int i = 0; i < plausible_range.possible_count; ++i) {
     float rate_K_per_s[kMostGuardNodes];
-    signal[which] = belief.possible[i];
+    signal[which] = plausible_range.possible[i];
     model.rates(model.context, signal, state_C, rate_K_per_s);
     for (int node = 0; node < model.node_count; ++node) {
       most_K_per_s[node] = larger(most_K_per_s[node], rate_K_per_s[node]);
     }
     if (rate_K_per_s[0] > hottest_K_per_s) {
       hottest_K_per_s = rate_K_per_s[0];
-      hottest = belief.possible[i];
+      hottest = plausible_range.possible[i];
     }
   }
   signal[which] = hottest;
@@ -146,15 +146,15 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   if (!out.was_started) {
     start_guard(model, state, model.winding_limit_C);
   }
-  float believed[kGuardSignals];
+  float validated[kGuardSignals];
   for (int i = 0; i < kGuardSignals; ++i) {
-    believed[i] = signal[i];
+    validated[i] = signal[i];
   }
-  const unsigned unknown = replace_unbelieved(model, believed);
+  const unsigned unknown = replace_implausible(model, validated);
   float rate_K_per_s[kMostGuardNodes];
-  model.rates(model.context, believed, state.state_C, rate_K_per_s);
+  model.rates(model.context, validated, state.state_C, rate_K_per_s);
   if (unknown != 0) {
-    find_hottest_rates(model, unknown, believed, state.state_C, rate_K_per_s);
+    find_hottest_rates(model, unknown, validated, state.state_C, rate_K_per_s);
   }
   for (int node = 0; node < model.node_count; ++node) {
     const float change_K = model.period_s * rate_K_per_s[node] - state.carry_K[node];
@@ -170,11 +170,11 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   out.is_unknown_input = unknown != 0;
   const float smoothing = model.period_s / kSmoothing_s;
   state.heating_K_per_s += smoothing * (rate_K_per_s[0] - state.heating_K_per_s);
-  state.load_squared_A2 += smoothing * (believed[guard_current_A] * believed[guard_current_A] - state.load_squared_A2);
-  state.speed_rad_per_s = believed[guard_speed_rad_per_s];
+  state.load_squared_A2 += smoothing * (validated[guard_current_A] * validated[guard_current_A] - state.load_squared_A2);
+  state.speed_rad_per_s = validated[guard_speed_rad_per_s];
   ++state.steps;
   if ((unknown & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
-    const heatsoak_row row = row_at(model.table, absolute(believed[guard_speed_rad_per_s]), out.hottest_body_C);
+    const heatsoak_row row = row_at(model.table, absolute(validated[guard_speed_rad_per_s]), out.hottest_body_C);
     const float braking_A2 = square_at_A2(model.table, row, out.winding_C);
     const float driving_A2 = smaller(braking_A2, square_at_A2(model.table, row, out.winding_C + braking_reserve_K));
     out.allowed_braking_A = heatsoak_current_A(&model.table, &row, braking_A2);

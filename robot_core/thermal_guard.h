@@ -27,7 +27,7 @@ enum GuardSignal : int {
 inline constexpr int kMostGuardNodes = 6;
 
 /// Range in which a signal is believed, and candidate values for when it is not.
-struct GuardBelief {
+struct PlausibleRange {
   bool is_used = false;  ///< false: no law of this motor depends on it
   float least = 0.0F;
   float most = 0.0F;
@@ -46,7 +46,7 @@ struct GuardModel {
   float cold_current_A = 0.0F;  ///< allowed to a cold motor that stands
   float heat_ratio = 1.0F;      ///< safety factor on heat, at least 1: the observer heats this many times as much as the nominal motor
   heatsoak_current_table table{};
-  GuardBelief belief[kGuardSignals];
+  PlausibleRange plausible_range[kGuardSignals];
   /// dT/dt of every node in K/s. `context` is handed through.
   void (*rates)(const void* context, const float* signal, const float* state_C, float* rate_K_per_s) = nullptr;
   const void* context = nullptr;

@@ -51,7 +51,7 @@ enum class PlanResult : unsigned char {
   not_that_many_axes = 7,
 };
 
-/// A stretch of constant jerk, with the state at its start.
+/// A segment of constant jerk, with the state at its start.
 template <typename Real>
 struct TrajectorySegment {  // NOLINT(cppcoreguidelines-pro-type-member-init): of those in a Trajectory most hold no values
   Real start_s;

@@ -81,7 +81,7 @@ Real most_square(const Parabola<Real>& x, const Parabola<Real>& y, Real floor, i
   return larger(left, most_square(xs[1], ys[1], larger(floor, left), halvings - 1));
 }
 
-/// Walks through the stretches of time in which neither x nor y changes its jerk.
+/// Walks through the segments of time in which neither x nor y changes its jerk.
 template <typename Real>
 class PairOfSegments {
  public:
@@ -89,7 +89,7 @@ class PairOfSegments {
 
   [[nodiscard]] Real duration_s() const { return until_s_ - from_s_; }
 
-  /// False behind the last stretch.
+  /// False behind the last segment.
   bool next() {
     const int ended = end_s(0) <= end_s(1) ? 0 : 1;
     ++at_[ended];

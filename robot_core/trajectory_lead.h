@@ -10,7 +10,7 @@
 
 namespace robot_core::detail {
 
-/// An axis' part of the lead: stretches of constant jerk in m/s3 (or rad/s3), and where they end.
+/// An axis' part of the lead: segments of constant jerk in m/s3 (or rad/s3), and where they end.
 template <typename Real>
 struct Lead {  // NOLINT(cppcoreguidelines-pro-type-member-init): only the first of the path's places hold values
   Path<Real, 5> path;

@@ -34,11 +34,11 @@ inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, 
   const auto function = [&](Real y) {
     const Real y_2 = y * y;
     const Real speed = vertex + y_2 + bound * y / Real(2);
-    const Real stretch = Real(1) + y * inverse;
+    const Real segment = Real(1) + y * inverse;
     const Real curve = y * ((vertex + y_2 / Real(2)) * inverse + bound / Real(2) + y);
     return Jet<Real>{y * (Real(2) * vertex + curve) + offset,
-                     absolute(y) * (Real(2) * absolute(vertex) + absolute(curve)) + offset_magnitude, Real(2) * speed * stretch,
-                     Real(2) * ((Real(2) * y + bound / Real(2)) * stretch + speed * inverse)};
+                     absolute(y) * (Real(2) * absolute(vertex) + absolute(curve)) + offset_magnitude, Real(2) * speed * segment,
+                     Real(2) * ((Real(2) * y + bound / Real(2)) * segment + speed * inverse)};
   };
   return root_between(function, low, high, guess, bound);
 }

@@ -1,4 +1,4 @@
-// Stretches of constant jerk, before they become segments of a trajectory. Part of the trajectory planner; the unit of
+// Segments of constant jerk, before they become segments of a trajectory. Part of the trajectory planner; the unit of
 // jerk is the axis' jerk_max, as in trajectory_ascent.h.
 #pragma once
 

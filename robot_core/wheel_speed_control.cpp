@@ -10,21 +10,21 @@ constexpr float kRelease_per_s = 3.0F;
 
 }  // namespace
 
-void control_wheel_speeds(const Config& config, State& state, const Believed& believed, const WheelReferences& wheels,
+void control_wheel_speeds(const Config& config, State& state, const Validated& validated, const WheelReferences& wheels,
                           WheelVoltages& voltage) {
-  const bool is_off = believed.mode == Mode::wheel_torque || believed.robot_fault == Reason::time_jump;
-  const float integral_gain_V_s_per_rad = config.wheel_integral_V_per_rad * believed.elapsed_s;
-  const float release_share = smaller(1.0F, believed.elapsed_s * kRelease_per_s);
+  const bool is_off = validated.mode == Mode::wheel_torque || validated.robot_fault == Reason::time_jump;
+  const float integral_gain_V_s_per_rad = config.wheel_integral_V_per_rad * validated.elapsed_s;
+  const float release_share = smaller(1.0F, validated.elapsed_s * kRelease_per_s);
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     WheelVoltage& asked = voltage.wheel[i];
-    if (is_off || !believed.wheel[i].is_speed_sensed) {
+    if (is_off || !validated.wheel[i].is_speed_sensed) {
       asked.wanted_V = asked.feed_forward_V;
       wheel.integral_V = 0.0F;
       continue;
     }
-    const float error_rad_per_s = wheels.wheel[i].speed_rad_per_s - believed.wheel[i].speed_rad_per_s;
-    const float fastest_rad_per_s = absolute(wheels.wheel[i].speed_rad_per_s) + absolute(believed.wheel[i].speed_rad_per_s);
+    const float error_rad_per_s = wheels.wheel[i].speed_rad_per_s - validated.wheel[i].speed_rad_per_s;
+    const float fastest_rad_per_s = absolute(wheels.wheel[i].speed_rad_per_s) + absolute(validated.wheel[i].speed_rad_per_s);
     wheel.integral_V += integral_gain_V_s_per_rad * error_rad_per_s;
     // Standing, integrators of wheels that hold each other back would heat motors for nothing.
     if (fastest_rad_per_s < kStanding_rad_per_s) {

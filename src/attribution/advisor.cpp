@@ -49,8 +49,8 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
   most.measured_C = most.ambient_C + kHarmless_K;
   for (const MeasuredRun& run : runs) {
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
-      for (const double shown_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
-        most.measured_C = std::fmax(most.measured_C, true_at_rest_C(run.sensors[sensor].faults, shown_C));
+      for (const double sensor_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
+        most.measured_C = std::fmax(most.measured_C, true_at_rest_C(run.sensors[sensor].faults, sensor_C));
       }
     }
   }

@@ -446,10 +446,10 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
     Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
     apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, true_C);
     // The change at a size of that order, not the slope at none: a lag is far from linear in its size.
-    Eigen::VectorXd shown_C = true_C;
-    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, shown_C);
-    for (Eigen::Index k = 0; k < shown_C.size(); ++k) {
-      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = (shown_C[k] - true_C[k]) / candidate.column_at_share;
+    Eigen::VectorXd sensor_C = true_C;
+    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, sensor_C);
+    for (Eigen::Index k = 0; k < sensor_C.size(); ++k) {
+      columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = (sensor_C[k] - true_C[k]) / candidate.column_at_share;
     }
   }
   return columns;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 namespace heatsoak {
-std::vector<double> knots_from(const Driver::Range& range) {
+std::vector<double> knots_from(const Regressor::Range& range) {
   std::vector<double> knots(kKnots);
   for (int i = 0; i < kKnots; ++i) {
     knots[static_cast<std::size_t>(i)] = range.low + (range.high - range.low) * i / (kKnots - 1.0);
@@ -12,7 +12,7 @@ std::vector<double> knots_from(const Driver::Range& range) {
   return knots;
 }
 
-std::vector<double> knots_between(Driver::Range range, DriverKind kind) {
+std::vector<double> knots_between(Regressor::Range range, DriverKind kind) {
   auto& [low, high] = range;
   if (low < 0.0 && high > 0.0 && kind != DriverKind::node_temperature) {
     const double below = std::clamp(std::round(-low / (high - low) * (kKnots - 1.0)), 1.0, kKnots - 2.0);
@@ -23,7 +23,7 @@ std::vector<double> knots_between(Driver::Range range, DriverKind kind) {
   return knots_from(range);
 }
 
-std::vector<double> knots_over(const Driver& driver) { return knots_between({driver.low, driver.high}, driver.kind); }
+std::vector<double> knots_over(const Regressor& driver) { return knots_between({driver.low, driver.high}, driver.kind); }
 
 HatsAt hats_at(const std::vector<double>& knots, double value) {
   const auto intervals = static_cast<double>(knots.size() - 1);

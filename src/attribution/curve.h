@@ -4,16 +4,16 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "attribution/drivers.h"
+#include "attribution/regressors.h"
 #include "attribution/rules.h"
 
 namespace heatsoak {
 
 inline constexpr int kKnots = 7;
-std::vector<double> knots_from(const Driver::Range& range);
+std::vector<double> knots_from(const Regressor::Range& range);
 /// Where a driver (no temperature) changes its sign one of them is 0: forwards and backwards, driving and braking differ.
-std::vector<double> knots_between(Driver::Range range, DriverKind kind);
-std::vector<double> knots_over(const Driver& driver);
+std::vector<double> knots_between(Regressor::Range range, DriverKind kind);
+std::vector<double> knots_over(const Regressor& driver);
 
 /// The two hat functions that are not 0 at a value, which is clamped to the outer knots.
 struct HatsAt {

@@ -65,7 +65,7 @@ std::string effect_in_words(const FoundEffect& effect) {
 }
 
 /// What the reader must know before he trusts the model on other runs.
-std::string doubts_in_words(const Diagnosis& diagnosis, const HoldoutScore& score) {
+std::string reservations(const Diagnosis& diagnosis, const HoldoutScore& score) {
   constexpr double kElsewhere_ratio = 3.0;
   std::string text;
   const double before_K = rms_K(score.before);
@@ -76,7 +76,7 @@ std::string doubts_in_words(const Diagnosis& diagnosis, const HoldoutScore& scor
   if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
     text += " The error on the training runs grows: keep the model's own figures.";
   }
-  const auto tell_grown = [&](const Errors& before, const Errors& after, std::string_view where) {
+  const auto report_growth = [&](const Errors& before, const Errors& after, std::string_view where) {
     for (const auto& [signal, error] : after) {
       const auto own = before.find(signal);
       if (own != before.end() && is_plainly_worse(error.rmse_K, own->second.rmse_K) && !is_plainly_worse(rms_K(after), rms_K(before))) {
@@ -85,8 +85,8 @@ std::string doubts_in_words(const Diagnosis& diagnosis, const HoldoutScore& scor
       }
     }
   };
-  tell_grown(score.before, score.after, "the runs held out");
-  tell_grown(diagnosis.before_train, diagnosis.after_train, "the training runs");
+  report_growth(score.before, score.after, "the runs held out");
+  report_growth(diagnosis.before_train, diagnosis.after_train, "the training runs");
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
     text += fmt::format(" It is {:.0f} times that on the training runs: those runs hold something that these do not show.",
                         after_K / std::max(kMatters_K, train_K));
@@ -118,7 +118,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
            "and "
            "the parameters are those of these runs.";
   }
-  return !diagnosis.selection.leaves_doubt()
+  return !diagnosis.selection.is_undecided()
              ? fmt::format(
                    "These runs cannot tell whether something is missing: at their usual size only {:.0f} % of the effects of the "
                    "catalogue would show in them.",
@@ -128,7 +128,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                    "is given.");
 }
 
-std::string changed_in_words(const ChangedFigure& figure) {
+std::string changed_in_words(const ChangedParameter& figure) {
   // The interval has the scale of all heat in it, on which the file agrees: where it reaches the file's own figure it would mislead.
   const bool is_beyond_scale = figure.before < figure.low || figure.before > figure.high;
   return fmt::format(
@@ -220,7 +220,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
       all.push_back(effect_in_words(effect));
     }
   }
-  for (const ChangedFigure& figure : diagnosis.changed) {
+  for (const ChangedParameter& figure : diagnosis.changed) {
     all.push_back(changed_in_words(figure));
   }
   if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
@@ -238,7 +238,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
                                               : diagnosis.refitted_train,
                                 is_held_out ? score.after : diagnosis.after_train,
                                 is_held_out ? "runs the fit never saw" : "the training runs") +
-                doubts_in_words(diagnosis, score));
+                reservations(diagnosis, score));
   if (const std::string alone = file_alone_in_words(diagnosis, score); !alone.empty()) {
     all.push_back(alone);
   }

@@ -36,9 +36,9 @@ Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs,
   return open_loop_errors(model, runs, before_them);
 }
 
-class Teller {
+class DiagnosisReport {
  public:
-  Teller(const DiagnosisInput& input, const SelectionRules& rules, Selection selection) : rules_(rules), input_(input) {
+  DiagnosisReport(const DiagnosisInput& input, const SelectionRules& rules, Selection selection) : rules_(rules), input_(input) {
     out_.selection = std::move(selection);
     set_column(input_.train, out_.selection.after.model.column);
   }
@@ -47,11 +47,11 @@ class Teller {
     for (const AcceptedTerm& term : out_.selection.terms) {
       out_.effects.push_back(found_effect(term, out_.selection, input_.train));
     }
-    tell_changed_figures();
+    report_changed_parameters();
     out_.runs = input_.train;
-    tell_errors();
-    tell_flux();
-    tell_balance();
+    report_errors();
+    report_flux();
+    report_balance();
     out_.tests_before = tests_of(out_.selection.before);
     out_.tests_after = tests_of(out_.selection.after);
     out_.unexplained = unexplained_heat(out_, input_.train);
@@ -65,10 +65,10 @@ class Teller {
  private:
   [[nodiscard]] const RefitResult& after() const { return out_.selection.after; }
 
-  void tell_changed_figures() {
+  void report_changed_parameters() {
     const Model& model = after().model.model;
     const Eigen::VectorXd theta = model.theta();
-    for (ChangedFigure figure : out_.selection.changed) {
+    for (ChangedParameter figure : out_.selection.changed) {
       const Eigen::Index own = figure.coordinate;
       const double reach = kInterval_sd * std::sqrt(after().covariance(own, own));
       figure.before = input_.model.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
@@ -79,7 +79,7 @@ class Teller {
     }
   }
 
-  void tell_errors() {
+  void report_errors() {
     out_.before_train = open_loop_errors(input_.model, input_.train, {});
     out_.refitted_train = open_loop_errors(out_.selection.own.model, input_.train, {});
     out_.after_train = open_loop_errors(after().model, input_.train, {});
@@ -96,7 +96,7 @@ class Teller {
     return all;
   }
 
-  void tell_flux() {
+  void report_flux() {
     const std::vector<FluxEstimate> before = smoothed(out_.selection.before);
     const std::vector<FluxEstimate> now = smoothed(after());
     const std::vector<int>& nodes = input_.model.model.flux_nodes;
@@ -121,7 +121,7 @@ class Teller {
     }
   }
 
-  void tell_balance() {
+  void report_balance() {
     const ExtendedModel& model = after().model;
     const Network& network = model.model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
@@ -240,9 +240,9 @@ class Teller {
       return DiagnosisVerdict::nothing_missing;
     }
     const bool is_same_mounting = std::ranges::none_of(
-        out_.changed, [](const ChangedFigure& figure) { return std::abs(std::log(figure.value / figure.before)) > kOtherMounting; });
+        out_.changed, [](const ChangedParameter& figure) { return std::abs(std::log(figure.value / figure.before)) > kOtherMounting; });
     const bool would_show = out_.selection.seen_share >= rules_.least_seen_share;
-    return !out_.selection.leaves_doubt(rules_) && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
+    return !out_.selection.is_undecided(rules_) && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
                                                                                   : DiagnosisVerdict::not_identifiable;
   }
 
@@ -280,11 +280,11 @@ std::string settle_turning_rows(DiagnosisInput& input) {
   }
   input.train = std::move(turning);
   input.turns_within_rows = true;
-  return std::string(kTurningRowsTold);
+  return std::string(kTurningRowsReason);
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
-  return Teller(input, rules, select_effects({input.model, input.train}, rules)).tell();
+  return DiagnosisReport(input, rules, select_effects({input.model, input.train}, rules)).tell();
 }
 
 HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout) {

@@ -64,7 +64,7 @@ struct Experiment {
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   std::vector<FoundEffect> effects;
-  std::vector<ChangedFigure> changed;  ///< figures of the file that do not hold in these runs
+  std::vector<ChangedParameter> changed;  ///< figures of the file that do not hold in these runs
   std::vector<Unexplained> unexplained;
   Errors before_train, after_train;
   Errors refitted_train;          ///< the model's own figures fitted to the training runs, nothing added

@@ -145,7 +145,7 @@ LinearisedRun linearised(const ExtendedModel& model, const MeasuredRun& run, con
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
       if (run.sensors[static_cast<std::size_t>(sensor)].signal == model.sensors[i].type->signal) {
         const SensorFault fault{model.sensors[i].type, model.sensors[i].value};
-        const Eigen::VectorXd by_size = fault.type->law.by_size(run.time_s, fault.size, out.shown_C.col(sensor));
+        const Eigen::VectorXd by_size = fault.type->law.by_size(run.time_s, fault.size, out.sensor_C.col(sensor));
         add_fault(fault, sensor, run, out);
         const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
         out.by_parameter(rows, model.model.free_count() + static_cast<Eigen::Index>(i)) = fault.type->typical_size * by_size;

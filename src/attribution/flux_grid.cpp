@@ -12,8 +12,8 @@ LatentFlux FluxGrid::at(const FluxPlace& place) const {
     flux.rms_W.push_back(rms_W[static_cast<std::size_t>(place[f])]);
   }
   flux.time_scale_s = time_scale_s[static_cast<std::size_t>(place[fluxes])];
-  flux.wander_K = wander_K[static_cast<std::size_t>(place[fluxes + 1])];
-  flux.wander_time_scale_s = wander_time_scale_s[static_cast<std::size_t>(place[fluxes + 2])];
+  flux.drift_K = drift_K[static_cast<std::size_t>(place[fluxes + 1])];
+  flux.drift_time_scale_s = drift_time_scale_s[static_cast<std::size_t>(place[fluxes + 2])];
   return flux;
 }
 
@@ -29,9 +29,9 @@ std::vector<FluxPlace> FluxGrid::all_over() const {
   std::vector<FluxPlace> all;
   for (const int strength : {1, 3, 5}) {
     for (const int time_scale : {1, 3}) {
-      for (const auto& [size, wander_time_scale] : {std::pair{0, 1}, {1, 1}, {2, 1}, {3, 1}, {2, 2}, {3, 2}}) {
+      for (const auto& [size, drift_time_scale] : {std::pair{0, 1}, {1, 1}, {2, 1}, {3, 1}, {2, 2}, {3, 2}}) {
         FluxPlace place(fluxes, strength);
-        place.insert(place.end(), {time_scale, size, wander_time_scale});
+        place.insert(place.end(), {time_scale, size, drift_time_scale});
         all.push_back(std::move(place));
       }
     }
@@ -42,8 +42,8 @@ std::vector<FluxPlace> FluxGrid::all_over() const {
 std::vector<FluxPlace> FluxGrid::star(const FluxPlace& place) const {
   std::vector<std::size_t> counts(fluxes, rms_W.size());
   counts.push_back(time_scale_s.size());
-  counts.push_back(wander_K.size());
-  counts.push_back(place[fluxes + 1] > 0 ? wander_time_scale_s.size() : 0);
+  counts.push_back(drift_K.size());
+  counts.push_back(place[fluxes + 1] > 0 ? drift_time_scale_s.size() : 0);
   std::vector<FluxPlace> all{place};
   for (std::size_t axis = 0; axis < counts.size(); ++axis) {
     for (const int step : {-1, 1}) {
@@ -64,9 +64,9 @@ FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes) {
     grid.rms_W.push_back(share * material_W);
   }
   for (const double share : {0.0, 0.003, 0.01, 0.03}) {
-    grid.wander_K.push_back(share * travel_K);
+    grid.drift_K.push_back(share * travel_K);
   }
-  grid.wander_time_scale_s = {10.0, 40.0, 160.0};
+  grid.drift_time_scale_s = {10.0, 40.0, 160.0};
   grid.time_scale_s = {40.0, 130.0, 400.0, 1200.0};
   return grid;
 }

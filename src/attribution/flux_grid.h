@@ -15,8 +15,8 @@ using FluxPlace = std::vector<int>;
 struct FluxGrid {
   std::vector<double> rms_W;         ///< increasing
   std::vector<double> time_scale_s;  ///< increasing
-  std::vector<double> wander_K;      ///< increasing, first 0
-  std::vector<double> wander_time_scale_s;
+  std::vector<double> drift_K;       ///< increasing, first 0
+  std::vector<double> drift_time_scale_s;
   std::size_t fluxes = 2;
 
   [[nodiscard]] LatentFlux at(const FluxPlace& place) const;

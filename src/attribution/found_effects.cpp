@@ -11,9 +11,9 @@
 namespace heatsoak {
 namespace {
 
-class EffectTeller {
+class EffectReport {
  public:
-  EffectTeller(const Selection& selection, const std::vector<MeasuredRun>& runs) : selection_(selection), runs_(runs) {}
+  EffectReport(const Selection& selection, const std::vector<MeasuredRun>& runs) : selection_(selection), runs_(runs) {}
 
   FoundEffect found(const AcceptedTerm& term) const {
     FoundEffect effect;
@@ -23,18 +23,18 @@ class EffectTeller {
     effect.visibility_ratio = term.visibility_ratio;
     effect.confusable_with = term.confusable_with;
     if (term.candidate && term.candidate->sensor_type) {
-      tell_sensor(*term.candidate, effect);
+      report_sensor(*term.candidate, effect);
       return effect;
     }
     if (term.candidate && term.candidate->deviation_type) {
-      tell_deviation(*term.candidate, effect);
+      report_deviation(*term.candidate, effect);
       return effect;
     }
     const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
     effect.id = in_place.type->name;
     effect.node = after().model.model.network.node_name(in_place.node_index.front());
     effect.description = in_place.type->summary;
-    effect.look_alike = in_place.type->look_alike;
+    effect.confounded_with = in_place.type->confounded_with;
     for (const ConditionalTerm& conditional : after().model.conditional) {
       if (conditional.effect_name == term.effect_name) {
         effect.condition = conditional.condition;
@@ -48,7 +48,7 @@ class EffectTeller {
       }
       effect.is_from_catalogue = false;
     }
-    tell_parameters(in_place, effect);
+    report_parameters(in_place, effect);
     const HeatOfEffect heat = heat_of(
         after(), runs_, [&](const EffectInPlace& each) { return &each == &in_place; }, effect.condition);
     effect.mean_W = heat.mean_W;
@@ -57,18 +57,18 @@ class EffectTeller {
   }
 
  private:
-  void tell_sensor(const Candidate& candidate, FoundEffect& effect) const {
+  void report_sensor(const Candidate& candidate, FoundEffect& effect) const {
     const SensorEffectType& type = *candidate.sensor_type;
     effect.id = type.name;
     effect.has_heat = false;
     effect.node = type.signal.substr(0, type.signal.rfind('_'));
     effect.description = type.summary;
-    effect.look_alike = type.look_alike;
-    tell_size(candidate, type.size, type.typical_size, type.size.range.low, effect);
+    effect.confounded_with = type.confounded_with;
+    report_size(candidate, type.size, type.typical_size, type.size.range.low, effect);
   }
 
   /// Of what is no effect of the network: its only figure, `unit_size` for each unit of its coordinate.
-  void tell_size(const Candidate& candidate, const ParameterSpec& spec, double unit_size, double low, FoundEffect& effect) const {
+  void report_size(const Candidate& candidate, const ParameterSpec& spec, double unit_size, double low, FoundEffect& effect) const {
     const Eigen::Index own = size_coordinate(after().model, candidate, {});
     const double value = unit_size * after().model.theta()[own];
     const double sd = unit_size * std::sqrt(after().covariance(own, own));
@@ -79,14 +79,14 @@ class EffectTeller {
     effect.p_value = p_of(value, sd);
   }
 
-  void tell_deviation(const Candidate& candidate, FoundEffect& effect) const {
+  void report_deviation(const Candidate& candidate, FoundEffect& effect) const {
     const RunDeviationType& type = *candidate.deviation_type;
     effect.id = type.name;
     effect.node = type.node;
     effect.condition = candidate.condition;
     effect.description = type.summary;
-    effect.look_alike = type.look_alike;
-    tell_size(candidate, type.size, type.usual, std::max(-1.0, type.size.range.low), effect);
+    effect.confounded_with = type.confounded_with;
+    report_size(candidate, type.size, type.usual, std::max(-1.0, type.size.range.low), effect);
     const double value = effect.parameters.front().value;
     const Network& network = after().model.model.network;
     const HeatOfEffect heat = heat_of(
@@ -112,7 +112,7 @@ class EffectTeller {
     }
   }
 
-  void tell_parameters(const EffectInPlace& in_place, FoundEffect& effect) const {
+  void report_parameters(const EffectInPlace& in_place, FoundEffect& effect) const {
     const Model& model = after().model.model;
     const Eigen::VectorXd theta = model.theta();
     std::vector<double> values;
@@ -157,7 +157,7 @@ const EffectInPlace* effect_named(const Network& network, const std::string& nam
 }
 
 FoundEffect found_effect(const AcceptedTerm& term, const Selection& selection, const std::vector<MeasuredRun>& runs) {
-  return EffectTeller(selection, runs).found(term);
+  return EffectReport(selection, runs).found(term);
 }
 
 }  // namespace heatsoak

@@ -34,7 +34,7 @@ struct FoundEffect {
   double p_value = 1.0;                          ///< of the size being 0; of a curve, of its surest knot
   double visibility_ratio = 0.0;
   std::vector<std::string> confusable_with;  ///< on these runs
-  std::string look_alike;                    ///< in general, and what tells them apart: the catalogue's own words
+  std::string confounded_with;               ///< in general, and what tells them apart: the catalogue's own words
   bool is_from_catalogue = true;
 };
 

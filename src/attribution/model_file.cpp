@@ -100,8 +100,8 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
 
 constexpr const char* kSource = "diagnosis";
 
-Figure measured(double value, double low, double high, const Range& range) {
-  Figure figure;
+ParameterValue measured(double value, double low, double high, const Range& range) {
+  ParameterValue figure;
   figure.value = value;
   figure.origin = Origin::measured;
   figure.source = kSource;
@@ -146,7 +146,7 @@ MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
     const ParameterSpec& spec = in_place->type->parameters[p];
     const double value = fit.model.model.values[static_cast<std::size_t>(in_place->parameter_index[p])];
     if (!spec.choices.empty()) {
-      Figure chosen;
+      ParameterValue chosen;
       chosen.value = value;
       chosen.printed = spec.choices[static_cast<std::size_t>(value)].name;
       effect.parameters.push_back(chosen);
@@ -160,13 +160,13 @@ MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
 }
 
 /// The file's figures as the fit has them, and how they hang together.
-void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
   const RefitResult& fit = diagnosis.selection.after;
   const auto free = model.model.model.free_count();
   const Eigen::VectorXd moved = fit.model.model.theta().head(free) - model.model.model.theta();
   const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
-  std::vector<const FittedFigure*> of_file;
-  for (const FittedFigure& each : model.figures) {
+  std::vector<const CalibratedValue*> of_file;
+  for (const CalibratedValue& each : model.figures) {
     if (each.is_of_file) {
       of_file.push_back(&each);
     }
@@ -177,16 +177,16 @@ void set_figures(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagno
   together.runs = model.fitted;
   together.training = model.training;
   for (std::size_t i = 0; i < of_file.size(); ++i) {
-    const FittedFigure& each = *of_file[i];
+    const CalibratedValue& each = *of_file[i];
     exponents.row(static_cast<Eigen::Index>(i)) = each.exponents.transpose();
     const double sd = std::sqrt(std::max(0.0, each.exponents.dot(covariance * each.exponents)));
-    Figure& figure = *find_figure(motor, each.name);
+    ParameterValue& figure = *find_parameter(motor, each.name);
     const double value = each.before * std::exp(each.exponents.dot(moved));
     const std::string source = figure.source;
     const Origin origin = figure.origin;
     figure = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
     figure.derivation = source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures, before it {}", source);
-    if (!is_told(sd, each)) {
+    if (!is_identifiable(sd, each)) {
       figure.origin = origin;
       figure.source += source.empty() ? "" : fmt::format(", {}", source);
       figure.derivation = "fit to measured temperatures, which do not tell it alone";
@@ -219,7 +219,7 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
     return;
   }
   for (const std::string& name : motor.fit->figures) {
-    Figure* const figure = find_figure(motor, name);
+    ParameterValue* const figure = find_parameter(motor, name);
     // Of the others the fit has said that it does not tell them.
     if (figure && figure->origin == Origin::measured && figure->value > 0.0) {
       figure->spread =
@@ -292,7 +292,7 @@ void score_files(const Motor& before, const Motor& after, const std::vector<Reco
 
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
   Motor result = motor;
-  set_figures(result, model, diagnosis);
+  set_parameters(result, model, diagnosis);
   std::vector<std::string> names;
   for (const MeasuredRun& run : diagnosis.runs) {
     if (std::ranges::find(names, run.name) == names.end()) {

@@ -12,11 +12,11 @@ namespace heatsoak {
 
 struct ModelOfLogs {
   ExtendedModel model;
-  std::vector<FittedFigure> figures;  ///< of the motor's file, as the model's parameters make them
-  MeasuredRunOptions how;             ///< what its runs must have and how they are read; but for the ambient temperature
-  std::vector<std::string> fitted;    ///< rows that the figures know, as name_and_fingerprint()
-  TrainingRange training;             ///< of the runs that they are rows of
-  std::vector<std::string> notes;     ///< what is taken for granted because no log has it
+  std::vector<CalibratedValue> figures;  ///< of the motor's file, as the model's parameters make them
+  MeasuredRunOptions how;                ///< what its runs must have and how they are read; but for the ambient temperature
+  std::vector<std::string> fitted;       ///< rows that the figures know, as name_and_fingerprint()
+  TrainingRange training;                ///< of the runs that they are rows of
+  std::vector<std::string> notes;        ///< what is taken for granted because no log has it
 };
 
 /// The motor's network with the figures free that a calibration frees, known before as well as the file says. Where not every recording has

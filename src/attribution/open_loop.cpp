@@ -41,7 +41,7 @@ std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, 
   RunStart start = start_of(network, run);
   for (const Sensor& sensor : run.sensors) {
     double& node_C = start.state_C[network.find_node(sensor.node)];
-    node_C = true_at_rest_C(all_faults(model, sensor), shown_at_rest_C(sensor.faults, node_C));
+    node_C = true_at_rest_C(all_faults(model, sensor), sensor_at_rest_C(sensor.faults, node_C));
   }
   start.prior_C = start.state_C;
   const Eigen::VectorXd decided_C = decided_start_C(
@@ -56,7 +56,7 @@ Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, 
   ExtendedModel settled = model;
   settled.model.free.clear();
   settled.model.flux_nodes.clear();
-  return linearise(settled, start_C(model, run, before_it), run).shown_C;
+  return linearise(settled, start_C(model, run, before_it), run).sensor_C;
 }
 
 Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {

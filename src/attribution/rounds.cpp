@@ -41,10 +41,10 @@ double travel_K(const std::vector<MeasuredRun>& runs) {
   double sum_K2 = 0.0;
   double count = 0.0;
   for (const MeasuredRun& run : runs) {
-    for (const auto shown_C : run.measured_C.colwise()) {
+    for (const auto sensor_C : run.measured_C.colwise()) {
       const auto usable = [](double each_C) { return !std::isnan(each_C); };
       std::vector<double> all_C;
-      std::ranges::copy_if(shown_C, std::back_inserter(all_C), usable);
+      std::ranges::copy_if(sensor_C, std::back_inserter(all_C), usable);
       if (!all_C.empty()) {
         const auto [low, high] = std::ranges::minmax(all_C);
         sum_K2 += (high - low) * (high - low);
@@ -103,7 +103,7 @@ Judged Rounds::run_rounds() {
     }
     follow(judged);
   }
-  own_figures(judged);
+  own_parameters(judged);
   note_sight();
   return judged;
 }
@@ -128,7 +128,7 @@ void Rounds::begin() {
     std::erase_if(list_.candidates, [](const Candidate& each) { return each.type && each.nodes.front() == "stator"; });
   }
   out_.not_judged = list_.not_judged;
-  figures_ = well_known_figures(input_.model, kSheet_sd);
+  figures_ = well_known_values(input_.model, kSheet_sd);
   set_rules_ = rules_of(candidates(), rules_);
   for (const Eigen::Index figure : figures_) {
     const std::string name = "figure " + input_.model.model.name(figure);
@@ -254,16 +254,16 @@ ExtendedModel Rounds::with_members(const std::vector<int>& members, const SetSea
   }
   model.set_theta(theta);
   for (std::size_t m = 0; m < members.size(); ++m) {
-    if (is_figure(members[m])) {
-      const Eigen::Index figure = figure_of(members[m]);
-      model.model.prior = with_doubt(model.model.prior, figure, kSheet_sd);
+    if (is_parameter(members[m])) {
+      const Eigen::Index figure = parameter_of(members[m]);
+      model.model.prior = with_prior_sd(model.model.prior, figure, kSheet_sd);
       Eigen::VectorXd moved = model.theta();
       moved[figure] = std::clamp(moved[figure] + kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)], model.low(figure), model.high(figure));
       model.set_theta(moved);
     }
   }
   for (std::size_t m = 0; m < members.size(); ++m) {
-    if (!is_figure(members[m])) {
+    if (!is_parameter(members[m])) {
       const Candidate& candidate = candidates()[static_cast<std::size_t>(members[m])];
       model = with_candidate(model, candidate, at.sizes[static_cast<Eigen::Index>(m)], {}, shapes);
     }
@@ -283,7 +283,7 @@ void Rounds::follow(const Judged& judged) {
   now_ = std::move(next);
   std::size_t instance = input_.model.model.network.effects().size();
   for (const int member : judged.best) {
-    if (is_figure(member)) {
+    if (is_parameter(member)) {
       continue;
     }
     Candidate& candidate = list_.candidates[static_cast<std::size_t>(member)];
@@ -315,7 +315,7 @@ void Rounds::take_shapes(const EffectInPlace& fitted, Candidate& candidate) cons
 }
 
 void Rounds::note() {
-  constexpr std::size_t kTold = 12;
+  constexpr std::size_t kMostReported = 12;
   Round round;
   for (int j = 0; j < static_cast<int>(candidates().size()); ++j) {
     const double gain_nats = search_->single_gain_nats(j);
@@ -329,7 +329,7 @@ void Rounds::note() {
     }
   }
   std::ranges::stable_sort(round.ladder, std::greater(), &JudgedCandidate::gain_nats);
-  round.ladder.resize(std::min(round.ladder.size(), kTold));
+  round.ladder.resize(std::min(round.ladder.size(), kMostReported));
   const EffectSet& best = search_->sets().front();
   for (const int member : best.members) {
     round.taken.push_back(set_rules_[static_cast<std::size_t>(member)].id);
@@ -410,7 +410,7 @@ double Rounds::error_of_ends_K(const RefitResult& start, RefitOptions options) c
 }
 
 RefitResult Rounds::to_predict(RefitResult fit) const {
-  if (fit.flux.wander_K <= 0.0 || !std::isfinite(fit.evidence_nats)) {
+  if (fit.flux.drift_K <= 0.0 || !std::isfinite(fit.evidence_nats)) {
     return fit;
   }
   RefitResult plain = try_refit(fit.model, input_.runs, fit.start_C, plain_options());
@@ -432,15 +432,15 @@ RefitResult Rounds::to_predict(RefitResult fit) const {
   return plain;
 }
 
-void Rounds::own_figures(const Judged& judged) {
+void Rounds::own_parameters(const Judged& judged) {
   const ExtendedModel start = base_here();
   out_.before = refit(start, input_.runs, starts_of(start), final_options(judged.empty_place));
   out_.own = out_.before;
   std::vector<int> doubted;
-  std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_figure(member); });
+  std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_parameter(member); });
   if (!doubted.empty()) {
-    const ExtendedModel with_doubts = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
-    out_.own = refit(with_doubts, input_.runs, starts_of(with_doubts), final_options(judged.best_place));
+    const ExtendedModel with_changes = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
+    out_.own = refit(with_changes, input_.runs, starts_of(with_changes), final_options(judged.best_place));
   }
   out_.own = to_predict(std::move(out_.own));
 }

@@ -32,8 +32,8 @@ class Rounds {
  protected:
   Judged run_rounds();
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return list_.candidates; }
-  [[nodiscard]] bool is_figure(int member) const { return member >= static_cast<int>(candidates().size()); }
-  [[nodiscard]] Eigen::Index figure_of(int member) const { return figures_[static_cast<std::size_t>(member) - candidates().size()]; }
+  [[nodiscard]] bool is_parameter(int member) const { return member >= static_cast<int>(candidates().size()); }
+  [[nodiscard]] Eigen::Index parameter_of(int member) const { return figures_[static_cast<std::size_t>(member) - candidates().size()]; }
   [[nodiscard]] Eigen::Index free_count() const { return input_.model.free_count(); }
   void begin();
   /// The base model about the path of the last fit.
@@ -61,7 +61,7 @@ class Rounds {
   /// Least squares of free runs.
   [[nodiscard]] RefitOptions plain_options() const;
   /// The model with nothing added, as the file has it and with uncertainty in what does not hold.
-  void own_figures(const Judged& judged);
+  void own_parameters(const Judged& judged);
   /// Of the last fit; nodes that it does not have begin at the ambient temperature.
   [[nodiscard]] std::vector<std::vector<double>> starts_of(const ExtendedModel& model) const;
   /// Root mean square of what a fit leaves, by node.

@@ -25,7 +25,7 @@ struct RunDeviationType {
   std::string_view summary;
   std::string_view equation;
   std::string_view family;
-  std::string_view look_alike;
+  std::string_view confounded_with;
   std::string_view experiment;
   /// Effects whose first parameter it is.
   bool (*concerns)(const Network& network, const EffectInPlace& effect) = nullptr;

@@ -51,7 +51,7 @@ class Selector : Rounds {
     std::vector<std::size_t> named;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double probability = search_->family_probability(best, m);
-      if (is_figure(best.members[m])) {
+      if (is_parameter(best.members[m])) {
         add_changed(best, m);
       } else if (probability > rules_.named_probability) {
         named.push_back(m);
@@ -98,10 +98,10 @@ class Selector : Rounds {
   }
 
   void add_changed(const EffectSet& best, std::size_t place) {
-    const Eigen::Index coordinate = figure_of(best.members[place]);
+    const Eigen::Index coordinate = parameter_of(best.members[place]);
     const FreeParameter& free = input_.model.model.free[static_cast<std::size_t>(coordinate)];
     const NetworkParameter& parameter = input_.model.model.network.parameters()[static_cast<std::size_t>(free.place)];
-    ChangedFigure figure;
+    ChangedParameter figure;
     figure.coordinate = coordinate;
     figure.name = parameter.name;
     figure.unit = parameter.unit;
@@ -110,7 +110,7 @@ class Selector : Rounds {
   }
 
   void scan(const Judged& judged, const EffectSet& best) {
-    constexpr std::size_t kTold = 8;
+    constexpr std::size_t kMostReported = 8;
     const ExtendedModel base = base_here();
     // Where the model is far off, curves are drawn over temperatures as they were measured, smoothed. What heat is multiplied with stays
     // the model's: noise in it would be that of the residual.
@@ -140,14 +140,14 @@ class Selector : Rounds {
       input.members.has_sign.push_back(set_rules_[static_cast<std::size_t>(member)].has_sign);
       input.members.prior_nats.push_back(set_rules_[static_cast<std::size_t>(member)].prior_nats);
     }
-    out_.rounds.back().scan = scan_drivers(input, rules_, kTold);
+    out_.rounds.back().scan = scan_drivers(input, rules_, kMostReported);
   }
 
   /// The member of the best set that a curve is another shape of.
   [[nodiscard]] std::optional<std::size_t> same_effect(const EffectSet& best, const ScanResult& curve) const {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double share = curve.gain_nats / (curve.gain_nats + search_->loss_without_nats(best, m));
-      if (!is_figure(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio && share < rules_.same_shape_share) {
+      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio && share < rules_.same_shape_share) {
         return m;
       }
     }
@@ -252,7 +252,7 @@ class Selector : Rounds {
     }
     std::vector<int> kept;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
-      if (is_figure(best.members[m]) || std::ranges::find(named, m) != named.end()) {
+      if (is_parameter(best.members[m]) || std::ranges::find(named, m) != named.end()) {
         kept.push_back(best.members[m]);
       }
     }
@@ -273,7 +273,7 @@ class Selector : Rounds {
     std::map<int, std::string> names;
     std::size_t instance = first;
     for (const int member : kept) {
-      if (!is_figure(member) && candidates()[static_cast<std::size_t>(member)].type) {
+      if (!is_parameter(member) && candidates()[static_cast<std::size_t>(member)].type) {
         names[member] = out_.after.model.model.network.effects()[instance++].name;
       }
     }
@@ -286,7 +286,7 @@ class Selector : Rounds {
       term.loss_without_nats = search_->loss_without_nats(best, m);
       term.visibility_ratio = search_->visibility_ratio(member);
       for (const int other : search_->stand_ins(best, m, kAmbiguous_nats)) {
-        if (!is_figure(other)) {
+        if (!is_parameter(other)) {
           const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
           if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
             term.confusable_with.push_back(rival.id);
@@ -324,7 +324,7 @@ class Selector : Rounds {
 
   /// Gives the model a curve if that predicts training runs that the fit has not seen.
   bool adopt_curve(const Judged& judged, const ScanResult& curve) {
-    const Driver& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
+    const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
     const std::optional<ExtendedModel> curved = with_curve(out_.after.model, curve, driver);
     if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
       return false;

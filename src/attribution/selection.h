@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "attribution/changed_figures.h"
-#include "attribution/driver_scan.h"
+#include "attribution/changed_parameters.h"
 #include "attribution/refit.h"
+#include "attribution/regressor_scan.h"
 #include "attribution/rules.h"
 
 namespace heatsoak {
@@ -58,10 +58,10 @@ struct Selection {
   RefitResult before;  ///< the model's own figures, nothing added
   RefitResult after;
   RefitResult own;  ///< `before` once more, with uncertainty in figures that do not hold
-  std::vector<ChangedFigure> changed;
+  std::vector<ChangedParameter> changed;
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
-  std::vector<Driver> drivers;  ///< that the scan looked at
+  std::vector<Regressor> drivers;  ///< that the scan looked at
   std::vector<std::string> not_judged;
   double mean_heat_W = 0.0;              ///< that the model knows of, over all runs
   double material_W = 0.0;               ///< unknown heat of less is what every model leaves
@@ -77,7 +77,7 @@ struct Selection {
   /// More heat is left than what every model leaves.
   [[nodiscard]] bool is_material() const;
   /// Something is missing that cannot be named.
-  [[nodiscard]] bool leaves_doubt(const SelectionRules& rules = {}) const {
+  [[nodiscard]] bool is_undecided(const SelectionRules& rules = {}) const {
     return terms.empty() && nothing_probability < 1.0 - rules.named_probability;
   }
 };

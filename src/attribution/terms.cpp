@@ -82,7 +82,8 @@ Eigen::VectorXd passive(const ScanResult& curve) {
   return (curve.curve.array() - shift).cwiseMax(0.0);
 }
 
-std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
+std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Regressor& driver,
+                                        std::string_view name) {
   const EffectType& type = *find_effect("tabulated");
   const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
@@ -184,7 +185,8 @@ Eigen::Index size_coordinate(const ExtendedModel& model, const Candidate& candid
   return std::ranges::find(model.model.free, place, &FreeParameter::place) - model.model.free.begin();
 }
 
-std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver, std::string_view name) {
+std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Regressor& driver,
+                                        std::string_view name) {
   return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string_view>
 
-#include "attribution/driver_scan.h"
 #include "attribution/extended_model.h"
+#include "attribution/regressor_scan.h"
 
 namespace heatsoak {
 
@@ -21,7 +21,7 @@ Eigen::Index size_coordinate(const ExtendedModel& model, const Candidate& candid
 
 /// The curve as an effect of the network, its values free: a table over the driver, or a conductance or source in certain runs only.
 /// What physics forbids (a loss below zero) is cut off; nothing where no operating point has the driver, or nothing would be left.
-std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Driver& driver,
+std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Regressor& driver,
                                         std::string_view name = {});
 
 /// `model` with the values that parameters and sensors of the same name have in `other`.

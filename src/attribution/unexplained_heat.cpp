@@ -12,16 +12,16 @@
 namespace heatsoak {
 namespace {
 
-class HeatTeller {
+class UnexplainedHeatReport {
  public:
-  HeatTeller(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) : told_(diagnosis), train_(train) {}
+  UnexplainedHeatReport(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) : told_(diagnosis), train_(train) {}
 
   /// Curves that the model was given; without one, the node with the most unknown heat.
   std::vector<Unexplained> tell() {
     for (const AcceptedTerm& term : told_.selection.terms) {
       if (term.curve) {
         add_curve(*term.curve, term.confusable_with);
-        tell_as_added(term, heats_.back());
+        report_as_added(term, heats_.back());
       }
     }
     if (heats_.empty() && told_.selection.is_unexplained) {
@@ -88,7 +88,7 @@ class HeatTeller {
   }
 
   /// The curve as the model has it, which is what physics leaves of the scan's.
-  void tell_as_added(const AcceptedTerm& term, Unexplained& heat) const {
+  void report_as_added(const AcceptedTerm& term, Unexplained& heat) const {
     const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
     heat.is_in_model = true;
     heat.mean_W = heat.rms_W = effect->mean_W;
@@ -107,7 +107,7 @@ class HeatTeller {
   }
 
   void add_curve(const ScanResult& curve, const std::vector<std::string>& others) {
-    const Driver& driver = told_.selection.drivers[static_cast<std::size_t>(curve.term.driver)];
+    const Regressor& driver = told_.selection.drivers[static_cast<std::size_t>(curve.term.driver)];
     Unexplained heat;
     heat.node = curve.term.node;
     heat.drivers = {driver.name};
@@ -136,7 +136,7 @@ class HeatTeller {
 }  // namespace
 
 std::vector<Unexplained> unexplained_heat(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) {
-  return HeatTeller(diagnosis, train).tell();
+  return UnexplainedHeatReport(diagnosis, train).tell();
 }
 
 }  // namespace heatsoak

@@ -16,12 +16,12 @@ namespace {
 Topic sensor_topic(const SensorEffectType& type) {
   const std::array lines{TopicLine{"equation", "equation", std::string(type.equation)},
                          TopicLine{"typical", "typical size", std::string(type.typical)},
-                         TopicLine{"look_alike", "look-alikes", std::string(type.look_alike)},
+                         TopicLine{"look_alike", "look-alikes", std::string(type.confounded_with)},
                          TopicLine{"experiment", "to tell apart", std::string(type.experiment)},
                          TopicLine{"reference", "reference", std::string(type.reference)}};
   const std::string use = fmt::format(
       "\nat the end of a motor file, whose sensor calibrate and diagnose then take for that; simulate adds what it shows:\n{}{}",
-      effect_table(type.name), typical_figure(type.size.key, type.typical_size, type.size.unit));
+      effect_table(type.name), typical_value(type.size.key, type.typical_size, type.size.unit));
   return effect_topic(fmt::format("what the sensor of {} shows", type.signal), type.name, type.summary, type.size, lines, use);
 }
 
@@ -45,7 +45,7 @@ Topic effect_topic(std::string_view where, std::string_view name, std::string_vi
 
 std::string effect_table(std::string_view type_name) { return fmt::format("[effects.my_{}]\ntype = \"{}\"\n", type_name, type_name); }
 
-std::string typical_figure(std::string_view key, double value, std::string_view unit) {
+std::string typical_value(std::string_view key, double value, std::string_view unit) {
   return fmt::format("{} = {{ value = \"{}{}{}\", origin = \"estimated\", derivation = \"typical size\" }}\n", key, significant(value, 6),
                      unit.empty() ? "" : " ", unit);
 }

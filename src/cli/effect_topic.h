@@ -24,7 +24,7 @@ Topic effect_topic(std::string_view where, std::string_view name, std::string_vi
 /// Returns the table "[effects.my_NAME]" with its type, ready to paste into a motor file.
 std::string effect_table(std::string_view type_name);
 /// Returns the line of a parameter at its typical size.
-std::string typical_figure(std::string_view key, double value, std::string_view unit);
+std::string typical_value(std::string_view key, double value, std::string_view unit);
 
 /// Returns all topics: sensor effects and those of the commands.
 std::vector<Topic> all_topics();

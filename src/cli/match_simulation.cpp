@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/default_spreads.h"
-#include "cli/silent_effects.h"
+#include "cli/inactive_effects.h"
 #include "present/verdict_words.h"
 #include "report/chart.h"
 #include "robot/assumed_friction.h"
@@ -188,7 +188,7 @@ nlohmann::ordered_json guard_json(const MatchSimulation& wanted, const MotorGuar
   return {{"use", is_missing ? kGuardUses[0] : kGuardUses[static_cast<std::size_t>(wanted.guard)]},
           {"asked_for", kGuardUses[static_cast<std::size_t>(wanted.guard)]},
           {"why_none", is_missing ? nlohmann::ordered_json(guard.why_none) : nlohmann::ordered_json()},
-          {"heat_reserve_ratio", guard.derating ? rounded(guard.derating->observer.heat_reserve_ratio(), 4) : nlohmann::ordered_json()}};
+          {"heat_reserve_ratio", guard.derating ? rounded(guard.derating->observer.heat_safety_factor(), 4) : nlohmann::ordered_json()}};
 }
 
 nlohmann::ordered_json json(const Played& played) {
@@ -363,7 +363,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
     }
   }
   const bool is_guarded = wanted.guard != GuardUse::off;
-  session.say(silent_effects({&wanted.motor, 1}) + (is_guarded ? default_spreads_text({&wanted.motor, 1}) : "") +
+  session.say(inactive_effects({&wanted.motor, 1}) + (is_guarded ? default_spreads_text({&wanted.motor, 1}) : "") +
               assumed_friction_text(wanted.robot));
   for (const std::string& file : {wanted.out, wanted.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));

@@ -58,9 +58,9 @@ std::string sensor_text(const Derating& derating) {
       "exceed a limit\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
-      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_reserve_ratio(),
-      derating.observer.heat_reserve_ratio(), plan.samples, plan.over, plan.winding_p95_C, plan.winding_most_C, plan.dropped,
-      plan.most_gain_A, plan.lying_nominal_C, plan.lying_over, derating.options.guarantee.samples);
+      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
+      derating.observer.heat_safety_factor(), plan.samples, plan.over, plan.winding_p95_C, plan.winding_most_C, plan.dropped,
+      plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_over, derating.options.guarantee.samples);
   if (plan.resistance) {
     text += fmt::format("readings need {:.2f} A at rest and {:.3f} A more per rad/s\n", plan.resistance->least_current_A,
                         plan.resistance->current_per_speed_A_s_per_rad);

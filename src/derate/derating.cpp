@@ -127,7 +127,7 @@ class Search {
   [[nodiscard]] std::optional<Attempt> attempt(double reserve) const {
     Observer observer(network_, motor_.nominal, robot_, reserve);
     BarrierRules rules = reachable_;
-    rules.most_speed_rad_per_s = bearable_speed_rad_per_s(observer, reachable_);
+    rules.most_speed_rad_per_s = sustainable_speed_rad_per_s(observer, reachable_);
     if (rules.most_speed_rad_per_s < reachable_.most_speed_rad_per_s) {
       rules.no_current_speed_rad_per_s = 0.0;
     }
@@ -136,7 +136,7 @@ class Search {
       return std::nullopt;
     }
     CurrentTable table = current_table(observer, rules, options_.table);
-    const std::vector<Use> patterns = hardest_uses(observer, rules);
+    const std::vector<LoadPattern> patterns = hardest_patterns(observer, rules);
     std::vector<UsePlayed> uses(patterns.size());
     in_parallel(uses.size(), options_.guarantee.threads,
                 [&](std::size_t i) { uses[i] = play(observer, table, rules, motor_, robot_, patterns[i], options_.period_s); });

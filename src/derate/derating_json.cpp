@@ -35,7 +35,7 @@ Json observer_json(const Derating& derating) {
       {"winding_K_per_s", "(r*R25*(1+alpha*(T_winding-25))*(k*I)^2 - (T_winding-T_stator)/R_winding_stator)/C_winding"},
       {"stator_K_per_s",
        "(r*torque_constant*no_load_current*|w| + (T_winding-T_stator)/R_winding_stator - (T_stator-T_ambient)/R_stator_ambient)/C_stator"},
-      {"heat_reserve_ratio_r", rounded_to_12_digits(derating.observer.heat_reserve_ratio())},
+      {"heat_reserve_ratio_r", rounded_to_12_digits(derating.observer.heat_safety_factor())},
       {"heating_current_ratio_k", rounded_to_12_digits(derating.heating_current_ratio)},
       {"terminal_resistance_25C_ohm", rounded_to_12_digits(motor.terminal_resistance_ohm)},
       {"temperature_coefficient_per_K", rounded_to_12_digits(motor.temperature_coefficient_per_K)},
@@ -123,20 +123,21 @@ Json sensor_json(const Derating& derating) {
                        {"without_sensor_A", rounded(each.without_A, 3)},
                        {"with_sensor_A", rounded(each.with_A, 3)}});
   }
-  return {
-      {"kind", plan.options.kind == SensorKind::thermistor ? "thermistor" : "winding_resistance"},
-      {"node", plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)]},
-      {"accuracy_K", plan.options.accuracy_K},
-      {"lag_s", plan.options.lag_s},
-      {"heat_reserve_ratio", rounded(plan.observer.heat_reserve_ratio(), 4)},
-      {"winding_speed_ratio", rounded(plan.winding_speed_ratio, 4)},
-      {"samples", plan.samples},
-      {"over", plan.over},
-      {"winding_peak_C", {{"p95", rounded(plan.winding_p95_C, 2)}, {"most", rounded(plan.winding_most_C, 2)}}},
-      {"honest_dropped", plan.dropped},
-      {"lying",
-       {{"most_gain_A", rounded(plan.most_gain_A, 3)}, {"nominal_winding_C", rounded(plan.lying_nominal_C, 1)}, {"over", plan.lying_over}}},
-      {"lasting_current", lasting}};
+  return {{"kind", plan.options.kind == SensorKind::thermistor ? "thermistor" : "winding_resistance"},
+          {"node", plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)]},
+          {"accuracy_K", plan.options.accuracy_K},
+          {"lag_s", plan.options.lag_s},
+          {"heat_reserve_ratio", rounded(plan.observer.heat_safety_factor(), 4)},
+          {"winding_speed_ratio", rounded(plan.winding_speed_ratio, 4)},
+          {"samples", plan.samples},
+          {"over", plan.over},
+          {"winding_peak_C", {{"p95", rounded(plan.winding_p95_C, 2)}, {"most", rounded(plan.winding_most_C, 2)}}},
+          {"honest_dropped", plan.dropped},
+          {"lying",
+           {{"most_gain_A", rounded(plan.most_gain_A, 3)},
+            {"nominal_winding_C", rounded(plan.sensor_fault_nominal_C, 1)},
+            {"over", plan.sensor_fault_over}}},
+          {"lasting_current", lasting}};
 }
 
 }  // namespace
@@ -164,7 +165,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"hottest_ambient_C", derating.rules.hottest_ambient_C},
           {"period_s", derating.options.period_s},
           {"approach_s", derating.options.approach_s},
-          {"heat_reserve_ratio", rounded(derating.observer.heat_reserve_ratio(), 4)},
+          {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
           {"current_per_iq", derating.is_brushless ? Json(std::numbers::sqrt3 * std::numbers::pi / 6.0) : Json()},
           {"limp_current_A", rounded(limp_current_A(derating), 4)},
           {"conditions", derating.assumed},

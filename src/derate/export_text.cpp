@@ -50,7 +50,7 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
       comment, in_one_line(derating.motor_id), in_one_line(derating.robot_id), in_one_line(derating.provenance.program_version), kInputHash,
       derating.provenance.input_hash, derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator limit {:.6g} degC", *derating.rules.limits.stator_C) : "",
-      derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(), confidence_text(derating));
+      derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(), confidence_text(derating));
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format("{} Valid only where {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));
   }
@@ -92,7 +92,7 @@ void require_finite(const Derating& derating) {
   const auto is_finite = [](double value) { return std::isfinite(value); };
   const double numbers[] = {derating.rules.limits.winding_C,       derating.rules.limits.stator_C.value_or(0.0),
                             derating.rules.most_current_A,         derating.rules.most_speed_rad_per_s,
-                            derating.torque_constant_Nm_per_A,     derating.observer.heat_reserve_ratio(),
+                            derating.torque_constant_Nm_per_A,     derating.observer.heat_safety_factor(),
                             derating.options.hottest_ambient_C,    derating.options.coldest_ambient_C,
                             derating.options.guarantee.confidence, derating.options.period_s};
   if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.square_A2, is_finite) ||

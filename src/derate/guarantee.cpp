@@ -85,30 +85,30 @@ double use_duration_s(const MotorValues& motor) {
   return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s);
 }
 
-std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules) {
-  static constexpr std::array<Use, 11> kPlain{{{0.0},
-                                               {0.3},
-                                               {0.6},
-                                               {0.98},
-                                               {0.0, 2.0, 4.0, 0.0},
-                                               {0.6, 2.0, 4.0, 0.6},
-                                               {0.6, 30.0, 30.0, 0.6},
-                                               {0.0, 30.0, 90.0, 0.98},
-                                               {0.0, 60.0, 240.0, 0.98},
-                                               {0.0, 60.0, 120.0, 0.0},
-                                               {0.6, 60.0, 120.0, 0.6}}};
-  static constexpr std::array<Use, 8> kOther{{{0.0},
-                                              {0.3},
-                                              {0.98},
-                                              {0.6, 2.0, 4.0, 0.6},
-                                              {0.6, 30.0, 30.0, 0.6},
-                                              {0.0, 30.0, 90.0, 0.98},
-                                              {0.0, 60.0, 240.0, 0.0},
-                                              {0.0, 60.0, 240.0, 0.98}}};
+std::vector<LoadPattern> hardest_patterns(const Observer& observer, const BarrierRules& rules) {
+  static constexpr std::array<LoadPattern, 11> kPlain{{{0.0},
+                                                       {0.3},
+                                                       {0.6},
+                                                       {0.98},
+                                                       {0.0, 2.0, 4.0, 0.0},
+                                                       {0.6, 2.0, 4.0, 0.6},
+                                                       {0.6, 30.0, 30.0, 0.6},
+                                                       {0.0, 30.0, 90.0, 0.98},
+                                                       {0.0, 60.0, 240.0, 0.98},
+                                                       {0.0, 60.0, 120.0, 0.0},
+                                                       {0.6, 60.0, 120.0, 0.6}}};
+  static constexpr std::array<LoadPattern, 8> kOther{{{0.0},
+                                                      {0.3},
+                                                      {0.98},
+                                                      {0.6, 2.0, 4.0, 0.6},
+                                                      {0.6, 30.0, 30.0, 0.6},
+                                                      {0.0, 30.0, 90.0, 0.98},
+                                                      {0.0, 60.0, 240.0, 0.0},
+                                                      {0.0, 60.0, 240.0, 0.98}}};
   const std::vector<HotCase> cases = hot_cases(observer, rules);
-  std::vector<Use> uses;
-  const auto add = [&uses](std::span<const Use> patterns, const HotCase& hot_case) {
-    for (Use use : patterns) {
+  std::vector<LoadPattern> uses;
+  const auto add = [&uses](std::span<const LoadPattern> patterns, const HotCase& hot_case) {
+    for (LoadPattern use : patterns) {
       use.hot_case = hot_case;
       uses.push_back(use);
     }
@@ -121,7 +121,7 @@ std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rule
 }
 
 UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
-               const Use& use, double period_s) {
+               const LoadPattern& use, double period_s) {
   UsePlayed result;
   result.use = use;
   ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));

@@ -19,7 +19,7 @@
 namespace heatsoak {
 
 /// A load pattern that always draws the full allowed current, continuously or in pulses, at constant speed in one hot case.
-struct Use {
+struct LoadPattern {
   double speed_share = 0.0;  ///< of the rules' highest speed
   double on_s = 0.0;         ///< length of a pulse; 0: continuous
   double off_s = 0.0;
@@ -27,11 +27,11 @@ struct Use {
   HotCase hot_case = {};
 };
 /// Returns continuous and pulsed patterns at several speeds: all of them in the plain case, a selection in every other hot case.
-std::vector<Use> hardest_uses(const Observer& observer, const BarrierRules& rules);
+std::vector<LoadPattern> hardest_patterns(const Observer& observer, const BarrierRules& rules);
 
 /// Result of one use: the current that the firmware allows, and the temperatures of its observer.
 struct UsePlayed {
-  Use use;
+  LoadPattern use;
   std::vector<Interval> intervals;  ///< inputs of the motor's network
   std::vector<double> time_s;       ///< ends of the intervals
   std::vector<double> current_A;    ///< RMS current of each interval, ≥ 0
@@ -65,7 +65,7 @@ double use_duration_s(const MotorValues& motor);
 
 /// Simulates one use for use_duration_s(), from a motor at the temperature of the hottest air. Single precision, as in the firmware.
 UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
-               const Use& use, double period_s);
+               const LoadPattern& use, double period_s);
 
 /// Peak temperature of one motor over all uses.
 struct MotorPeak {

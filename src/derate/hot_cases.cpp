@@ -199,7 +199,7 @@ std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rul
   return cases;
 }
 
-double bearable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules) {
+double sustainable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules) {
   constexpr int kPlaces = 200;
   const std::vector<HotCase> cases = hot_cases(observer, rules);
   Rates rates(observer);
@@ -218,15 +218,15 @@ double bearable_speed_rad_per_s(const Observer& observer, const BarrierRules& ru
     }
     return false;
   };
-  double bearable_rad_per_s = 0.0;
+  double sustainable_rad_per_s = 0.0;
   for (int i = 0; i <= kPlaces; ++i) {
     const double speed_rad_per_s = rules.most_speed_rad_per_s * i / kPlaces;
     if (!std::ranges::all_of(cases, [&](const HotCase& each) { return cools(each, speed_rad_per_s); })) {
       break;
     }
-    bearable_rad_per_s = speed_rad_per_s;
+    sustainable_rad_per_s = speed_rad_per_s;
   }
-  return bearable_rad_per_s;
+  return sustainable_rad_per_s;
 }
 
 }  // namespace heatsoak

@@ -60,6 +60,6 @@ std::vector<double> values_if_unknown(const Observer& observer, const BarrierRul
 /// Returns the highest speed in rad/s up to which, in every hot case, all nodes stop heating without current at some temperature of the
 /// bodies within the limits. Beyond it the motor overheats even without current. At most rules.most_speed; 0 if the condition fails at
 /// rest.
-double bearable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules);
+double sustainable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules);
 
 }  // namespace heatsoak

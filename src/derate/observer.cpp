@@ -35,8 +35,8 @@ std::array<Traced, firmware::kSignalCount> traced_signals(Formula& formula) {
 
 }  // namespace
 
-Observer::Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_reserve_ratio)
-    : heat_reserve_ratio_(heat_reserve_ratio) {
+Observer::Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_safety_factor)
+    : heat_safety_factor_(heat_safety_factor) {
   const std::array<Traced, firmware::kSignalCount> signals = traced_signals(formula_);
   const OperatingPoint<Traced> at = operating_point<Traced>(motor, robot, signals);
   std::vector<Traced> temperature_C;
@@ -55,7 +55,7 @@ Observer::Observer(const Network& network, const MotorValues& motor, const Robot
       steps.push_back(rate.step_in(formula_));
     }
   };
-  add_rates(heat_reserve_ratio, rate_steps_);
+  add_rates(heat_safety_factor, rate_steps_);
   add_rates(1.0, nominal_rate_steps_);
   const std::vector<char> needed = formula_.needed_for(rate_steps_);
   for (std::size_t i = 0; i < needed.size(); ++i) {

@@ -47,11 +47,11 @@ OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, 
   return at;
 }
 
-/// Rates of the network's temperatures as formulas. Generated heat is multiplied by the safety factor `heat_reserve_ratio` ≥ 1, so that
+/// Rates of the network's temperatures as formulas. Generated heat is multiplied by the safety factor `heat_safety_factor` ≥ 1, so that
 /// motors worse than nominal are covered; conducted heat is not. Winding and stator are the first states, as in every motor's network.
 class Observer {
  public:
-  Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_reserve_ratio);
+  Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_safety_factor);
 
   [[nodiscard]] const Formula& formula() const { return formula_; }
   /// Index of the formula step that computes dT/dt in K/s, one per state.
@@ -62,7 +62,7 @@ class Observer {
   [[nodiscard]] std::size_t state_count() const { return state_names_.size(); }
   /// True if a law depends on the signal; always true for current, speed and ambient.
   [[nodiscard]] bool uses(firmware::Signal signal) const { return is_used_[static_cast<std::size_t>(signal)] != 0; }
-  [[nodiscard]] double heat_reserve_ratio() const { return heat_reserve_ratio_; }
+  [[nodiscard]] double heat_safety_factor() const { return heat_safety_factor_; }
 
  private:
   Formula formula_;
@@ -70,7 +70,7 @@ class Observer {
   std::vector<int> nominal_rate_steps_;
   std::vector<std::string> state_names_;
   std::array<char, firmware::kSignalCount> is_used_{};
-  double heat_reserve_ratio_ = 1.0;
+  double heat_safety_factor_ = 1.0;
 };
 
 /// Runs the observer as the generated code does: explicit Euler steps of one period with compensated summation (Kahan 1965). In single

@@ -9,7 +9,7 @@
 
 namespace heatsoak {
 
-/// Means over a stretch of time at one wheel. With I = (M + M_drag·sign ω)/K_t the mean of I² is
+/// Means over a segment of time at one wheel. With I = (M + M_drag·sign ω)/K_t the mean of I² is
 /// (⟨M²⟩ + 2·M_drag·⟨M·sign ω⟩ + M_drag²·⟨sign² ω⟩)/K_t², so that these means give the copper heat of every motor exactly,
 /// however many moments were merged into the bin.
 struct LoadBin {
@@ -26,14 +26,14 @@ struct LoadBin {
   double current_along_motion_A = 0.0;   ///< mean of I·sign ω: positive drives, negative brakes
   double current_mean_A = 0.0;           ///< signed
   double power_mean_W = 0.0;             ///< mean of M·ω
-  double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between stretches of constant speed are not in it
+  double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between segments of constant speed are not in it
 };
 
 /// A wheel that turns more slowly has no direction, 3 mm/s at a rim of 30 mm: what planners, smoothers and number formats leave of a
 /// zero has a sign, and the motor's whole drag would follow it.
 inline constexpr double kStandstill_rad_per_s = 0.1;
 
-/// A stretch with one torque and speed.
+/// A segment with one torque and speed.
 LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A);
 
 /// How long a wheel is asked for a torque at a speed: tells what voltage and current are needed, and how often.

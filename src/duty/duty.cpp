@@ -74,7 +74,8 @@ Duty read_duty(const std::filesystem::path& path) {
   duty.summary = top.text("summary", Need::required).value_or("");
   duty.origin = top.text("origin", Need::required).value_or("");
   duty.notes = top.texts("notes", Need::optional);
-  duty.ambient_C = top.figure({"ambient", "degC", Range::between(-40.0, 100.0), "air around the motor"}, Need::required).value_or(Figure{});
+  duty.ambient_C =
+      top.figure({"ambient", "degC", Range::between(-40.0, 100.0), "air around the motor"}, Need::required).value_or(ParameterValue{});
   std::vector<std::string_view> names;
   for (const ShapeType& shape : all_shapes()) {
     names.push_back(shape.name);

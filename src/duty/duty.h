@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/figure.h"
+#include "base/parameter_value.h"
 #include "duty/demand.h"
 #include "input/reader.h"
 #include "robot/robot.h"
@@ -42,10 +42,10 @@ struct Duty {
   std::string origin;   ///< where the demand comes from, "calibrated", "synthetic", "measured": said in every answer
   std::vector<std::string> notes;
   DutyKind kind = DutyKind::torque;
-  Figure ambient_C;
-  Figure load;  ///< factor on torque or current, 1 with the spread that the file declares
+  ParameterValue ambient_C;
+  ParameterValue load;  ///< factor on torque or current, 1 with the spread that the file declares
   /// What the shape's table gives, for `describe`; a bare quantity has no `printed`.
-  std::vector<std::pair<ParameterSpec, Figure>> figures;
+  std::vector<std::pair<ParameterSpec, ParameterValue>> figures;
   std::shared_ptr<const DutyShape> shape_data;
 
   [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const { return shape_data->demand(robot, seed); }

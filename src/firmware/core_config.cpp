@@ -29,7 +29,7 @@ void require_all(const Robot& robot, const MotorValues& motor) {
   }
   Diagnostics diagnostics;
   try {
-    require_figures(robot, tables);
+    require_parameters(robot, tables);
   } catch (const Failure& failure) {
     for (const Diagnostic& each : failure.diagnostics()) {
       diagnostics.add(each.at, each.key, each.message);

@@ -52,14 +52,14 @@ HostGuard::HostGuard(const Derating& derating)
   model_.most_current_A = static_cast<float>(derating.rules.most_current_A);
   const CurrentTable& table = derating.table;
   model_.cold_current_A = table.allowed_A(0.0F, static_cast<float>(table.stator_C.front()), static_cast<float>(table.winding_C.front()));
-  model_.heat_ratio = static_cast<float>(derating.observer.heat_reserve_ratio());
+  model_.heat_ratio = static_cast<float>(derating.observer.heat_safety_factor());
   model_.table.most_current_A = static_cast<float>(table.most_current_A);
   model_.table.straight_below_A = static_cast<float>(table.straight_below_A);
   model_.table.most_speed_rad_per_s = static_cast<float>(table.most_speed_rad_per_s);
   model_.table.no_current_speed_rad_per_s = static_cast<float>(table.no_current_speed_rad_per_s);
   model_.table.winding_per_stator_K = static_cast<float>(table.winding_per_stator_K);
-  for (std::size_t i = 0; i < beliefs_.size(); ++i) {
-    beliefs_[i] = belief(derating, static_cast<firmware::Signal>(i));
+  for (std::size_t i = 0; i < plausible_ranges_.size(); ++i) {
+    plausible_ranges_[i] = plausible_range(derating, static_cast<firmware::Signal>(i));
   }
   model_.rates = &HostGuard::rates;
   point_to_own();
@@ -71,7 +71,7 @@ HostGuard::HostGuard(const HostGuard& other)
       stator_C_(other.stator_C_),
       winding_C_(other.winding_C_),
       square_A2_(other.square_A2_),
-      beliefs_(other.beliefs_),
+      plausible_ranges_(other.plausible_ranges_),
       law_(other.law_) {
   point_to_own();
 }
@@ -83,7 +83,7 @@ HostGuard& HostGuard::operator=(const HostGuard& other) {
     stator_C_ = other.stator_C_;
     winding_C_ = other.winding_C_;
     square_A2_ = other.square_A2_;
-    beliefs_ = other.beliefs_;
+    plausible_ranges_ = other.plausible_ranges_;
     law_ = other.law_;
     point_to_own();
   }
@@ -95,9 +95,9 @@ void HostGuard::point_to_own() {
   model_.table.stator_C = axis(stator_C_);
   model_.table.winding_C = axis(winding_C_);
   model_.table.square_A2 = square_A2_.data();
-  for (std::size_t i = 0; i < beliefs_.size(); ++i) {
-    const Belief& from = beliefs_[i];
-    model_.belief[i] = {from.is_used, from.low, from.high, from.values.data(), static_cast<int>(from.values.size())};
+  for (std::size_t i = 0; i < plausible_ranges_.size(); ++i) {
+    const PlausibleRange& from = plausible_ranges_[i];
+    model_.plausible_range[i] = {from.is_used, from.low, from.high, from.values.data(), static_cast<int>(from.values.size())};
   }
   model_.context = &law_;
 }

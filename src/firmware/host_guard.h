@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "derate/belief.h"
+#include "derate/plausible_range.h"
 #include "robot_core/thermal_guard.h"
 
 namespace heatsoak {
@@ -37,7 +37,7 @@ class HostGuard {
   std::vector<float> stator_C_;
   std::vector<float> winding_C_;
   std::vector<float> square_A2_;
-  std::array<Belief, firmware::kSignalCount> beliefs_;
+  std::array<PlausibleRange, firmware::kSignalCount> plausible_ranges_;
   mutable Law law_;
 };
 

@@ -40,8 +40,9 @@ std::string arrays(const robot_core::GuardModel& guard) {
                      "// Square of the allowed current in A^2 by speed, then stator, then winding.\n" +
                      array("kSquare_A2", table.square_A2, squares) + "\n// What a signal may be of which nothing is known.\n";
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
-    if (const robot_core::GuardBelief& belief = guard.belief[i]; belief.is_used) {
-      text += array(fmt::format("kPossible_{}", name_of(static_cast<firmware::Signal>(i))), belief.possible, belief.possible_count);
+    if (const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i]; plausible_range.is_used) {
+      text += array(fmt::format("kPossible_{}", name_of(static_cast<firmware::Signal>(i))), plausible_range.possible,
+                    plausible_range.possible_count);
     }
   }
   return text + "\n";
@@ -61,14 +62,16 @@ std::string table(const robot_core::GuardModel& guard) {
       float_literal(table.winding_per_stator_K));
 }
 
-std::string beliefs(const robot_core::GuardModel& guard) {
+std::string plausible_ranges(const robot_core::GuardModel& guard) {
   std::string text;
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
-    const robot_core::GuardBelief& belief = guard.belief[i];
+    const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i];
     const std::string_view name = name_of(static_cast<firmware::Signal>(i));
-    text += belief.is_used ? fmt::format("            {{true, {}, {}, kPossible_{}, {}}},  // {}: least and most that are believed\n",
-                                         float_literal(belief.least), float_literal(belief.most), name, belief.possible_count, name)
-                           : fmt::format("            {{}},  // {}: no law depends on it\n", name);
+    text += plausible_range.is_used
+                ? fmt::format("            {{true, {}, {}, kPossible_{}, {}}},  // {}: accepted range\n",
+                              float_literal(plausible_range.least), float_literal(plausible_range.most), name,
+                              plausible_range.possible_count, name)
+                : fmt::format("            {{}},  // {}: no law depends on it\n", name);
   }
   return text;
 }
@@ -92,7 +95,7 @@ std::string guarantee(const Derating& derating) {
       "// Computed, not measured.\n",
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
-      derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(),
+      derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       checked.winding_most_C, confidence_text(derating));
   if (!derating.default_spreads.empty()) {
     text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors have defaults by origin:\n//   {}\n",
@@ -138,9 +141,9 @@ std::string motor_guard_source(const CoreSource& source) {
              "}}\n\n}}  // namespace\n\nextern constexpr robot_core::GuardModel kMotorGuard{{\n"
              "    .node_count = {},\n    .period_s = {},\n    .winding_limit_C = {},\n    .coldest_ambient_C = {},\n"
              "    .hottest_ambient_C = {},\n    .most_current_A = {},\n{}"
-             "    .belief =\n        {{\n{}        }},\n    .rates = &rates,\n}};\n",
+             "    .plausible_range =\n        {{\n{}        }},\n    .rates = &rates,\n}};\n",
              guard.node_count, float_literal(guard.period_s), float_literal(guard.winding_limit_C), float_literal(guard.coldest_ambient_C),
-             float_literal(guard.hottest_ambient_C), float_literal(guard.most_current_A), table(guard), beliefs(guard));
+             float_literal(guard.hottest_ambient_C), float_literal(guard.most_current_A), table(guard), plausible_ranges(guard));
 }
 
 }  // namespace heatsoak

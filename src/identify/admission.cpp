@@ -219,21 +219,21 @@ Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span
     if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
       notes.push_back(fmt::format("{} says that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
     }
-    std::vector<std::string> spoiling = recording.spoiling_of_whole.value_or(quality.spoiling);
+    std::vector<std::string> blocking = recording.blocking_of_whole.value_or(quality.blocking);
     for (const std::string& each : quality.suspicions) {
       const bool is_of_part =
-          std::ranges::find(quality.spoiling, each) != quality.spoiling.end() && std::ranges::find(spoiling, each) == spoiling.end();
+          std::ranges::find(quality.blocking, each) != quality.blocking.end() && std::ranges::find(blocking, each) == blocking.end();
       if (is_of_part) {
         continue;
       }
       notes.push_back(fmt::format("{}: {}", recording.name, each));
     }
     late_answers(motor, recording, quality, admission);
-    if (spoiling.empty()) {
-      beyond_the_motor(motor, recording, spoiling);
-      faster_than_the_motor(motor, recording, spoiling);
+    if (blocking.empty()) {
+      beyond_the_motor(motor, recording, blocking);
+      faster_than_the_motor(motor, recording, blocking);
     }
-    for (const std::string& each : spoiling) {
+    for (const std::string& each : blocking) {
       wrong.push_back({{recording.file.string()}, {}, each});
     }
   };

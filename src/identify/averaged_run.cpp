@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSharesOfTimeConstant = 5.0;
 /// Short enough to keep the lag of sensors, which is a few seconds, visible.
-constexpr double kLongestStretch_s = 3.0;
+constexpr double kLongestSegment_s = 3.0;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -27,20 +27,20 @@ int mergeable_samples(const LinearisedRun& run) {
   }
   const double step_s = duration_s / std::max(1.0, static_cast<double>(run.duration_s.size()));
   const double shortest_s = duration_s / std::max(lost.maxCoeff(), 1e-9);
-  return std::max(1, static_cast<int>(std::min(shortest_s / kSharesOfTimeConstant, kLongestStretch_s) / std::max(step_s, 1e-9)));
+  return std::max(1, static_cast<int>(std::min(shortest_s / kSharesOfTimeConstant, kLongestSegment_s) / std::max(step_s, 1e-9)));
 }
 
 Averaging::Averaging(const LinearisedRun& run, const Eigen::VectorXd& weight, int merged)
-    : run_(run), merged_(merged), stretches_((run.samples() + merged - 1) / merged), sample_weight_(run.residual_K.size()) {
-  weight_.setZero(stretches_ * run.sensors());
+    : run_(run), merged_(merged), segments_((run.samples() + merged - 1) / merged), sample_weight_(run.residual_K.size()) {
+  weight_.setZero(segments_ * run.sensors());
   for (Eigen::Index row = 0; row < sample_weight_.size(); ++row) {
     sample_weight_[row] = std::isnan(run.residual_K[row]) ? 0.0 : (weight.size() > 0 ? weight[row] : 1.0);
     weight_[row / run.sensors() / merged_ * run.sensors() + row % run.sensors()] += sample_weight_[row];
   }
 }
 
-Eigen::Index Averaging::middle_of(Eigen::Index stretch) const {
-  const Eigen::Index first = stretch * merged_;
+Eigen::Index Averaging::middle_of(Eigen::Index segment) const {
+  const Eigen::Index first = segment * merged_;
   return (first + std::min(first + merged_, run_.samples()) - 1) / 2;
 }
 
@@ -65,39 +65,39 @@ LinearisedRun Averaging::run() const {
   out.states = x;
   out.fluxes = q;
   out.sensor_node = run_.sensor_node;
-  out.state_C.resize(x, stretches_);
+  out.state_C.resize(x, segments_);
   out.residual_K = average(run_.residual_K);
   out.residual_K = (weight_.array() > 0.0).select(out.residual_K, std::numeric_limits<double>::quiet_NaN());
   out.by_start = average(run_.by_start);
-  auto doubt = run_.doubts.begin();
-  for (Eigen::Index stretch = 0; stretch < stretches_; ++stretch) {
-    out.state_C.col(stretch) = run_.state_C.col(middle_of(stretch));
-    if (stretch + 1 == stretches_) {
+  auto doubt = run_.state_uncertainties.begin();
+  for (Eigen::Index segment = 0; segment < segments_; ++segment) {
+    out.state_C.col(segment) = run_.state_C.col(middle_of(segment));
+    if (segment + 1 == segments_) {
       break;
     }
     RowMajor transition = RowMajor::Identity(x, x);
     RowMajor injection = RowMajor::Zero(x, q);
     double duration_s = 0.0;
-    Eigen::MatrixXd doubt_K2 = Eigen::MatrixXd::Zero(x, x);
-    bool has_doubt = false;
-    for (Eigen::Index k = middle_of(stretch); k < middle_of(stretch + 1); ++k) {
+    Eigen::MatrixXd covariance_K2 = Eigen::MatrixXd::Zero(x, x);
+    bool has_uncertainty = false;
+    for (Eigen::Index k = middle_of(segment); k < middle_of(segment + 1); ++k) {
       const Eigen::Map<const RowMajor> step(run_.transition.data() + k * x * x, x, x);
       transition = step * transition.eval();
       injection = step * injection.eval() + Eigen::Map<const RowMajor>(run_.injection.data() + k * x * q, x, q);
       duration_s += run_.duration_s[static_cast<std::size_t>(k)];
-      while (doubt != run_.doubts.end() && doubt->interval < k) {
+      while (doubt != run_.state_uncertainties.end() && doubt->interval < k) {
         ++doubt;
       }
-      if (has_doubt) {
-        doubt_K2 = step * doubt_K2.eval() * step.transpose();
+      if (has_uncertainty) {
+        covariance_K2 = step * covariance_K2.eval() * step.transpose();
       }
-      if (doubt != run_.doubts.end() && doubt->interval == k) {
-        doubt_K2 += doubt->covariance_K2;
-        has_doubt = true;
+      if (doubt != run_.state_uncertainties.end() && doubt->interval == k) {
+        covariance_K2 += doubt->covariance_K2;
+        has_uncertainty = true;
       }
     }
-    if (has_doubt) {
-      out.doubts.push_back({stretch, doubt_K2});
+    if (has_uncertainty) {
+      out.state_uncertainties.push_back({segment, covariance_K2});
     }
     out.transition.insert(out.transition.end(), transition.data(), transition.data() + x * x);
     out.injection.insert(out.injection.end(), injection.data(), injection.data() + x * q);
@@ -108,8 +108,8 @@ LinearisedRun Averaging::run() const {
 
 std::vector<Eigen::Index> Averaging::interval_of() const {
   std::vector<Eigen::Index> interval(run_.duration_s.size(), -1);
-  for (Eigen::Index stretch = 0; stretch + 1 < stretches_; ++stretch) {
-    std::fill(interval.begin() + middle_of(stretch), interval.begin() + middle_of(stretch + 1), stretch);
+  for (Eigen::Index segment = 0; segment + 1 < segments_; ++segment) {
+    std::fill(interval.begin() + middle_of(segment), interval.begin() + middle_of(segment + 1), segment);
   }
   return interval;
 }

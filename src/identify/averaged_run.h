@@ -18,7 +18,7 @@ class Averaging {
   /// Averages `merged` samples at a time. `weight` is SensorNoise::weight (n·s) or empty. `run` must outlive this object.
   Averaging(const LinearisedRun& run, const Eigen::VectorXd& weight, int merged);
 
-  /// The run whose rows are averages. Transition and injection lead from the middle of one segment to the middle of the next. shown_C and
+  /// The run whose rows are averages. Transition and injection lead from the middle of one segment to the middle of the next. sensor_C and
   /// by_parameter are empty.
   [[nodiscard]] LinearisedRun run() const;
   /// Sum of the sample weights in each row. An average with weight sum w has 1/w of the noise variance of one sample.
@@ -30,11 +30,11 @@ class Averaging {
   [[nodiscard]] std::vector<Eigen::Index> interval_of() const;
 
  private:
-  [[nodiscard]] Eigen::Index middle_of(Eigen::Index stretch) const;
+  [[nodiscard]] Eigen::Index middle_of(Eigen::Index segment) const;
 
   const LinearisedRun& run_;
   Eigen::Index merged_;
-  Eigen::Index stretches_;
+  Eigen::Index segments_;
   Eigen::VectorXd sample_weight_;  ///< n·s; 0 for samples without a measurement
   Eigen::VectorXd weight_;
 };

@@ -40,18 +40,18 @@ std::size_t place_of(const std::vector<std::string>& nodes, const std::string& n
   return static_cast<std::size_t>(std::ranges::find(nodes, node) - nodes.begin());
 }
 
-/// Noise model of a run's sensors. `ratio` (to the model-free noise) and `wander_K` have one entry per entry of `nodes`.
+/// Noise model of a run's sensors. `ratio` (to the model-free noise) and `drift_K` have one entry per entry of `nodes`.
 SensorNoise noise_with(const MeasuredRun& run, const std::vector<std::string>& nodes, std::span<const double> ratio,
-                       std::span<const double> wander_K, double wander_time_scale_s, const Eigen::VectorXd& weight) {
+                       std::span<const double> drift_K, double drift_time_scale_s, const Eigen::VectorXd& weight) {
   SensorNoise noise;
   for (const Sensor& sensor : run.sensors) {
     const std::size_t kind = place_of(nodes, sensor.node);
     noise.noise_K.push_back(sensor.noise_K * ratio[kind]);
-    if (!wander_K.empty()) {
-      noise.wander_K.push_back(wander_K[kind]);
+    if (!drift_K.empty()) {
+      noise.drift_K.push_back(drift_K[kind]);
     }
   }
-  noise.wander_time_scale_s = wander_time_scale_s;
+  noise.drift_time_scale_s = drift_time_scale_s;
   noise.weight = weight;
   return noise;
 }
@@ -63,9 +63,9 @@ std::vector<double> travel_K(const std::vector<std::string>& nodes, std::span<co
   for (const MeasuredRun& run : runs) {
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
       const std::size_t kind = place_of(nodes, run.sensors[sensor].node);
-      for (const double shown_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
-        low_C[kind] = std::fmin(low_C[kind], shown_C);
-        high_C[kind] = std::fmax(high_C[kind], shown_C);
+      for (const double sensor_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
+        low_C[kind] = std::fmin(low_C[kind], sensor_C);
+        high_C[kind] = std::fmax(high_C[kind], sensor_C);
       }
     }
   }
@@ -89,9 +89,9 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
     for (std::size_t k = 0; k < runs[r].at.size(); ++k) {
       const double step_s = runs[r].time_s[k + 1] - runs[r].time_s[k];
       for (const Sensor& sensor : runs[r].sensors) {
-        const double shown_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
+        const double sensor_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
         double& node_C = state_C[static_cast<std::size_t>(network.find_node(sensor.node))];
-        node_C = std::isnan(shown_C) ? node_C : true_at_rest_C(sensor.faults, shown_C);
+        node_C = std::isnan(sensor_C) ? node_C : true_at_rest_C(sensor.faults, sensor_C);
       }
       network.balance_W(runs[r].at[k], model.values, state_C, heat_W);
       double away_W = 0.0;
@@ -132,14 +132,14 @@ class Fitting {
       usual_step_s = std::max(usual_step_s, (run.time_s.back() - run.time_s.front()) / static_cast<double>(run.at.size()));
     }
     range_.fluxes = model.flux_nodes.size();
-    range_.wander_unit_K = travel_K(fit_.sensor_nodes, runs);
+    range_.drift_unit_K = travel_K(fit_.sensor_nodes, runs);
     range_.least_W = model.least_flux_W;
     // Unknown heat that is certain to exist varies over minutes; a faster one would average out.
     constexpr double kComesAndGoes_s = 160.0;
     range_.shortest_s = std::max(range_.least_W.empty() ? 20.0 : kComesAndGoes_s, 4.0 * usual_step_s);
     range_.longest_s = std::max(4.0 * range_.shortest_s, longest_s);
-    range_.wander_shortest_s = 4.0 * usual_step_s;
-    range_.wander_longest_s = std::max(4.0 * range_.wander_shortest_s, 100.0);
+    range_.drift_shortest_s = 4.0 * usual_step_s;
+    range_.drift_longest_s = std::max(4.0 * range_.drift_shortest_s, 100.0);
     for (const FreeParameter& parameter : model.free) {
       wanted_.push_back(parameter.place);
     }
@@ -241,7 +241,7 @@ class Fitting {
 
   [[nodiscard]] Whitening whitening(std::size_t r, const Supposition& supposed) const {
     return {linearised_[r], supposed.flux,
-            noise_with(runs_[r], fit_.sensor_nodes, fit_.noise_ratio, supposed.wander_K, supposed.wander_time_scale_s, fit_.weights[r])};
+            noise_with(runs_[r], fit_.sensor_nodes, fit_.noise_ratio, supposed.drift_K, supposed.drift_time_scale_s, fit_.weights[r])};
   }
   [[nodiscard]] StartPrior start_prior(std::size_t r) const { return {starts_[r].prior_C - starts_[r].state_C, starts_[r].prior_sd_K}; }
 
@@ -281,11 +281,11 @@ class Fitting {
       const bool is_certain = !range_.least_W.empty() && range_.least_W[i] > 0.0;
       is_much = is_much || (!is_certain && best_.flux.rms_W[i] > kMuch_share * range_.unit_W);
     }
-    if (best_.wander_K.empty() && is_much && options_.with_wander) {
-      const Supposition wandering = most_probable(evidence, range_, with_wander(range_, best_));
-      const std::vector<double> values = evidences({best_, wandering});
+    if (best_.drift_K.empty() && is_much && options_.with_drift) {
+      const Supposition drifting = most_probable(evidence, range_, with_drift(range_, best_));
+      const std::vector<double> values = evidences({best_, drifting});
       constexpr double kClearly_nats = 10.0;
-      best_ = values[1] > values[0] + kClearly_nats ? wandering : best_;
+      best_ = values[1] > values[0] + kClearly_nats ? drifting : best_;
     }
   }
 
@@ -378,8 +378,8 @@ class Fitting {
     const std::vector<MeasuredRun> counted = without(runs_, fit_.weights);
     const std::optional<FreeRunFit> search = fit_free_runs(model_, counted, theta_, starts_, options_.threads);
     const double travel_K =
-        std::sqrt(std::inner_product(range_.wander_unit_K.begin(), range_.wander_unit_K.end(), range_.wander_unit_K.begin(), 0.0) /
-                  static_cast<double>(range_.wander_unit_K.size()));
+        std::sqrt(std::inner_product(range_.drift_unit_K.begin(), range_.drift_unit_K.end(), range_.drift_unit_K.begin(), 0.0) /
+                  static_cast<double>(range_.drift_unit_K.size()));
     if (!search || search->rmse_K > kWell_share * travel_K || now_K < kPlainly_ratio * search->rmse_K) {
       return;
     }
@@ -457,8 +457,8 @@ class Fitting {
     fit_.theta = theta_;
     fit_.flux = best_.flux;
     fit_.usual_heat_W = range_.unit_W;
-    fit_.wander_K = best_.wander_K;
-    fit_.wander_time_scale_s = best_.wander_time_scale_s;
+    fit_.drift_K = best_.drift_K;
+    fit_.drift_time_scale_s = best_.drift_time_scale_s;
     fit_.starts = starts_;
     if (fit_.free_run_error_K == 0.0) {
       fit_.log_evidence = fits({best_}).front().log_evidence;
@@ -489,7 +489,7 @@ class Fitting {
 Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options) { return Fitting(model, runs, options).run(); }
 
 SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index) {
-  return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.wander_K, fit.wander_time_scale_s, fit.weights[run_index]);
+  return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.drift_K, fit.drift_time_scale_s, fit.weights[run_index]);
 }
 
 }  // namespace heatsoak

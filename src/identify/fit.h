@@ -22,7 +22,7 @@ struct FitOptions {
   int threads = 0;            ///< 0: all cores; the result does not depend on it
   bool is_robust = true;      ///< true: outliers are down-weighted or rejected
   bool with_flux = true;      ///< false: assumes no unknown heat flux (for comparison)
-  bool with_wander = true;    ///< false: assumes that sensors do not drift
+  bool with_drift = true;     ///< false: assumes that sensors do not drift
 };
 
 /// One setting of the unknown heat flux and sensor drift, with its probability and the resulting fit.
@@ -35,10 +35,10 @@ struct Hypothesis {
 
 struct Fit {
   Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;    ///< of θ, averaged over all hypotheses
-  LatentFlux flux;               ///< most probable value
-  std::vector<double> wander_K;  ///< most probable drift (standard deviation) per entry of sensor_nodes; empty: no sensor drifts
-  double wander_time_scale_s = 0.0;
+  Eigen::MatrixXd covariance;   ///< of θ, averaged over all hypotheses
+  LatentFlux flux;              ///< most probable value
+  std::vector<double> drift_K;  ///< most probable drift (standard deviation) per entry of sensor_nodes; empty: no sensor drifts
+  double drift_time_scale_s = 0.0;
   double usual_heat_W = 0.0;        ///< mean over time of the heat that the model generates or dissipates, whichever is larger
   std::vector<double> noise_ratio;  ///< per entry of sensor_nodes: noise found by the fit divided by the model-free estimate
   std::vector<std::string> sensor_nodes;

@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kLeastShare = 1e-3;
 constexpr double kMostShare = kMostFlux_share;
-constexpr double kLeastWander_share = 1e-4;
-constexpr double kMostWander_share = 0.2;
+constexpr double kLeastDrift_share = 1e-4;
+constexpr double kMostDrift_share = 0.2;
 constexpr double kReference_s = 160.0;
-constexpr double kWanderReference_s = 10.0;
+constexpr double kDriftReference_s = 10.0;
 /// Upper limit of a standard deviation (in logarithms). With a larger one the data do not determine the coordinate.
 constexpr double kWidest = 1.2;
 
@@ -21,10 +21,10 @@ constexpr double kWidest = 1.2;
 /// are short against the time scale, the effect of a flux depends on this ratio alone. If sensors drift, the same follows for the drift.
 class Space {
  public:
-  Space(const SuppositionRange& range, bool wanders)
+  Space(const SuppositionRange& range, bool drifts)
       : range_(range),
         fluxes_(static_cast<Eigen::Index>(range.fluxes)),
-        kinds_(wanders ? static_cast<Eigen::Index>(range.wander_unit_K.size()) : 0) {}
+        kinds_(drifts ? static_cast<Eigen::Index>(range.drift_unit_K.size()) : 0) {}
 
   [[nodiscard]] Eigen::Index size() const { return fluxes_ + 1 + (kinds_ > 0 ? kinds_ + 1 : 0); }
   [[nodiscard]] Eigen::VectorXd inside(Eigen::VectorXd x) const {
@@ -37,8 +37,8 @@ class Space {
       }
     }
     if (kinds_ > 0) {
-      clamp(x.tail(kinds_ + 1), {kLeastWander_share, kMostWander_share}, {range_.wander_shortest_s, range_.wander_longest_s},
-            kWanderReference_s);
+      clamp(x.tail(kinds_ + 1), {kLeastDrift_share, kMostDrift_share}, {range_.drift_shortest_s, range_.drift_longest_s},
+            kDriftReference_s);
     }
     return x;
   }
@@ -50,10 +50,10 @@ class Space {
     }
     if (kinds_ > 0) {
       const double time_scale = x[size() - 1];
-      all.wander_time_scale_s = std::exp(time_scale);
+      all.drift_time_scale_s = std::exp(time_scale);
       for (Eigen::Index i = 0; i < kinds_; ++i) {
-        const double unit_K = range_.wander_unit_K[static_cast<std::size_t>(i)];
-        all.wander_K.push_back(unit_K * std::exp(x[fluxes_ + 1 + i] + shift(time_scale, kWanderReference_s)));
+        const double unit_K = range_.drift_unit_K[static_cast<std::size_t>(i)];
+        all.drift_K.push_back(unit_K * std::exp(x[fluxes_ + 1 + i] + shift(time_scale, kDriftReference_s)));
       }
     }
     return all;
@@ -66,11 +66,11 @@ class Space {
       x[i] = std::log(std::max(share, kLeastShare)) - shift(x[fluxes_], kReference_s);
     }
     if (kinds_ > 0) {
-      const double time_scale = x[size() - 1] = std::log(supposition.wander_time_scale_s);
+      const double time_scale = x[size() - 1] = std::log(supposition.drift_time_scale_s);
       for (Eigen::Index i = 0; i < kinds_; ++i) {
         const auto kind = static_cast<std::size_t>(i);
-        const double share = supposition.wander_K[kind] / range_.wander_unit_K[kind];
-        x[fluxes_ + 1 + i] = std::log(std::max(share, kLeastWander_share)) - shift(time_scale, kWanderReference_s);
+        const double share = supposition.drift_K[kind] / range_.drift_unit_K[kind];
+        x[fluxes_ + 1 + i] = std::log(std::max(share, kLeastDrift_share)) - shift(time_scale, kDriftReference_s);
       }
     }
     return inside(x);
@@ -207,7 +207,7 @@ std::vector<Eigen::VectorXd> corners(Eigen::Index n) {
 }  // namespace
 
 Supposition most_probable(const Evidence& evidence, const SuppositionRange& range, const Supposition& start) {
-  const Space space(range, !start.wander_K.empty());
+  const Space space(range, !start.drift_K.empty());
   const bool is_warm = !start.flux.rms_W.empty();
   Eigen::VectorXd x(space.size());
   if (is_warm) {
@@ -232,24 +232,24 @@ Supposition most_probable(const Evidence& evidence, const SuppositionRange& rang
   return space.supposition(at(evidence, space, {next}).front() > value ? next : x);
 }
 
-Supposition with_wander(const SuppositionRange& range, const Supposition& start) {
+Supposition with_drift(const SuppositionRange& range, const Supposition& start) {
   Supposition all = start;
-  constexpr double kUsualWander_share = 0.01;
+  constexpr double kUsualDrift_share = 0.01;
   constexpr double kUsualFlux_share = 0.02;
   for (double& rms_W : all.flux.rms_W) {
     rms_W = std::min(rms_W, kUsualFlux_share * range.unit_W);
   }
   all.flux.time_scale_s = std::clamp(kReference_s, range.shortest_s, range.longest_s);
-  all.wander_K = range.wander_unit_K;
-  for (double& wander_K : all.wander_K) {
-    wander_K *= kUsualWander_share;
+  all.drift_K = range.drift_unit_K;
+  for (double& drift_K : all.drift_K) {
+    drift_K *= kUsualDrift_share;
   }
-  all.wander_time_scale_s = kWanderReference_s;
+  all.drift_time_scale_s = kDriftReference_s;
   return all;
 }
 
 std::vector<WeightedSupposition> suppositions_around(const Evidence& evidence, const SuppositionRange& range, const Supposition& best) {
-  const Space space(range, !best.wander_K.empty());
+  const Space space(range, !best.drift_K.empty());
   const Eigen::Index n = space.size();
   const Eigen::VectorXd centre = space.point(best);
   const double value = at(evidence, space, {centre}).front();

@@ -24,7 +24,7 @@ class Recorder {
     const Eigen::Index samples = run.samples();
     const Eigen::Index rows = samples * out.sensors();
     out.state_C.resize(out.states, samples);
-    out.shown_C.resize(samples, out.sensors());
+    out.sensor_C.resize(samples, out.sensors());
     out.residual_K.resize(rows);
     off_K_ = next_off_K_ = Eigen::VectorXd::Zero(out.states);
     out.by_start.resize(rows, out.states);
@@ -38,8 +38,8 @@ class Recorder {
     for (Eigen::Index sensor = 0; sensor < out_.sensors(); ++sensor) {
       const Eigen::Index row = sample * out_.sensors() + sensor;
       const int node = out_.sensor_node[static_cast<std::size_t>(sensor)];
-      out_.shown_C(sample, sensor) = out_.state_C(node, sample) + off_K_[node];
-      out_.residual_K[row] = run_.measured_C(sample, sensor) - out_.shown_C(sample, sensor);
+      out_.sensor_C(sample, sensor) = out_.state_C(node, sample) + off_K_[node];
+      out_.residual_K[row] = run_.measured_C(sample, sensor) - out_.sensor_C(sample, sensor);
       out_.by_start.row(row) = by_start_.row(node);
       out_.by_parameter.row(row) = by_parameter_.row(node);
     }
@@ -80,9 +80,9 @@ class Recorder {
 
 void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out) {
   const SensorLaw& law = fault.type->law;
-  law.apply(run.time_s, fault.size, false, out.shown_C.col(sensor));
+  law.apply(run.time_s, fault.size, false, out.sensor_C.col(sensor));
   const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
-  out.residual_K(rows) = run.measured_C.col(sensor) - out.shown_C.col(sensor);
+  out.residual_K(rows) = run.measured_C.col(sensor) - out.sensor_C.col(sensor);
   for (Columns* const columns : {&out.by_start, &out.by_parameter}) {
     for (Eigen::Index column = 0; column < columns->cols(); ++column) {
       Eigen::VectorXd change = (*columns)(rows, column);
@@ -122,7 +122,7 @@ LinearisedRun linearise_unnamed(const Network& network, std::span<const double> 
     recorder.advance(k, step);
     if (others_C.cols() > 0) {
       others_C.colwise() -= step.state_C;
-      out.doubts.push_back({k, others_C * others_C.transpose()});
+      out.state_uncertainties.push_back({k, others_C * others_C.transpose()});
     }
     recorder.note(k + 1);
   }

@@ -14,7 +14,7 @@ namespace heatsoak {
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Uncertainty from inputs that were not logged: covariance (x × x) added to the state at the end of an interval.
-struct StateDoubt {
+struct StateUncertainty {
   Eigen::Index interval = 0;
   Eigen::MatrixXd covariance_K2;
 };
@@ -23,16 +23,16 @@ struct StateDoubt {
 struct LinearisedRun {
   Eigen::Index states = 0;
   Eigen::Index fluxes = 0;
-  std::vector<int> sensor_node;    ///< state node of each sensor
-  Eigen::MatrixXd state_C;         ///< x × n
-  Eigen::MatrixXd shown_C;         ///< n × s: predicted sensor readings
-  Eigen::VectorXd residual_K;      ///< n·s: measured − shown_C; NaN if not measured
-  Columns by_start;                ///< n·s × x: sensitivity of shown_C to the start temperatures
-  Columns by_parameter;            ///< n·s × w: sensitivity of shown_C in K per unit of the parameter
-  std::vector<double> transition;  ///< per interval x × x, row-major: d state(k+1) / d state(k)
-  std::vector<double> injection;   ///< per interval x × q, row-major, in K/W: response to 1 W held over the interval
-  std::vector<double> duration_s;  ///< per interval
-  std::vector<StateDoubt> doubts;  ///< in ascending order of the interval
+  std::vector<int> sensor_node;                       ///< state node of each sensor
+  Eigen::MatrixXd state_C;                            ///< x × n
+  Eigen::MatrixXd sensor_C;                           ///< n × s: predicted sensor readings
+  Eigen::VectorXd residual_K;                         ///< n·s: measured − sensor_C; NaN if not measured
+  Columns by_start;                                   ///< n·s × x: sensitivity of sensor_C to the start temperatures
+  Columns by_parameter;                               ///< n·s × w: sensitivity of sensor_C in K per unit of the parameter
+  std::vector<double> transition;                     ///< per interval x × x, row-major: d state(k+1) / d state(k)
+  std::vector<double> injection;                      ///< per interval x × q, row-major, in K/W: response to 1 W held over the interval
+  std::vector<double> duration_s;                     ///< per interval
+  std::vector<StateUncertainty> state_uncertainties;  ///< in ascending order of the interval
 
   [[nodiscard]] Eigen::Index samples() const { return state_C.cols(); }
   [[nodiscard]] Eigen::Index sensors() const { return static_cast<Eigen::Index>(sensor_node.size()); }
@@ -47,7 +47,7 @@ void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun&
 LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run);
 
-/// Same as linearise(), but linearises along a given path (states × samples, in °C), which the network need not follow by itself. shown_C
+/// Same as linearise(), but linearises along a given path (states × samples, in °C), which the network need not follow by itself. sensor_C
 /// is the solution of these linear equations from the start of the path.
 LinearisedRun linearise_along(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
                               std::span<const int> flux_nodes, const Eigen::MatrixXd& path_C, const MeasuredRun& run);

@@ -27,8 +27,8 @@ constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A",
 bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
   const auto is_recorded = [&](Signal each) { return has_values(recording.find(column_of(each))); };
   if (signal == Signal::modulation && torque.resistance_ohm > 0.0 && torque.per_current_Nm_per_A > 0.0) {
-    const bool is_told = is_recorded(Signal::current) && is_recorded(Signal::speed) && is_recorded(Signal::bus_voltage);
-    return is_told || is_recorded(signal);
+    const bool is_identifiable = is_recorded(Signal::current) && is_recorded(Signal::speed) && is_recorded(Signal::bus_voltage);
+    return is_identifiable || is_recorded(signal);
   }
   if (signal == Signal::current && torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::shaft_power)) {
     return true;

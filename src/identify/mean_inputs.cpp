@@ -51,23 +51,23 @@ void MeanInputs::doubt(const OperatingPoint<double>& at, const OperatingPoint<do
         const double off = duration_s * (b - a);
         sum += off * off;
       },
-      doubt_squared_, known, possible);
-  has_doubt_ = true;
+      variance_, known, possible);
+  has_uncertainty_ = true;
 }
 
 void MeanInputs::take(MeasuredRun& run) {
   OperatingPoint<double> mean = sum_;
   for_each_quantity([&](double& value) { value /= duration_s_; }, mean);
-  if (has_doubt_) {
+  if (has_uncertainty_) {
     OperatingPoint<double> other = mean;
-    for_each_quantity([&](double& value, const double& square) { value += std::sqrt(square) / duration_s_; }, other, doubt_squared_);
+    for_each_quantity([&](double& value, const double& square) { value += std::sqrt(square) / duration_s_; }, other, variance_);
     OperatingPoint<double> moves = mean;
     set_motion(moves, other);
     set_motion(other, mean);
     for (const OperatingPoint<double>& each : {other, moves}) {
-      bool is_doubted = false;
-      for_each_quantity([&](const double& value, const double& usual) { is_doubted = is_doubted || value != usual; }, each, mean);
-      if (is_doubted) {
+      bool is_uncertain = false;
+      for_each_quantity([&](const double& value, const double& usual) { is_uncertain = is_uncertain || value != usual; }, each, mean);
+      if (is_uncertain) {
         run.unknown_inputs.push_back({static_cast<Eigen::Index>(run.at.size()), rooted(each)});
       }
     }

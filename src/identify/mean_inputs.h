@@ -21,8 +21,8 @@ class MeanInputs {
 
   double duration_s_ = 0.0;
   OperatingPoint<double> sum_ = zero();
-  OperatingPoint<double> doubt_squared_ = zero();
-  bool has_doubt_ = false;
+  OperatingPoint<double> variance_ = zero();
+  bool has_uncertainty_ = false;
 };
 
 }  // namespace heatsoak

@@ -14,7 +14,7 @@
 #include "identify/measurement/noise.h"
 #include "identify/measurement/row_order.h"
 #include "identify/row_steps.h"
-#include "identify/stretch_inputs.h"
+#include "identify/segment_inputs.h"
 
 namespace heatsoak {
 namespace {
@@ -85,7 +85,7 @@ class Builder {
 
   MeasuredRuns build() {
     check();
-    for (const auto& [begin, end] : stretches()) {
+    for (const auto& [begin, end] : segments()) {
       const double longest_s = std::max(kLongestStep_ratio * steps_of(begin, end).usual_s, kLongestPause_s);
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
@@ -120,7 +120,7 @@ class Builder {
  private:
   /// Row ranges of the recording's runs, joined across short pauses. A pause is short compared with a motor's time constants, whereas each
   /// separate run would have its own unknown start temperatures and heat.
-  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> stretches() const {
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> segments() const {
     const double usual_s = usual_period_s(recording_.time_s);
     std::vector<std::pair<std::size_t, std::size_t>> all;
     for (const auto& run : recording_.runs()) {
@@ -221,10 +221,10 @@ class Builder {
     run.conditions.emplace("run", recording_.name);
     const std::vector<double>& time_s = recording_.time_s;
     const bool is_merged = (time_s[last] - time_s[first]) / static_cast<double>(last - first) < 0.5 * options_.longest_step_s;
-    StretchInputs inputs(recording_, rows_, first, last);
+    SegmentInputs inputs(recording_, rows_, first, last);
     std::vector<std::size_t> kept{first};
     MeanInputs mean;
-    const StretchInputs::Ends ends = [&](std::size_t end) {
+    const SegmentInputs::Ends ends = [&](std::size_t end) {
       const bool would_be_long = end < last && mean.duration_s() + 0.5 * (time_s[end + 1] - time_s[end]) > options_.longest_step_s;
       if (!is_merged || would_be_long || end == last) {
         mean.take(run);

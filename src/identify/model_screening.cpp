@@ -48,12 +48,12 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, int least) {
 /// Expected readings (n × s, in °C): those of the free run, shifted by the smoother's correction of their nodes.
 Eigen::MatrixXd smoothed_C(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
   const Eigen::MatrixXd path_C = smoothed_path_C(run, flux, noise);
-  Eigen::MatrixXd shown_C = run.shown_C;
+  Eigen::MatrixXd sensor_C = run.sensor_C;
   for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
     const int node = run.sensor_node[static_cast<std::size_t>(sensor)];
-    shown_C.col(sensor) += (path_C.row(node) - run.state_C.row(node)).transpose();
+    sensor_C.col(sensor) += (path_C.row(node) - run.state_C.row(node)).transpose();
   }
-  return shown_C;
+  return sensor_C;
 }
 
 double log_normal_between(double low, double high) {
@@ -66,7 +66,7 @@ double log_normal_between(double low, double high) {
 }
 
 /// ln P that all these readings are one value, maximised over a shift of the prediction with standard deviation `shift_sd_K`.
-double equal_nats(const EqualReadings& equal, const MeasuredRun& run, const Eigen::MatrixXd& shown_C, double shift_sd_K) {
+double equal_nats(const EqualReadings& equal, const MeasuredRun& run, const Eigen::MatrixXd& sensor_C, double shift_sd_K) {
   constexpr double kSmallest_K = 1e-3;
   constexpr int kShifts = 30;
   constexpr double kFarthest_sd = 3.0;
@@ -78,7 +78,7 @@ double equal_nats(const EqualReadings& equal, const MeasuredRun& run, const Eige
     const double shift_K = kFarthest_sd * shift_sd_K * i / kShifts;
     double nats = -0.5 * shift_K * shift_K / (shift_sd_K * shift_sd_K);
     for (const Eigen::Index k : equal.samples) {
-      const double off_K = run.measured_C(k, equal.sensor) - shown_C(k, equal.sensor) - shift_K;
+      const double off_K = run.measured_C(k, equal.sensor) - sensor_C(k, equal.sensor) - shift_K;
       nats += log_normal_between((off_K - 0.5 * step_K) / white_K, (off_K + 0.5 * step_K) / white_K);
     }
     best_nats = std::max(best_nats, nats);
@@ -139,9 +139,9 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
       hide(each, path.sensors(), 0.0, noise.weight);
     }
     if (!equal.empty()) {
-      const Eigen::MatrixXd shown_C = smoothed_C(path, {std::vector<double>(fluxes, unknown_W), rules.smooth_time_scale_s}, noise);
+      const Eigen::MatrixXd sensor_C = smoothed_C(path, {std::vector<double>(fluxes, unknown_W), rules.smooth_time_scale_s}, noise);
       for (const EqualReadings& each : equal) {
-        if (equal_nats(each, run, shown_C, rules.shift_sd_K) >= rules.stuck_nats) {
+        if (equal_nats(each, run, sensor_C, rules.shift_sd_K) >= rules.stuck_nats) {
           hide(each, path.sensors(), 1.0, noise.weight);
         }
       }

@@ -19,9 +19,9 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
   double farthest_K = 0.0;
   int seen = 0;
   for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
-    const auto shown_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
-    const auto first = std::ranges::find_if(shown_C, [](double value_C) { return !std::isnan(value_C); });
-    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != shown_C.end()) {
+    const auto sensor_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
+    const auto first = std::ranges::find_if(sensor_C, [](double value_C) { return !std::isnan(value_C); });
+    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != sensor_C.end()) {
       const double true_C = true_at_rest_C(run.sensors[sensor].faults, *first);
       start.state_C[node] = true_C;
       sum_C += true_C;
@@ -100,7 +100,7 @@ Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> para
     return linearise(network, parameters, none, none, start_C, part);
   };
   const Eigen::VectorXd start_C = decided_start_C(network, start_of(network, run), run, along);
-  return along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run).shown_C;
+  return along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run).sensor_C;
 }
 
 double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal) {

@@ -14,7 +14,7 @@ bool may_turn_within_rows(const MeasuredRun& run);
 /// after, instead of a constant speed. Rows that are means of finer rows are not changed.
 MeasuredRun turning_within_rows(MeasuredRun run);
 
-inline constexpr std::string_view kTurningRowsTold =
+inline constexpr std::string_view kTurningRowsReason =
     "speed changes its sign from row to row: it is interpolated linearly within rows, because that has the larger evidence in these runs";
 
 }  // namespace heatsoak

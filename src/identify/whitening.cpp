@@ -18,7 +18,7 @@ struct Fixed {
   static constexpr int kMost = X + Q + W;
   static constexpr Eigen::Index states() { return X; }
   static constexpr Eigen::Index fluxes() { return Q; }
-  static constexpr Eigen::Index wanders() { return W; }
+  static constexpr Eigen::Index drifts() { return W; }
   static constexpr Eigen::Index size() { return X + Q + W; }
 };
 
@@ -27,7 +27,7 @@ struct Counted {
   Eigen::Index x, q, w;
   [[nodiscard]] Eigen::Index states() const { return x; }
   [[nodiscard]] Eigen::Index fluxes() const { return q; }
-  [[nodiscard]] Eigen::Index wanders() const { return w; }
+  [[nodiscard]] Eigen::Index drifts() const { return w; }
   [[nodiscard]] Eigen::Index size() const { return x + q + w; }
 };
 
@@ -41,9 +41,9 @@ using ConstRowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 
 Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise)
     : run_(&run),
       flux_(flux),
-      wander_K_(noise.wander_K.empty() ? std::vector<double>(static_cast<std::size_t>(run.sensors()), flux.wander_K) : noise.wander_K),
-      wanders_(std::ranges::any_of(wander_K_, [](double each_K) { return each_K > 0.0; })),
-      size_(run.states + run.fluxes + (wanders_ ? run.sensors() : 0)),
+      drift_K_(noise.drift_K.empty() ? std::vector<double>(static_cast<std::size_t>(run.sensors()), flux.drift_K) : noise.drift_K),
+      drifts_(std::ranges::any_of(drift_K_, [](double each_K) { return each_K > 0.0; })),
+      size_(run.states + run.fluxes + (drifts_ ? run.sensors() : 0)),
       noise_K_(noise.noise_K) {
   const Eigen::Index rows = run.samples() * run.sensors();
   gain_.resize(static_cast<std::size_t>(rows * size_));
@@ -52,9 +52,9 @@ Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const Sen
   forget_ratio_.resize(run.duration_s.size());
   for (std::size_t k = 0; k < run.duration_s.size(); ++k) {
     forget_ratio_[k] = std::exp(-run.duration_s[k] / flux.time_scale_s);
-    if (wanders_) {
-      wander_forget_ratio_.push_back(
-          std::exp(-run.duration_s[k] / (noise.wander_K.empty() ? flux.wander_time_scale_s : noise.wander_time_scale_s)));
+    if (drifts_) {
+      drift_forget_ratio_.push_back(
+          std::exp(-run.duration_s[k] / (noise.drift_K.empty() ? flux.drift_time_scale_s : noise.drift_time_scale_s)));
     }
   }
   for_layout([&](const auto& layout) { build(layout, noise); });
@@ -64,7 +64,7 @@ template <class With>
 void Whitening::for_layout(const With& with) const {
   const Counted counted{run_->states, run_->fluxes, size_ - run_->states - run_->fluxes};
   const auto is_taken = [&](const auto& layout) {
-    const bool fits = counted.x == layout.states() && counted.q == layout.fluxes() && counted.w == layout.wanders();
+    const bool fits = counted.x == layout.states() && counted.q == layout.fluxes() && counted.w == layout.drifts();
     if (fits) {
       with(layout);
     }
@@ -79,7 +79,7 @@ void Whitening::for_layout(const With& with) const {
 Whitening::Step Whitening::step_of(Eigen::Index interval) const {
   const auto place = static_cast<std::size_t>(interval);
   return {run_->transition.data() + interval * run_->states * run_->states, run_->injection.data() + interval * run_->states * run_->fluxes,
-          forget_ratio_[place], wanders_ ? wander_forget_ratio_[place] : 1.0};
+          forget_ratio_[place], drifts_ ? drift_forget_ratio_[place] : 1.0};
 }
 
 /// Sets the transition matrix of one interval, F = [[Φ, Γ, 0], [0, ρ, 0], [0, 0, ρ']].
@@ -92,7 +92,7 @@ void Whitening::set_transition(Eigen::Index interval, Matrix& transition) const 
   transition.topLeftCorner(x, x) = ConstRowMajorMap(step.transition, x, x);
   transition.block(0, x, x, q) = ConstRowMajorMap(step.injection, x, q);
   transition.diagonal().segment(x, q).setConstant(step.forget_ratio);
-  transition.diagonal().tail(size_ - x - q).setConstant(step.wander_forget_ratio);
+  transition.diagonal().tail(size_ - x - q).setConstant(step.drift_forget_ratio);
 }
 
 /// Replaces the covariance P by F·P·Fᵀ; exploits that most of F is zero. `moved` is workspace for F·P.
@@ -100,7 +100,7 @@ template <class Layout, class Matrix>
 void Whitening::predict(const Layout& layout, const Step& step, Matrix& covariance, Matrix& moved) {
   const Eigen::Index x = layout.states();
   const Eigen::Index q = layout.fluxes();
-  const auto forget_ratio = [&](Eigen::Index i) { return i < x + q ? step.forget_ratio : step.wander_forget_ratio; };
+  const auto forget_ratio = [&](Eigen::Index i) { return i < x + q ? step.forget_ratio : step.drift_forget_ratio; };
   // Row by row, so that the compiler can vectorise over the columns.
   const auto add_row = [&](Eigen::Index i, double share, Eigen::Index j) {
     for (Eigen::Index c = 0; c < layout.size(); ++c) {
@@ -151,15 +151,15 @@ void Whitening::add_unknown(Eigen::Index interval, Matrix& covariance) const {
     const double rms_W = flux_.rms_W[static_cast<std::size_t>(f)];
     covariance(run_->states + f, run_->states + f) += of_flux * rms_W * rms_W;
   }
-  const auto doubt = std::ranges::lower_bound(run_->doubts, interval, {}, &StateDoubt::interval);
-  if (doubt != run_->doubts.end() && doubt->interval == interval) {
+  const auto doubt = std::ranges::lower_bound(run_->state_uncertainties, interval, {}, &StateUncertainty::interval);
+  if (doubt != run_->state_uncertainties.end() && doubt->interval == interval) {
     covariance.topLeftCorner(run_->states, run_->states) += doubt->covariance_K2;
   }
-  if (wanders_) {
-    const double of_wander = gained_ratio(wander_forget_ratio_);
+  if (drifts_) {
+    const double of_drift = gained_ratio(drift_forget_ratio_);
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
-      const double wander_K = wander_K_[static_cast<std::size_t>(sensor)];
-      covariance(wander_place(sensor), wander_place(sensor)) += of_wander * wander_K * wander_K;
+      const double drift_K = drift_K_[static_cast<std::size_t>(sensor)];
+      covariance(drift_place(sensor), drift_place(sensor)) += of_drift * drift_K * drift_K;
     }
   }
 }
@@ -181,11 +181,11 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
       double* const gain = gain_.data() + row * size;
       const double weight = noise.weight.size() > 0 ? noise.weight[row] : 1.0;
       const int node = node_of(sensor);
-      const Eigen::Index wander = wander_place(sensor);
+      const Eigen::Index drift = drift_place(sensor);
       for (Eigen::Index i = 0; i < size; ++i) {
-        gain[i] = layout.wanders() > 0 ? covariance(node, i) + covariance(wander, i) : covariance(node, i);
+        gain[i] = layout.drifts() > 0 ? covariance(node, i) + covariance(drift, i) : covariance(node, i);
       }
-      const double expected_K2 = layout.wanders() > 0 ? gain[node] + gain[wander] : gain[node];
+      const double expected_K2 = layout.drifts() > 0 ? gain[node] + gain[drift] : gain[node];
       expected_K2_[static_cast<std::size_t>(row)] = expected_K2;
       if (std::isnan(run_->residual_K[row]) || weight <= 0.0) {
         std::fill_n(gain, size, 0.0);
@@ -238,8 +238,8 @@ void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns
       }
       Row innovation = shown;
       innovation -= state[static_cast<std::size_t>(node_of(sensor))];
-      if (layout.wanders() > 0) {
-        innovation -= state[static_cast<std::size_t>(wander_place(sensor))];
+      if (layout.drifts() > 0) {
+        innovation -= state[static_cast<std::size_t>(drift_place(sensor))];
       }
       const double* const gain = gain_.data() + row * layout.size();
       for (Eigen::Index i = 0; i < layout.size(); ++i) {
@@ -264,7 +264,7 @@ void Whitening::apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns
         state[static_cast<std::size_t>(j)] *= step.forget_ratio;
       }
       for (Eigen::Index j = x + q; j < layout.size(); ++j) {
-        state[static_cast<std::size_t>(j)] *= step.wander_forget_ratio;
+        state[static_cast<std::size_t>(j)] *= step.drift_forget_ratio;
       }
     }
   }
@@ -296,7 +296,7 @@ Innovations Whitening::innovations(const Eigen::VectorXd& residual_K) const {
       const auto place = static_cast<std::size_t>(row);
       const double noise_K = noise_K_[static_cast<std::size_t>(sensor)];
       const double variance_K2 = expected_K2_[place] + noise_K * noise_K;
-      const double innovation_K = residual_K[row] - state[node_of(sensor)] - (wanders_ ? state[wander_place(sensor)] : 0.0);
+      const double innovation_K = residual_K[row] - state[node_of(sensor)] - (drifts_ ? state[drift_place(sensor)] : 0.0);
       all.standardised[row] = innovation_K / std::sqrt(variance_K2);
       all.noise_share[row] = noise_K * noise_K / variance_K2;
       if (inverse_sd_per_K_[place] > 0.0) {
@@ -331,7 +331,7 @@ FluxEstimate Whitening::smoothed_flux(const Eigen::VectorXd& residual_K) const {
       if (inverse_sd_per_K > 0.0) {
         const Eigen::Map<const Eigen::VectorXd> gain(gain_.data() + row * size_, size_);
         const Eigen::Index sensor = row - k * run_->sensors();
-        innovation[row] = residual_K[row] - state[node_of(sensor)] - (wanders_ ? state[wander_place(sensor)] : 0.0);
+        innovation[row] = residual_K[row] - state[node_of(sensor)] - (drifts_ ? state[drift_place(sensor)] : 0.0);
         state += innovation[row] * gain;
         covariance -= gain * gain.transpose() / (inverse_sd_per_K * inverse_sd_per_K);
       }
@@ -355,8 +355,8 @@ FluxEstimate Whitening::smoothed_flux(const Eigen::VectorXd& residual_K) const {
         const double moved = innovation[row] * inverse_sd_per_K * inverse_sd_per_K - gain.dot(adjoint);
         Eigen::VectorXd seen = Eigen::VectorXd::Zero(size_);
         seen[node_of(sensor)] = 1.0;
-        if (wanders_) {
-          seen[wander_place(sensor)] = 1.0;
+        if (drifts_) {
+          seen[drift_place(sensor)] = 1.0;
         }
         adjoint += moved * seen;
         const Eigen::VectorXd across = information * gain;

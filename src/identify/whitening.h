@@ -19,16 +19,16 @@ namespace heatsoak {
 struct LatentFlux {
   std::vector<double> rms_W;
   double time_scale_s = 300.0;
-  double wander_K = 0.0;              ///< standard deviation of the drift of every sensor; 0: none
-  double wander_time_scale_s = 40.0;  ///< correlation time of the drift
+  double drift_K = 0.0;              ///< standard deviation of the drift of every sensor; 0: none
+  double drift_time_scale_s = 40.0;  ///< correlation time of the drift
 };
 
 /// Sensor noise. The standard deviation of a sample is noise_K[sensor] / √weight.
 struct SensorNoise {
   std::vector<double> noise_K;
-  Eigen::VectorXd weight;             ///< n·s, 0 to 1; 0 excludes the sample; empty: all 1
-  std::vector<double> wander_K = {};  ///< per sensor: standard deviation of its drift; empty: that of LatentFlux
-  double wander_time_scale_s = 10.0;
+  Eigen::VectorXd weight;            ///< n·s, 0 to 1; 0 excludes the sample; empty: all 1
+  std::vector<double> drift_K = {};  ///< per sensor: standard deviation of its drift; empty: that of LatentFlux
+  double drift_time_scale_s = 10.0;
 };
 
 /// Innovations: deviation of each sample from its prediction by all earlier samples; NaN if not measured. Samples with weight 0 have one
@@ -73,7 +73,7 @@ class Whitening {
     const double* transition;  ///< x × x, row-major
     const double* injection;   ///< x × q, row-major, K/W
     double forget_ratio;
-    double wander_forget_ratio;
+    double drift_forget_ratio;
   };
   [[nodiscard]] Step step_of(Eigen::Index interval) const;
   template <class Layout, class Matrix>
@@ -85,21 +85,21 @@ class Whitening {
   void add_unknown(Eigen::Index interval, Matrix& covariance) const;
   [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }
   /// Index of a sensor's drift in the filter's state.
-  [[nodiscard]] Eigen::Index wander_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }
+  [[nodiscard]] Eigen::Index drift_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }
   template <class Layout>
   void apply_to_strip(const Layout& layout, Eigen::Ref<Columns> columns) const;
 
   const LinearisedRun* run_;
   LatentFlux flux_;
-  std::vector<double> wander_K_;
-  bool wanders_ = false;
-  Eigen::Index size_ = 0;                    ///< size of the filter's state: temperatures, fluxes, sensor drifts
-  std::vector<double> forget_ratio_;         ///< per interval: autocorrelation of a flux
-  std::vector<double> wander_forget_ratio_;  ///< per interval: autocorrelation of a sensor's drift
-  std::vector<double> gain_;                 ///< Kalman gains: size_ numbers per row
-  std::vector<double> inverse_sd_per_K_;     ///< per row: 1 / standard deviation of the innovation; 0 if masked
-  std::vector<double> expected_K2_;          ///< per row: variance of the prediction without sensor noise
-  std::vector<double> noise_K_;              ///< per sensor, at weight 1
+  std::vector<double> drift_K_;
+  bool drifts_ = false;
+  Eigen::Index size_ = 0;                   ///< size of the filter's state: temperatures, fluxes, sensor drifts
+  std::vector<double> forget_ratio_;        ///< per interval: autocorrelation of a flux
+  std::vector<double> drift_forget_ratio_;  ///< per interval: autocorrelation of a sensor's drift
+  std::vector<double> gain_;                ///< Kalman gains: size_ numbers per row
+  std::vector<double> inverse_sd_per_K_;    ///< per row: 1 / standard deviation of the innovation; 0 if masked
+  std::vector<double> expected_K2_;         ///< per row: variance of the prediction without sensor noise
+  std::vector<double> noise_K_;             ///< per sensor, at weight 1
   double log_determinant_ = 0.0;
   Eigen::Index count_ = 0;
 };

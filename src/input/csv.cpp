@@ -127,7 +127,7 @@ class Table {
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
   /// Suggests a column for a missing one: the same quantity in another unit, to be converted, or a similar name.
-  [[nodiscard]] std::string look_alike(const std::string& name) const {
+  [[nodiscard]] std::string confounded_with(const std::string& name) const {
     constexpr std::array<std::string_view, 8> kUnits{"_rad_per_s", "_Nm", "_rad", "_A", "_V", "_C", "_s", "_m"};
     const auto* const unit = std::ranges::find_if(kUnits, [&](std::string_view each) { return name.ends_with(each); });
     if (unit != kUnits.end()) {
@@ -173,7 +173,7 @@ class Table {
       const auto found = std::ranges::find(header_, name);
       if (found == header_.end()) {
         if (is_required) {
-          problem(1, name, fmt::format("there is no such column{}", look_alike(name)));
+          problem(1, name, fmt::format("there is no such column{}", confounded_with(name)));
         }
         continue;
       }

@@ -186,7 +186,7 @@ std::vector<std::pair<std::string, Reader>> Reader::named_tables() {
   return result;
 }
 
-std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
+std::optional<ParameterValue> Reader::figure(const ParameterSpec& spec, Need need) {
   const Value* value = find(spec, need);
   if (!value) {
     return std::nullopt;
@@ -197,7 +197,7 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
     return std::nullopt;
   }
   Reader inner(*value, full(spec.key), *diagnostics_);
-  Figure figure;
+  ParameterValue figure;
   figure.at = value->at;
   const std::optional<double> parsed = inner.quantity({"value", spec.unit, spec.range, spec.meaning}, Need::required);
   const std::optional<std::string> origin = inner.text("origin", Need::required);
@@ -236,7 +236,7 @@ std::optional<Figure> Reader::figure(const ParameterSpec& spec, Need need) {
   return parsed && origin ? std::optional(figure) : std::nullopt;
 }
 
-void Reader::read_confirmations(const ParameterSpec& spec, Figure& figure) {
+void Reader::read_confirmations(const ParameterSpec& spec, ParameterValue& figure) {
   std::optional<Reader> others = table("confirmed_by", Need::optional);
   if (!others) {
     return;
@@ -248,7 +248,7 @@ void Reader::read_confirmations(const ParameterSpec& spec, Figure& figure) {
   }
 }
 
-void Reader::read_spread(const ParameterSpec& spec, Figure& figure) {
+void Reader::read_spread(const ParameterSpec& spec, ParameterValue& figure) {
   const bool is_temperature = spec.unit == "degC";
   asked_.insert({"tolerance", "range"});
   const Value* range = table_->find("range");

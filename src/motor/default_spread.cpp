@@ -71,7 +71,7 @@ const DefaultRow* row_of(std::string_view key) {
 }
 
 /// Returns the spread around the value, clipped to the declared range so that no sample leaves it.
-Spread spread_by(const Ratios& by, const Figure& figure, const Range& range) {
+Spread spread_by(const Ratios& by, const ParameterValue& figure, const Range& range) {
   const double one = figure.value * by.low;
   const double other = figure.value * by.high;
   return {Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high), figure.value > 0.0};
@@ -90,7 +90,7 @@ Ratios least_ratios(const DefaultRow& row, Origin origin) {
 }
 
 /// Returns whether the stated spread is too narrow. A bound at the end of the declared range is always wide enough.
-bool is_narrow(const Figure& figure, const Spread& least, const Range& range) {
+bool is_narrow(const ParameterValue& figure, const Spread& least, const Range& range) {
   constexpr double kRounding = 1e-3;  // rounding of a printed tolerance
   const double slack = kRounding * std::abs(figure.value);
   return figure.spread && ((figure.spread->low > least.low + slack && figure.spread->low > range.low) ||
@@ -98,7 +98,7 @@ bool is_narrow(const Figure& figure, const Spread& least, const Range& range) {
 }
 
 /// Returns the spread that replaces the stated one; nothing if the stated one is credible.
-std::optional<Spread> replacement(const DefaultRow& row, const Figure& figure, const Range& range) {
+std::optional<Spread> replacement(const DefaultRow& row, const ParameterValue& figure, const Range& range) {
   if (figure.value == 0.0) {
     return std::nullopt;
   }
@@ -126,7 +126,7 @@ bool takes_default(const EffectType& type, std::size_t place) {
 /// Calls `visit(key, figure, row, range)` for every value that temperatures depend on.
 template <class AnyMotor, class Visit>
 void for_each_value(AnyMotor& motor, const Visit& visit) {
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
+  for (const MotorParameterSpec& each : motor_parameter_specs()) {
     const DefaultRow* const row = row_of(each.spec.key);
     const auto found = motor.figures.find(each.spec.key);
     if (row && found != motor.figures.end()) {
@@ -145,13 +145,13 @@ void for_each_value(AnyMotor& motor, const Visit& visit) {
 
 }  // namespace
 
-bool is_exact(const Figure& figure) { return figure.spread && figure.value != 0.0 && !(figure.spread->high > figure.spread->low); }
+bool is_exact(const ParameterValue& figure) { return figure.spread && figure.value != 0.0 && !(figure.spread->high > figure.spread->low); }
 
 bool needs_spread(std::string_view key) { return row_of(key) != nullptr; }
 
 std::vector<DefaultSpread> default_spreads(const Motor& motor) {
   std::vector<DefaultSpread> missing;
-  for_each_value(motor, [&](const std::string& key, const Figure& figure, const DefaultRow& row, const Range& range) {
+  for_each_value(motor, [&](const std::string& key, const ParameterValue& figure, const DefaultRow& row, const Range& range) {
     if (const std::optional<Spread> spread = replacement(row, figure, range)) {
       missing.push_back({key, figure.origin, figure.value, *spread});
     }
@@ -161,7 +161,7 @@ std::vector<DefaultSpread> default_spreads(const Motor& motor) {
 
 std::vector<NarrowSpread> narrow_spreads(const Motor& motor) {
   std::vector<NarrowSpread> narrow;
-  for_each_value(motor, [&](const std::string& key, const Figure& figure, const DefaultRow& row, const Range& range) {
+  for_each_value(motor, [&](const std::string& key, const ParameterValue& figure, const DefaultRow& row, const Range& range) {
     const Spread least = spread_by(least_ratios(row, figure.origin), figure, range);
     if (figure.value != 0.0 && !is_exact(figure) && is_narrow(figure, least, range)) {
       narrow.push_back({key, &figure, least});
@@ -171,7 +171,7 @@ std::vector<NarrowSpread> narrow_spreads(const Motor& motor) {
 }
 
 Motor with_default_spreads(Motor motor) {
-  for_each_value(motor, [](const std::string&, Figure& figure, const DefaultRow& row, const Range& range) {
+  for_each_value(motor, [](const std::string&, ParameterValue& figure, const DefaultRow& row, const Range& range) {
     if (const std::optional<Spread> spread = replacement(row, figure, range)) {
       figure.spread = spread;
     }
@@ -181,8 +181,8 @@ Motor with_default_spreads(Motor motor) {
 
 std::optional<Spread> spread_or_default(const Motor& motor, std::string_view key) {
   const auto found = motor.figures.find(key);
-  const auto spec = std::ranges::find(motor_figure_specs(), key, [](const MotorFigureSpec& each) { return each.spec.key; });
-  if (found == motor.figures.end() || spec == motor_figure_specs().end()) {
+  const auto spec = std::ranges::find(motor_parameter_specs(), key, [](const MotorParameterSpec& each) { return each.spec.key; });
+  if (found == motor.figures.end() || spec == motor_parameter_specs().end()) {
     return std::nullopt;
   }
   const DefaultRow* const row = row_of(key);

@@ -29,8 +29,9 @@ LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_l
 }
 
 bool is_complete(const MotorValues& values) {
-  return std::ranges::all_of(motor_figure_specs(),
-                             [&](const MotorFigureSpec& each) { return each.need == Need::optional || std::isfinite(values.*each.value); });
+  return std::ranges::all_of(motor_parameter_specs(), [&](const MotorParameterSpec& each) {
+    return each.need == Need::optional || std::isfinite(values.*each.value);
+  });
 }
 
 double resistance_ohm(const MotorValues& values, double temperature_C) {

@@ -16,7 +16,7 @@ constexpr double kSame = 1e-6;
 
 /// Calls visit(name, figure) for every value of the file, including those of its effects and sensors.
 template <class Visit>
-void for_each_figure(const Motor& motor, const Visit& visit) {
+void for_each_parameter(const Motor& motor, const Visit& visit) {
   for (const auto& [key, figure] : motor.figures) {
     visit(std::string(key), figure);
   }
@@ -36,7 +36,7 @@ void for_each_figure(const Motor& motor, const Visit& visit) {
 }  // namespace
 
 void sources(const Motor& motor, Findings& findings) {
-  for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
+  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& figure) {
     // The derivation of an estimate replaces its source.
     const bool is_derived = figure.origin == Origin::estimated && !figure.derivation.empty();
     if (figure.source.empty() && !is_derived) {
@@ -49,7 +49,7 @@ void sources(const Motor& motor, Findings& findings) {
 
 /// Two independent sources must agree within the tolerance of the value, else one of them is wrong.
 void confirmations(const Motor& motor, Findings& findings) {
-  for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
+  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& figure) {
     const Bounds bounds = figure.spread
                               ? Bounds{figure.spread->low, figure.spread->high}
                               : Bounds{figure.value - kSame * std::abs(figure.value), figure.value + kSame * std::abs(figure.value)};
@@ -64,7 +64,7 @@ void confirmations(const Motor& motor, Findings& findings) {
 }
 
 void estimates(const Motor& motor, Findings& findings) {
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
+  for (const MotorParameterSpec& each : motor_parameter_specs()) {
     const auto figure = motor.figures.find(each.spec.key);
     if (figure == motor.figures.end() || figure->second.origin != Origin::estimated) {
       continue;
@@ -90,7 +90,7 @@ void spreads(const Motor& motor, Findings& findings) {
 
 /// Real parts have a tolerance, so a spread of zero width is an error.
 void exact_values(const Motor& motor, Findings& findings) {
-  for_each_figure(motor, [&](const std::string& key, const Figure& figure) {
+  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& figure) {
     if (is_exact(figure) && !is_agreed(key)) {
       findings.error_at(figure.at,
                         fmt::format("{} of {} has a tolerance or range of zero, expected how far a real motor may be from it; state that, "
@@ -103,7 +103,7 @@ void exact_values(const Motor& motor, Findings& findings) {
 /// A spread of 0.001 % is as unlikely as none. A fit may produce one for a measured value, so there it is a note and the spread is widened.
 void narrow_values(const Motor& motor, Findings& findings) {
   for (const NarrowSpread& each : narrow_spreads(motor)) {
-    const Figure& figure = *each.figure;
+    const ParameterValue& figure = *each.figure;
     const auto percent = [&](double bound) { return 100.0 * std::abs(bound / figure.value - 1.0); };
     const bool is_measured = figure.origin == Origin::measured;
     const std::string message = fmt::format(

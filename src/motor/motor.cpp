@@ -36,39 +36,39 @@ constexpr Range kTemperature = Range::between(-60.0, 400.0);
 
 // clang-format off
 constexpr std::array kSpecs = {
-    MotorFigureSpec{{"nominal_voltage", "V", kVoltage, "supply voltage the nominal figures hold for"}, &MotorValues::nominal_voltage_V, Need::required},
-    MotorFigureSpec{{"terminal_resistance", "ohm", kResistance, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
-    MotorFigureSpec{{"terminal_inductance", "H", kInductance, "of the winding"}, &MotorValues::terminal_inductance_H},
-    MotorFigureSpec{{"torque_constant", "N m/A", kTorqueConstant, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, Need::required, true},
-    MotorFigureSpec{{"speed_constant", "rad/s/V", kSpeedConstant, "speed per volt of back-EMF"}, &MotorValues::speed_constant_rad_per_s_per_V},
-    MotorFigureSpec{{"speed_torque_gradient", "rad/s/(N m)", kGradient, "loss of speed per torque at constant voltage"}, &MotorValues::speed_torque_gradient_rad_per_s_per_Nm},
-    MotorFigureSpec{{"mechanical_time_constant", "s", kMechanicalTime, "R·J/K_t²"}, &MotorValues::mechanical_time_constant_s},
-    MotorFigureSpec{{"rotor_inertia", "kg m2", kInertia, "moment of inertia of the rotor"}, &MotorValues::rotor_inertia_kg_m2},
-    MotorFigureSpec{{"no_load_speed", "rad/s", kSpeed, "at nominal voltage"}, &MotorValues::no_load_speed_rad_per_s},
-    MotorFigureSpec{{"no_load_current", "A", Range::between(0.0, 1e5), "at nominal voltage: iron and friction loss"}, &MotorValues::no_load_current_A, Need::required, true},
-    MotorFigureSpec{{"nominal_speed", "rad/s", kSpeed, "at nominal voltage and torque"}, &MotorValues::nominal_speed_rad_per_s},
-    MotorFigureSpec{{"nominal_torque", "N m", kTorque, "largest continuous torque at 25 °C ambient"}, &MotorValues::nominal_torque_Nm},
-    MotorFigureSpec{{"nominal_current", "A", kCurrent, "largest continuous current at 25 °C ambient"}, &MotorValues::nominal_current_A},
-    MotorFigureSpec{{"stall_torque", "N m", kTorque, "at nominal voltage"}, &MotorValues::stall_torque_Nm},
-    MotorFigureSpec{{"stall_current", "A", kCurrent, "at nominal voltage"}, &MotorValues::stall_current_A},
-    MotorFigureSpec{{"max_efficiency", "", Range::between(0.0, 1.0), "at nominal voltage"}, &MotorValues::max_efficiency},
-    MotorFigureSpec{{"peak_current", "A", kCurrent, "short-time limit of the manufacturer"}, &MotorValues::peak_current_A},
-    MotorFigureSpec{{"peak_torque", "N m", kTorque, "short-time limit of the manufacturer"}, &MotorValues::peak_torque_Nm},
-    MotorFigureSpec{{"max_speed", "rad/s", kSpeed, "mechanical limit"}, &MotorValues::max_speed_rad_per_s},
-    MotorFigureSpec{{"assigned_power", "W", kPower, "name-plate power"}, &MotorValues::assigned_power_W},
-    MotorFigureSpec{{"pole_pairs", "", Range::between(1.0, 100.0), "of the rotor"}, &MotorValues::pole_pairs},
-    MotorFigureSpec{{"mass", "kg", kMass, "of the motor"}, &MotorValues::mass_kg},
-    MotorFigureSpec{{"diameter", "m", kSize, "of the body"}, &MotorValues::diameter_m},
-    MotorFigureSpec{{"length", "m", kSize, "of the body"}, &MotorValues::length_m},
-    MotorFigureSpec{{"thermal_resistance_winding_stator", "K/W", kThermalResistance, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, Need::required, true},
-    MotorFigureSpec{{"thermal_resistance_stator_ambient", "K/W", kThermalResistance, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, Need::required, true},
-    MotorFigureSpec{{"thermal_time_constant_winding", "s", kThermalTime, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, Need::required, true},
-    MotorFigureSpec{{"thermal_time_constant_stator", "s", kThermalTime, "heat capacity of the stator times R_th2"}, &MotorValues::thermal_time_constant_stator_s, Need::required, true},
-    MotorFigureSpec{{"winding_limit", "degC", kTemperature, "highest permissible winding temperature"}, &MotorValues::winding_limit_C, Need::required, true},
-    MotorFigureSpec{{"stator_limit", "degC", kTemperature, "highest permissible stator temperature"}, &MotorValues::stator_limit_C, Need::optional, true},
-    MotorFigureSpec{{"ambient_min", "degC", kTemperature, "lowest permissible ambient temperature"}, &MotorValues::ambient_min_C},
-    MotorFigureSpec{{"ambient_max", "degC", kTemperature, "highest permissible ambient temperature"}, &MotorValues::ambient_max_C},
-    MotorFigureSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; copper's 0.0039 1/K where absent"}, &MotorValues::temperature_coefficient_per_K},
+    MotorParameterSpec{{"nominal_voltage", "V", kVoltage, "supply voltage the nominal figures hold for"}, &MotorValues::nominal_voltage_V, Need::required},
+    MotorParameterSpec{{"terminal_resistance", "ohm", kResistance, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
+    MotorParameterSpec{{"terminal_inductance", "H", kInductance, "of the winding"}, &MotorValues::terminal_inductance_H},
+    MotorParameterSpec{{"torque_constant", "N m/A", kTorqueConstant, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, Need::required, true},
+    MotorParameterSpec{{"speed_constant", "rad/s/V", kSpeedConstant, "speed per volt of back-EMF"}, &MotorValues::speed_constant_rad_per_s_per_V},
+    MotorParameterSpec{{"speed_torque_gradient", "rad/s/(N m)", kGradient, "loss of speed per torque at constant voltage"}, &MotorValues::speed_torque_gradient_rad_per_s_per_Nm},
+    MotorParameterSpec{{"mechanical_time_constant", "s", kMechanicalTime, "R·J/K_t²"}, &MotorValues::mechanical_time_constant_s},
+    MotorParameterSpec{{"rotor_inertia", "kg m2", kInertia, "moment of inertia of the rotor"}, &MotorValues::rotor_inertia_kg_m2},
+    MotorParameterSpec{{"no_load_speed", "rad/s", kSpeed, "at nominal voltage"}, &MotorValues::no_load_speed_rad_per_s},
+    MotorParameterSpec{{"no_load_current", "A", Range::between(0.0, 1e5), "at nominal voltage: iron and friction loss"}, &MotorValues::no_load_current_A, Need::required, true},
+    MotorParameterSpec{{"nominal_speed", "rad/s", kSpeed, "at nominal voltage and torque"}, &MotorValues::nominal_speed_rad_per_s},
+    MotorParameterSpec{{"nominal_torque", "N m", kTorque, "largest continuous torque at 25 °C ambient"}, &MotorValues::nominal_torque_Nm},
+    MotorParameterSpec{{"nominal_current", "A", kCurrent, "largest continuous current at 25 °C ambient"}, &MotorValues::nominal_current_A},
+    MotorParameterSpec{{"stall_torque", "N m", kTorque, "at nominal voltage"}, &MotorValues::stall_torque_Nm},
+    MotorParameterSpec{{"stall_current", "A", kCurrent, "at nominal voltage"}, &MotorValues::stall_current_A},
+    MotorParameterSpec{{"max_efficiency", "", Range::between(0.0, 1.0), "at nominal voltage"}, &MotorValues::max_efficiency},
+    MotorParameterSpec{{"peak_current", "A", kCurrent, "short-time limit of the manufacturer"}, &MotorValues::peak_current_A},
+    MotorParameterSpec{{"peak_torque", "N m", kTorque, "short-time limit of the manufacturer"}, &MotorValues::peak_torque_Nm},
+    MotorParameterSpec{{"max_speed", "rad/s", kSpeed, "mechanical limit"}, &MotorValues::max_speed_rad_per_s},
+    MotorParameterSpec{{"assigned_power", "W", kPower, "name-plate power"}, &MotorValues::assigned_power_W},
+    MotorParameterSpec{{"pole_pairs", "", Range::between(1.0, 100.0), "of the rotor"}, &MotorValues::pole_pairs},
+    MotorParameterSpec{{"mass", "kg", kMass, "of the motor"}, &MotorValues::mass_kg},
+    MotorParameterSpec{{"diameter", "m", kSize, "of the body"}, &MotorValues::diameter_m},
+    MotorParameterSpec{{"length", "m", kSize, "of the body"}, &MotorValues::length_m},
+    MotorParameterSpec{{"thermal_resistance_winding_stator", "K/W", kThermalResistance, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, Need::required, true},
+    MotorParameterSpec{{"thermal_resistance_stator_ambient", "K/W", kThermalResistance, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, Need::required, true},
+    MotorParameterSpec{{"thermal_time_constant_winding", "s", kThermalTime, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, Need::required, true},
+    MotorParameterSpec{{"thermal_time_constant_stator", "s", kThermalTime, "heat capacity of the stator times R_th2"}, &MotorValues::thermal_time_constant_stator_s, Need::required, true},
+    MotorParameterSpec{{"winding_limit", "degC", kTemperature, "highest permissible winding temperature"}, &MotorValues::winding_limit_C, Need::required, true},
+    MotorParameterSpec{{"stator_limit", "degC", kTemperature, "highest permissible stator temperature"}, &MotorValues::stator_limit_C, Need::optional, true},
+    MotorParameterSpec{{"ambient_min", "degC", kTemperature, "lowest permissible ambient temperature"}, &MotorValues::ambient_min_C},
+    MotorParameterSpec{{"ambient_max", "degC", kTemperature, "highest permissible ambient temperature"}, &MotorValues::ambient_max_C},
+    MotorParameterSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; copper's 0.0039 1/K where absent"}, &MotorValues::temperature_coefficient_per_K},
 };
 // clang-format on
 constexpr std::array<std::string_view, 8> kAgreed{"nominal_voltage", "assigned_power", "max_speed",   "pole_pairs",
@@ -98,7 +98,7 @@ double convention_factor(Reader& conventions, std::string_view key, const Conven
   return 1.0;
 }
 
-void scale(Figure& figure, double factor) {
+void scale(ParameterValue& figure, double factor) {
   figure.value *= factor;
   if (figure.spread) {
     figure.spread->low *= factor;
@@ -114,8 +114,8 @@ void read_figures(Reader& top, Motor& motor, double resistance_factor, double to
   if (!figures) {
     return;
   }
-  for (const MotorFigureSpec& each : kSpecs) {
-    if (std::optional<Figure> figure = figures->figure(each.spec, each.need)) {
+  for (const MotorParameterSpec& each : kSpecs) {
+    if (std::optional<ParameterValue> figure = figures->figure(each.spec, each.need)) {
       if (each.value == &MotorValues::terminal_resistance_ohm || each.value == &MotorValues::terminal_inductance_H) {
         scale(*figure, resistance_factor);
       } else if (each.value == &MotorValues::torque_constant_Nm_per_A) {
@@ -137,12 +137,12 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   for (const auto& [id, text] : motor.sources) {
     known.push_back(id);
   }
-  const auto look_up = [&](const Figure& figure, const std::string& key, const std::string& id) {
+  const auto look_up = [&](const ParameterValue& figure, const std::string& key, const std::string& id) {
     if (!motor.sources.contains(id)) {
       diagnostics.add(figure.at, key, fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
     }
   };
-  const auto check = [&](const std::string& key, const Figure& figure) {
+  const auto check = [&](const std::string& key, const ParameterValue& figure) {
     for (std::size_t at = 0; at < figure.source.size();) {
       const std::size_t end = std::min(figure.source.find(", ", at), figure.source.size());
       look_up(figure, key + ".source", figure.source.substr(at, end - at));
@@ -166,9 +166,9 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
 }
 
 /// Keys of all values in the order of sampling.
-std::vector<std::string> figure_keys(const Motor& motor) {
+std::vector<std::string> parameter_keys(const Motor& motor) {
   std::vector<std::string> keys;
-  for (const MotorFigureSpec& each : kSpecs) {
+  for (const MotorParameterSpec& each : kSpecs) {
     if (motor.figures.contains(each.spec.key)) {
       keys.emplace_back(each.spec.key);
     }
@@ -181,10 +181,10 @@ std::vector<std::string> figure_keys(const Motor& motor) {
   return keys;
 }
 
-/// Pairs of each value and the number in the sample that it sets, in the order of figure_keys().
-std::vector<std::pair<const Figure*, double*>> places(const Motor& motor, MotorSample& sample) {
-  std::vector<std::pair<const Figure*, double*>> all;
-  for (const MotorFigureSpec& each : kSpecs) {
+/// Pairs of each value and the number in the sample that it sets, in the order of parameter_keys().
+std::vector<std::pair<const ParameterValue*, double*>> places(const Motor& motor, MotorSample& sample) {
+  std::vector<std::pair<const ParameterValue*, double*>> all;
+  for (const MotorParameterSpec& each : kSpecs) {
     if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
       all.emplace_back(&found->second, &(sample.values.*each.value));
     }
@@ -199,7 +199,7 @@ std::vector<std::pair<const Figure*, double*>> places(const Motor& motor, MotorS
 
 }  // namespace
 
-Figure* find_figure(Motor& motor, std::string_view key) {
+ParameterValue* find_parameter(Motor& motor, std::string_view key) {
   if (const auto found = motor.figures.find(key); found != motor.figures.end()) {
     return &found->second;
   }
@@ -229,14 +229,14 @@ std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal) 
 }
 
 void refresh_values(Motor& motor) {
-  for (const MotorFigureSpec& each : kSpecs) {
+  for (const MotorParameterSpec& each : kSpecs) {
     if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
       motor.nominal.*each.value = found->second.value;
     }
   }
 }
 
-std::span<const MotorFigureSpec> motor_figure_specs() { return kSpecs; }
+std::span<const MotorParameterSpec> motor_parameter_specs() { return kSpecs; }
 bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
 
 Motor read_motor(const std::filesystem::path& path) {
@@ -277,7 +277,7 @@ Motor read_motor(const std::filesystem::path& path, Diagnostics& diagnostics) {
   read_figures(top, motor, resistance_factor, torque_factor);
   read_effects(top, motor);
   if (std::optional<Reader> table = top.table("fit", Need::optional)) {
-    motor.fit = read_fit(*table, figure_keys(motor));
+    motor.fit = read_fit(*table, parameter_keys(motor));
   }
   top.finish();
   check_sources(motor, diagnostics);
@@ -294,7 +294,7 @@ MotorSample nominal_sample(const Motor& motor) {
 
 MotorSample draw_sample(const Motor& motor, Random& random) {
   MotorSample sample = nominal_sample(motor);
-  const std::vector<std::pair<const Figure*, double*>> all = places(motor, sample);
+  const std::vector<std::pair<const ParameterValue*, double*>> all = places(motor, sample);
   std::vector<double> uniforms(all.size(), 0.5);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].first->spread) {
@@ -302,7 +302,7 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
     }
   }
   if (motor.fit) {
-    const std::vector<std::string> keys = figure_keys(motor);
+    const std::vector<std::string> keys = parameter_keys(motor);
     const auto place = [&](const std::string& key) { return static_cast<std::size_t>(std::ranges::find(keys, key) - keys.begin()); };
     std::vector<double> fitted;
     for (const std::string& key : motor.fit->figures) {
@@ -336,7 +336,7 @@ std::string_view quality_of_fit(const Motor& motor) {
       is_measured = is_measured && (!effect.type->parameters[i].choices.empty() || effect.parameters[i].origin != Origin::estimated);
     }
   }
-  for (const MotorFigureSpec& each : kSpecs) {
+  for (const MotorParameterSpec& each : kSpecs) {
     const auto found = motor.figures.find(each.spec.key);
     if (each.is_thermal && found != motor.figures.end()) {
       const Origin origin = found->second.origin;
@@ -355,7 +355,7 @@ std::string_view data_quality(const Motor& motor) {
   bool all_of_sheet = true;
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      const Figure& figure = effect.parameters[i];
+      const ParameterValue& figure = effect.parameters[i];
       if (!effect.type->parameters[i].choices.empty()) {
         continue;
       }
@@ -365,7 +365,7 @@ std::string_view data_quality(const Motor& motor) {
       all_of_sheet = all_of_sheet && (figure.origin == Origin::datasheet || figure.origin == Origin::measured);
     }
   }
-  for (const MotorFigureSpec& each : kSpecs) {
+  for (const MotorParameterSpec& each : kSpecs) {
     const auto found = motor.figures.find(each.spec.key);
     if (!each.is_thermal || found == motor.figures.end()) {
       continue;

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/figure.h"
 #include "base/parameter.h"
+#include "base/parameter_value.h"
 #include "base/random.h"
 #include "input/reader.h"
 #include "motor/fit_table.h"
@@ -60,13 +60,13 @@ struct MotorValues {
 };
 
 /// Declaration of one motor parameter: its key, unit and range in the file, and the member that stores it.
-struct MotorFigureSpec {
+struct MotorParameterSpec {
   ParameterSpec spec;
   double MotorValues::*value = nullptr;
   Need need = Need::optional;
   bool is_thermal = false;  ///< temperatures depend on it
 };
-std::span<const MotorFigureSpec> motor_figure_specs();
+std::span<const MotorParameterSpec> motor_parameter_specs();
 /// Returns whether the value is set by agreement, such as a limit or the nominal voltage. It is the same for all parts and needs no
 /// tolerance.
 bool is_agreed(std::string_view key);
@@ -76,7 +76,7 @@ struct MotorEffect {
   std::string name;
   const EffectType* type = nullptr;
   std::vector<std::string> nodes;
-  std::vector<Figure> parameters;  ///< in the type's declared order
+  std::vector<ParameterValue> parameters;  ///< in the type's declared order
   /// Condition under which it acts: "cooling" -> "fan", as logs name their conditions. Empty: always. An effect with a condition was
   /// observed in some runs only; conditions.h describes how predictions treat it.
   std::map<std::string, std::string> condition = {};
@@ -90,7 +90,7 @@ struct MotorEffect {
 struct MotorSensor {
   std::string name;
   const SensorEffectType* type = nullptr;
-  Figure size;
+  ParameterValue size;
 };
 
 struct Motor {
@@ -105,7 +105,7 @@ struct Motor {
   std::vector<std::string> notes;
   std::map<std::string, std::string, std::less<>> sources;
   bool stall_includes_saturation = false;
-  std::map<std::string_view, Figure> figures;  ///< by key, in this program's conventions
+  std::map<std::string_view, ParameterValue> figures;  ///< by key, in this program's conventions
   std::vector<MotorEffect> effects;
   std::vector<MotorSensor> sensors;
   std::optional<MotorFit> fit;  ///< present if a calibration wrote the file
@@ -116,7 +116,7 @@ struct Motor {
 Motor read_motor(const std::filesystem::path& path);
 
 /// Finds a value by key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null if the motor has none.
-Figure* find_figure(Motor& motor, std::string_view key);
+ParameterValue* find_parameter(Motor& motor, std::string_view key);
 /// Updates `nominal` after values in `figures` were changed.
 void refresh_values(Motor& motor);
 

@@ -89,7 +89,7 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
   bool chosen = true;
   for (std::size_t i = 0; i < type.parameters.size(); ++i) {
     ParameterSpec spec = type.parameters[i];
-    Figure figure;
+    ParameterValue figure;
     if (!spec.choices.empty()) {
       std::vector<std::string_view> names;
       for (const Choice& choice : spec.choices) {
@@ -103,7 +103,7 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
       reader.pass_over(spec.key);
     } else {
       spec.unit = unit_of(type.parameters, i, values);
-      figure = reader.figure(spec, Need::required).value_or(Figure{});
+      figure = reader.figure(spec, Need::required).value_or(ParameterValue{});
     }
     values.push_back(figure.value);
     effect.parameters.push_back(std::move(figure));
@@ -111,7 +111,7 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
 }
 
 bool goes_with_column(const MotorEffect& effect) {
-  return std::ranges::any_of(effect.parameters, [](const Figure& each) { return each.printed == kColumnChoice; });
+  return std::ranges::any_of(effect.parameters, [](const ParameterValue& each) { return each.printed == kColumnChoice; });
 }
 
 /// Orders the effects so that every node is added before it is used; otherwise the order of the file is kept.
@@ -138,7 +138,7 @@ std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& tabl
 
 std::vector<double> MotorEffect::values() const {
   std::vector<double> all;
-  std::ranges::transform(parameters, std::back_inserter(all), &Figure::value);
+  std::ranges::transform(parameters, std::back_inserter(all), &ParameterValue::value);
   return all;
 }
 
@@ -150,7 +150,8 @@ void read_effects(Reader& top, Motor& motor) {
   std::vector<Entry> entries = entries_of(*table);
   for (Entry& entry : entries) {
     if (entry.sensor) {
-      motor.sensors.push_back({entry.name, entry.sensor, entry.reader.figure(entry.sensor->size, Need::required).value_or(Figure{})});
+      motor.sensors.push_back(
+          {entry.name, entry.sensor, entry.reader.figure(entry.sensor->size, Need::required).value_or(ParameterValue{})});
       entry.reader.finish();
     }
   }

@@ -50,17 +50,17 @@ void apply(std::span<const SensorFault> faults, std::span<const double> time_s, 
   }
 }
 
-double shown_at_rest_C(std::span<const SensorFault> faults, double true_C) {
+double sensor_at_rest_C(std::span<const SensorFault> faults, double true_C) {
   for (const SensorFault& fault : faults) {
     true_C = fault.type->law.at_rest(fault.size, true_C, false);
   }
   return true_C;
 }
 
-double true_at_rest_C(std::span<const SensorFault> faults, double shown_C) {
+double true_at_rest_C(std::span<const SensorFault> faults, double sensor_C) {
   // Readings at rest are linear in the temperature.
-  const double at_0_C = shown_at_rest_C(faults, 0.0);
-  return (shown_C - at_0_C) / (shown_at_rest_C(faults, 1.0) - at_0_C);
+  const double at_0_C = sensor_at_rest_C(faults, 0.0);
+  return (sensor_C - at_0_C) / (sensor_at_rest_C(faults, 1.0) - at_0_C);
 }
 
 Reading::Reading(std::vector<SensorFault> faults, double true_C) : faults_(std::move(faults)), passed_C_{true_C} {
@@ -72,9 +72,9 @@ Reading::Reading(std::vector<SensorFault> faults, double true_C) : faults_(std::
 void Reading::advance(double duration_s, double true_C) {
   double now_C = true_C;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
-    const double shown_C = faults_[i].type->law.next_C(faults_[i].size, duration_s, passed_C_[i], now_C, passed_C_[i + 1], false);
+    const double sensor_C = faults_[i].type->law.next_C(faults_[i].size, duration_s, passed_C_[i], now_C, passed_C_[i + 1], false);
     passed_C_[i] = now_C;
-    now_C = shown_C;
+    now_C = sensor_C;
   }
   passed_C_.back() = now_C;
 }
@@ -99,12 +99,12 @@ SensorLaw sensor_lag_law() {
   // Initially it equals the temperature.
   return {.at_rest = [](double, double true_C, bool) { return true_C; },
           .after =
-              [](double size, double duration_s, double before_C, double now_C, double shown_C) {
+              [](double size, double duration_s, double before_C, double now_C, double sensor_C) {
                 if (!(duration_s > 0.0)) {
-                  return shown_C;
+                  return sensor_C;
                 }
                 const double behind_K = size * (now_C - before_C) / duration_s;
-                return now_C - behind_K + (shown_C - before_C + behind_K) * kept_of_lag(size, duration_s);
+                return now_C - behind_K + (sensor_C - before_C + behind_K) * kept_of_lag(size, duration_s);
               },
           .by_size = [](std::span<const double> time_s, double size, const Eigen::VectorXd& true_C) -> Eigen::VectorXd {
             Eigen::VectorXd derivative = Eigen::VectorXd::Zero(true_C.size());

@@ -14,14 +14,14 @@ namespace heatsoak {
 struct SensorLaw {
   /// Reading of a constant temperature. With `is_change` the argument is a derivative of the temperature, and the constant c is left out.
   double (*at_rest)(double size, double true_C, bool is_change) = nullptr;
-  /// Reading at the end of an interval in which the temperature (or its derivative) changed linearly from `before_C` to `now_C`; `shown_C`
+  /// Reading at the end of an interval in which the temperature (or its derivative) changed linearly from `before_C` to `now_C`; `sensor_C`
   /// is the reading at its beginning. Null for a sensor without memory: at_rest applies.
-  double (*after)(double size, double duration_s, double before_C, double now_C, double shown_C) = nullptr;
+  double (*after)(double size, double duration_s, double before_C, double now_C, double sensor_C) = nullptr;
   /// Derivative of the reading with respect to the size, for a series of true temperatures.
   Eigen::VectorXd (*by_size)(std::span<const double> time_s, double size, const Eigen::VectorXd& true_C) = nullptr;
 
-  [[nodiscard]] double next_C(double size, double duration_s, double before_C, double now_C, double shown_C, bool is_change) const {
-    return after ? after(size, duration_s, before_C, now_C, shown_C) : at_rest(size, now_C, is_change);
+  [[nodiscard]] double next_C(double size, double duration_s, double before_C, double now_C, double sensor_C, bool is_change) const {
+    return after ? after(size, duration_s, before_C, now_C, sensor_C) : at_rest(size, now_C, is_change);
   }
   /// Replaces the true temperatures in `shown` (with `is_change` a derivative of them) at `time_s` by the readings.
   void apply(std::span<const double> time_s, double size, bool is_change, Eigen::Ref<Eigen::VectorXd> shown) const;
@@ -32,7 +32,7 @@ struct SensorExample {
   double size = 0.0;  ///< in the unit of the parameter
   std::vector<double> time_s;
   std::vector<double> true_C;
-  std::vector<double> shown_C;
+  std::vector<double> sensor_C;
 };
 
 struct SensorEffectType {
@@ -44,7 +44,7 @@ struct SensorEffectType {
   ParameterSpec size;
   double typical_size = 0.0;  ///< in the unit of `size`
   std::string_view typical;
-  std::string_view look_alike;
+  std::string_view confounded_with;
   std::string_view experiment;  ///< measurement that separates it from the effects it is confounded with
   SensorExample example;
   SensorLaw law;
@@ -66,8 +66,8 @@ struct SensorFault {
 /// Like SensorLaw::apply(), for all faults in order.
 void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, Eigen::Ref<Eigen::VectorXd> shown);
 /// Reading of a constant temperature, and the constant temperature of a reading.
-double shown_at_rest_C(std::span<const SensorFault> faults, double true_C);
-double true_at_rest_C(std::span<const SensorFault> faults, double shown_C);
+double sensor_at_rest_C(std::span<const SensorFault> faults, double true_C);
+double true_at_rest_C(std::span<const SensorFault> faults, double sensor_C);
 
 /// Reading of a sensor as time advances.
 class Reading {
@@ -78,7 +78,7 @@ class Reading {
 
   /// The temperature changes linearly to `true_C` within the duration.
   void advance(double duration_s, double true_C);
-  [[nodiscard]] double shown_C() const { return passed_C_.back(); }
+  [[nodiscard]] double sensor_C() const { return passed_C_.back(); }
 
  private:
   std::vector<SensorFault> faults_;

@@ -35,7 +35,7 @@ std::string amount(double value, const std::string& unit) {
   return unit.empty() ? significant(value, kDigits) : fmt::format("{} {}", significant(value, kDigits), unit);
 }
 
-std::string figure_text(const Figure& figure, const std::string& unit) {
+std::string parameter_text(const ParameterValue& figure, const std::string& unit) {
   const ParsedQuantity printed = parse_quantity(figure.printed, unit);
   const bool is_as_printed = printed.ok() && std::abs(printed.value - figure.value) <= 1e-9 * std::abs(figure.value);
   std::string text = fmt::format("{{ value = {}, origin = {}", toml_text(is_as_printed ? figure.printed : amount(figure.value, unit)),
@@ -85,7 +85,7 @@ std::string effect_text(const MotorEffect& effect) {
     const std::string unit(unit_of(effect.type->parameters, i, values));
     values.push_back(effect.parameters[i].value);
     text += fmt::format("{} = {}\n", spec.key,
-                        spec.choices.empty() ? figure_text(effect.parameters[i], unit) : toml_text(effect.parameters[i].printed));
+                        spec.choices.empty() ? parameter_text(effect.parameters[i], unit) : toml_text(effect.parameters[i].printed));
   }
   text += effect.column.empty() ? "" : fmt::format("column = {}\n", toml_text(effect.column));
   if (!effect.condition.empty()) {
@@ -121,9 +121,9 @@ std::string to_toml(const Motor& motor) {
       "\n[conventions]\nterminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\nstall_includes_saturation = {}\n",
       motor.stall_includes_saturation);
   text += "\n[figures]\n";
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
+  for (const MotorParameterSpec& each : motor_parameter_specs()) {
     if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
-      text += fmt::format("{} = {}\n", each.spec.key, figure_text(found->second, std::string(each.spec.unit)));
+      text += fmt::format("{} = {}\n", each.spec.key, parameter_text(found->second, std::string(each.spec.unit)));
     }
   }
   for (const MotorEffect& effect : motor.effects) {
@@ -131,7 +131,7 @@ std::string to_toml(const Motor& motor) {
   }
   for (const MotorSensor& sensor : motor.sensors) {
     text += fmt::format("{}{} = {}\n", head_of_effect(sensor.name, sensor.type->name), sensor.type->size.key,
-                        figure_text(sensor.size, std::string(sensor.type->size.unit)));
+                        parameter_text(sensor.size, std::string(sensor.type->size.unit)));
   }
   return motor.fit ? text + to_toml(*motor.fit) : text;
 }

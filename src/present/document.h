@@ -8,7 +8,7 @@
 namespace heatsoak::present {
 
 /// Rating of a piece of text; renderers may colour it.
-enum class Tone { neutral, good, doubtful, bad };
+enum class Tone { neutral, good, undecided, bad };
 
 struct Text {
   std::string words = {};

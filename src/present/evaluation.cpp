@@ -27,7 +27,7 @@ std::string percent_range(const Interval95& range) {
 }
 
 Text verdict_cell(const MotorEvaluation& motor) {
-  return {std::string(verdict_word(motor)), motor.samples_needed ? Tone::doubtful : tone_of(motor.verdict)};
+  return {std::string(verdict_word(motor)), motor.samples_needed ? Tone::undecided : tone_of(motor.verdict)};
 }
 
 std::string_view factor_text(const MotorEvaluation& motor) {
@@ -131,7 +131,7 @@ std::string load_words(const Duty& duty) {
 
 std::vector<Text> headline(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
   const auto sentence = [&](const MotorEvaluation& motor, std::string_view prefix) {
-    const Tone tone = motor.samples_needed ? Tone::doubtful : tone_of(motor.verdict);
+    const Tone tone = motor.samples_needed ? Tone::undecided : tone_of(motor.verdict);
     return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor, context.draws > 0)), tone};
   };
   const auto good =
@@ -258,7 +258,7 @@ void add_changes(Document& document, std::span<const ChangeEffect> effects, cons
                   kChangeGames));
 }
 
-Tone tone_of(Verdict verdict) { return verdict == Verdict::pass ? Tone::good : verdict == Verdict::marginal ? Tone::doubtful : Tone::bad; }
+Tone tone_of(Verdict verdict) { return verdict == Verdict::pass ? Tone::good : verdict == Verdict::marginal ? Tone::undecided : Tone::bad; }
 
 void add_lines(std::vector<Note>& notes, std::string_view text, Severity severity) {
   while (!text.empty()) {

@@ -9,8 +9,8 @@ std::string duration_text(double duration_s) {
 }
 
 std::string slip_text(const WheelDemand& wheel) {
-  constexpr double kWorthAWord_share = 0.01;
-  return wheel.slip_share < kWorthAWord_share
+  constexpr double kReported_share = 0.01;
+  return wheel.slip_share < kReported_share
              ? ""
              : fmt::format(
                    "the ground cannot pass on the motion in {:.0f} % of the time: a wheel slides there, and may heat its motor more "

@@ -28,15 +28,15 @@ constexpr std::array<Assumed, 4> kAssumed{{
 }};
 
 std::string_view key_of(double Robot::*value) {
-  const auto specs = robot_figure_specs();
-  return std::ranges::find(specs, value, &RobotFigureSpec::value)->spec.key;
+  const auto specs = robot_parameter_specs();
+  return std::ranges::find(specs, value, &RobotParameterSpec::value)->spec.key;
 }
 
 }  // namespace
 
 bool has_friction(const Robot& robot) {
   return !robot.is_friction_assumed &&
-         (!robot.heading_wheels.empty() || std::ranges::any_of(robot_figure_specs(), [&](const RobotFigureSpec& each) {
+         (!robot.heading_wheels.empty() || std::ranges::any_of(robot_parameter_specs(), [&](const RobotParameterSpec& each) {
            return each.table.starts_with("friction") && !std::isnan(robot.*each.value);
          }));
 }
@@ -48,7 +48,7 @@ Robot with_assumed_friction(Robot robot) {
   const double load_Nm = robot.mass_kg * kGravity_m_per_s2 * robot.wheel_radius_m;
   for (const Assumed& each : kAssumed) {
     const double scale = each.is_per_load ? load_Nm : 1.0;
-    Figure figure;
+    ParameterValue figure;
     figure.value = scale * each.nominal;
     figure.derivation = "assumed: that of other robots, per weight and wheel radius";
     figure.spread = Spread{Spread::Kind::range, scale * each.low, scale * each.high, each.low > 0.0};

@@ -47,7 +47,7 @@ bool stands(const WeightConfig& weight) {
 
 BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
   constexpr std::array<std::string_view, 4> kTables{"body", "wheels", "friction", "traction"};
-  require_figures(robot, kTables);
+  require_parameters(robot, kTables);
   if (std::isnan(motor.rotor_inertia_kg_m2)) {
     throw bad_input({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
   }

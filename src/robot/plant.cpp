@@ -394,7 +394,7 @@ class StiffPart {
 PlantConfig make_plant(const Robot& robot, const MotorValues& motor, double period_s) {
   PlantConfig plant;
   plant.body = make_body(robot, motor);
-  require_figures(robot, kElectricTables);
+  require_parameters(robot, kElectricTables);
   plant.motor = make_electrics(robot, motor);
   plant.driver = make_driver(robot);
   plant.battery = {robot.battery_full_V, robot.battery_empty_V, robot.battery_resistance_ohm, robot.battery_capacity_A_s};

@@ -13,7 +13,7 @@ namespace heatsoak {
 namespace {
 
 /// The ranges include any robot for a lab floor and exclude values with a wrong unit.
-constexpr std::array<RobotFigureSpec, 29> kSpecs{{
+constexpr std::array<RobotParameterSpec, 29> kSpecs{{
     {"body",
      {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0), "about the vertical through the centre of gravity; mind g cm2 and kg m2"},
      &Robot::yaw_inertia_kg_m2},
@@ -71,7 +71,7 @@ constexpr std::array<RobotFigureSpec, 29> kSpecs{{
      &Robot::yaw_acceleration_limit_rad_per_s2},
 }};
 
-constexpr std::array<WheelFigureSpec, 3> kWheelSpecs{{
+constexpr std::array<WheelParameterSpec, 3> kWheelSpecs{{
     {{"constant", "N m", Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
     {{"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
     {{"phase", "rad", Range::any(), "of that part and of the sign, near the negative angle of the wheel's axle"}, &HeadingWheel::phase_rad},
@@ -80,22 +80,22 @@ constexpr std::array<WheelFigureSpec, 3> kWheelSpecs{{
 constexpr std::array<std::string_view, 5> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate",
                                                         "command_rate"};
 
-void read_figure(Reader& reader, const RobotFigureSpec& each, Need need, Robot& robot) {
-  if (std::optional<Figure> figure = reader.figure(each.spec, need)) {
+void read_figure(Reader& reader, const RobotParameterSpec& each, Need need, Robot& robot) {
+  if (std::optional<ParameterValue> figure = reader.figure(each.spec, need)) {
     robot.*each.value = figure->value;
     robot.figures.emplace(fmt::format("{}.{}", each.table, each.spec.key), std::move(*figure));
   }
 }
 
 void read_figures(Reader& reader, std::string_view table, Robot& robot) {
-  for (const RobotFigureSpec& each : kSpecs) {
+  for (const RobotParameterSpec& each : kSpecs) {
     if (each.table == table) {
       read_figure(reader, each, Need::optional, robot);
     }
   }
 }
 
-std::string wheel_figure_key(std::size_t wheel, const WheelFigureSpec& figure) {
+std::string wheel_parameter_key(std::size_t wheel, const WheelParameterSpec& figure) {
   return fmt::format("friction.heading.wheel[{}].{}", wheel, figure.spec.key);
 }
 
@@ -110,10 +110,10 @@ void check_sign(Reader& reader, double constant_Nm, double sine_Nm, double doubl
 void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double double_angle_Nm) {
   for (Reader& reader : wheels) {
     HeadingWheel& wheel = robot.heading_wheels.emplace_back();
-    for (const WheelFigureSpec& each : kWheelSpecs) {
-      if (std::optional<Figure> figure = reader.figure(each.spec, Need::required)) {
+    for (const WheelParameterSpec& each : kWheelSpecs) {
+      if (std::optional<ParameterValue> figure = reader.figure(each.spec, Need::required)) {
         wheel.*each.value = figure->value;
-        robot.figures.emplace(wheel_figure_key(robot.heading_wheels.size() - 1, each), std::move(*figure));
+        robot.figures.emplace(wheel_parameter_key(robot.heading_wheels.size() - 1, each), std::move(*figure));
       }
     }
     check_sign(reader, wheel.constant_Nm, wheel.sine_Nm, double_angle_Nm);
@@ -123,7 +123,7 @@ void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double doubl
 
 void read_heading(Reader& heading, Robot& robot) {
   std::vector<Reader> wheels = heading.tables("wheel");
-  for (const RobotFigureSpec& each : kSpecs) {
+  for (const RobotParameterSpec& each : kSpecs) {
     const bool of_all_wheels = each.spec.key == "constant" || each.spec.key == "sine";
     if (each.table == "friction.heading") {
       read_figure(heading, each, of_all_wheels && wheels.empty() ? Need::required : Need::optional, robot);
@@ -205,12 +205,12 @@ void read_drive(Reader& top, Robot& robot) {
 
 }  // namespace
 
-std::span<const RobotFigureSpec> robot_figure_specs() { return kSpecs; }
-std::span<const WheelFigureSpec> wheel_figure_specs() { return kWheelSpecs; }
+std::span<const RobotParameterSpec> robot_parameter_specs() { return kSpecs; }
+std::span<const WheelParameterSpec> wheel_parameter_specs() { return kWheelSpecs; }
 
-void require_figures(const Robot& robot, std::span<const std::string_view> tables) {
+void require_parameters(const Robot& robot, std::span<const std::string_view> tables) {
   Diagnostics diagnostics;
-  for (const RobotFigureSpec& each : kSpecs) {
+  for (const RobotParameterSpec& each : kSpecs) {
     const bool asked = std::ranges::find(tables, each.table) != tables.end();
     const bool optional = std::ranges::find(kOptionalKeys, each.spec.key) != kOptionalKeys.end();
     if (asked && !optional && std::isnan(robot.*each.value)) {
@@ -229,12 +229,12 @@ Robot draw_sample(const Robot& robot, Random& random) {
       value = found->second.quantile(random.uniform());
     }
   };
-  for (const RobotFigureSpec& each : kSpecs) {
+  for (const RobotParameterSpec& each : kSpecs) {
     draw(fmt::format("{}.{}", each.table, each.spec.key), drawn.*each.value);
   }
   for (std::size_t i = 0; i < drawn.heading_wheels.size(); ++i) {
-    for (const WheelFigureSpec& each : kWheelSpecs) {
-      draw(wheel_figure_key(i, each), drawn.heading_wheels[i].*each.value);
+    for (const WheelParameterSpec& each : kWheelSpecs) {
+      draw(wheel_parameter_key(i, each), drawn.heading_wheels[i].*each.value);
     }
   }
   return drawn;

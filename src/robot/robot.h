@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/figure.h"
 #include "base/parameter.h"
+#include "base/parameter_value.h"
 #include "base/random.h"
 #include "input/reader.h"
 #include "motor/motor.h"
@@ -75,12 +75,12 @@ struct Robot {
   // Measured friction curve over the direction of travel; friction.h has its formula.
   double heading_constant_Nm = kAbsent;  ///< for all wheels; absent if each wheel has its own
   double heading_sine_Nm = kAbsent;
-  double heading_double_angle_Nm = kAbsent;            ///< 0 if absent
-  double heading_rotation_Nm = kAbsent;                ///< equals wheel_friction_torque if absent
-  std::vector<double> heading_double_angle_phase_rad;  ///< per wheel; empty without the double-angle term
-  std::vector<HeadingWheel> heading_wheels;            ///< one per wheel, or none
-  std::map<std::string, Figure, std::less<>> figures;  ///< by "table.key" or "friction.heading.wheel[0].key"
-  bool is_friction_assumed = false;                    ///< set by with_assumed_friction(); the file states none
+  double heading_double_angle_Nm = kAbsent;                    ///< 0 if absent
+  double heading_rotation_Nm = kAbsent;                        ///< equals wheel_friction_torque if absent
+  std::vector<double> heading_double_angle_phase_rad;          ///< per wheel; empty without the double-angle term
+  std::vector<HeadingWheel> heading_wheels;                    ///< one per wheel, or none
+  std::map<std::string, ParameterValue, std::less<>> figures;  ///< by "table.key" or "friction.heading.wheel[0].key"
+  bool is_friction_assumed = false;                            ///< set by with_assumed_friction(); the file states none
 
   [[nodiscard]] double available_V() const;
   /// Resistance between the battery and a motor's terminals in ohm; 0 if the file does not give it.
@@ -88,22 +88,22 @@ struct Robot {
 };
 
 /// Declaration of one robot parameter: its table, key, unit and range in the file, and the member that stores it.
-struct RobotFigureSpec {
+struct RobotParameterSpec {
   std::string_view table;
   ParameterSpec spec;
   double Robot::*value = nullptr;
 };
-std::span<const RobotFigureSpec> robot_figure_specs();
+std::span<const RobotParameterSpec> robot_parameter_specs();
 
 /// The same for the values of one [[friction.heading.wheel]].
-struct WheelFigureSpec {
+struct WheelParameterSpec {
   ParameterSpec spec;
   double HeadingWheel::*value = nullptr;
 };
-std::span<const WheelFigureSpec> wheel_figure_specs();
+std::span<const WheelParameterSpec> wheel_parameter_specs();
 
 /// Throws Failure (bad_input) with every non-optional value of `tables` that the robot lacks.
-void require_figures(const Robot& robot, std::span<const std::string_view> tables);
+void require_parameters(const Robot& robot, std::span<const std::string_view> tables);
 
 /// Returns the robot with one random sample of every uncertain value.
 Robot draw_sample(const Robot& robot, Random& random);

@@ -14,10 +14,10 @@
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 #include "motor/default_spread.h"
-#include "select/bearable_current.h"
 #include "select/decision.h"
 #include "select/drive_profile.h"
 #include "select/spread.h"
+#include "select/sustainable_current.h"
 #include "thermal/ensemble.h"
 
 namespace heatsoak {
@@ -261,7 +261,7 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
     result.stator_margin_K = *result.stator_limit_C - transient.peak_C[stator];
   }
   const bool is_over = result.margin_K < 0.0 || result.stator_margin_K.value_or(0.0) < 0.0;
-  if (const std::optional<double> factor = bearable_current_factor(network, run.intervals, limits, is_over)) {
+  if (const std::optional<double> factor = sustainable_current_factor(network, run.intervals, limits, is_over)) {
     const double driven = deliverable_factor(sample.values, robot, duty, *work.wheel, *factor);
     result.margin_A = driven * current_rms_A(run.intervals) - result.current_rms_A;
   }

@@ -60,9 +60,9 @@ class FaultySensors {
     time_s_ = moment.time_s;
   }
 
-  [[nodiscard]] std::vector<double> shown_C() const {
+  [[nodiscard]] std::vector<double> sensor_C() const {
     std::vector<double> all_C;
-    std::ranges::transform(readings_, std::back_inserter(all_C), &Reading::shown_C);
+    std::ranges::transform(readings_, std::back_inserter(all_C), &Reading::sensor_C);
     return all_C;
   }
 
@@ -122,7 +122,7 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
                  .torque_Nm = point.motor_torque_Nm,
                  .motor_V = terminal_voltage_V(sample.values, point, moment.state_C[winding])};
     row.power_in_W = row.motor_V * row.current_A;
-    row.shown_C = sensors.shown_C();
+    row.sensor_C = sensors.sensor_C();
     row.own_C.assign(moment.state_C.begin() + states::first_own, moment.state_C.end());
     trace.rows.push_back(row);
   };
@@ -147,7 +147,7 @@ std::string to_csv(const Trace& trace) {
   text += "current_A,speed_rad_per_s,torque_Nm,motor_V,power_in_W\n";
   for (const TraceRow& row : trace.rows) {
     fmt::format_to(out, "{:.10g},{:.4f},{:.4f},{:.2f},", row.time_s, row.winding_C, row.stator_C, row.ambient_C);
-    for (const std::vector<double>* const more_C : {&row.own_C, &row.shown_C}) {
+    for (const std::vector<double>* const more_C : {&row.own_C, &row.sensor_C}) {
       for (const double each_C : *more_C) {
         fmt::format_to(out, "{:.4f},", each_C);
       }

@@ -14,13 +14,13 @@ struct TraceRow {
   double winding_C = 0.0;
   double stator_C = 0.0;
   double ambient_C = 0.0;
-  double current_A = 0.0;            ///< equivalent DC current, signed like the torque
-  double speed_rad_per_s = 0.0;      ///< of the motor
-  double torque_Nm = 0.0;            ///< at the motor's shaft
-  double motor_V = 0.0;              ///< at the terminals, at this winding temperature
-  double power_in_W = 0.0;           ///< into the terminals
-  std::vector<double> own_C = {};    ///< of the nodes that effects brought, as own_nodes names them
-  std::vector<double> shown_C = {};  ///< by the sensors for which the motor's file states a fault, as shown_at names their nodes
+  double current_A = 0.0;             ///< equivalent DC current, signed like the torque
+  double speed_rad_per_s = 0.0;       ///< of the motor
+  double torque_Nm = 0.0;             ///< at the motor's shaft
+  double motor_V = 0.0;               ///< at the terminals, at this winding temperature
+  double power_in_W = 0.0;            ///< into the terminals
+  std::vector<double> own_C = {};     ///< of the nodes that effects brought, as own_nodes names them
+  std::vector<double> sensor_C = {};  ///< by the sensors for which the motor's file states a fault, as shown_at names their nodes
 };
 
 /// Heat that one effect brought into one node, as the mean over the run.

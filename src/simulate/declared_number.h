@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/figure.h"
 #include "base/parameter.h"
+#include "base/parameter_value.h"
 
 namespace heatsoak {
 

@@ -29,8 +29,8 @@ MatchRows::MatchRows(double every_s, double ambient_C, const MatchAdditions& add
   PerWheel cold_C{};
   cold_C.fill(ambient_C);
   open_.bodies_C.assign(added.bodies.size(), cold_C);
-  open_.winding_shown_C.fill(winding_.front().shown_C());
-  open_.stator_shown_C.fill(stator_.front().shown_C());
+  open_.winding_sensor_C.fill(winding_.front().sensor_C());
+  open_.stator_sensor_C.fill(stator_.front().sensor_C());
 }
 
 void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& plan, Phase phase, bool duel) {
@@ -52,8 +52,8 @@ void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& pl
     for (std::size_t body = 0; body < open_.bodies_C.size(); ++body) {
       open_.bodies_C[body][static_cast<std::size_t>(i)] = robot.body_C(states::first_own + body, i);
     }
-    open_.winding_shown_C[i] = winding_.at(static_cast<std::size_t>(i)).shown_C();
-    open_.stator_shown_C[i] = stator_.at(static_cast<std::size_t>(i)).shown_C();
+    open_.winding_sensor_C[i] = winding_.at(static_cast<std::size_t>(i)).sensor_C();
+    open_.stator_sensor_C[i] = stator_.at(static_cast<std::size_t>(i)).sensor_C();
   }
   current_squared_A2_ = {};
   periods_ = 0;
@@ -159,10 +159,10 @@ void append_csv(std::string& text, const MatchRow& row, int wheel_count, double 
       fmt::format_to(to, ",{:.4f}", body_C[static_cast<std::size_t>(i)]);
     }
     if (!added.winding.empty()) {
-      fmt::format_to(to, ",{:.4f}", row.winding_shown_C[i]);
+      fmt::format_to(to, ",{:.4f}", row.winding_sensor_C[i]);
     }
     if (!added.stator.empty()) {
-      fmt::format_to(to, ",{:.4f}", row.stator_shown_C[i]);
+      fmt::format_to(to, ",{:.4f}", row.stator_sensor_C[i]);
     }
   }
   fmt::format_to(to, ",{}", static_cast<int>(row.robot_reason));

@@ -23,8 +23,8 @@ struct MatchRow {
   PerWheel winding_peak_C{};  ///< the highest from time_s to the next row, for pictures: a duel heats for less than a row
   PerWheel stator_C{};
   std::vector<PerWheel> bodies_C;  ///< as MatchAdditions::bodies
-  PerWheel winding_shown_C{};      ///< by a sensor with the faults that are stated for it
-  PerWheel stator_shown_C{};
+  PerWheel winding_sensor_C{};     ///< by a sensor with the faults that are stated for it
+  PerWheel stator_sensor_C{};
   PerWheel current_A{};
   PerWheel motor_V{};
   PerWheel speed_rad_per_s{};  ///< of the motors

@@ -124,8 +124,8 @@ struct EffectType {
   std::string_view reference;
   std::vector<NodeRole> nodes;
   std::vector<ParameterSpec> parameters;
-  std::string_view typical;     ///< typical size for a motor of about 50 W
-  std::string_view look_alike;  ///< effects that it is confounded with, and what separates them
+  std::string_view typical;          ///< typical size for a motor of about 50 W
+  std::string_view confounded_with;  ///< effects that it is confounded with, and what separates them
   WorkedExample example;
   Laws laws;
   std::vector<Signal> needs = {};

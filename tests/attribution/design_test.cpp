@@ -93,7 +93,7 @@ TEST(Design, EquationsAboutTheFreeRunAreTheFreeRun) {
   const MeasuredRun run = run_of(4, 200);
   const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);
   const LinearisedRun along = linearise_along(model, freely.state_C, run);
-  EXPECT_LT((along.shown_C - freely.shown_C).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((along.sensor_C - freely.sensor_C).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((along.by_parameter - freely.by_parameter).cwiseAbs().maxCoeff(), 1e-9 * freely.by_parameter.cwiseAbs().maxCoeff());
 }
 
@@ -108,7 +108,7 @@ TEST(Design, EquationsAboutAnotherPathForetellTheFreeRun) {
     for (Eigen::Index k = 1; k < path_C.cols(); ++k) {
       path_C.col(k).array() += size_K * std::sin(0.05 * static_cast<double>(k));
     }
-    off_K.push_back((linearise_along(model, path_C, run).shown_C - freely.shown_C).cwiseAbs().maxCoeff());
+    off_K.push_back((linearise_along(model, path_C, run).sensor_C - freely.sensor_C).cwiseAbs().maxCoeff());
   }
   EXPECT_LT(off_K[0], 0.02);
   EXPECT_LT(off_K[1], 0.3 * off_K[0] + 1e-6);
@@ -127,7 +127,7 @@ TEST(Design, SmoothedPathFollowsUnknownHeat) {
   Random random(9, 0);
   for (Eigen::Index k = 0; k < run.samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < 2; ++sensor) {
-      run.measured_C(k, sensor) = real.shown_C(k, sensor) + 0.2 * (random.uniform() - 0.5);
+      run.measured_C(k, sensor) = real.sensor_C(k, sensor) + 0.2 * (random.uniform() - 0.5);
     }
   }
   const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);

@@ -75,7 +75,7 @@ struct Drone {
 /// A motor whose start of a fit was guessed otherwise.
 Motor guessed_otherwise(Motor motor, const std::map<std::string, double>& factor) {
   for (const auto& [key, by] : factor) {
-    Figure& figure = *find_figure(motor, key);
+    ParameterValue& figure = *find_parameter(motor, key);
     figure.value *= by;
     figure.spread->low *= by;
     figure.spread->high *= by;

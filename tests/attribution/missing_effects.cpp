@@ -282,19 +282,19 @@ const std::vector<Outsider> kOutsiders{
      [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, -0.3 * s * smooth_step((m.copper_C - 50.0) / 2.0)); }); }},
 };
 
-/// Between 0 and 1, another for every stretch of running time and every purpose.
-double drawn(const Moment& m, double stretch_s, std::uint64_t purpose, int later = 0) {
-  const auto stretch = static_cast<std::uint64_t>(m.age_h * 3600.0 / stretch_s) + static_cast<std::uint64_t>(later);
+/// Between 0 and 1, another for every segment of running time and every purpose.
+double drawn(const Moment& m, double segment_s, std::uint64_t purpose, int later = 0) {
+  const auto segment = static_cast<std::uint64_t>(m.age_h * 3600.0 / segment_s) + static_cast<std::uint64_t>(later);
   // The finaliser of splitmix64: asked at every step of the integration.
-  std::uint64_t bits = (stretch * 1000003 + purpose) * 0x9e3779b97f4a7c15U;
+  std::uint64_t bits = (segment * 1000003 + purpose) * 0x9e3779b97f4a7c15U;
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9U;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebU;
   return static_cast<double>((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
 }
-/// Of mean 0 and rms 1, smooth, over the length of a stretch.
-double wandering(const Moment& m, double stretch_s, std::uint64_t purpose) {
-  const double share = std::fmod(m.age_h * 3600.0 / stretch_s, 1.0);
-  const double here = drawn(m, stretch_s, purpose), next = drawn(m, stretch_s, purpose, 1);
+/// Of mean 0 and rms 1, smooth, over the length of a segment.
+double drifting(const Moment& m, double segment_s, std::uint64_t purpose) {
+  const double share = std::fmod(m.age_h * 3600.0 / segment_s, 1.0);
+  const double here = drawn(m, segment_s, purpose), next = drawn(m, segment_s, purpose, 1);
   const double blend = share * share * (3.0 - 2.0 * share);
   return 4.0 * (here + (next - here) * blend - 0.5);
 }
@@ -336,11 +336,11 @@ const std::vector<Outsider> kStrangers{
     {"0.7 W that wander at the stator",
      "stator",
      {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 0.7 * s * wandering(m, 240.0, 4)); }); }},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 0.7 * s * drifting(m, 240.0, 4)); }); }},
     {"0.7 W that wander in the copper",
      "winding",
      {},
-     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.7 * s * wandering(m, 240.0, 5)); }); }},
+     [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.7 * s * drifting(m, 240.0, 5)); }); }},
 };
 
 }  // namespace

@@ -183,7 +183,7 @@ TEST(Screening, FindsWrongSamplesAndLeavesGoodOnes) {
     const Selection selection = select_effects({model.model, runs}, rules);
     for (std::size_t r = 0; r < runs.size(); ++r) {
       add(runs[r], selection.weights[r], log_of_run[r], motor, single);
-      add_stuck(runs[r], selection.weights[r], log_of_run[r], motor, selection.after.fitted[r].shown_C, stuck);
+      add_stuck(runs[r], selection.weights[r], log_of_run[r], motor, selection.after.fitted[r].sensor_C, stuck);
     }
   }
   print("single samples", single);

@@ -78,7 +78,7 @@ TEST(StatedSensors, CandidatesAreSeenThroughThem) {
     const Columns column = candidate_columns({*candidate}, input.model, here, run);
     constexpr double kLittle_share = 1e-3;
     const LinearisedRun with = linearise(with_candidate(input.model, *candidate, kLittle_share), std::vector<double>{30.0, 28.0}, run);
-    const Eigen::MatrixXd expected = (with.shown_C - here.shown_C) / kLittle_share;
+    const Eigen::MatrixXd expected = (with.sensor_C - here.sensor_C) / kLittle_share;
     const Eigen::Index sensor = run.sensor_at("stator");
     double worst = 0.0;
     for (Eigen::Index k = 0; k < run.samples(); ++k) {

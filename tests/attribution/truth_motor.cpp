@@ -127,14 +127,14 @@ class Sensor {
 
   double read(double true_C, Dice& dice) {
     feel(true_C);
-    double shown_C = 25.0 + gain_ratio_ * (felt_C_ - 25.0) + offset_K_ + drift_K_ + surprise_.noise_K * dice.normal();
+    double sensor_C = 25.0 + gain_ratio_ * (felt_C_ - 25.0) + offset_K_ + drift_K_ + surprise_.noise_K * dice.normal();
     if (surprise_.drift_K > 0.0) {
       const double kept = std::exp(-1.0 / surprise_.drift_time_s);
       drift_K_ = kept * drift_K_ + surprise_.drift_K * std::sqrt(1.0 - kept * kept) * dice.normal();
     }
-    shown_C += dice.uniform(0.0, 1.0) < surprise_.outlier_probability ? 8.0 * dice.normal() : 0.0;
+    sensor_C += dice.uniform(0.0, 1.0) < surprise_.outlier_probability ? 8.0 * dice.normal() : 0.0;
     gap_rows_ = gap_rows_ > 0 ? gap_rows_ - 1 : dice.uniform(0.0, 1.0) < surprise_.gap_probability ? 30 : 0;
-    const double stepped_C = surprise_.step_K > 0.0 ? std::round(shown_C / surprise_.step_K) * surprise_.step_K : shown_C;
+    const double stepped_C = surprise_.step_K > 0.0 ? std::round(sensor_C / surprise_.step_K) * surprise_.step_K : sensor_C;
     return gap_rows_ > 0 ? kUnknown : stepped_C;
   }
 

@@ -21,8 +21,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const CalibratedFigure& figure(const Calibration& calibration, std::string_view name) {
-  return *std::ranges::find(calibration.figures, name, &CalibratedFigure::name);
+const CalibratedParameter& figure(const Calibration& calibration, std::string_view name) {
+  return *std::ranges::find(calibration.figures, name, &CalibratedParameter::name);
 }
 
 Case short_case() {
@@ -134,7 +134,7 @@ TEST(OpenDirections, CoolingTellsTimeConstantsAndNeverWatts) {
   EXPECT_THAT(result.open, Contains(Field(&OpenDirection::why, HasSubstr("cooling tells time constants, never watts"))));
   EXPECT_FALSE(figure(result, "thermal_resistance_stator_ambient").is_identifiable);
   EXPECT_THAT(result.next_experiment, HasSubstr("constant current at standstill"));
-  const CalibratedFigure& stator = figure(result, "thermal_time_constant_stator");
+  const CalibratedParameter& stator = figure(result, "thermal_time_constant_stator");
   EXPECT_TRUE(stator.is_identifiable);
   EXPECT_NEAR(stator.value, truth.stator_J_per_K * truth.stator_ambient_K_per_W, 0.03 * stator.value);
 }
@@ -194,7 +194,7 @@ TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
     return calibrate(sheet.motor(folder), logs, {}, {});
   };
   const Calibration unlogged = calibrated(silent);
-  const auto holds = [](const CalibratedFigure& each, double value) { return each.low < value && value < each.high; };
+  const auto holds = [](const CalibratedParameter& each, double value) { return each.low < value && value < each.high; };
   EXPECT_TRUE(holds(figure(unlogged, "thermal_resistance_stator_ambient"), truth.stator_ambient_K_per_W));
   EXPECT_TRUE(holds(figure(unlogged, "stator_heat_capacity"), truth.stator_J_per_K));
   EXPECT_TRUE(holds(figure(unlogged, "thermal_time_constant_stator"), truth.stator_J_per_K * truth.stator_ambient_K_per_W));
@@ -203,8 +203,8 @@ TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
   if (GetParam() == 0.0) {
     const Calibration stood_still = calibrated(still);
     EXPECT_THAT(stood_still.next_experiment, Not(HasSubstr("speed logged")));
-    const CalibratedFigure& told = figure(stood_still, "thermal_resistance_stator_ambient");
-    const CalibratedFigure& open = figure(unlogged, "thermal_resistance_stator_ambient");
+    const CalibratedParameter& told = figure(stood_still, "thermal_resistance_stator_ambient");
+    const CalibratedParameter& open = figure(unlogged, "thermal_resistance_stator_ambient");
     EXPECT_LT(told.high / told.low, open.high / open.low);
   }
 }
@@ -261,7 +261,7 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   const Calibration found = calibrate(sheet.motor(folder), logs, {}, {});
   EXPECT_THAT(found.notes, Contains(HasSubstr("what no_load_current makes of it is taken to arise at the stator")));
   const auto is_near = [&](const char* name, double truth) {
-    const CalibratedFigure& each = figure(found, name);
+    const CalibratedParameter& each = figure(found, name);
     EXPECT_LT(each.low, truth) << name;
     EXPECT_GT(each.high, truth) << name;
     EXPECT_NEAR(each.value, truth, 0.05 * truth) << name;
@@ -280,10 +280,10 @@ TEST(GuessedResistance, IsNoScaleToRelyOn) {
   for (const char* const origin : {"datasheet", "estimated"}) {
     const CaseResult result = calibrate_case({.truth = {}, .resistance_spread = {}, .resistance_origin = origin}, short_case());
     const bool is_relied_on = std::string_view(origin) == "datasheet";
-    EXPECT_EQ(
-        std::ranges::find(result.calibration.figures, "terminal_resistance", &CalibratedFigure::name) == result.calibration.figures.end(),
-        is_relied_on);
-    const CalibratedFigure& out = figure(result.calibration, "thermal_resistance_stator_ambient");
+    EXPECT_EQ(std::ranges::find(result.calibration.figures, "terminal_resistance", &CalibratedParameter::name) ==
+                  result.calibration.figures.end(),
+              is_relied_on);
+    const CalibratedParameter& out = figure(result.calibration, "thermal_resistance_stator_ambient");
     EXPECT_EQ(out.high / out.low < 1.1, is_relied_on);
   }
 }
@@ -316,7 +316,7 @@ TEST(Profile, IsTheCurvatureWhereThatHoldsAndLopsidedWhereItDoesNot) {
   Case one = short_case();
   one.making.winding_is_sensed = false;
   const CaseResult stator_only = calibrate_case({}, one);
-  const CalibratedFigure& capacity = figure(stator_only.calibration, "winding_heat_capacity");
+  const CalibratedParameter& capacity = figure(stator_only.calibration, "winding_heat_capacity");
   EXPECT_TRUE(capacity.by_profile);
   EXPECT_LT(capacity.low, capacity.value);
   EXPECT_GT(capacity.high, capacity.value);

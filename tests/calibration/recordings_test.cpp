@@ -35,8 +35,8 @@ class Recordings : public testing::Test {
     }
     return all;
   }
-  static const CalibratedFigure& figure(const Calibration& calibration, std::string_view name) {
-    return *std::ranges::find(calibration.figures, name, &CalibratedFigure::name);
+  static const CalibratedParameter& figure(const Calibration& calibration, std::string_view name) {
+    return *std::ranges::find(calibration.figures, name, &CalibratedParameter::name);
   }
   static const ErrorBeforeAfter& error(const std::vector<ErrorBeforeAfter>& errors, std::string_view signal) {
     return *std::ranges::find(errors, signal, &ErrorBeforeAfter::signal);
@@ -57,7 +57,7 @@ TEST_F(Recordings, DroneMotorNearStandstill) {
       calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
                 read("tasrv_uav_motor", {"run2.csv"}, map), {});
   // 600 W raise the winding by 1.1 K/s over the first half minute of run 5, before much of it flows on: some 520 J/K.
-  const CalibratedFigure& winding = figure(found, "winding_heat_capacity");
+  const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
   EXPECT_TRUE(winding.is_identifiable);
   EXPECT_GT(winding.value, 350.0);
   EXPECT_LT(winding.value, 650.0);
@@ -79,7 +79,7 @@ TEST_F(Recordings, DroneMotorIsForecastTo2K) {
                 read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .is_for_forecasts = true});
   ASSERT_TRUE(found.is_forecast_written);
   double contact_W_per_K = 1.0 / figure(found, "thermal_resistance_winding_stator").value;
-  for (const CalibratedFigure& each : found.figures) {
+  for (const CalibratedParameter& each : found.figures) {
     contact_W_per_K += each.name == "effects.contact_law.conductance" ? each.value : 0.0;
   }
   EXPECT_GT(1.0 / contact_W_per_K, 0.08);
@@ -95,7 +95,7 @@ TEST_F(Recordings, StallStaircase) {
   const Calibration found =
       calibrate(read_motor(kReports / "calibration/ri50.toml"), read("umich_ri50", {"stall_staircase.csv"}, map), {}, options);
   // 8 A through 0.52 ohm raise the winding by 5.3 K/s: 6.3 J/K, and no more than 8 or so with what flows on meanwhile.
-  const CalibratedFigure& winding = figure(found, "winding_heat_capacity");
+  const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
   EXPECT_LT(winding.low, 6.6);
   EXPECT_GT(winding.high, 6.0);
   EXPECT_LT(error(found.fit_error, "winding_C").after.rmse_K, 0.25 * error(found.fit_error, "winding_C").before.rmse_K);
@@ -119,7 +119,7 @@ TEST_F(Recordings, CoolDowns) {
     EXPECT_FALSE(figure(found, watts).is_identifiable) << watts;
   }
   // From 44.1 °C, 170 s after the stop, to 38.1 °C, 520 s after it, in air of 24.5 °C: 990 s would be the slowest decay alone.
-  const CalibratedFigure& stator = figure(found, "thermal_time_constant_stator");
+  const CalibratedParameter& stator = figure(found, "thermal_time_constant_stator");
   EXPECT_TRUE(stator.is_identifiable);
   EXPECT_LT(stator.low, 990.0);
   EXPECT_GT(stator.high, 500.0);
@@ -136,7 +136,7 @@ TEST_F(Recordings, TractionMotorHourByHour) {
   EXPECT_GT(figure(found, "winding_heat_capacity").value, 1000.0);
   EXPECT_LT(figure(found, "winding_heat_capacity").value, 3500.0);
   // Iron loss is not in the model: that something is missing must be seen.
-  EXPECT_GT(found.fit.wander_K.size() + found.notes.size(), 1U);
+  EXPECT_GT(found.fit.drift_K.size() + found.notes.size(), 1U);
 }
 
 }  // namespace

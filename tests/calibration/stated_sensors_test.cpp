@@ -23,24 +23,24 @@ void spoil(Recording& log) {
     if (channel.quantity.key != "stator_C") {
       continue;
     }
-    double shown_C = std::nan("");
+    double sensor_C = std::nan("");
     double before_C = std::nan("");
     for (double& value_C : channel.values) {
       const double now_C = std::isnan(value_C) ? before_C : value_C;
       constexpr int kParts = 10;
-      for (int part = 1; part <= kParts && !std::isnan(shown_C); ++part) {
+      for (int part = 1; part <= kParts && !std::isnan(sensor_C); ++part) {
         const double at_C = before_C + (now_C - before_C) * (part - 0.5) / kParts;
-        shown_C += (at_C - shown_C) / (kParts * kLag_s);
+        sensor_C += (at_C - sensor_C) / (kParts * kLag_s);
       }
-      shown_C = std::isnan(shown_C) ? now_C : shown_C;
+      sensor_C = std::isnan(sensor_C) ? now_C : sensor_C;
       before_C = now_C;
-      value_C = std::isnan(value_C) ? value_C : shown_C + kOffset_K;
+      value_C = std::isnan(value_C) ? value_C : sensor_C + kOffset_K;
     }
   }
 }
 
 std::vector<MotorSensor> stated() {
-  Figure lag, offset;
+  ParameterValue lag, offset;
   lag.value = kLag_s;
   offset.value = kOffset_K;
   return {{"glued_on", find_sensor_effect("sensor_lag_stator"), lag},
@@ -63,7 +63,7 @@ class StatedSensors : public testing::Test {
     }
   }
   [[nodiscard]] double off(const Calibration& calibration, std::string_view name, double truth) const {
-    const auto found = std::ranges::find(calibration.figures, name, &CalibratedFigure::name);
+    const auto found = std::ranges::find(calibration.figures, name, &CalibratedParameter::name);
     return std::abs(found->value / truth - 1.0);
   }
   [[nodiscard]] double stator_off(const Calibration& calibration) const {
@@ -124,11 +124,11 @@ TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
   const std::vector<double> start_C{31.0, 27.0};
   const LinearisedRun here = at(model.values, start_C);
   const Eigen::Index stator = run.sensor_at("stator");
-  EXPECT_NEAR(here.shown_C(0, stator), 27.0 + kOffset_K, 1e-12);
-  EXPECT_GT((here.shown_C.col(stator).transpose() - here.state_C.row(1)).array().abs().maxCoeff(), kOffset_K + 0.3);
+  EXPECT_NEAR(here.sensor_C(0, stator), 27.0 + kOffset_K, 1e-12);
+  EXPECT_GT((here.sensor_C.col(stator).transpose() - here.state_C.row(1)).array().abs().maxCoeff(), kOffset_K + 0.3);
   const auto expect_slopes = [&](const Columns& columns, Eigen::Index column, const LinearisedRun& up, const LinearisedRun& down,
                                  double apart) {
-    const Eigen::MatrixXd expected = (up.shown_C - down.shown_C) / apart;
+    const Eigen::MatrixXd expected = (up.sensor_C - down.sensor_C) / apart;
     double worst = 0.0;
     for (Eigen::Index row = 0; row < columns.rows(); ++row) {
       worst = std::max(worst, std::abs(columns(row, column) - expected(row / here.sensors(), row % here.sensors())));
@@ -164,7 +164,7 @@ TEST_F(StatedSensors, LateAnswerThatIsStatedIsNoNews) {
   const std::vector<Recording> logs{read_log(file)};
   const auto is_late = testing::Contains(testing::HasSubstr("late"));
   EXPECT_THAT(admit(motor_, logs, {}, true, 22.0).notes, is_late);
-  Figure lag;
+  ParameterValue lag;
   lag.value = 6.0;
   motor_.sensors = {{"glued_on", find_sensor_effect("sensor_lag_winding"), lag}};
   EXPECT_THAT(admit(motor_, logs, {}, true, 22.0).notes, testing::Not(is_late));

@@ -139,7 +139,7 @@ CaseResult calibrate_case(const Sheet& sheet, const Case& one) {
   const auto begin = std::chrono::steady_clock::now();
   CaseResult result{{}, calibrate(prepared.motor, prepared.logs, {}, options)};
   result.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const CalibratedFigure& figure : result.calibration.figures) {
+  for (const CalibratedParameter& figure : result.calibration.figures) {
     result.marks.push_back({figure.name, truth_of(figure.name, prepared.truth), figure});
   }
   return result;

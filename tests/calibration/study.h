@@ -53,7 +53,7 @@ struct Case {
 struct Mark {
   std::string name;
   double truth = 0.0;
-  CalibratedFigure figure;
+  CalibratedParameter figure;
   [[nodiscard]] bool is_covered() const { return figure.low <= truth && truth <= figure.high; }
   [[nodiscard]] double error_ratio() const { return figure.value / truth - 1.0; }
 };

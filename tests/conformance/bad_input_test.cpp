@@ -297,7 +297,7 @@ INSTANTIATE_TEST_SUITE_P(odd, NoFile,
                                          Oddity{"link_to_nothing", "No such file"}),
                          [](const auto& instance) { return instance.param.name; });
 
-TEST(NoPermission, is_told) {
+TEST(NoPermission, is_identifiable) {
   const TemporaryFolder folder;
   write(folder.path() / "secret.toml", good_motor());
   fs::permissions(folder.path() / "secret.toml", fs::perms::none);

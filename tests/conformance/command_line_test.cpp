@@ -225,9 +225,9 @@ TEST(Lint, fails_for_errors_and_for_warnings) {
   EXPECT_THAT(wrong.out, HasSubstr(": error: density: 320 g"));
   EXPECT_THAT(wrong.out, HasSubstr(": warning: nominal_point_heat: "));
   const TemporaryFolder folder;
-  std::string doubtful = content_of(kSource / "motor_db" / "nanotec_df45l024048_a2.toml");
-  doubtful.replace(doubtful.find("\"27 mm\""), 7, "\"48 mm\"");
-  write(folder.path() / "doubtful.toml", doubtful);
+  std::string undecided = content_of(kSource / "motor_db" / "nanotec_df45l024048_a2.toml");
+  undecided.replace(undecided.find("\"27 mm\""), 7, "\"48 mm\"");
+  write(folder.path() / "doubtful.toml", undecided);
   const ProgramRun warned = run({"lint", (folder.path() / "doubtful.toml").string()});
   EXPECT_EQ(warned.exit_code, 1);
   EXPECT_THAT(warned.out, HasSubstr("1 file: 0 errors, 1 warning\n"));

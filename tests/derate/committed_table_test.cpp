@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-Derating derating_of(const Motor& motor, double heat_reserve_ratio, double approach_s = 0.5) {
-  const GuardedMotor guarded(motor, rules_for(motor, approach_s), heat_reserve_ratio);
+Derating derating_of(const Motor& motor, double heat_safety_factor, double approach_s = 0.5) {
+  const GuardedMotor guarded(motor, rules_for(motor, approach_s), heat_safety_factor);
   return {.motor_id = motor.id,
           .robot_id = "a robot",
           .data_quality = "estimated",

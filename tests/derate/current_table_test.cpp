@@ -24,10 +24,10 @@ struct Peaks {
 /// An hour of the hardest driving, in the precision of the firmware.
 Peaks drive(const GuardedMotor& guarded, unsigned seed, float period_s) {
   ObserverRun<float> run(guarded.observer, period_s, 40.0F);
-  Driver driver(seed);
+  Regressor driver(seed);
   Peaks peaks;
   for (int i = 0; i < static_cast<int>(3600.0F / period_s); ++i) {
-    const Driver::Wish wish = driver.after(static_cast<double>(period_s));
+    const Regressor::Wish wish = driver.after(static_cast<double>(period_s));
     const auto speed_rad_per_s = static_cast<float>(wish.speed_share * guarded.rules.most_speed_rad_per_s);
     const float allowed_A = guarded.table.allowed_A(speed_rad_per_s, run.hottest_body_C(), run.state_C()[winding]);
     const std::array<float, firmware::kSignalCount> signals{

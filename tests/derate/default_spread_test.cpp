@@ -41,7 +41,7 @@ TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
     const Motor honest = shipped_motor(id);
     const GuardedMotor guarded(honest, rules_for(honest), 1.2);
     std::vector<UsePlayed> uses;
-    for (const Use& use : hardest_uses(guarded.observer, guarded.rules)) {
+    for (const LoadPattern& use : hardest_patterns(guarded.observer, guarded.rules)) {
       if (uses.size() < 3) {
         uses.push_back(play(guarded.observer, guarded.table, guarded.rules, honest, twente(), use, kPeriod_s));
       }
@@ -60,7 +60,7 @@ TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
   const Derating without = derate(stripped(honest, 0), twente(), few_samples());
   EXPECT_THAT(with.default_spreads, IsEmpty());
   EXPECT_THAT(without.default_spreads, Not(IsEmpty()));
-  EXPECT_GE(without.observer.heat_reserve_ratio(), with.observer.heat_reserve_ratio());
+  EXPECT_GE(without.observer.heat_safety_factor(), with.observer.heat_safety_factor());
   EXPECT_LE(limp_current_A(without), limp_current_A(with));
   for (const double stator_C : {40.0, 80.0, 120.0, 154.0}) {
     for (double winding_C = 40.0; winding_C < 158.0; winding_C += 2.0) {
@@ -86,7 +86,7 @@ TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
   const Derating one = derate(exact, twente(), few_samples());
   const Derating other = derate(missing, twente(), few_samples());
   EXPECT_EQ(one.table.square_A2, other.table.square_A2);
-  EXPECT_GT(one.observer.heat_reserve_ratio(), 1.5);
+  EXPECT_GT(one.observer.heat_safety_factor(), 1.5);
 }
 
 TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
@@ -103,7 +103,7 @@ TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
 
 TEST(Derate, KeepsALimitThatIsARangeAtItsLowerEnd) {
   Motor wide = ecx_32();
-  Figure& limit = wide.figures.at("winding_limit");
+  ParameterValue& limit = wide.figures.at("winding_limit");
   limit.spread = Spread{Spread::Kind::range, 135.0, 165.0, false};
   EXPECT_EQ(barrier_rules(wide, twente(), {}).limits.winding_C, 135.0);
   EXPECT_EQ(barrier_rules(ecx_32(), twente(), {}).limits.winding_C, 155.0);
@@ -126,7 +126,7 @@ TEST(DerateWithoutSpreads, CountsAnEffectWithoutOneToo) {
   const auto with_plate = [](const char* range) {
     Motor motor = ecx_32();
     const auto type = std::ranges::find(all_effects(), "conduction", &EffectType::name);
-    Figure resistance;
+    ParameterValue resistance;
     resistance.value = 6.0;
     if (*range != 0) {
       resistance.spread = Spread{Spread::Kind::tolerance, 5.9, 6.1, true};
@@ -136,7 +136,7 @@ TEST(DerateWithoutSpreads, CountsAnEffectWithoutOneToo) {
   };
   const Derating known = derate(with_plate("narrow"), twente(), few_samples());
   const Derating guessed = derate(with_plate(""), twente(), few_samples());
-  EXPECT_GE(guessed.observer.heat_reserve_ratio(), known.observer.heat_reserve_ratio());
+  EXPECT_GE(guessed.observer.heat_safety_factor(), known.observer.heat_safety_factor());
   ASSERT_EQ(guessed.default_spreads.size(), 1U);
   EXPECT_EQ(guessed.default_spreads[0].key, "effects.plate.thermal_resistance");
 }

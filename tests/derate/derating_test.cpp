@@ -20,13 +20,13 @@ using testing::Not;
 /// What the firmware lets through of ten minutes of random driving, as a network sees it.
 std::vector<Interval> random_driving(const Derating& derating, unsigned seed) {
   std::vector<Interval> intervals;
-  Driver driver(seed);
+  Regressor driver(seed);
   ObserverRun<float> run(derating.observer, 0.01F, 40.0F);
   for (int i = 0; i < 6000; ++i) {
     double current2_A2 = 0.0;
     double speed_rad_per_s = 0.0;
     constexpr int kPeriods = 10;
-    const Driver::Wish wish = driver.after(0.01 * kPeriods);
+    const Regressor::Wish wish = driver.after(0.01 * kPeriods);
     for (int k = 0; k < kPeriods; ++k) {
       speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
       const float current_A = static_cast<float>(wish.current_share) *
@@ -62,10 +62,10 @@ TEST(Derate, DrawnMotorsKeepTheirLimitInDrivingThatTheSearchNeverSaw) {
 TEST(Derate, NominalFiguresAloneWouldNotDo) {
   const Motor motor = ecx_32();
   const Derating derating = derate(motor, twente(), {});
-  EXPECT_GT(derating.observer.heat_reserve_ratio(), 1.2);
+  EXPECT_GT(derating.observer.heat_safety_factor(), 1.2);
   const GuardedMotor bare(motor, derating.rules, 1.0);
   std::vector<UsePlayed> uses;
-  for (const Use& use : hardest_uses(bare.observer, bare.rules)) {
+  for (const LoadPattern& use : hardest_patterns(bare.observer, bare.rules)) {
     uses.push_back(play(bare.observer, bare.table, bare.rules, motor, twente(), use, 0.01));
   }
   EXPECT_GT(check(motor, derating.rules.limits, uses, {}, 0).over, 100) << "of 400";

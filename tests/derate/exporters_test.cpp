@@ -194,12 +194,12 @@ Limit odrive_limit() {
 
 /// All that a controller allows in spells, then nothing, and at changing speeds, in the hottest air: the hottest winding.
 double hottest_C(const Network& network, const Limit& limit, unsigned seed) {
-  Driver driver(seed);
+  Regressor driver(seed);
   std::vector<double> state_C(2, 40.0);
   double hottest_C = 0.0;
   constexpr double kStep_s = 0.5;
   for (int i = 0; i < 3000; ++i) {
-    const Driver::Wish wish = driver.after(kStep_s);
+    const Regressor::Wish wish = driver.after(kStep_s);
     OperatingPoint<double> at;
     at.current_rms_A = kDcPerIq_ratio * std::abs(wish.current_share) * limit(state_C[states::stator]);
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
@@ -264,9 +264,9 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   double filtered_C = 40.0;
   double hottest = 0.0;
   float last_A = 0.0F;
-  Driver driver(5);
+  Regressor driver(5);
   for (int i = 0; i < 60'000; ++i) {
-    const Driver::Wish wish = driver.after(0.01);
+    const Regressor::Wish wish = driver.after(0.01);
     for (int tick = 0; tick < 10 && i > 0; ++tick) {
       filtered_C += 0.01 * (override_C - filtered_C);
     }

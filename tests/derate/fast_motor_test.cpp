@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "derate/barrier.h"
-#include "derate/belief.h"
+#include "derate/plausible_range.h"
 #include "guarded_motor.h"
 #include "thermal/transient.h"
 

@@ -214,10 +214,10 @@ TEST_P(Fmu, GuardIsTheOneOfTheFirmware) {
   EXPECT_EQ(unit.run(), 0);
   EXPECT_GT(unit.get("limp_current_A"), 0.0);
   ObserverRun<float> observer(ecx_derating().observer, 0.01F, static_cast<float>(kStart_C));
-  Driver driver(3);
+  Regressor driver(3);
   double now_s = 0.0;
   for (int i = 0; i < 6000; ++i) {
-    const Driver::Wish wish = driver.after(0.02);
+    const Regressor::Wish wish = driver.after(0.02);
     const double speed_rad_per_s = 0.9 * wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
     const double current_A = wish.current_share * unit.get("allowed_current_A");
     give(unit, {0.0, current_A, speed_rad_per_s, 0.0}, 40.0);

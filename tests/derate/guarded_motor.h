@@ -45,11 +45,11 @@ inline BarrierRules rules_for(const Motor& motor, double approach_s = 0.5) {
 }
 
 struct GuardedMotor {
-  GuardedMotor(const Motor& of, const BarrierRules& with, double heat_reserve_ratio)
+  GuardedMotor(const Motor& of, const BarrierRules& with, double heat_safety_factor)
       : motor(of),
         rules(with),
         network(datasheet_network(motor, nominal_sample(motor))),
-        observer(network, motor.nominal, twente(), heat_reserve_ratio),
+        observer(network, motor.nominal, twente(), heat_safety_factor),
         table(current_table(observer, rules)) {}
 
   Motor motor;
@@ -60,9 +60,9 @@ struct GuardedMotor {
 };
 
 /// Someone who drives as hard as is allowed, and now and then less: a share of the allowed current, a speed, for a while.
-class Driver {
+class Regressor {
  public:
-  explicit Driver(unsigned seed) : engine_(seed) {}
+  explicit Regressor(unsigned seed) : engine_(seed) {}
 
   struct Wish {
     double current_share = 1.0;

@@ -76,12 +76,12 @@ inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating
   sensed.start(static_cast<float>(ambient_C));
   model.start(static_cast<float>(ambient_C));
   SensedRun run;
-  Driver driver(driver_seed);
+  Regressor driver(driver_seed);
   const double period_s = derating.options.period_s;
   double allowed_A = 0.0;
   double capped_A = 0.0;
   for (int i = 0; i < steps; ++i) {
-    const Driver::Wish wish = is_always_all ? Driver::Wish{} : driver.after(period_s);
+    const Regressor::Wish wish = is_always_all ? Regressor::Wish{} : driver.after(period_s);
     const double current_A = wish.current_share * allowed_A;
     const double speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
     plant.step(current_A, speed_rad_per_s, ambient_C, period_s);

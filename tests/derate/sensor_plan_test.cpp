@@ -40,14 +40,14 @@ TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
   const Derating& derating = thermistor_derating();
   ASSERT_TRUE(derating.sensor);
   const SensorPlan& plan = *derating.sensor;
-  EXPECT_LT(plan.observer.heat_reserve_ratio(), 0.9 * derating.observer.heat_reserve_ratio());
-  EXPECT_GT(plan.observer.heat_reserve_ratio(), 1.0);
+  EXPECT_LT(plan.observer.heat_safety_factor(), 0.9 * derating.observer.heat_safety_factor());
+  EXPECT_GT(plan.observer.heat_safety_factor(), 1.0);
   EXPECT_GT(plan.lasting[0].with_A, plan.lasting[0].without_A);
   EXPECT_GT(plan.most_gain_A, 0.1);
-  EXPECT_LE(plan.lying_nominal_C, derating.rules.limits.winding_C);
+  EXPECT_LE(plan.sensor_fault_nominal_C, derating.rules.limits.winding_C);
   EXPECT_LE(plan.over, 0.05 * plan.samples);
-  RecordProperty("safety_factor_without", fmt::format("{:.3f}", derating.observer.heat_reserve_ratio()));
-  RecordProperty("safety_factor_with", fmt::format("{:.3f}", plan.observer.heat_reserve_ratio()));
+  RecordProperty("safety_factor_without", fmt::format("{:.3f}", derating.observer.heat_safety_factor()));
+  RecordProperty("safety_factor_with", fmt::format("{:.3f}", plan.observer.heat_safety_factor()));
   RecordProperty("most_gain_A", fmt::format("{:.2f}", plan.most_gain_A));
   RecordProperty("honest_dropped", std::to_string(plan.dropped));
 }

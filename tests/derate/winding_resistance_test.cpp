@@ -124,7 +124,7 @@ TEST(WindingResistance, AMotorThatHasWorkedDoesNotCalibrate) {
 TEST(WindingResistance, HelpsAtRestAndIsTheGuardWithoutASensorAtSpeed) {
   const Derating derating = resistance_derating();
   const SensorPlan& plan = *derating.sensor;
-  EXPECT_LT(plan.observer.heat_reserve_ratio(), derating.observer.heat_reserve_ratio());
+  EXPECT_LT(plan.observer.heat_safety_factor(), derating.observer.heat_safety_factor());
   EXPECT_GT(plan.lasting.front().with_A, 1.05 * plan.lasting.front().without_A);
   EXPECT_NEAR(plan.lasting.back().with_A, plan.lasting.back().without_A, 0.05 * plan.lasting.back().without_A);
   EXPECT_LE(plan.over, 0.05 * plan.samples);

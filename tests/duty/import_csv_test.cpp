@@ -187,7 +187,7 @@ TEST(ImportCsv, AClockThatStartsAgainLosesNothing) {
 }
 
 TEST(ImportCsv, RowsOutOfOrderAreNoClockThatStartsAgain) {
-  // Every tenth row comes again a second later, and at the end a stretch too short to be sure of.
+  // Every tenth row comes again a second later, and at the end a segment too short to be sure of.
   std::string text = kHeader;
   for (int i = 0; i < 1000; ++i) {
     text += fmt::format("{:.2f},blue,7,1,1,0\n", 0.01 * i);

@@ -89,7 +89,7 @@ TEST(Game, lengths_and_numbers_have_the_means_of_their_inputs) {
       MatchValues values = division_a().nominal();
       values.running_mean_s = running_mean_s;
       const Counted seen = many_games(division, values);
-      // The end of a half cuts a stretch, which does not change how many interruptions there are to the time of play.
+      // The end of a half cuts a segment, which does not change how many interruptions there are to the time of play.
       expect(seen.time_s[static_cast<std::size_t>(Phase::running)] / seen.count(Phase::free_kick), values.running_mean_s, "running_mean");
       expect(seen.mean_s(Phase::stop), values.stop_mean_s, "stop_mean");
       expect(seen.count(Phase::ball_placement) / seen.count(Phase::free_kick), values.placement_share, "placement_share");

@@ -60,7 +60,7 @@ TEST(CoreConfig, DriverWithACurrentLimitKeepsIt) {
 
 TEST(CoreConfig, RangeCountsByItsLowerEnd) {
   Motor motor = ecx_32();
-  Figure& resistance = *find_figure(motor, "terminal_resistance");
+  ParameterValue& resistance = *find_parameter(motor, "terminal_resistance");
   resistance.spread = Spread{.kind = Spread::Kind::range, .low = 0.8, .high = 1.3};
   EXPECT_NEAR(with_tolerance({}, motor).lowest_resistance_ratio, 0.8 / 1.07, 1e-12);
   // A resistance without a tolerance is not exact: the lower end of the default for its origin counts.
@@ -121,7 +121,7 @@ TEST(CoreConfig, NamesEveryFigureThatIsMissing) {
 
 TEST(CoreConfig, RobotWithoutFrictionIsDrivenWithoutItsFeedForward) {
   Robot robot = twente();
-  for (const RobotFigureSpec& each : robot_figure_specs()) {
+  for (const RobotParameterSpec& each : robot_parameter_specs()) {
     if (each.table.starts_with("friction")) {
       robot.*each.value = kAbsent;
     }
@@ -216,7 +216,7 @@ TEST(GuardedCoreConfig, BrakingReserveIsTheHeatOfOneStop) {
     }
   }
   const double duration_s = 2.0 / 2.0;
-  const double expected_K = most_A * most_A * hot_ohm * duration_s * derating().observer.heat_reserve_ratio() / (12.0 / 3.8);
+  const double expected_K = most_A * most_A * hot_ohm * duration_s * derating().observer.heat_safety_factor() / (12.0 / 3.8);
   EXPECT_NEAR(braking_reserve_K(twente(), ecx_32().nominal, derating()), expected_K, 0.01 * expected_K);
 }
 

@@ -154,7 +154,7 @@ TEST(FrictionVoltage, FitIsALeastSquaresOne) {
 
 TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
   Robot robot = twente();
-  for (const RobotFigureSpec& each : robot_figure_specs()) {
+  for (const RobotParameterSpec& each : robot_parameter_specs()) {
     if (each.table.starts_with("friction")) {
       robot.*each.value = kAbsent;
     }

@@ -102,7 +102,7 @@ leak_ratio = { value = "0.5", origin = "estimated", derivation = "a test" }
 heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" }
 )";
 
-/// Plays a robot: signals that wander, current close to what is allowed, and now and then a sensor that is broken for a while.
+/// Plays a robot: signals that drift, current close to what is allowed, and now and then a sensor that is broken for a while.
 class Play {
  public:
   explicit Play(const Derating& derating) : rules_(derating.rules), reachable_rad_per_s_(derating.reachable_speed_rad_per_s) {}
@@ -309,7 +309,7 @@ TEST(HostGuard, CopyStandsOnItsOwn) {
   const std::vector<Row> expected = by_host(*original, Play(derating), 500, records);
   EXPECT_NE(copy.model().context, original->model().context);
   EXPECT_NE(copy.model().table.square_A2, original->model().table.square_A2);
-  EXPECT_NE(assigned.model().belief[0].possible, original->model().belief[0].possible);
+  EXPECT_NE(assigned.model().plausible_range[0].possible, original->model().plausible_range[0].possible);
   original.reset();
   for (const HostGuard* const each : {&copy, static_cast<const HostGuard*>(&assigned)}) {
     const std::vector<Row> again = by_host(*each, Play(derating), 500, records);

@@ -48,8 +48,8 @@ SyntheticLog unsteady(double delay_s) {
 TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
   for (const auto& [delay_s, remedy] : {std::pair(-1.0, "inputs = \"previous_interval\""), std::pair(-4.0, "clock_offset = \"-")}) {
     const Read result = read_text(unsteady(delay_s).csv());
-    EXPECT_THAT(result.quality.spoiling, ElementsAre(testing::AllOf(HasSubstr("winding_C answers"), HasSubstr(remedy)))) << delay_s;
-    EXPECT_THAT(result.quality.suspicions, result.quality.spoiling);
+    EXPECT_THAT(result.quality.blocking, ElementsAre(testing::AllOf(HasSubstr("winding_C answers"), HasSubstr(remedy)))) << delay_s;
+    EXPECT_THAT(result.quality.suspicions, result.quality.blocking);
   }
 }
 
@@ -125,7 +125,7 @@ std::string cooling(double heated_s, int from_s, bool is_fahrenheit) {
 TEST(Suspicion, FahrenheitByWhereACoolingMotorComesToRest) {
   for (const auto& [heated_s, from_s] :
        {std::pair(300.0, 310), std::pair(1500.0, 1500), std::pair(1500.0, 1000), std::pair(1500.0, 1600)}) {
-    EXPECT_THAT(read_text(cooling(heated_s, from_s, true)).quality.spoiling, ElementsAre(HasSubstr("degrees Fahrenheit"))) << from_s;
+    EXPECT_THAT(read_text(cooling(heated_s, from_s, true)).quality.blocking, ElementsAre(HasSubstr("degrees Fahrenheit"))) << from_s;
     EXPECT_THAT(read_text(cooling(heated_s, from_s, false)).quality.suspicions, IsEmpty()) << from_s;
   }
 }

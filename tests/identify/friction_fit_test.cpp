@@ -300,7 +300,7 @@ TEST(FrictionFit, a_robot_that_stands_or_swings_has_no_steady_parts) {
   EXPECT_TRUE(find_steady_parts({log}, known.plant.body.kinematics).parts.empty());
 }
 
-/// Every third heading foretold: a robot file without friction is wrong by the friction, the fit by the pushes only.
+/// Every third heading predicted: a robot file without friction is wrong by the friction, the fit by the pushes only.
 TEST(FrictionFit, foretells_headings_that_it_has_not_seen) {
   const Case known = any_case(8);
   const SteadyParts steady = parts_of(known, usual_drive(), 8);
@@ -348,7 +348,7 @@ TEST(FrictionFit, of_a_third_harmonic_is_told_and_covered) {
 }
 
 /// A robot whose friction has a part of twice the angle, as Twente's firmware has it: the law cannot follow it, phases go to
-/// where the wheels would turn the other way, and what is foretold must stay as good as the law can be.
+/// where the wheels would turn the other way, and what is predicted must stay as good as the law can be.
 TEST(FrictionFit, of_another_law_is_said_and_still_foretells) {
   Case known = any_case(9);
   HeadingFriction& friction = known.plant.body.friction.heading;

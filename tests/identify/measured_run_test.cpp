@@ -100,7 +100,7 @@ TEST(MeasuredRun, a_mean_over_the_time_before_its_row_speaks_of_the_end_of_a_gap
   std::vector<LogRow> rows = rows_of_a_step();
   rows.erase(rows.begin() + 12);  // 6 A on both sides; after to_interval_values() the row at 11 s has what was logged at 13 s
   Recording log = recording_of(rows);
-  log.inputs = InputHabit::previous_interval;
+  log.inputs = InputConvention::previous_interval;
   log.channels[0].values[11] = 3.0;
   const MeasuredRun run = measured_runs(log, {.needed = {Signal::current}, .ambient_C = 25.0}).runs.at(0);
   ASSERT_EQ(run.unknown_inputs.size(), 1U);

@@ -246,18 +246,18 @@ TEST(Suspicions, NoneInAWarmUpAtConstantCurrent) {
   for (const int rows : {240, 900, 1800}) {
     log.rows = rows;
     EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,power_in_W", 0, log.temperatures_C(),
-                            [](double winding_C, double stator_C, std::size_t) {
-                              return fmt::format("{:.3f},{:.3f},22,{:.3f}", winding_C, stator_C,
-                                                 16.2 * (1.0 + 0.0039 * (winding_C - 25.0)));
-                            }))
+                                 [](double winding_C, double stator_C, std::size_t) {
+                                   return fmt::format("{:.3f},{:.3f},22,{:.3f}", winding_C, stator_C,
+                                                      16.2 * (1.0 + 0.0039 * (winding_C - 25.0)));
+                                 }))
                     .quality.suspicions,
                 IsEmpty())
         << rows;
     EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
-                            [rows](double winding_C, double stator_C, std::size_t row) {
-                              return fmt::format("{:.3f},{:.3f},22,{:.4f}", winding_C, stator_C,
-                                                 6.0 * (1.0 + 0.01 * static_cast<double>(row) / rows));
-                            }))
+                                 [rows](double winding_C, double stator_C, std::size_t row) {
+                                   return fmt::format("{:.3f},{:.3f},22,{:.4f}", winding_C, stator_C,
+                                                      6.0 * (1.0 + 0.01 * static_cast<double>(row) / rows));
+                                 }))
                     .quality.suspicions,
                 IsEmpty())
         << rows;
@@ -287,10 +287,10 @@ TEST(Suspicions, NoneWhereTheIronIsHeated) {
       const double turning_A = current_turning_A;
       const double resting_A = current_resting_A;
       EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A,speed_rad_per_s", 0, rows_C,
-                              [=](double of_winding_C, double of_stator_C, std::size_t row) {
-                                return fmt::format("{:.3f},{:.3f},22,{},{}", of_winding_C, of_stator_C, turns(row) ? turning_A : resting_A,
-                                                   turns(row) ? 500 : 0);
-                              }))
+                                   [=](double of_winding_C, double of_stator_C, std::size_t row) {
+                                     return fmt::format("{:.3f},{:.3f},22,{},{}", of_winding_C, of_stator_C,
+                                                        turns(row) ? turning_A : resting_A, turns(row) ? 500 : 0);
+                                   }))
                       .quality.suspicions,
                   IsEmpty())
           << period_s << " s, " << turning_A << " A";
@@ -309,9 +309,9 @@ TEST(Suspicions, NoneWhereOneSensorStartsWarm) {
   }
   for (const bool of_winding : {false, true}) {
     EXPECT_THAT(read_text(run_of(of_winding ? "winding_C,ambient_C,current_A" : "stator_C,ambient_C,current_A", first, rows_C,
-                            [of_winding](double winding_C, double stator_C, std::size_t) {
-                              return fmt::format("{:.3f},22,0", of_winding ? winding_C : stator_C);
-                            }))
+                                 [of_winding](double winding_C, double stator_C, std::size_t) {
+                                   return fmt::format("{:.3f},22,0", of_winding ? winding_C : stator_C);
+                                 }))
                     .quality.suspicions,
                 IsEmpty());
   }
@@ -323,11 +323,11 @@ TEST(Suspicions, NoneOfAMotorBroughtInCold) {
   log.current_A = [](double time_s) { return time_s < 60.0 ? 0.0 : 1.0; };
   log.rows = 600;
   EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
-                          [&log](double winding_C, double stator_C, std::size_t row) {
-                            const auto time_s = static_cast<double>(row);
-                            const double below_K = 15.0 * std::exp(-time_s / 300.0);
-                            return fmt::format("{:.3f},{:.3f},22,{}", winding_C - below_K, stator_C - below_K, log.current_A(time_s));
-                          }))
+                               [&log](double winding_C, double stator_C, std::size_t row) {
+                                 const auto time_s = static_cast<double>(row);
+                                 const double below_K = 15.0 * std::exp(-time_s / 300.0);
+                                 return fmt::format("{:.3f},{:.3f},22,{}", winding_C - below_K, stator_C - below_K, log.current_A(time_s));
+                               }))
                   .quality.suspicions,
               IsEmpty());
 }
@@ -377,9 +377,9 @@ std::string standing_run(double current_A, bool is_swapped, double speed_rad_per
   std::string text = "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s\n";
   double time_s = 0.0;
   for (const auto& [winding_C, stator_C] : log.temperatures_C()) {
-    const double shown_C = winding_C + winding_offset_K;
-    text += fmt::format("{},{:.3f},{:.3f},22,{},{}\n", time_s, is_swapped ? stator_C : shown_C, is_swapped ? shown_C : stator_C, current_A,
-                        speed_rad_per_s);
+    const double sensor_C = winding_C + winding_offset_K;
+    text += fmt::format("{},{:.3f},{:.3f},22,{},{}\n", time_s, is_swapped ? stator_C : sensor_C, is_swapped ? sensor_C : stator_C,
+                        current_A, speed_rad_per_s);
     time_s += log.period_s;
   }
   return text;
@@ -387,7 +387,7 @@ std::string standing_run(double current_A, bool is_swapped, double speed_rad_per
 
 TEST(Suspicion, SwappedAtStandstillUnderOneCurrent) {
   for (const double current_A : {4.0, 5.0, 6.0}) {
-    EXPECT_THAT(read_text(standing_run(current_A, true, 0.0, 0.0)).quality.spoiling, ElementsAre(HasSubstr("are the two swapped")));
+    EXPECT_THAT(read_text(standing_run(current_A, true, 0.0, 0.0)).quality.blocking, ElementsAre(HasSubstr("are the two swapped")));
     EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, 0.0)).quality.suspicions, IsEmpty());
     // Its offset was there from the start; what turns may heat the stator.
     EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, -9.0)).quality.suspicions, IsEmpty());
@@ -409,7 +409,7 @@ TEST(Suspicion, FahrenheitBesideAStatedRoom) {
     const Read result = read_text(text);
     EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "without the room it may be a warm motor";
     const DataQuality beside_room = assess(result.recording, result.report, room_C);
-    EXPECT_EQ(beside_room.spoiling.size(), is_fahrenheit ? 1U : 0U) << room_C;
+    EXPECT_EQ(beside_room.blocking.size(), is_fahrenheit ? 1U : 0U) << room_C;
   }
 }
 
@@ -418,11 +418,12 @@ TEST(Suspicion, MinutesByRowsThatNoMotorFollows) {
   SyntheticLog fast;
   fast.period_s = 1.0 / 60.0;
   fast.rows = 6000;
-  EXPECT_THAT(read_text(changed(fast, [&](int row, std::vector<double>& cells) { cells[time] = row / 60.0; })).quality.suspicions, IsEmpty());
+  EXPECT_THAT(read_text(changed(fast, [&](int row, std::vector<double>& cells) { cells[time] = row / 60.0; })).quality.suspicions,
+              IsEmpty());
   for (const auto& [unit, in_s] : {std::pair("minutes", 60.0), std::pair("hours", 3600.0)}) {
     const Read result = read_text(changed({}, [in_s = in_s](int row, std::vector<double>& cells) { cells[time] = row / in_s; }));
     EXPECT_THAT(result.quality.suspicions, ElementsAre(HasSubstr(fmt::format("is the time in {}?", unit))));
-    EXPECT_THAT(result.quality.spoiling, IsEmpty());
+    EXPECT_THAT(result.quality.blocking, IsEmpty());
   }
 }
 

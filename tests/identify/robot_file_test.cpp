@@ -77,7 +77,7 @@ TEST(RobotFile, keeps_everything_else_as_it_stands) {
     }
   }
   EXPECT_EQ(after.figures.at("friction.wheel_damping").origin, Origin::measured);
-  const Figure& constant = after.figures.at("friction.heading.wheel[1].constant");
+  const ParameterValue& constant = after.figures.at("friction.heading.wheel[1].constant");
   EXPECT_EQ(constant.origin, Origin::measured);
   ASSERT_TRUE(constant.spread.has_value());
   EXPECT_LT(constant.spread->low, constant.value);

@@ -94,7 +94,7 @@ inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& makin
   double winding_C = 25.0 + 8.0 * random.uniform();
   double stator_C = 25.0 + 6.0 * random.uniform();
   const double phase_rad = 6.28 * random.uniform();
-  const auto shown_C = [&](double true_C) {
+  const auto sensor_C = [&](double true_C) {
     if (random.uniform() < making.dropout_share) {
       return std::nan("");
     }
@@ -106,8 +106,8 @@ inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& makin
   for (int row = 0; row < rows; ++row) {
     time_s.push_back(row * making.period_s);
     ambient_C.push_back(25.0 + making.ambient_swing_K * std::sin(phase_rad + row * making.period_s / 500.0));
-    shown_winding_C.push_back(shown_C(winding_C));
-    shown_stator_C.push_back(shown_C(stator_C));
+    shown_winding_C.push_back(sensor_C(winding_C));
+    shown_stator_C.push_back(sensor_C(stator_C));
     const double square_A2 = current_A[static_cast<std::size_t>(row)] * current_A[static_cast<std::size_t>(row)];
     const auto slope = [&](double w_C, double s_C) {
       const double ohm = truth.resistance_25C_ohm + truth.resistance_25C_ohm * truth.temperature_coefficient_per_K * (w_C - 25.0);

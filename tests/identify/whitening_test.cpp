@@ -91,14 +91,14 @@ Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flu
     }
     covariance += response * memory * response.transpose();
   }
-  for (const StateDoubt& doubt : run.doubts) {
+  for (const StateUncertainty& doubt : run.state_uncertainties) {
     // Of rank one: the difference between two courses of the inputs.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(doubt.covariance_K2);
     const Eigen::VectorXd response =
         response_to(run, doubt.interval, modes.eigenvectors().rightCols(1) * std::sqrt(modes.eigenvalues().tail(1)[0]));
     covariance += response * response.transpose();
   }
-  for (std::size_t sensor = 0; sensor < noise.wander_K.size(); ++sensor) {
+  for (std::size_t sensor = 0; sensor < noise.drift_K.size(); ++sensor) {
     std::vector<double> at_s{0.0};
     for (const double duration_s : run.duration_s) {
       at_s.push_back(at_s.back() + duration_s);
@@ -108,7 +108,7 @@ Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flu
         const double apart_s = std::abs(at_s[static_cast<std::size_t>(i)] - at_s[static_cast<std::size_t>(j)]);
         const auto offset = static_cast<Eigen::Index>(sensor);
         covariance(i * run.sensors() + offset, j * run.sensors() + offset) +=
-            std::pow(noise.wander_K[sensor], 2) * std::exp(-apart_s / noise.wander_time_scale_s);
+            std::pow(noise.drift_K[sensor], 2) * std::exp(-apart_s / noise.drift_time_scale_s);
       }
     }
   }
@@ -157,12 +157,12 @@ void expect_products_of_generalised_least_squares(const LinearisedRun& run, cons
 TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_the_covariance_written_out) {
   struct Unknown {
     LatentFlux flux;
-    std::vector<double> wander_K;
+    std::vector<double> drift_K;
   };
-  for (const auto& [flux, wander_K] : {Unknown{{{0.3, 0.7}, 90.0}, {}}, Unknown{{{0.0, 0.0}, 90.0}, {}}, Unknown{{{2.0, 0.0}, 20.0}, {}},
-                                       Unknown{{{0.3, 0.7}, 90.0}, {0.5, 0.2}}, Unknown{{{0.0, 0.4}, 90.0}, {0.0, 0.3}}}) {
+  for (const auto& [flux, drift_K] : {Unknown{{{0.3, 0.7}, 90.0}, {}}, Unknown{{{0.0, 0.0}, 90.0}, {}}, Unknown{{{2.0, 0.0}, 20.0}, {}},
+                                      Unknown{{{0.3, 0.7}, 90.0}, {0.5, 0.2}}, Unknown{{{0.0, 0.4}, 90.0}, {0.0, 0.3}}}) {
     const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(3, 100));
-    expect_products_of_generalised_least_squares(run, flux, {{0.15, 0.1}, {}, wander_K, 7.0});
+    expect_products_of_generalised_least_squares(run, flux, {{0.15, 0.1}, {}, drift_K, 7.0});
   }
 }
 
@@ -200,13 +200,13 @@ TEST(Whitening, is_the_same_operator_for_any_number_of_nodes_heats_and_sensors) 
     int sensors;
   };
   for (const auto& [states, fluxes, sensors] : {Size{2, 2, 1}, Size{2, 1, 2}, Size{3, 2, 2}, Size{3, 3, 1}, Size{3, 3, 3}, Size{5, 4, 2}}) {
-    for (const bool wanders : {false, true}) {
-      SCOPED_TRACE(testing::Message() << states << " nodes, " << fluxes << " heats, " << sensors << " sensors, slow errors " << wanders);
+    for (const bool drifts : {false, true}) {
+      SCOPED_TRACE(testing::Message() << states << " nodes, " << fluxes << " heats, " << sensors << " sensors, slow errors " << drifts);
       const LatentFlux flux{std::vector<double>(static_cast<std::size_t>(fluxes), 0.4), 5.0};
       const auto count = static_cast<std::size_t>(sensors);
       expect_products_of_generalised_least_squares(
           random_linearised_run(states, fluxes, sensors), flux,
-          {std::vector<double>(count, 0.2), {}, wanders ? std::vector<double>(count, 0.3) : std::vector<double>{}, 7.0});
+          {std::vector<double>(count, 0.2), {}, drifts ? std::vector<double>(count, 0.3) : std::vector<double>{}, 7.0});
     }
   }
 }
@@ -222,7 +222,7 @@ TEST_P(SmoothedFlux, is_the_conditional_mean) {
   const Eigen::VectorXd residual = reference.columns.rightCols(1);
   const Eigen::VectorXd weighted = reference.covariance.ldlt().solve(residual);
   LinearisedRun certain = run;
-  certain.doubts.clear();
+  certain.state_uncertainties.clear();
   const Eigen::VectorXd explained = dense(certain, flux, {{0.0, 0.0}, {}}).covariance * weighted;
   const Eigen::MatrixXd flux_W = Whitening(run, flux, noise).smoothed_flux(run.residual_K).mean_W;
   Eigen::VectorXd state = Eigen::VectorXd::Zero(2);
@@ -296,7 +296,7 @@ Eigen::MatrixXd doubt_after_K2(const LinearisedRun& run, Eigen::Index from, Eige
   for (Eigen::Index k = from; k < to; ++k) {
     const Eigen::Map<const RowMajor> step(run.transition.data() + k * run.states * run.states, run.states, run.states);
     covariance_K2 = step * covariance_K2.eval() * step.transpose();
-    for (const StateDoubt& doubt : run.doubts) {
+    for (const StateUncertainty& doubt : run.state_uncertainties) {
       covariance_K2 += doubt.interval == k ? doubt.covariance_K2 : Eigen::MatrixXd::Zero(run.states, run.states);
     }
   }
@@ -305,7 +305,7 @@ Eigen::MatrixXd doubt_after_K2(const LinearisedRun& run, Eigen::Index from, Eige
 
 TEST(AveragedRun, doubts_of_its_stretches_are_those_of_the_run) {
   const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 90));
-  ASSERT_GT(run.doubts.size(), 3U);
+  ASSERT_GT(run.state_uncertainties.size(), 3U);
   const LinearisedRun averaged = Averaging(run, {}, 3).run();  // from sample 1 to sample 88
   EXPECT_LT((doubt_after_K2(averaged, 0, averaged.samples() - 1) - doubt_after_K2(run, 1, 88)).norm(), 1e-12);
   EXPECT_GT(doubt_after_K2(run, 1, 88).norm(), 1e-3);

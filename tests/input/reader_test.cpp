@@ -102,14 +102,14 @@ TEST_F(ReaderTest, a_wrong_quantity_of_a_list_is_reported_at_its_place) {
   EXPECT_THAT(places(), ElementsAre("1:24 resistance[1]", "1:27 resistance[2]", "1:34 resistance[3]"));
 }
 
-Figure figure_of(std::optional<Figure> figure) { return figure.value_or(Figure{}); }
+ParameterValue parameter_of(std::optional<ParameterValue> figure) { return figure.value_or(ParameterValue{}); }
 
 TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
   Reader top = read(
       "resistance = { value = \"2 ohm\", origin = \"datasheet\", source = \"s\", tolerance = \"10 %\" }\n"
       "temperature = { value = \"20 degC\", origin = \"datasheet\", source = [\"s\", \"t\"], tolerance = \"3 K\" }\n");
-  const Figure resistance = figure_of(top.figure(kResistance, Need::required));
-  const Figure temperature = figure_of(top.figure(kTemperature, Need::required));
+  const ParameterValue resistance = parameter_of(top.figure(kResistance, Need::required));
+  const ParameterValue temperature = parameter_of(top.figure(kTemperature, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
   EXPECT_DOUBLE_EQ(resistance.spread->low, 1.8);
   EXPECT_DOUBLE_EQ(resistance.spread->high, 2.2);
@@ -119,16 +119,16 @@ TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
 }
 
 TEST_F(ReaderTest, a_range_has_units_of_its_own) {
-  const Figure figure =
-      figure_of(read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }")
-                    .figure(kResistance, Need::required));
+  const ParameterValue figure = parameter_of(
+      read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }")
+          .figure(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
   EXPECT_DOUBLE_EQ(figure.spread->low, 1.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 2.5);
 }
 
 TEST_F(ReaderTest, other_sources_of_a_figure_have_units_too) {
-  const Figure figure = figure_of(
+  const ParameterValue figure = parameter_of(
       read(R"(resistance = { value = "2 ohm", origin = "measured", source = "s", confirmed_by = { a = "2100 mohm", b = "1.9 ohm" } })")
           .figure(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();

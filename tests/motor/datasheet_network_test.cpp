@@ -81,7 +81,7 @@ TEST(DatasheetNetwork, rests_where_the_paper_says) {
 
 TEST(DatasheetNetwork, an_effect_of_the_file_is_added) {
   Motor motor = simple_motor();
-  Figure resistance;
+  ParameterValue resistance;
   resistance.value = 5.0;
   motor.effects.push_back({"flange", find_effect("conduction"), {"winding", "ambient"}, {resistance}});
   const Network network = datasheet_network(motor, nominal_sample(motor));

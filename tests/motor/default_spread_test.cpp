@@ -103,7 +103,7 @@ TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
 
 TEST(DefaultSpread, OfEverythingThatTemperaturesDependOn) {
   // Of the declared thermal values only limits are agreed and have none.
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
+  for (const MotorParameterSpec& each : motor_parameter_specs()) {
     EXPECT_EQ(each.is_thermal && !is_agreed(each.spec.key), needs_spread(each.spec.key) && each.spec.key != "temperature_coefficient")
         << each.spec.key;
   }
@@ -112,7 +112,7 @@ TEST(DefaultSpread, OfEverythingThatTemperaturesDependOn) {
 TEST(DefaultSpread, AZeroToleranceCountsAsMissingAndIsRefused) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
     Motor motor = ecx_32();
-    Figure& figure = motor.figures.at(key);
+    ParameterValue& figure = motor.figures.at(key);
     figure.spread = Spread{Spread::Kind::tolerance, figure.value, figure.value, true};
     ASSERT_THAT(default_spreads(motor), SizeIs(1)) << key;
     EXPECT_LT(with_default_spreads(motor).figures.at(key).spread->low, figure.value);
@@ -120,7 +120,7 @@ TEST(DefaultSpread, AZeroToleranceCountsAsMissingAndIsRefused) {
   }
 }
 
-Spread of_percent(const Figure& figure, double below_percent, double above_percent) {
+Spread of_percent(const ParameterValue& figure, double below_percent, double above_percent) {
   return {Spread::Kind::range, figure.value * (1.0 - 0.01 * below_percent), figure.value * (1.0 + 0.01 * above_percent), true};
 }
 
@@ -134,7 +134,7 @@ TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
       const Spread usual = *with_default_spreads(missing).figures.at(key).spread;
       for (const auto& [below_percent, above_percent] : {std::pair(1e-3, 1e-3), std::pair(40.0, 0.01), std::pair(0.5, 100.0)}) {
         Motor motor = missing;
-        Figure& figure = motor.figures.at(key);
+        ParameterValue& figure = motor.figures.at(key);
         figure.spread = of_percent(figure, below_percent, above_percent);
         EXPECT_THAT(message_of_refusal(motor),
                     AllOf(HasSubstr(".toml:"), HasSubstr("narrow_values"), HasSubstr(key), HasSubstr("state that")))
@@ -148,7 +148,7 @@ TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
 
 TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
   Motor motor = ecx_32();
-  Figure& figure = motor.figures.at("thermal_resistance_stator_ambient");
+  ParameterValue& figure = motor.figures.at("thermal_resistance_stator_ambient");
   figure.origin = Origin::measured;
   figure.spread = of_percent(figure, 0.02, 3.0);
   EXPECT_EQ(message_of_refusal(motor), "");
@@ -179,7 +179,7 @@ TEST(DefaultSpread, ParametersOfEffectsStayWithinTheirDeclaration) {
   const auto add = [&motor](const EffectType& type) {
     MotorEffect effect{std::string(type.name), &type, {}, {}};
     for (const ParameterSpec& spec : type.parameters) {
-      Figure figure;
+      ParameterValue figure;
       figure.value = std::isfinite(spec.range.high) ? spec.range.high : std::max(1.0, spec.range.low);
       effect.parameters.push_back(figure);
     }

@@ -333,7 +333,7 @@ TEST(Slip, torque_constant_in_another_convention_is_named) {
 // What is not in the file is not judged.
 TEST(Lint, says_nothing_about_absent_figures) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
+  for (const MotorParameterSpec& each : motor_parameter_specs()) {
     if (each.need == Need::optional && each.value != &MotorValues::temperature_coefficient_per_K) {
       motor.nominal.*each.value = kAbsent;
     }
@@ -372,7 +372,7 @@ TEST(Lint, asks_every_figure_for_a_source_and_every_built_one_for_a_spread) {
 
 TEST(Lint, asks_the_figures_of_an_effect_for_a_source) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-  Figure figure;
+  ParameterValue figure;
   figure.value = 40.0;
   figure.printed = "40 K/W";
   motor.effects.push_back({"flange", find_effect("conduction"), {"winding", "ambient"}, {figure}});
@@ -405,7 +405,7 @@ TEST(Lint, warns_of_thermal_figures_that_no_known_sheet_has) {
 TEST(Lint, judges_the_nominal_point_without_the_effects_of_the_file) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   const NominalPointHeat sheet = nominal_point_heat(motor).value();
-  Figure figure;
+  ParameterValue figure;
   figure.value = 2.0;
   figure.printed = "2 K/W";
   figure.derivation = "a heat sink";

@@ -54,7 +54,7 @@ TEST(MotorConventions, phase_values_are_two_in_series) {
   const Motor motor = motor_with("phase_to_star", "per_dc_ampere");
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 1.0);
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_inductance_H, 0.4e-3);
-  const Figure& figure = motor.figures.at("terminal_resistance");
+  const ParameterValue& figure = motor.figures.at("terminal_resistance");
   EXPECT_DOUBLE_EQ(figure.spread->low, 0.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 1.1);
 }
@@ -195,8 +195,8 @@ TEST(MotorSensors, move_no_temperature_of_the_motor) {
   ASSERT_EQ(at_stator.size(), 1U);
   EXPECT_EQ(at_stator.front().type->name, "sensor_lag_stator");
   EXPECT_NEAR(at_stator.front().size, 12.0, 1e-9);
-  ASSERT_NE(find_figure(motor, "effects.second_probe.offset"), nullptr);
-  EXPECT_EQ(find_figure(motor, "effects.second_probe.offset")->value, -1.5);
+  ASSERT_NE(find_parameter(motor, "effects.second_probe.offset"), nullptr);
+  EXPECT_EQ(find_parameter(motor, "effects.second_probe.offset")->value, -1.5);
   EXPECT_EQ(datasheet_network(motor, nominal_sample(motor)).values(), datasheet_network(bare, nominal_sample(bare)).values());
   Random one(1, 1);
   Random other(1, 1);

@@ -19,7 +19,7 @@ TEST_P(SensorEffects, WorkedExampleComesOut) {
   Eigen::VectorXd shown = vector(type.example.true_C);
   type.law.apply(type.example.time_s, type.example.size, false, shown);
   for (Eigen::Index i = 0; i < shown.size(); ++i) {
-    EXPECT_NEAR(shown[i], type.example.shown_C[static_cast<std::size_t>(i)], 1e-9);
+    EXPECT_NEAR(shown[i], type.example.sensor_C[static_cast<std::size_t>(i)], 1e-9);
   }
   EXPECT_TRUE(type.size.range.contains(type.example.size));
   EXPECT_TRUE(type.size.range.contains(0.0)) << "a size of 0 is a faultless sensor";
@@ -85,20 +85,20 @@ TEST(SensorReading, GoesAsTheWholeSeriesDoes) {
                                         {find_sensor_effect("sensor_offset_winding"), -2.0}};
   const std::vector<double> time_s = seconds();
   const Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t); });
-  Eigen::VectorXd shown_C = true_C;
-  apply(faults, time_s, false, shown_C);
+  Eigen::VectorXd sensor_C = true_C;
+  apply(faults, time_s, false, sensor_C);
   Reading reading(faults, true_C[0]);
-  EXPECT_DOUBLE_EQ(reading.shown_C(), true_C[0] + 0.04 * (true_C[0] - 25.0) - 2.0);
+  EXPECT_DOUBLE_EQ(reading.sensor_C(), true_C[0] + 0.04 * (true_C[0] - 25.0) - 2.0);
   for (Eigen::Index k = 1; k < true_C.size(); ++k) {
     const auto place = static_cast<std::size_t>(k);
     reading.advance(time_s[place] - time_s[place - 1], true_C[k]);
-    EXPECT_NEAR(reading.shown_C(), shown_C[k], 1e-12);
+    EXPECT_NEAR(reading.sensor_C(), sensor_C[k], 1e-12);
   }
-  EXPECT_GT((shown_C - true_C).cwiseAbs().maxCoeff(), 3.0);
+  EXPECT_GT((sensor_C - true_C).cwiseAbs().maxCoeff(), 3.0);
   // No time, no answer: a step of the temperature is not shown yet.
-  const double before_C = reading.shown_C();
+  const double before_C = reading.sensor_C();
   reading.advance(0.0, true_C[true_C.size() - 1]);
-  EXPECT_DOUBLE_EQ(reading.shown_C(), before_C);
+  EXPECT_DOUBLE_EQ(reading.sensor_C(), before_C);
 }
 
 TEST(SensorReading, AtRestTellsTheTemperature) {
@@ -106,7 +106,7 @@ TEST(SensorReading, AtRestTellsTheTemperature) {
                                         {find_sensor_effect("sensor_offset_winding"), 3.0},
                                         {find_sensor_effect("sensor_lag_winding"), 40.0}};
   // 25 + 1.1·50 + 3 = 83 °C
-  EXPECT_NEAR(shown_at_rest_C(faults, 75.0), 83.0, 1e-12);
+  EXPECT_NEAR(sensor_at_rest_C(faults, 75.0), 83.0, 1e-12);
   EXPECT_NEAR(true_at_rest_C(faults, 83.0), 75.0, 1e-12);
   EXPECT_EQ(true_at_rest_C({}, 83.0), 83.0);
 }

@@ -14,7 +14,7 @@ namespace {
 const std::filesystem::path kRobots = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots";
 
 Robot without_friction(Robot robot) {
-  for (const RobotFigureSpec& each : robot_figure_specs()) {
+  for (const RobotParameterSpec& each : robot_parameter_specs()) {
     if (each.table.starts_with("friction")) {
       robot.*each.value = kAbsent;
     }
@@ -38,7 +38,7 @@ TEST(AssumedFriction, ranges_include_the_measured_robots) {
     const Robot assumed = with_assumed_friction(without_friction(stated));
     ASSERT_TRUE(assumed.is_friction_assumed);
     EXPECT_FALSE(has_friction(assumed));
-    for (const RobotFigureSpec& each : robot_figure_specs()) {
+    for (const RobotParameterSpec& each : robot_parameter_specs()) {
       if (each.table == "friction" && !std::isnan(stated.*each.value)) {
         const Spread& range = assumed.figures.at("friction." + std::string(each.spec.key)).spread.value();
         EXPECT_GE(stated.*each.value, range.low) << id << " " << each.spec.key;

@@ -384,7 +384,7 @@ TEST(Battery, gives_what_its_stored_energy_loses) {
   EXPECT_TRUE(battery_load(battery, 4680.0, 4000.0).collapsed);
 }
 
-TEST(Driver, sinusoidal_current_heats_less_for_the_same_torque) {
+TEST(Regressor, sinusoidal_current_heats_less_for_the_same_torque) {
   Robot robot = bare_robot();
   const MotorPoint block =
       motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);

@@ -91,8 +91,8 @@ TEST(FeedForward, HasTheVoltageOfThePaper) {
   config.has_friction = true;
   config.friction_smoothing_m_per_s = 0.001F;
   robot_core::complete(config);
-  robot_core::Believed believed{};
-  believed.mode = Mode::body_velocity;
+  robot_core::Validated validated{};
+  validated.mode = Mode::body_velocity;
   robot_core::BodyReference body;
   body.velocity = {0.0F, 1.0F, 0.0F};
   robot_core::WheelReferences wheels;
@@ -100,11 +100,11 @@ TEST(FeedForward, HasTheVoltageOfThePaper) {
     wheel = {20.0F, 0.0F};
   }
   robot_core::WheelVoltages voltage;
-  robot_core::feed_forward(config, {}, believed, body, wheels, voltage);
+  robot_core::feed_forward(config, {}, validated, body, wheels, voltage);
   // theta = 90 degrees: sin(120 degrees) = 0.866025; 0.04*20 + 0.3*0.866025 + 1.2 = 2.259808
   EXPECT_NEAR(voltage.wheel[0].feed_forward_V, 2.259808, 2e-5);
   body.velocity = {0.0F, -1.0F, 0.0F};
-  robot_core::feed_forward(config, {}, believed, body, wheels, voltage);
+  robot_core::feed_forward(config, {}, validated, body, wheels, voltage);
   EXPECT_NEAR(voltage.wheel[0].feed_forward_V, 0.8 - 1.459808, 2e-5);
 }
 
@@ -113,13 +113,13 @@ TEST(FeedForward, AcceleratesTheBodyAsAsked) {
   Config config = make_config(4);
   config.wheel_inertia_kg_m2 = 1e-9F;
   robot_core::complete(config);
-  robot_core::Believed believed{};
-  believed.mode = Mode::body_velocity;
+  robot_core::Validated validated{};
+  validated.mode = Mode::body_velocity;
   robot_core::BodyReference body;
   body.acceleration = {1.5F, -0.7F, 3.0F};
   robot_core::WheelReferences wheels{};
   robot_core::WheelVoltages voltage;
-  robot_core::feed_forward(config, {}, believed, body, wheels, voltage);
+  robot_core::feed_forward(config, {}, validated, body, wheels, voltage);
   double x_N = 0.0;
   double y_N = 0.0;
   double yaw_Nm = 0.0;

@@ -56,7 +56,7 @@ Sabotage::Sabotage(Lie lie, const Config& config, Random& random, int first_step
   other_ = (wheel_ + 1 + random.below(config.wheel_count - 1)) % config.wheel_count;
 }
 
-void Sabotage::spoil_wheel_speed(Input& input, Random& random, bool is_first) {
+void Sabotage::falsify_wheel_speed(Input& input, Random& random, bool is_first) {
   float& speed = input.wheel_speed_rad_per_s[wheel_];
   held_ = is_first ? speed : held_;
   switch (lie_) {
@@ -138,7 +138,7 @@ void Sabotage::spoil_battery(const Config& config, Input& input, Random& random,
   }
 }
 
-void Sabotage::spoil_yaw_rate(Input& input, Random& random, bool is_first) {
+void Sabotage::falsify_yaw_rate(Input& input, Random& random, bool is_first) {
   float& rate = input.yaw_rate_rad_per_s;
   held_ = is_first ? rate : held_;
   switch (lie_) {
@@ -218,13 +218,13 @@ void Sabotage::spoil(const Config& config, Random& random, int step, Input& inpu
   }
   const bool is_first = step == first_step_;
   if (is_between(Lie::wheel_nan, lie_, Lie::wheel_biased)) {
-    spoil_wheel_speed(input, random, is_first);
+    falsify_wheel_speed(input, random, is_first);
   } else if (is_between(Lie::current_nan, lie_, Lie::current_scaled)) {
     spoil_current(input, random, is_first);
   } else if (is_between(Lie::battery_nan, lie_, Lie::battery_scaled)) {
     spoil_battery(config, input, random, is_first);
   } else if (is_between(Lie::yaw_nan, lie_, Lie::yaw_biased)) {
-    spoil_yaw_rate(input, random, is_first);
+    falsify_yaw_rate(input, random, is_first);
   } else if (is_between(Lie::ambient_nan, lie_, Lie::stator_cold)) {
     spoil_temperature(input, random);
   } else if (is_between(Lie::command_garbage, lie_, Lie::command_stale)) {

@@ -65,10 +65,10 @@ class Sabotage {
   int wheel() const { return wheel_; }
 
  private:
-  void spoil_wheel_speed(robot_core::Input& input, Random& random, bool is_first);
+  void falsify_wheel_speed(robot_core::Input& input, Random& random, bool is_first);
   void spoil_current(robot_core::Input& input, Random& random, bool is_first);
   void spoil_battery(const robot_core::Config& config, robot_core::Input& input, Random& random, bool is_first);
-  void spoil_yaw_rate(robot_core::Input& input, Random& random, bool is_first);
+  void falsify_yaw_rate(robot_core::Input& input, Random& random, bool is_first);
   void spoil_temperature(robot_core::Input& input, Random& random);
   void spoil_command(robot_core::Input& input, Random& random);
   void spoil_rest(const robot_core::Config& config, robot_core::Input& input, robot_core::State& state, Random& random);

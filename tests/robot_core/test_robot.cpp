@@ -88,10 +88,10 @@ struct GuardData {
                    .most_speed_rad_per_s = 900.0F,
                    .no_current_speed_rad_per_s = 901.0F,
                    .winding_per_stator_K = 1.0F};
-    model.belief[robot_core::guard_current_A] = {true, -30.0F, 30.0F, possible_current_A.data(), 2};
-    model.belief[robot_core::guard_speed_rad_per_s] = {true, -900.0F, 900.0F, possible_speed_rad_per_s.data(), 2};
-    model.belief[robot_core::guard_ambient_C] = {true, static_cast<float>(kColdest_C), static_cast<float>(kHottestAir_C),
-                                                 possible_ambient_C.data(), 1};
+    model.plausible_range[robot_core::guard_current_A] = {true, -30.0F, 30.0F, possible_current_A.data(), 2};
+    model.plausible_range[robot_core::guard_speed_rad_per_s] = {true, -900.0F, 900.0F, possible_speed_rad_per_s.data(), 2};
+    model.plausible_range[robot_core::guard_ambient_C] = {true, static_cast<float>(kColdest_C), static_cast<float>(kHottestAir_C),
+                                                          possible_ambient_C.data(), 1};
     model.rates = observer_rates;
   }
 };

@@ -26,7 +26,7 @@ double acceleration(const AxisState<Real>& x, const AxisState<Real>& y) {
   return std::hypot(static_cast<double>(x.acceleration), static_cast<double>(y.acceleration));
 }
 
-/// The speed behind the shortest stretch of full jerk that leaves no acceleration.
+/// The speed behind the shortest segment of full jerk that leaves no acceleration.
 double braked_speed(const State& x, const State& y, double jerk) {
   const double time_s = acceleration(x, y) / jerk;
   return std::hypot(x.velocity + x.acceleration * time_s / 2, y.velocity + y.acceleration * time_s / 2);

@@ -136,7 +136,7 @@ TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples
 }
 
 /// As good as exact. Without any spread a default one would take its place.
-void make_certain(Figure& figure) {
+void make_certain(ParameterValue& figure) {
   figure.spread = Spread{Spread::Kind::range, figure.value - 1e-9 * std::abs(figure.value), figure.value, figure.value > 0.0};
 }
 
@@ -229,8 +229,8 @@ TEST_F(EffectsOfAFile, a_late_sensor_shows_the_response_of_first_order) {
   for (const TraceRow& row : shown.rows) {
     const Eigen::Vector3d rise_K = closed.rise_K(row.time_s);
     EXPECT_NEAR(row.stator_C, row.ambient_C + rise_K[1], 2e-3) << row.time_s;
-    ASSERT_EQ(row.shown_C.size(), 1U);
-    EXPECT_NEAR(row.shown_C[0], row.ambient_C - 2.0 + rise_K[2], 5e-3) << row.time_s;
+    ASSERT_EQ(row.sensor_C.size(), 1U);
+    EXPECT_NEAR(row.sensor_C[0], row.ambient_C - 2.0 + rise_K[2], 5e-3) << row.time_s;
     most_behind_K = std::max(most_behind_K, rise_K[1] - rise_K[2]);
   }
   EXPECT_GT(most_behind_K, 1.0);

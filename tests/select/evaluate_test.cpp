@@ -28,7 +28,7 @@ constexpr double kAlpha_per_K = 0.0039;
 constexpr double kInner_K_per_W = 4.0;
 constexpr double kOuter_K_per_W = 2.0;
 
-void give(Motor& motor, std::string_view key, double MotorValues::*value, const Figure& figure) {
+void give(Motor& motor, std::string_view key, double MotorValues::*value, const ParameterValue& figure) {
   motor.figures[key] = figure;
   motor.nominal.*value = figure.value;
 }
@@ -235,8 +235,8 @@ TEST(Margin, of_a_constant_current_is_that_of_the_closed_form) {
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(5.0));
   ASSERT_TRUE(result.margin_A.has_value());
   // ΔT = c/(1 − α·c) at the limit: c = 130/(1 + 0.0039·130) K = 6 K/W · 0.5 Ω · I²
-  const double bearable_A = std::sqrt(130.0 / (1.0 + 0.0039 * 130.0) / 3.0);
-  EXPECT_NEAR(*result.margin_A, bearable_A - 5.0, 1e-3);
+  const double sustainable_A = std::sqrt(130.0 / (1.0 + 0.0039 * 130.0) / 3.0);
+  EXPECT_NEAR(*result.margin_A, sustainable_A - 5.0, 1e-3);
 }
 
 TEST(Margin, scaling_the_current_by_it_lands_on_the_limit) {
@@ -252,11 +252,11 @@ TEST(Margin, scaling_the_current_by_it_lands_on_the_limit) {
 }
 
 TEST(Margin, of_a_small_current_reaches_as_far_as_that_of_a_large_one) {
-  const double bearable_A = std::sqrt(130.0 / (1.0 + 0.0039 * 130.0) / 3.0);
+  const double sustainable_A = std::sqrt(130.0 / (1.0 + 0.0039 * 130.0) / 3.0);
   for (const double current_A : {0.01, 0.1, 1.0}) {
     const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(current_A));
     ASSERT_TRUE(result.margin_A.has_value());
-    EXPECT_NEAR(*result.margin_A, bearable_A - current_A, 0.01) << current_A;
+    EXPECT_NEAR(*result.margin_A, sustainable_A - current_A, 0.01) << current_A;
   }
 }
 
@@ -327,8 +327,8 @@ TEST(Samples, without_any_spread_all_are_the_nominal_one) {
   EXPECT_EQ(result.probability_over_limit, 0.0);
 }
 
-Figure resistance_within_10_percent() {
-  Figure figure;
+ParameterValue resistance_within_10_percent() {
+  ParameterValue figure;
   figure.value = kResistance_ohm;
   figure.origin = Origin::measured;
   figure.spread = Spread{Spread::Kind::tolerance, 0.9 * kResistance_ohm, 1.1 * kResistance_ohm, true};
@@ -365,7 +365,7 @@ TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_car
 TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
   Motor motor = simple_motor();
   give(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
-  Figure inner;
+  ParameterValue inner;
   inner.value = kInner_K_per_W;
   inner.origin = Origin::measured;
   inner.spread = Spread{Spread::Kind::tolerance, 0.9 * kInner_K_per_W, 1.1 * kInner_K_per_W, true};
@@ -379,7 +379,7 @@ TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
 // The limit lies between 105 and 155 °C in half of the draws, evenly: below 130 °C in a quarter of them.
 TEST(Samples, a_limit_that_may_be_lower_makes_a_pass_marginal) {
   Motor motor = simple_motor();
-  Figure limit;
+  ParameterValue limit;
   limit.value = 155.0;
   limit.spread = Spread{Spread::Kind::range, 105.0, 165.0, false};
   give(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
@@ -508,7 +508,7 @@ TEST(Evaluate, declared_range_of_the_driver_s_resistance_is_propagated) {
     return result.winding_peak_C.p95 - result.winding_peak_C.p05;
   };
   EXPECT_NEAR(spread_K(), 0.0, 1e-9);
-  Figure figure;
+  ParameterValue figure;
   figure.value = 0.3;
   figure.spread = Spread{Spread::Kind::range, 0.1, 0.6, false};
   robot.figures["drive.driver_resistance"] = figure;
@@ -605,7 +605,7 @@ TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
 /// Motors whose limit is below the given peak in a share of the samples that lies near the 5 % of a verdict, or far from it.
 Motor limited_between(double low_C, double high_C) {
   Motor motor = simple_motor();
-  Figure limit;
+  ParameterValue limit;
   limit.value = 155.0;
   limit.spread = Spread{Spread::Kind::range, low_C, high_C, false};
   give(motor, "winding_limit", &MotorValues::winding_limit_C, limit);

@@ -122,29 +122,29 @@ TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
   Motor motor = ecx_32();
   const std::string bare = csv_header(4, additions_of(motor));
   EXPECT_EQ(bare.find("shown"), std::string::npos);
-  Figure lag;
+  ParameterValue lag;
   lag.value = 1.5;
   motor.sensors.push_back({"late", find_sensor_effect("sensor_lag_winding"), lag});
-  std::vector<double> shown_C{25.0};  // after each period
+  std::vector<double> sensor_C{25.0};  // after each period
   std::vector<double> true_C{25.0};
   const Driven driven = drive(twente(), motor, lively(), kLively_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
     true_C.push_back(moment.robot->winding_C(2));
     const double mean_C = 0.5 * (true_C.back() + true_C[true_C.size() - 2]);
-    shown_C.push_back(shown_C.back() + SimulatedRobot::kPeriod_s / 1.5 * (mean_C - shown_C.back()));
+    sensor_C.push_back(sensor_C.back() + SimulatedRobot::kPeriod_s / 1.5 * (mean_C - sensor_C.back()));
   });
   const std::string header = csv_header(4, additions_of(motor));
   EXPECT_EQ(header.find("stator_shown"), std::string::npos);
   const auto period = static_cast<std::size_t>(std::lround(last_cell(header, driven.csv, "time_s") / SimulatedRobot::kPeriod_s));
   EXPECT_NEAR(last_cell(header, driven.csv, "winding_3_C"), true_C.at(period), 1e-4);
-  EXPECT_NEAR(last_cell(header, driven.csv, "winding_shown_3_C"), shown_C.at(period), 2e-3);
-  EXPECT_GT(std::abs(true_C.at(period) - shown_C.at(period)), 0.05);
+  EXPECT_NEAR(last_cell(header, driven.csv, "winding_shown_3_C"), sensor_C.at(period), 2e-3);
+  EXPECT_GT(std::abs(true_C.at(period) - sensor_C.at(period)), 0.05);
 }
 
 // A mount of 4 J/K at 0.8 W/K from the stator and 0.4 W/K from the air, driven by the stator's temperature alone.
 TEST(ClosedLoop, a_body_of_the_motors_file_has_its_temperature_in_the_trace) {
   Motor motor = ecx_32();
   EXPECT_EQ(csv_header(4, additions_of(motor)).find("mount"), std::string::npos);
-  std::vector<Figure> figures(3);
+  std::vector<ParameterValue> figures(3);
   figures[0].value = 0.8;
   figures[1].value = 0.5;
   figures[2].value = 4.0;

@@ -34,14 +34,14 @@ TEST_P(EveryEffect, worked_example) {
 }
 
 TEST_P(EveryEffect, is_told_in_words) {
-  for (const std::string_view text : {type().summary, type().equation, type().reference, type().typical, type().look_alike}) {
+  for (const std::string_view text : {type().summary, type().equation, type().reference, type().typical, type().confounded_with}) {
     EXPECT_THAT(text, Not(IsEmpty()));
   }
   for (const ParameterSpec& spec : type().parameters) {
     EXPECT_THAT(spec.meaning, Not(IsEmpty())) << spec.key;
   }
   // What is spelt like an effect is one.
-  const std::string prose(type().look_alike);
+  const std::string prose(type().confounded_with);
   const std::regex name("[a-z]+(_[a-z]+)+");
   for (std::sregex_iterator found(prose.begin(), prose.end(), name), end; found != end; ++found) {
     EXPECT_NE(find_effect(found->str()), nullptr) << found->str();

@@ -100,7 +100,7 @@ std::string conclusion(const std::vector<Outcome>& outcomes, const Options& opti
 
 /// For GitHub Actions: adds an annotation for each violated limit and a table on the page of the run. If the page cannot be written, the
 /// command only warns.
-void tell_github(const std::vector<Outcome>& outcomes, Session& session) {
+void write_github(const std::vector<Outcome>& outcomes, Session& session) {
   if (environment("GITHUB_ACTIONS") == "true") {
     session.say(annotations(outcomes, environment("GITHUB_WORKSPACE")));
   }
@@ -133,7 +133,7 @@ ExitCode run(const Options& options, Session& session) {
   }
   session.say(table_text(outcomes) + conclusion(outcomes, options));
   session.say(options.junit.empty() ? "" : fmt::format("written: {}\n", options.junit));
-  tell_github(outcomes, session);
+  write_github(outcomes, session);
   const bool passed = std::ranges::all_of(outcomes, &Outcome::passed);
   Json thresholds = Json::array();
   std::ranges::transform(outcomes, std::back_inserter(thresholds), json);

@@ -12,10 +12,10 @@
 #include "cli/command.h"
 #include "cli/default_spreads.h"
 #include "cli/guard_options.h"
+#include "cli/inactive_effects.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/sensor_options.h"
-#include "cli/silent_effects.h"
 #include "derate/committed_table.h"
 #include "derate/derating_json.h"
 #include "derate/export_text.h"
@@ -96,7 +96,7 @@ std::string report(const Derating& derating) {
   text += fmt::format(
       "safety factor on heat {:.2f}. {} ({} draws are the fewest for it)\n"
       "the windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the hottest)\n\n",
-      derating.observer.heat_reserve_ratio(), confidence_text(derating), least_samples(derating.options.guarantee), checked.samples,
+      derating.observer.heat_safety_factor(), confidence_text(derating), least_samples(derating.options.guarantee), checked.samples,
       checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C);
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
@@ -161,7 +161,7 @@ std::string comparison_text(const CommittedTable& committed, const Derating& der
   return text;
 }
 
-ExitCode tell_comparison(const CommittedTable& committed, const Derating& derating, Session& session, Json& answer) {
+ExitCode report_comparison(const CommittedTable& committed, const Derating& derating, Session& session, Json& answer) {
   const TableComparison found = compare(committed, derating);
   const bool is_other_motor = !committed.motor_id.empty() && committed.motor_id != derating.motor_id;
   const bool holds = !is_other_motor && found.excess.difference_A == 0.0 && found.differing_line == 0;
@@ -212,7 +212,7 @@ ExitCode run(const Options& options, Session& session) {
     session.say(fmt::format("\n{}: {}\n", exporter.name, options.out));
   }
   Json answer = derating_json(derating);
-  const ExitCode code = committed ? tell_comparison(*committed, derating, session, answer) : ExitCode::done;
+  const ExitCode code = committed ? report_comparison(*committed, derating, session, answer) : ExitCode::done;
   session.answer(answer);
   return code;
 }

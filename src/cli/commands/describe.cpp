@@ -39,7 +39,7 @@ std::string with_unit(double value, std::string_view unit) {
   return unit.empty() ? significant(value, 4) : fmt::format("{} {}", significant(value, 4), unit_for_display(unit));
 }
 
-Json figure_json(std::string_view key, std::string_view unit, const Figure& figure) {
+Json parameter_json(std::string_view key, std::string_view unit, const ParameterValue& figure) {
   Json json{{"key", key}, {"value", figure.value}, {"unit", unit}, {"origin", to_string(figure.origin)}, {"source", figure.source}};
   if (figure.spread) {
     json["range"] = {figure.spread->low, figure.spread->high};
@@ -59,7 +59,7 @@ std::string percent_off(double bound, double value) {
   return (percent < 0.0 ? "" : "+") + (std::abs(percent) < 1.0 ? significant(percent, 1) : fmt::format("{:.0f}", percent));
 }
 
-std::string figure_text(std::string_view key, std::string_view unit, const Figure& figure) {
+std::string parameter_text(std::string_view key, std::string_view unit, const ParameterValue& figure) {
   std::string text = fmt::format("  {:36} {:>22}  {:12}", key, figure.printed, to_string(figure.origin));
   if (figure.spread && unit == "rad") {
     text += fmt::format(" {} … {} °", significant(convert(figure.spread->low, "rad", "deg"), 3),
@@ -89,8 +89,8 @@ void describe_own_effects(const Motor& motor, Description& result) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       if (effect.type->parameters[i].choices.empty()) {
         const std::string_view unit = unit_of(effect.type->parameters, i, effect.values());
-        result.text += figure_text(effect.type->parameters[i].key, unit, effect.parameters[i]);
-        json["figures"].push_back(figure_json(effect.type->parameters[i].key, unit, effect.parameters[i]));
+        result.text += parameter_text(effect.type->parameters[i].key, unit, effect.parameters[i]);
+        json["figures"].push_back(parameter_json(effect.type->parameters[i].key, unit, effect.parameters[i]));
       }
     }
     result.json["effects"].push_back(std::move(json));
@@ -106,10 +106,10 @@ Description describe_motor(const Motor& motor) {
                       {"name", motor.name},
                       {"data_quality", data_quality(motor)}}};
   result.text += "\nfigures (value, origin, tolerance or range, source)\n";
-  for (const MotorFigureSpec& each : motor_figure_specs()) {
+  for (const MotorParameterSpec& each : motor_parameter_specs()) {
     if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
-      result.text += figure_text(each.spec.key, each.spec.unit, found->second);
-      result.json["figures"].push_back(figure_json(each.spec.key, each.spec.unit, found->second));
+      result.text += parameter_text(each.spec.key, each.spec.unit, found->second);
+      result.json["figures"].push_back(parameter_json(each.spec.key, each.spec.unit, found->second));
     }
   }
   result.text += "\nthermal network\n";
@@ -131,8 +131,8 @@ Description describe_motor(const Motor& motor) {
   result.text += motor.sensors.empty() ? "" : "\nsensors: errors that they have\n";
   for (const MotorSensor& sensor : motor.sensors) {
     result.text += fmt::format("  {} ({})\n", sensor.name, sensor.type->name) +
-                   figure_text(sensor.type->size.key, sensor.type->size.unit, sensor.size);
-    Json json = figure_json(sensor.type->size.key, sensor.type->size.unit, sensor.size);
+                   parameter_text(sensor.type->size.key, sensor.type->size.unit, sensor.size);
+    Json json = parameter_json(sensor.type->size.key, sensor.type->size.unit, sensor.size);
     json["name"] = sensor.name;
     json["type"] = sensor.type->name;
     result.json["sensors"].push_back(std::move(json));
@@ -151,10 +151,10 @@ Description describe_motor(const Motor& motor) {
 std::string_view robot_unit(std::string_view key) {
   const std::string_view last = key.substr(key.rfind('.') + 1);
   if (key.find('[') != std::string_view::npos) {
-    return std::ranges::find(wheel_figure_specs(), last, [](const auto& each) { return each.spec.key; })->spec.unit;
+    return std::ranges::find(wheel_parameter_specs(), last, [](const auto& each) { return each.spec.key; })->spec.unit;
   }
   const auto is_it = [&](const auto& each) { return each.spec.key == last && key.starts_with(each.table); };
-  return std::ranges::find_if(robot_figure_specs(), is_it)->spec.unit;
+  return std::ranges::find_if(robot_parameter_specs(), is_it)->spec.unit;
 }
 
 Description describe_robot(const Robot& robot) {
@@ -184,8 +184,8 @@ Description describe_robot(const Robot& robot) {
        {"source", robot.source}}};
   result.text += robot.figures.empty() ? "" : "\nfigures (value, origin, range, source)\n";
   for (const auto& [key, figure] : robot.figures) {
-    result.text += figure_text(key, robot_unit(key), figure);
-    result.json["figures"].push_back(figure_json(key, robot_unit(key), figure));
+    result.text += parameter_text(key, robot_unit(key), figure);
+    result.json["figures"].push_back(parameter_json(key, robot_unit(key), figure));
   }
   return result;
 }
@@ -226,18 +226,18 @@ Description describe_duty(const Duty& duty) {
   result.text += duty.figures.empty() ? "" : "\nload\n";
   for (const auto& [spec, figure] : duty.figures) {
     const bool is_bare = figure.printed.empty();
-    result.text +=
-        is_bare ? fmt::format("  {:36} {:>22}\n", spec.key, with_unit(figure.value, spec.unit)) : figure_text(spec.key, spec.unit, figure);
+    result.text += is_bare ? fmt::format("  {:36} {:>22}\n", spec.key, with_unit(figure.value, spec.unit))
+                           : parameter_text(spec.key, spec.unit, figure);
     result.json["figures"].push_back(is_bare ? Json{{"key", spec.key}, {"value", figure.value}, {"unit", spec.unit}}
-                                             : figure_json(spec.key, spec.unit, figure));
+                                             : parameter_json(spec.key, spec.unit, figure));
   }
   if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)) {
     result.text += "\ninputs (value, origin, range, meaning)\n";
     for (std::size_t i = 0; i < match->inputs().figures.size(); ++i) {
       const ParameterSpec& spec = match_input_specs()[i].spec;
-      const Figure& figure = match->inputs().figures[i];
-      result.text += figure_text(spec.key, spec.unit, figure) + fmt::format("      {}\n", wrapped(spec.meaning, 6));
-      Json json = figure_json(spec.key, spec.unit, figure);
+      const ParameterValue& figure = match->inputs().figures[i];
+      result.text += parameter_text(spec.key, spec.unit, figure) + fmt::format("      {}\n", wrapped(spec.meaning, 6));
+      Json json = parameter_json(spec.key, spec.unit, figure);
       json["meaning"] = spec.meaning;
       result.json["figures"].push_back(json);
     }
@@ -264,7 +264,7 @@ std::string motor_file_lines(const EffectType& effect) {
     if (!spec.choices.empty()) {
       text += fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(values[i])].name);
     } else {
-      text += typical_figure(spec.key, values[i], unit);
+      text += typical_value(spec.key, values[i], unit);
     }
   }
   return text;
@@ -301,7 +301,7 @@ Description describe_effect(const EffectType& effect) {
        {"equation", effect.equation},
        {"reference", effect.reference},
        {"typical", effect.typical},
-       {"look_alike", effect.look_alike}}};
+       {"look_alike", effect.confounded_with}}};
   describe_parameters(effect, result);
   std::vector<std::string_view> needs;
   for (const Signal signal : effect.needs) {
@@ -313,7 +313,7 @@ Description describe_effect(const EffectType& effect) {
   };
   result.text += "\n";
   say("typical size", effect.typical);
-  say("look-alikes", effect.look_alike);
+  say("look-alikes", effect.confounded_with);
   const bool has_choice = std::ranges::any_of(effect.parameters, [](const ParameterSpec& spec) { return !spec.choices.empty(); });
   say("needs a log of", has_choice ? "the signal that was chosen" : fmt::format("{}", fmt::join(needs, ", ")));
   if (effect.candidacy.size_parameter >= 0) {

@@ -14,9 +14,9 @@
 #include "cli/command.h"
 #include "cli/condition_option.h"
 #include "cli/default_spreads.h"
+#include "cli/inactive_effects.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
 #include "duty/duty.h"
 #include "duty/match/match_duty.h"
@@ -175,7 +175,7 @@ ExitCode run(Options& options, Session& session) {
     ranks = rank_closed_loop(drive_games(robot, match->inputs(), motors, drive, progress_bar("driving games")), results);
   }
   present::Document document = present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.seed, draws.size()});
-  present::add_lines(document.notes, silent_effects(motors), present::Severity::note);
+  present::add_lines(document.notes, inactive_effects(motors), present::Severity::note);
   present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
   std::vector<ChangeEffect> changes;
   if (options.suggests) {

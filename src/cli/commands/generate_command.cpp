@@ -47,7 +47,7 @@ std::string report(const CoreFolder& folder, const Derating& derating, const Opt
       "a wheel whose speed is unknown gets at most {:.2f} A; {:.1f} K are kept free for one full stop\n",
       derating.robot_id, derating.motor_id, counted(folder.files.size(), "file"), bytes_of(folder) / 1024, options.out, kInputHash,
       folder.hash, folder.config_check_sum, 1e3 * options.core.period_s, 1e3 * derating.options.period_s, derating.rules.limits.winding_C,
-      derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(), confidence_text(derating),
+      derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(), confidence_text(derating),
       folder.limp_current_A, folder.braking_reserve_K);
   for (const std::string& note : folder.notes) {
     text += fmt::format("note: {}\n", note);
@@ -75,7 +75,7 @@ Json json(const CoreFolder& folder, const Derating& derating, const Motor& motor
             {"guard_period_s", derating.options.period_s},
             {"winding_limit_C", derating.rules.limits.winding_C},
             {"hottest_ambient_C", derating.rules.hottest_ambient_C},
-            {"heat_reserve_ratio", rounded(derating.observer.heat_reserve_ratio(), 4)},
+            {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
             {"confidence", derating.options.guarantee.confidence},
             {"samples", checked.samples},
             {"over", checked.over},

@@ -10,11 +10,11 @@
 #include "base/files.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
+#include "cli/inactive_effects.h"
 #include "cli/jerk_sweep.h"
 #include "cli/match_simulation.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "cli/silent_effects.h"
 #include "cli/verdict_chart.h"
 #include "motor/conditions.h"
 #include "present/verdict_words.h"
@@ -94,7 +94,7 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
                   motor.id, robot.id, duty.id, duration_text(duration_s), result.wheel, result.data_quality, duty.origin,
                   result.winding_peak_C.nominal, result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A,
                   to_string(result.verdict), why_infeasible(result, robot), balance_text(trace)) +
-      silent_effects(one));
+      inactive_effects(one));
   for (const std::string& file : {options.out, options.plot}) {
     session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
   }

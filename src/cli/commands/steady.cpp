@@ -12,9 +12,9 @@
 #include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
+#include "cli/inactive_effects.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "cli/silent_effects.h"
 #include "motor/conditions.h"
 #include "motor/datasheet_network.h"
 #include "motor/motor.h"
@@ -78,7 +78,7 @@ ExitCode run(const Options& options, Session& session) {
   const bool runaway = periodic.runaway;
   const bool over = runaway || !(periodic.peak_C[states::winding] <= values.winding_limit_C);
   present::Document document = present::steady_document({motor, periodic, rms, is_bare, options.current.ambient_C, over});
-  present::add_lines(document.notes, silent_effects({&motor, 1}), present::Severity::note);
+  present::add_lines(document.notes, inactive_effects({&motor, 1}), present::Severity::note);
   session.show(document);
   using Json = nlohmann::ordered_json;
   const auto rest = [&](double value_C) { return runaway || rms.runaway ? Json() : Json(value_C); };

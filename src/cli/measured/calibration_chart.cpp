@@ -8,7 +8,7 @@
 namespace heatsoak {
 namespace {
 
-enum Curve { measured, fitted, foretold, of_file };
+enum Curve { measured, fitted, predicted, of_file };
 
 struct Traces {
   ChartPanel panel;
@@ -23,9 +23,9 @@ void append(const PredictedRun& before, const PredictedRun& after, Curve shown_a
     if (found == after.signals.end() || of_file_too == before.signals.end()) {
       continue;
     }
-    const auto add = [&](Curve curve, double time_s, double shown_C) {
+    const auto add = [&](Curve curve, double time_s, double sensor_C) {
       each.panel.curves[curve].x.push_back((offset_s + time_s) / 60.0);
-      each.panel.curves[curve].y.push_back(shown_C);
+      each.panel.curves[curve].y.push_back(sensor_C);
     };
     double time_s = 0.0;
     for (std::size_t k = 0; k < after.time_s.size(); ++k) {
@@ -75,7 +75,7 @@ Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
     }
   };
   append_all(calibration.fitted_before, calibration.fitted_after, fitted);
-  append_all(calibration.holdout_before, calibration.holdout_after, foretold);
+  append_all(calibration.holdout_before, calibration.holdout_after, predicted);
   Chart chart{.title = fmt::format("{}: calibration", motor.name), .subtitle = {}, .x_label = "time, runs one after the other / min"};
   chart.subtitle =
       fmt::format("{} fitted{}; the model runs free from the start of each",

@@ -52,7 +52,7 @@ Json effect_json(const FoundEffect& effect) {
       {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
       {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
       {"confusable_with", plain_ids(effect.confusable_with)},
-      {"look_alike", effect.look_alike}};
+      {"look_alike", effect.confounded_with}};
   if (effect.is_from_catalogue) {
     json["visibility"] = rounded(effect.visibility_ratio, 4);
   }
@@ -146,7 +146,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, con
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = diagnosis.description;
   json["figures_contradicted"] = Json::array();
-  for (const ChangedFigure& figure : diagnosis.changed) {
+  for (const ChangedParameter& figure : diagnosis.changed) {
     json["figures_contradicted"].push_back({{"name", figure.name},
                                             {"unit", figure.unit},
                                             {"before", figure.before},

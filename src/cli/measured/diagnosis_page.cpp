@@ -90,8 +90,8 @@ std::string effect_table(const Diagnosis& diagnosis) {
   text += "</table>\n";
   std::set<std::string> told;
   for (const FoundEffect& effect : diagnosis.effects) {
-    if (!effect.look_alike.empty() && effect.is_from_catalogue && told.insert(effect.id).second) {
-      text += fmt::format("<p>{} in general: {}</p>\n", escaped(effect.id), escaped(effect.look_alike));
+    if (!effect.confounded_with.empty() && effect.is_from_catalogue && told.insert(effect.id).second) {
+      text += fmt::format("<p>{} in general: {}</p>\n", escaped(effect.id), escaped(effect.confounded_with));
     }
   }
   return text;

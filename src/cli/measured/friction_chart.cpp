@@ -99,7 +99,7 @@ class Drives {
 
   /// Figure 4: the lines of the heading with the most legs; of equal ones the heading in which the slowest wheel turns fastest.
   [[nodiscard]] std::optional<ChartPanel> of_one_heading() const {
-    const int number = telling_heading();
+    const int number = informative_heading();
     if (number < 0) {
       return std::nullopt;
     }
@@ -197,7 +197,7 @@ class Drives {
  private:
   static constexpr double kSameHeading_rad = 2.5 / kDegrees_per_rad;
 
-  [[nodiscard]] int telling_heading() const {
+  [[nodiscard]] int informative_heading() const {
     std::map<int, std::pair<int, double>> worth;  // number of legs, and the share of the travel speed at the slowest wheel
     for (const auto& [part, number] : parts_) {
       double least_share = 1.0;

@@ -80,7 +80,7 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
       continue;
     }
     all.push_back(part_of(recording, part.from_share, part.to_share));
-    all.back().spoiling_of_whole = assess(recording, report, options.ambient_C).spoiling;
+    all.back().blocking_of_whole = assess(recording, report, options.ambient_C).blocking;
   }
   return all;
 }
@@ -97,7 +97,7 @@ void add_files(const std::vector<Recording>& recordings, FilesOfName& files) {
 }
 
 /// Recordings that share their name with another file are named by the shortest path suffix that is unique.
-void tell_apart(std::vector<Recording>& recordings, const FilesOfName& files) {
+void make_names_distinct(std::vector<Recording>& recordings, const FilesOfName& files) {
   for (Recording& each : recordings) {
     const std::set<std::filesystem::path>& of_name = files.at(each.name);
     const std::filesystem::path own = std::filesystem::weakly_canonical(each.file);
@@ -114,13 +114,13 @@ void tell_apart(std::vector<Recording>& recordings, const FilesOfName& files) {
 
 }  // namespace
 
-void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out) {
+void make_names_distinct(std::vector<Recording>& fitted, std::vector<Recording>& held_out) {
   FilesOfName files;
   add_files(fitted, files);
   const FilesOfName of_fitted = files;
   add_files(held_out, files);
-  tell_apart(held_out, files);
-  tell_apart(fitted, of_fitted);
+  make_names_distinct(held_out, files);
+  make_names_distinct(fitted, of_fitted);
 }
 
 }  // namespace heatsoak

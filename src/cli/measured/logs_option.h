@@ -27,6 +27,6 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
 
 /// Renames recordings so that files of the same name in different folders differ: all of that name get their folder as a prefix
 /// ("monday/run"). Names of fitted logs do not depend on the hold-out logs.
-void tell_apart(std::vector<Recording>& fitted, std::vector<Recording>& held_out);
+void make_names_distinct(std::vector<Recording>& fitted, std::vector<Recording>& held_out);
 
 }  // namespace heatsoak

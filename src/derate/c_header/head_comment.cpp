@@ -55,7 +55,7 @@ std::string guarantee_text(const Derating& derating) {
       " * Computed, not measured; plausible but wrong sensor readings are not covered.\n",
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
-      derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_reserve_ratio(),
+      derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       derating.options.guarantee.confidence, checked.samples, checked.over, derating.uses.size(),
       100.0 * checked.over / std::max(1, checked.samples), 100.0 * checked.over_share.low, 100.0 * checked.over_share.high,
       checked.winding_most_C);

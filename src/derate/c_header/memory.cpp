@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "derate/belief.h"
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
+#include "derate/plausible_range.h"
 
 namespace heatsoak::c_header {
 namespace {
@@ -226,7 +226,8 @@ std::string unwatched_signals(const Source& source, std::string_view input) {
     if (signal == firmware::neighbour) {
       text += fmt::format("  {}.{} = {}_WINDING_LIMIT_C;\n", input, name_of(signal), source.capital);
     } else if (signal == firmware::age) {
-      text += fmt::format("  {}.{} = {};\n", input, name_of(signal), literal(std::ranges::max(belief(source.derating, signal).values)));
+      text += fmt::format("  {}.{} = {};\n", input, name_of(signal),
+                          literal(std::ranges::max(plausible_range(source.derating, signal).values)));
     }
   }
   return text;

@@ -312,8 +312,8 @@ std::string comment(const SensorPlan& plan) {
       " * exceed a limit. */\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
-      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_reserve_ratio(), plan.samples,
-      plan.over, plan.dropped, plan.lying_nominal_C, plan.lying_over);
+      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(), plan.samples,
+      plan.over, plan.dropped, plan.sensor_fault_nominal_C, plan.sensor_fault_over);
 }
 
 /// The table for the lower safety factor, computed with the same rules.
@@ -358,7 +358,7 @@ Rates sensor_functions(const Source& source) {
                     {"@REJECTED@", plan.resistance ? "    if (out.sensor != @_sensor_silent) {\n      state->rejected += 1u;\n    }\n"
                                                    : "    state->rejected += 1u;\n"},
                     {"@GAINS@", gains},
-                    {"@RESERVE@", fmt::format("{:.3g}", plan.observer.heat_reserve_ratio())},
+                    {"@RESERVE@", fmt::format("{:.3g}", plan.observer.heat_safety_factor())},
                     {"@SENSOR_NODE@", std::to_string(plan.options.node)},
                     {"@CAP@", source.capital},
                     {"@NODES@", std::to_string(plan.observer.state_count())},

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "derate/belief.h"
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
+#include "derate/plausible_range.h"
 
 namespace heatsoak::c_header {
 namespace {
@@ -110,21 +110,21 @@ constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node)
 /// Returns the signals with several candidate values; a signal with a single one needs no sweep.
 std::vector<firmware::Signal> swept_signals(const Source& source) {
   std::vector<firmware::Signal> swept = source.signals;
-  std::erase_if(swept, [&](firmware::Signal signal) { return belief(source.derating, signal).values.size() < 2; });
+  std::erase_if(swept, [&](firmware::Signal signal) { return plausible_range(source.derating, signal).values.size() < 2; });
   return swept;
 }
 
 unsigned bit(firmware::Signal signal) { return 1U << static_cast<unsigned>(signal); }
 
 /// Generates the checks that replace implausible readings. Each gets a value before the sweeps, because a NaN would spoil every rate.
-std::string beliefs(const Source& source) {
+std::string plausible_ranges(const Source& source) {
   std::string text;
   for (const firmware::Signal signal : source.signals) {
-    const Belief believed = belief(source.derating, signal);
+    const PlausibleRange validated = plausible_range(source.derating, signal);
     const bool moves = signal == firmware::neighbour;
-    const std::string least = moves ? fmt::format("in.ambient_C - {}", literal(kNeighbourBelowAir_K)) : literal(believed.low);
+    const std::string least = moves ? fmt::format("in.ambient_C - {}", literal(kNeighbourBelowAir_K)) : literal(validated.low);
     text += fmt::format("  if (!{0}_is_between({1}, in.{2}, {3})) {{\n    in.{2} = {4};\n    unknown |= {5}u;\n  }}\n", source.prefix,
-                        least, name_of(signal), literal(believed.high), literal(believed.values.front()), bit(signal));
+                        least, name_of(signal), literal(validated.high), literal(validated.values.front()), bit(signal));
   }
   return text;
 }
@@ -136,7 +136,7 @@ std::string sweeps(const Source& source, const std::vector<firmware::Signal>& sw
   for (const firmware::Signal signal : swept) {
     text += fmt::format(
         "{4}if ((unknown & {0}u) != 0u) {{\n{4}  {1}_sweep(&in, &in.{2}, {1}_possible_{2}, {3}, state->state_C, rate_K_per_s);\n{4}}}\n",
-        bit(signal), source.prefix, name_of(signal), belief(source.derating, signal).values.size(), indent);
+        bit(signal), source.prefix, name_of(signal), plausible_range(source.derating, signal).values.size(), indent);
   }
   return text + (swept.size() > 1 ? "  }\n" : "");
 }
@@ -146,7 +146,7 @@ std::string sweeps(const Source& source, const std::vector<firmware::Signal>& sw
 std::string candidates(const Source& source) {
   std::string text;
   for (const firmware::Signal signal : swept_signals(source)) {
-    const std::vector<float> values = belief(source.derating, signal).values;
+    const std::vector<float> values = plausible_range(source.derating, signal).values;
     text += array(fmt::format("{}_possible_{}", source.prefix, name_of(signal)), {values.begin(), values.end()});
   }
   return text.empty() ? text : "/* what an input may be of which nothing is known */\n" + text + "\n";
@@ -155,7 +155,7 @@ std::string candidates(const Source& source) {
 std::string step_functions(const Source& source) {
   const std::vector<firmware::Signal> swept = swept_signals(source);
   const std::size_t nodes = source.derating.observer.state_count();
-  const Words words{{"@UNKNOWN@", beliefs(source)},
+  const Words words{{"@UNKNOWN@", plausible_ranges(source)},
                     {"@SWEEPS@", sweeps(source, swept)},
                     {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
                     {"@PASS@", swept.size() > 1 ? "  int pass;\n" : ""},

@@ -45,7 +45,7 @@ std::string structures(const Source& source) {
       "  float nominal_winding_C; /* degC, of a motor of nominal values, heat counts once; to show and log, decides nothing. An unknown "
       "input\n                              is as hot as it may be here too */\n"
       "  {0}_reason reason;\n}} {0}_output;\n\n",
-      source.prefix, observer.state_count(), observer.heat_reserve_ratio());
+      source.prefix, observer.state_count(), observer.heat_safety_factor());
   return text;
 }
 

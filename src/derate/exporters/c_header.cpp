@@ -17,7 +17,7 @@ namespace {
 /// Returns a checksum that differs between guards. In the include guard it makes the compiler report two headers with the same names.
 unsigned signature_of(const Derating& derating) {
   const std::string all =
-      fmt::format("{}|{}|{}|{}", derating.motor_id, derating.robot_id, derating.options.period_s, derating.observer.heat_reserve_ratio());
+      fmt::format("{}|{}|{}|{}", derating.motor_id, derating.robot_id, derating.options.period_s, derating.observer.heat_safety_factor());
   boost::crc_32_type sum;
   sum.process_bytes(all.data(), all.size());
   return sum.checksum();

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "derate/belief.h"
 #include "derate/c_header/c_text.h"
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 #include "derate/integer_form/integer_lines.h"
 #include "derate/integer_form/quantised_table.h"
+#include "derate/plausible_range.h"
 
 namespace heatsoak::exporters {
 namespace {
@@ -238,7 +238,7 @@ std::string structures(const Derating& derating, const std::string& prefix) {
              "*/\n"
              "  int32_t guarded_winding_mC; /* 0.001 degC, pessimistic; decides what is allowed */\n  {0}_reason reason;\n}} "
              "{0}_output;\n\n",
-             prefix, derating.observer.state_count(), derating.observer.heat_reserve_ratio(), kStoredBits, [&] {
+             prefix, derating.observer.state_count(), derating.observer.heat_safety_factor(), kStoredBits, [&] {
                std::string names;
                for (const std::string& name : derating.observer.state_names()) {
                  names += " " + c_header::in_comment(name);
@@ -276,23 +276,24 @@ std::string changes_function(const Derating& derating, const std::string& prefix
   return text + "}\n\n";
 }
 
-std::string beliefs(const Derating& derating) {
+std::string plausible_ranges(const Derating& derating) {
   std::string text;
   for (const InputField& field : kInputs) {
-    const Belief believed = belief(derating, field.signal);
+    const PlausibleRange validated = plausible_range(derating, field.signal);
     const std::string_view flag = field.signal == firmware::current ? "is_current_unknown"
                                   : field.signal == firmware::speed ? "is_speed_unknown"
                                                                     : "is_ambient_unknown";
-    text += fmt::format("  if ((in.{0} < {1}) || (in.{0} > {2})) {{\n    in.{0} = {3};\n    {4} = true;\n  }}\n", field.name,
-                        static_cast<std::int64_t>(std::ceil(1000.0 * believed.low)),
-                        static_cast<std::int64_t>(std::floor(1000.0 * believed.high)), thousandths_outward(believed.values.front()), flag);
+    text +=
+        fmt::format("  if ((in.{0} < {1}) || (in.{0} > {2})) {{\n    in.{0} = {3};\n    {4} = true;\n  }}\n", field.name,
+                    static_cast<std::int64_t>(std::ceil(1000.0 * validated.low)),
+                    static_cast<std::int64_t>(std::floor(1000.0 * validated.high)), thousandths_outward(validated.values.front()), flag);
   }
   return text;
 }
 
 std::vector<std::int64_t> candidates(const Derating& derating, firmware::Signal signal) {
   std::vector<std::int64_t> values;
-  for (const float value : belief(derating, signal).values) {
+  for (const float value : plausible_range(derating, signal).values) {
     values.push_back(thousandths_outward(value));
   }
   return values;
@@ -308,7 +309,7 @@ std::string write(const Derating& derating) {
   const std::vector<std::int64_t> currents = candidates(derating, firmware::current);
   const std::vector<std::int64_t> speeds = candidates(derating, firmware::speed);
   const std::size_t nodes = derating.observer.state_count();
-  const c_header::Words words{{"@BELIEFS@", beliefs(derating)},
+  const c_header::Words words{{"@BELIEFS@", plausible_ranges(derating)},
                               {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
                               {"@NODES@", std::to_string(nodes)},
                               {"@CURRENTS@", std::to_string(currents.size())},

@@ -44,7 +44,7 @@ std::string write(const Derating& derating) {
   require_finite(derating);
   require_datasheet_alone(derating);
   const MotorValues& motor = derating.nominal;
-  const double reserve = derating.observer.heat_reserve_ratio() * derating.heating_current_ratio * derating.heating_current_ratio;
+  const double reserve = derating.observer.heat_safety_factor() * derating.heating_current_ratio * derating.heating_current_ratio;
   const double winding_K_per_W = motor.thermal_resistance_winding_stator_K_per_W;
   const double stator_K_per_W = motor.thermal_resistance_stator_ambient_K_per_W;
   const double winding_J_per_K = motor.thermal_time_constant_winding_s / winding_K_per_W;
@@ -60,7 +60,7 @@ std::string write(const Derating& derating) {
           " Exact: a held current at standstill.\n",
           in_attribute(derating.motor_id), derating.rules.hottest_ambient_C,
           derating.rules.limits.winding_C - derating.rules.hottest_ambient_C, drag_W,
-          derating.observer.heat_reserve_ratio() * drag_W * stator_K_per_W, derating.rules.most_speed_rad_per_s);
+          derating.observer.heat_safety_factor() * drag_W * stator_K_per_W, derating.rules.most_speed_rad_per_s);
   return fmt::format(
       "<!--\n{}-->\n"
       "<mujoco>\n"

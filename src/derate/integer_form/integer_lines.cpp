@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "base/diagnostic.h"
-#include "derate/belief.h"
 #include "derate/export_text.h"
+#include "derate/plausible_range.h"
 
 namespace heatsoak::integer_form {
 namespace {
@@ -96,8 +96,8 @@ class Writer {
                  fmt::format("state_C[{}]", input - firmware::kSignalCount));
     }
     const auto signal = static_cast<firmware::Signal>(input);
-    const Belief believed = belief(derating_, signal);
-    FixedPoint made{.low = believed.low, .high = believed.high, .bits = bits_for(believed.low, believed.high), .absolute = 0.0};
+    const PlausibleRange validated = plausible_range(derating_, signal);
+    FixedPoint made{.low = validated.low, .high = validated.high, .bits = bits_for(validated.low, validated.high), .absolute = 0.0};
     // The factor 2^bits/1000 has 30 bits and its own shift.
     const double per_thousandth = std::ldexp(1.0 / kThousandths_ratio, made.bits);
     const int shift = bits_for(per_thousandth, per_thousandth);

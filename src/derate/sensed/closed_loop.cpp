@@ -155,15 +155,15 @@ class LaneSensor {
   LaneSensor(const SensedLoop& loop, const Lanes& offset_share, std::uint64_t seed, std::uint64_t stream)
       : loop_(loop), offset_K_(kOffsetShare * loop.plan.options.accuracy_K * offset_share), noise_(seed ^ kNoiseSeed, stream) {}
 
-  void start(double temperature_C) { shown_C_ = Lanes::Constant(temperature_C); }
+  void start(double temperature_C) { sensor_C_ = Lanes::Constant(temperature_C); }
 
   /// Sensor temperature in °C without offset and noise.
-  [[nodiscard]] const Lanes& shown_C() const { return shown_C_; }
+  [[nodiscard]] const Lanes& sensor_C() const { return sensor_C_; }
 
   Lanes reading_C(const Lanes& true_C) {
     const double lag_s = loop_.plan.options.lag_s;
-    shown_C_ = lag_s > 0.0 ? Lanes(shown_C_ + std::min(1.0, loop_.step_s / lag_s) * (true_C - shown_C_)) : true_C;
-    Lanes read_C = shown_C_ + offset_K_;
+    sensor_C_ = lag_s > 0.0 ? Lanes(sensor_C_ + std::min(1.0, loop_.step_s / lag_s) * (true_C - sensor_C_)) : true_C;
+    Lanes read_C = sensor_C_ + offset_K_;
     for (int lane = 0; lane < kLanes; ++lane) {
       read_C[lane] += (1.0 - kOffsetShare) * loop_.plan.options.accuracy_K * (2.0 * noise_.uniform() - 1.0);
     }
@@ -176,7 +176,7 @@ class LaneSensor {
   const SensedLoop& loop_;
   Lanes offset_K_;
   Random noise_;
-  Lanes shown_C_;
+  Lanes sensor_C_;
 };
 
 LaneSignals lane_signals(const HotCase& hot_case, const BarrierRules& rules, const Lanes& current_A, double speed_rad_per_s) {
@@ -229,8 +229,8 @@ DrawnMotors drawn_motors(const Motor& motor, std::uint64_t seed, std::uint64_t f
 }
 
 /// Returns the currents of the last step.
-Lanes run_use(const SensedLoop& loop, const Use& use, const DrawnMotors& drawn, LaneGuard& guard, LaneSensor& sensor, Bounds& bounds,
-              std::array<SensedPeak, kLanes>& peaks) {
+Lanes run_use(const SensedLoop& loop, const LoadPattern& use, const DrawnMotors& drawn, LaneGuard& guard, LaneSensor& sensor,
+              Bounds& bounds, std::array<SensedPeak, kLanes>& peaks) {
   const BarrierRules& rules = loop.rules;
   const double start_C = rules.hottest_ambient_C;
   const std::vector<Lanes> start(static_cast<std::size_t>(drawn.networks.front().state_count()), Lanes::Constant(start_C));
@@ -255,7 +255,7 @@ Lanes run_use(const SensedLoop& loop, const Use& use, const DrawnMotors& drawn, 
     guard.heat(signals);
     const Lanes& true_C = plant.state_C()[static_cast<std::size_t>(loop.plan.options.node)];
     guard.correct(sensor.reading_C(true_C), readable(loop, current_A, speed_rad_per_s));
-    bounds.take(signals, sensor.shown_C());
+    bounds.take(signals, sensor.sensor_C());
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     SensedPeak& peak = peaks[static_cast<std::size_t>(lane)];
@@ -269,20 +269,20 @@ Lanes run_use(const SensedLoop& loop, const Use& use, const DrawnMotors& drawn, 
 
 }  // namespace
 
-std::array<SensedPeak, kLanes> sensed_peaks(const SensedLoop& loop, std::span<const Use> uses, std::uint64_t seed,
+std::array<SensedPeak, kLanes> sensed_peaks(const SensedLoop& loop, std::span<const LoadPattern> uses, std::uint64_t seed,
                                             std::uint64_t first_stream) {
   const DrawnMotors drawn = drawn_motors(loop.motor, seed, first_stream);
   std::array<SensedPeak, kLanes> peaks{};
   LaneGuard guard(loop);
   LaneSensor sensor(loop, drawn.offset_share, seed, first_stream);
   Bounds bounds(loop, peaks);
-  for (const Use& use : uses) {
+  for (const LoadPattern& use : uses) {
     run_use(loop, use, drawn, guard, sensor, bounds, peaks);
   }
   return peaks;
 }
 
-double nominal_lasting_current_A(const SensedLoop& loop, const Use& held) {
+double nominal_lasting_current_A(const SensedLoop& loop, const LoadPattern& held) {
   std::array<MotorSample, kLanes> samples;
   samples.fill(nominal_sample(loop.motor));
   const DrawnMotors nominal = side_by_side(loop.motor, samples, Lanes::Zero());

@@ -36,10 +36,10 @@ struct SensedPeak {
 
 /// Simulates kLanes drawn motors, from the random streams `first_stream` on, in every use with the full current that the sensed observer
 /// allows. Omits the bound most_gain_A and the cross-check, because both only lower the current.
-std::array<SensedPeak, kLanes> sensed_peaks(const SensedLoop& loop, std::span<const Use> uses, std::uint64_t seed,
+std::array<SensedPeak, kLanes> sensed_peaks(const SensedLoop& loop, std::span<const LoadPattern> uses, std::uint64_t seed,
                                             std::uint64_t first_stream);
 
 /// Returns the current in A that the nominal motor, with a sensor without offset, is allowed at the end of a continuous use.
-double nominal_lasting_current_A(const SensedLoop& loop, const Use& held);
+double nominal_lasting_current_A(const SensedLoop& loop, const LoadPattern& held);
 
 }  // namespace heatsoak

@@ -83,9 +83,9 @@ struct SensorPlan {
   int over = 0;     ///< drawn motors that exceeded a limit
   double winding_p95_C = 0.0;
   double winding_most_C = 0.0;
-  int dropped = 0;               ///< drawn motors whose correct sensor is rejected by the cross-check
-  int lying_over = 0;            ///< drawn motors that exceed a limit with the worst undetected sensor fault
-  double lying_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault
+  int dropped = 0;                      ///< drawn motors whose correct sensor is rejected by the cross-check
+  int sensor_fault_over = 0;            ///< drawn motors that exceed a limit with the worst undetected sensor fault
+  double sensor_fault_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault
 };
 
 }  // namespace heatsoak

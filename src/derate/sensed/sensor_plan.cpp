@@ -8,7 +8,7 @@
 #include "base/diagnostic.h"
 #include "derate/sensed/closed_loop.h"
 #include "derate/sensed/kalman_design.h"
-#include "derate/sensed/lying_sensor.h"
+#include "derate/sensed/sensor_fault.h"
 #include "select/spread.h"
 
 namespace heatsoak {
@@ -44,7 +44,7 @@ class PlanSearch {
         model_only_(model_only),
         options_(options),
         progress_(progress),
-        uses_(hardest_uses(model_only.observer, model_only.rules)) {
+        uses_(hardest_patterns(model_only.observer, model_only.rules)) {
     const SensorGain gain = sensor_gain(motor, robot, model_only.rules, options, model_only.options.period_s, limp_current_A(model_only),
                                         model_only.options.guarantee.samples, model_only.options.guarantee.seed);
     gain_ = gain.gain;
@@ -52,7 +52,7 @@ class PlanSearch {
   }
 
   [[nodiscard]] SensorPlan plan_with(double reserve) const {
-    const double winding_speed_ratio = std::pow(std::max(1.0, model_only_.observer.heat_reserve_ratio() / reserve), kPulseExponent);
+    const double winding_speed_ratio = std::pow(std::max(1.0, model_only_.observer.heat_safety_factor() / reserve), kPulseExponent);
     Observer observer(faster_network(motor_, winding_speed_ratio), motor_.nominal, robot_, reserve);
     CurrentTable table = current_table(observer, model_only_.rules, model_only_.options.table);
     SensorPlan plan{.options = options_,
@@ -95,7 +95,7 @@ class PlanSearch {
     constexpr double kTolerance = 0.01;
     const double coarse_s = std::max(model_only_.options.period_s, model_only_.options.approach_s / kStepsPerApproach);
     double low = 1.0;
-    double high = model_only_.observer.heat_reserve_ratio();
+    double high = model_only_.observer.heat_safety_factor();
     while (high > low * (1.0 + kTolerance)) {
       const double middle = std::sqrt(low * high);
       (keeps(peaks(plan_with(middle), coarse_s, 0)) ? high : low) = middle;
@@ -106,7 +106,7 @@ class PlanSearch {
     return high;
   }
 
-  [[nodiscard]] const std::vector<Use>& uses() const { return uses_; }
+  [[nodiscard]] const std::vector<LoadPattern>& uses() const { return uses_; }
 
  private:
   static constexpr std::size_t kRounds = 8;
@@ -115,7 +115,7 @@ class PlanSearch {
   const Derating& model_only_;
   const SensorOptions& options_;
   const Progress& progress_;
-  std::vector<Use> uses_;
+  std::vector<LoadPattern> uses_;
   std::vector<double> gain_;
   double lag_gain_ratio_ = 0.0;
   std::size_t rounds_ = 0;
@@ -189,13 +189,13 @@ SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derati
   constexpr double kRaise = 1.005;
   constexpr int kMostRaises = 20;
   const double fine_s = 2.0 * model_only.options.period_s;
-  for (int number = 1; number <= kMostRaises && reserve < model_only.observer.heat_reserve_ratio(); ++number, reserve *= kRaise) {
+  for (int number = 1; number <= kMostRaises && reserve < model_only.observer.heat_safety_factor(); ++number, reserve *= kRaise) {
     SensorPlan plan = search.plan_with(reserve);
     const std::vector<SensedPeak> peaks = search.peaks(plan, fine_s, static_cast<std::uint64_t>(number) * kStreamsApart);
     if (search.keeps(peaks)) {
       set_check(plan, peaks);
       set_guarantee(plan, peaks);
-      set_lying_sensor(plan, motor, robot, model_only, search.uses());
+      set_sensor_fault(plan, motor, robot, model_only, search.uses());
       set_lasting(plan, search.loop(plan, fine_s), model_only);
       return plan;
     }

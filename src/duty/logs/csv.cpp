@@ -123,7 +123,7 @@ class Units {
 
   double log_steps_ = 0.0;
   std::uint64_t steps_ = 0;
-  double turned_ = 0.0;  ///< over stretches of kWindow_s
+  double turned_ = 0.0;  ///< over segments of kWindow_s
   double turned_s_ = 0.0;
   double lowest_yaw_ = std::numeric_limits<double>::infinity();
   double highest_yaw_ = -std::numeric_limits<double>::infinity();

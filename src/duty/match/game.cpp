@@ -50,7 +50,7 @@ class Game {
         random_(random) {}
 
   void half(double length_s) {
-    std::vector<Interruption> half = stretches(length_s);
+    std::vector<Interruption> half = segments(length_s);
     hand_out(half, length_s / kHalf_s);
     // The rules give ten seconds for a kick-off once it is called.
     add(Phase::kick_off_preparation, 5.0 + 5.0 * random_.uniform());
@@ -90,8 +90,8 @@ class Game {
 
   void add(Phase phase, double duration_s) { spans_.push_back({phase, duration_s}); }
 
-  /// What the clock of a half counts. The last stretch of play has no interruption behind it, unless a free kick is the last.
-  std::vector<Interruption> stretches(double left_s) {
+  /// What the clock of a half counts. The last segment of play has no interruption behind it, unless a free kick is the last.
+  std::vector<Interruption> segments(double left_s) {
     std::vector<Interruption> half;
     while (left_s > 0.0) {
       Interruption& each = half.emplace_back();

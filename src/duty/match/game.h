@@ -35,7 +35,7 @@ struct FieldSize {
 };
 FieldSize field_of(Division division);
 
-/// Two halves of 300 s of play with 300 s between them (and two of 150 s in overtime). The last stretch of
+/// Two halves of 300 s of play with 300 s between them (and two of 150 s in overtime). The last segment of
 /// a half is cut where its clock ends, so that play adds up exactly.
 std::vector<MatchPhase> generate_game(Division division, bool overtime, const MatchValues& values, Random& random);
 

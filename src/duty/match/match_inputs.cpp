@@ -71,7 +71,7 @@ MatchInputs read_match_inputs(Reader& table) {
   }
   inputs.overtime = table.flag("overtime", Need::optional).value_or(false);
   for (std::size_t i = 0; i < kSpecs.size(); ++i) {
-    inputs.figures[i] = table.figure(kSpecs[i].spec, Need::required).value_or(Figure{});
+    inputs.figures[i] = table.figure(kSpecs[i].spec, Need::required).value_or(ParameterValue{});
   }
   const MatchValues values = inputs.nominal();
   if (values.stop_shortest_s > values.stop_mean_s) {

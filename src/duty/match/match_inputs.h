@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "base/figure.h"
 #include "base/parameter.h"
+#include "base/parameter_value.h"
 #include "base/random.h"
 #include "input/reader.h"
 
@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, 3> kRoleNames{"keeper", "defender"
 
 /// One draw of every input; means are of exponential distributions unless said otherwise.
 struct MatchValues {
-  double running_mean_s = 0.0;   ///< of a stretch of play, unless the half ends first
+  double running_mean_s = 0.0;   ///< of a segment of play, unless the half ends first
   double stop_mean_s = 0.0;      ///< of a stop, whose part beyond the shortest is exponential
   double stop_shortest_s = 0.0;  ///< robots slow down, the ball is looked for
   double placement_share = 0.0;  ///< part of the interruptions that end with ball placement
@@ -52,7 +52,7 @@ struct MatchInputs {
   Division division = Division::a;
   Role role = Role::attacker;
   bool overtime = false;
-  std::array<Figure, 22> figures;  ///< in the order of match_input_specs()
+  std::array<ParameterValue, 22> figures;  ///< in the order of match_input_specs()
 
   [[nodiscard]] MatchValues nominal() const;
   [[nodiscard]] MatchValues draw(Random& random) const;

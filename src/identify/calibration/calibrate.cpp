@@ -93,15 +93,15 @@ class Calibrating {
     all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.figures);
     all_.next_experiment = next_experiment(all_.open);
     forecast();
-    tell_what_moved_far();
+    report_large_changes();
     all_.fit_error = errors();
     refuse_where_nothing_is_explained();
     std::ranges::move(outside_declared_ranges(motor, all_.figures), std::back_inserter(all_.notes));
-    tell_common_factor();
-    tell_terminal_resistance(motor);
-    tell_what_got_worse("the runs that were fitted", all_.fit_error);
+    report_common_factor();
+    report_terminal_resistance(motor);
+    report_grown_errors("the runs that were fitted", all_.fit_error);
     refuse_where_nothing_was_learned();
-    tell_what_is_far_off();
+    report_implausible_values();
     score_holdout(motor);
     return std::move(all_);
   }
@@ -116,9 +116,9 @@ class Calibrating {
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
       // The forecast fit assumes no unknown heat; parameters that are not identifiable beside such heat stay so.
-      const std::vector<CalibratedFigure> before = std::exchange(all_.figures, {});
+      const std::vector<CalibratedParameter> before = std::exchange(all_.figures, {});
       figures();
-      keep_untold(before, all_.figures);
+      keep_unidentifiable(before, all_.figures);
     }
     std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
   }
@@ -146,7 +146,7 @@ class Calibrating {
     std::ranges::move(after.notes, std::back_inserter(all_.notes));
     all_.holdout_after = std::move(after.runs);
     all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
-    tell_what_got_worse("the runs held out", all_.holdout_error);
+    report_grown_errors("the runs held out", all_.holdout_error);
   }
 
   /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
@@ -167,7 +167,7 @@ class Calibrating {
     all_.fit = std::move(other);
     all_.runs = std::move(turning);
     rows_turn_ = true;
-    all_.notes.emplace_back(kTurningRowsTold);
+    all_.notes.emplace_back(kTurningRowsReason);
   }
 
   /// Adds warnings about the fit to the notes.
@@ -192,11 +192,11 @@ class Calibrating {
                       "looks for what it is",
                       significant(100.0 * most_W / fit.usual_heat_W, 2), significant(fit.usual_heat_W, 2)));
     }
-    for (std::size_t kind = 0; kind < fit.wander_K.size(); ++kind) {
+    for (std::size_t kind = 0; kind < fit.drift_K.size(); ++kind) {
       all_.notes.push_back(
           fmt::format("the sensor at the {} seems to wander by {} K (standard deviation) over some {} s: errors of its own, or "
                       "of a model with two temperatures",
-                      fit.sensor_nodes[kind], significant(fit.wander_K[kind], 2), significant(fit.wander_time_scale_s, 1)));
+                      fit.sensor_nodes[kind], significant(fit.drift_K[kind], 2), significant(fit.drift_time_scale_s, 1)));
     }
     if (std::ranges::find(fit.sensor_nodes, "winding") == fit.sensor_nodes.end()) {
       all_.notes.emplace_back(
@@ -224,27 +224,28 @@ class Calibrating {
         cubes_s3 += step_s * step_s * step_s;
       }
     }
-    const Eigen::VectorXd& capacity = std::ranges::find(all_.motor_model.figures, "winding_heat_capacity", &FittedFigure::name)->exponents;
-    const auto& constant = *std::ranges::find(all_.motor_model.figures, "thermal_time_constant_winding", &FittedFigure::name);
+    const Eigen::VectorXd& capacity =
+        std::ranges::find(all_.motor_model.figures, "winding_heat_capacity", &CalibratedValue::name)->exponents;
+    const auto& constant = *std::ranges::find(all_.motor_model.figures, "thermal_time_constant_winding", &CalibratedValue::name);
     const double winding_s = constant.before * std::exp(constant.exponents.dot(all_.fit.theta - all_.motor_model.model.theta()));
     const double sd_share = cubes_s3 / time_s / (12.0 * winding_s * winding_s);
     all_.fit.covariance += sd_share * sd_share * capacity * capacity.transpose();
   }
 
   /// Adds a note if all parameters moved by one common factor, which is the effect of wrong heat: it changes no temperature.
-  void tell_common_factor() {
+  void report_common_factor() {
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
     for (const auto& [name, sign] :
          {std::pair("winding_heat_capacity", 1.0), std::pair("stator_heat_capacity", 1.0),
           std::pair("thermal_resistance_winding_stator", -1.0), std::pair("thermal_resistance_stator_ambient", -1.0)}) {
-      const auto found = std::ranges::find(all_.figures, name, &CalibratedFigure::name);
+      const auto found = std::ranges::find(all_.figures, name, &CalibratedParameter::name);
       const double moved = sign * std::log(found->value / found->before);
       least = std::min(least, moved);
       most = std::max(most, moved);
     }
     // Clearly more than the prior makes plausible.
-    const auto across = std::ranges::find(all_.motor_model.figures, "thermal_resistance_winding_stator", &FittedFigure::name);
+    const auto across = std::ranges::find(all_.motor_model.figures, "thermal_resistance_winding_stator", &CalibratedValue::name);
     const double plain = std::max(0.22, 1.5 * across->prior_sd);
     if (least > plain || most < -plain) {
       const bool is_much = least > 0.0;
@@ -258,7 +259,7 @@ class Calibrating {
   }
 
   /// Adds a note if V = R·I + K·ω gives another terminal resistance than the file. Needs logs with all three signals that follow this law.
-  void tell_terminal_resistance(const Motor& motor) {
+  void report_terminal_resistance(const Motor& motor) {
     Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
     Eigen::Vector2d with_voltage = Eigen::Vector2d::Zero();
     double squares_V2 = 0.0;
@@ -299,7 +300,7 @@ class Calibrating {
 
   /// Lists signals that are predicted worse than before: with an incomplete model, parameters of the fast response may predict whole runs
   /// worse.
-  void tell_what_got_worse(const char* runs, const std::vector<ErrorBeforeAfter>& errors) {
+  void report_grown_errors(const char* runs, const std::vector<ErrorBeforeAfter>& errors) {
     for (const ErrorBeforeAfter& each : errors) {
       constexpr double kWorse_ratio = 1.1;
       constexpr double kLeast_K = 0.1;
@@ -314,9 +315,9 @@ class Calibrating {
     }
   }
 
-  void tell_what_moved_far() {
+  void report_large_changes() {
     constexpr double kUnlikely_sd = 3.0;
-    for (const FittedFigure& each : all_.motor_model.figures) {
+    for (const CalibratedValue& each : all_.motor_model.figures) {
       const double moved = each.exponents.dot(all_.fit.theta - all_.motor_model.model.theta());
       const double sd = std::sqrt(each.exponents.dot(all_.fit.covariance * each.exponents));
       if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
@@ -334,11 +335,11 @@ class Calibrating {
     const Fit& fit = all_.fit;
     std::vector<std::optional<std::pair<double, double>>> profiles(static_cast<std::size_t>(model.free_count()));
     Eigen::Index of_file = 0;
-    for (const FittedFigure& each : motor.figures) {
+    for (const CalibratedValue& each : motor.figures) {
       of_file += each.is_of_file ? 1 : 0;
       const double moved = each.exponents.dot(fit.theta - model.theta());
       const double sd = std::sqrt(each.exponents.dot(fit.covariance * each.exponents));
-      CalibratedFigure figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
+      CalibratedParameter figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
       figure.value = each.before * std::exp(moved);
       double below = kInterval_sd * sd;
       double above = kInterval_sd * sd;
@@ -356,7 +357,7 @@ class Calibrating {
       figure.high = figure.value * std::exp(above);
       // Without heat in the runs, values in watts rest on the file, however well the data determine the time constants.
       const bool has_watts = each.origin == Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
-      figure.is_identifiable = has_watts && is_told(sd, each);
+      figure.is_identifiable = has_watts && is_identifiable(sd, each);
       all_.figures.push_back(std::move(figure));
     }
     Eigen::MatrixXd exponents(of_file, model.free_count());
@@ -370,7 +371,7 @@ class Calibrating {
 
   void refuse_where_nothing_was_learned() const {
     const bool is_file_kept = all_.is_forecast_written && all_.forecast->source == ForecastSource::file;
-    if (is_file_kept || std::ranges::any_of(all_.figures, &CalibratedFigure::is_identifiable)) {
+    if (is_file_kept || std::ranges::any_of(all_.figures, &CalibratedParameter::is_identifiable)) {
       return;
     }
     std::string why = "nothing can be learned about this motor from these logs";
@@ -408,7 +409,7 @@ class Calibrating {
     }
   }
 
-  void tell_what_is_far_off() {
+  void report_implausible_values() {
     constexpr double kFar_K = 15.0;
     constexpr double kFar_share = 0.2;
     for (const ErrorBeforeAfter& each : all_.fit_error) {
@@ -459,12 +460,12 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
   fit.training = calibration.training;
   result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names_of(calibration.runs), ", "));
-  for (const CalibratedFigure& each : calibration.figures) {
+  for (const CalibratedParameter& each : calibration.figures) {
     if (!each.is_of_file) {
       continue;
     }
     fit.figures.push_back(each.name);
-    Figure* const figure = find_figure(result, each.name);
+    ParameterValue* const figure = find_parameter(result, each.name);
     figure->value = each.value;
     figure->printed.clear();
     if (each.is_identifiable) {

@@ -24,7 +24,7 @@ struct CalibrationOptions {
   bool is_for_forecasts = false;
 };
 
-struct CalibratedFigure {
+struct CalibratedParameter {
   std::string name;  ///< key in the motor file, or the name of a heat capacity
   std::string unit;
   bool is_of_file = true;
@@ -51,7 +51,7 @@ struct Calibration {
   std::vector<MeasuredRun> runs;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
   TrainingRange training;           ///< their conditions and input ranges
-  std::vector<CalibratedFigure> figures;
+  std::vector<CalibratedParameter> figures;
   Eigen::MatrixXd correlation;  ///< of the logarithms of the motor file's parameters, in the order of `figures`
   std::vector<OpenDirection> open;
   std::string next_experiment;  ///< empty if nothing is open

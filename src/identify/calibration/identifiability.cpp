@@ -15,7 +15,7 @@ namespace heatsoak {
 namespace {
 
 /// A direction is open if the data leave more than this fraction of its prior variance.
-constexpr double kToldShare = 0.5;
+constexpr double kIdentifiableShare = 0.5;
 
 struct Look {
   bool winding_is_sensed = false;
@@ -170,13 +170,13 @@ Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, cons
   return std::abs(component(direction, roles.drag)) > kMostly ? loss_hidden(seen) : not_excited();
 }
 
-bool is_of_stator(const MotorModel& motor, const FittedFigure& figure) {
+bool is_of_stator(const MotorModel& motor, const CalibratedValue& figure) {
   const Roles roles = roles_of(motor.model);
   return component(figure.exponents, roles.stator_capacity) != 0.0 || component(figure.exponents, roles.stator_ambient) != 0.0;
 }
 
 /// Reason why a single parameter is not identifiable although no open direction contains it.
-Answer answer_to(const MotorModel& motor, const FittedFigure& figure, const Fit& fit, const Look& seen) {
+Answer answer_to(const MotorModel& motor, const CalibratedValue& figure, const Fit& fit, const Look& seen) {
   const Roles roles = roles_of(motor.model);
   const auto holds = [&](int place) { return component(figure.exponents, place) != 0.0; };
   if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, figure))) {
@@ -210,11 +210,11 @@ Answer answer_to(const MotorModel& motor, const FittedFigure& figure, const Fit&
 
 /// Adds a reason for every parameter that is not identifiable and that the open directions do not explain. `told` has these directions as
 /// columns.
-void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedFigure> figures,
+void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedParameter> figures,
                    const Eigen::MatrixXd& told, std::vector<OpenDirection>& open) {
   const bool has_unlogged_speed = !motor.nuisances.empty();
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    const FittedFigure& figure = motor.figures[i];
+    const CalibratedValue& figure = motor.figures[i];
     const double variance = figure.exponents.dot(fit.covariance * figure.exponents);
     constexpr double kMostly = 0.5;
     if (figures[i].is_identifiable || (told.transpose() * figure.exponents).squaredNorm() > kMostly * variance) {
@@ -258,7 +258,7 @@ bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
   });
 }
 
-bool rests_on_watts(const MotorModel& motor, const FittedFigure& figure) {
+bool rests_on_watts(const MotorModel& motor, const CalibratedValue& figure) {
   const Roles roles = roles_of(motor.model);
   const double by_scale = component(figure.exponents, roles.winding_capacity) - component(figure.exponents, roles.winding_stator) +
                           component(figure.exponents, roles.stator_capacity) - component(figure.exponents, roles.stator_ambient);
@@ -266,7 +266,7 @@ bool rests_on_watts(const MotorModel& motor, const FittedFigure& figure) {
 }
 
 std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
-                                           std::span<const CalibratedFigure> figures) {
+                                           std::span<const CalibratedParameter> figures) {
   const Eigen::Index count = motor.model.free_count();
   const Eigen::MatrixXd triangle = fit.data_triangle.topLeftCorner(count, count);
   Eigen::MatrixXd data = triangle.transpose() * triangle;
@@ -287,7 +287,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
   const Eigen::MatrixXd root = prior_covariance.llt().matrixL();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(root.transpose() * data(asked, asked) * root);
   const Look seen = look(motor, runs);
-  const bool was_fitted = std::ranges::find(motor.figures, Origin::measured, &FittedFigure::origin) != motor.figures.end();
+  const bool was_fitted = std::ranges::find(motor.figures, Origin::measured, &CalibratedValue::origin) != motor.figures.end();
   std::vector<OpenDirection> open;
   if (!motor.nuisances.empty()) {
     open.push_back(open_direction(std::string(kLossAtUnloggedSpeed), speed_unlogged()));
@@ -302,7 +302,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
     left(asked) = root * solver.eigenvectors().col(i) / std::sqrt(1.0 + information);
     constexpr double kWellKnown = 0.03;
     const bool is_known = was_fitted && left.cwiseAbs().maxCoeff() < kWellKnown;
-    if (1.0 / (1.0 + information) > kToldShare && !is_known) {
+    if (1.0 / (1.0 + information) > kIdentifiableShare && !is_known) {
       open.push_back(open_direction(movement(motor.model, left.normalized()), answer_to(motor, left.normalized(), seen)));
       open.back().left_sd = left.norm();
       told.conservativeResize(Eigen::NoChange, told.cols() + 1);

@@ -30,7 +30,7 @@ const EffectType& loss_at_stator() {
       .nodes = {{"winding", "winding"}, {"stator", "stator"}},
       .parameters = {{"drag_torque", "N m", Range::non_negative(), "torque constant times no-load current"}},
       .typical = "",
-      .look_alike = "",
+      .confounded_with = "",
       .example = {},
       .laws = laws<LossAtStator>(),
       .needs = {Signal::speed, Signal::input_power, Signal::shaft_power},

@@ -31,7 +31,7 @@ constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::dat
 /// Mean specific heat of motor materials (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and the standard deviation of the
 /// logarithm of the heat capacity that follows from the mass: part of the mass is only weakly coupled to the stator.
 constexpr double kSpecificHeat_J_per_kg_K = 440.0;
-constexpr double kMassTells_sd = 0.25;
+constexpr double kMassPrior_sd = 0.25;
 
 int place_of(const Network& network, std::string_view parameter) {
   const auto all = network.parameters();
@@ -96,10 +96,10 @@ class ModelBuilder {
       heat_of_current();
     }
     effects();
-    const auto file_figures = all_.figures.size();
+    const auto file_parameters = all_.figures.size();
     capacity("winding_heat_capacity", winding);
     capacity("stator_heat_capacity", stator);
-    set_prior(file_figures, winding, stator);
+    set_prior(file_parameters, winding, stator);
     return std::move(all_);
   }
 
@@ -114,15 +114,15 @@ class ModelBuilder {
   }
 
   void figure(std::string_view key, const std::vector<std::pair<int, double>>& exponents) {
-    const Figure& figure = motor_.figures.find(key)->second;
-    const auto specs = motor_figure_specs();
-    const auto spec = std::ranges::find(specs, key, [](const MotorFigureSpec& each) { return each.spec.key; });
+    const ParameterValue& figure = motor_.figures.find(key)->second;
+    const auto specs = motor_parameter_specs();
+    const auto spec = std::ranges::find(specs, key, [](const MotorParameterSpec& each) { return each.spec.key; });
     add(std::string(key), std::string(spec->spec.unit), figure, exponents);
   }
-  void add(std::string name, std::string unit, const Figure& figure, const std::vector<std::pair<int, double>>& exponents) {
+  void add(std::string name, std::string unit, const ParameterValue& figure, const std::vector<std::pair<int, double>>& exponents) {
     // A result of an earlier fit holds for this mounting, so it is not widened.
     const double prior_sd = is_of_fit(name) && figure.spread ? prior_sd_of_spread(figure) : prior_sd_of(figure);
-    FittedFigure fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), figure.value, prior_sd, figure.origin};
+    CalibratedValue fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), figure.value, prior_sd, figure.origin};
     for (const auto& [place, exponent] : exponents) {
       fitted.exponents[place] = exponent;
     }
@@ -130,7 +130,7 @@ class ModelBuilder {
   }
 
   void heat_of_current() {
-    const Figure& resistance = motor_.figures.find("terminal_resistance")->second;
+    const ParameterValue& resistance = motor_.figures.find("terminal_resistance")->second;
     // A published or measured resistance sets the scale of all heat and is held; an estimate is fitted.
     if (resistance.spread || resistance.origin == Origin::estimated) {
       figure("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
@@ -201,7 +201,7 @@ class ModelBuilder {
     all_.figures.back().exponents[place] = 1.0;
   }
 
-  static double prior_sd_of_spread(const Figure& figure) { return 0.25 * std::log(figure.spread->high / figure.spread->low); }
+  static double prior_sd_of_spread(const ParameterValue& figure) { return 0.25 * std::log(figure.spread->high / figure.spread->low); }
 
   [[nodiscard]] bool is_of_fit(const std::string& name) const {
     return motor_.fit && std::ranges::find(motor_.fit->figures, name) != motor_.fit->figures.end();
@@ -209,12 +209,12 @@ class ModelBuilder {
 
   /// Prior precision of the logarithms of the file's parameters. They are independent, except for those from one earlier fit, which have
   /// its correlation.
-  [[nodiscard]] Eigen::MatrixXd precision_of_figures(Eigen::Index count) const {
+  [[nodiscard]] Eigen::MatrixXd precision_of_parameters(Eigen::Index count) const {
     Eigen::VectorXd inverse_sd(count);
     Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
     std::vector<Eigen::Index> in_fit(static_cast<std::size_t>(count), -1);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const FittedFigure& each = all_.figures[static_cast<std::size_t>(i)];
+      const CalibratedValue& each = all_.figures[static_cast<std::size_t>(i)];
       inverse_sd[i] = 1.0 / each.prior_sd;
       if (is_of_fit(each.name)) {
         in_fit[static_cast<std::size_t>(i)] = std::ranges::find(motor_.fit->figures, each.name) - motor_.fit->figures.begin();
@@ -236,18 +236,18 @@ class ModelBuilder {
   }
 
   /// Converts the prior of the file's parameters to the parameters of the model.
-  void set_prior(std::size_t file_figures, int winding, int stator) {
+  void set_prior(std::size_t file_parameters, int winding, int stator) {
     Model& model = all_.model;
     const Eigen::Index count = model.free_count();
-    for (FittedFigure& each : all_.figures) {
+    for (CalibratedValue& each : all_.figures) {
       each.exponents.conservativeResize(count);
     }
     model.prior.mean = model.theta();
-    Eigen::MatrixXd exponents(static_cast<Eigen::Index>(file_figures), count);
-    for (std::size_t i = 0; i < file_figures; ++i) {
+    Eigen::MatrixXd exponents(static_cast<Eigen::Index>(file_parameters), count);
+    for (std::size_t i = 0; i < file_parameters; ++i) {
       exponents.row(static_cast<Eigen::Index>(i)) = all_.figures[i].exponents.transpose();
     }
-    model.prior.precision = exponents.transpose() * precision_of_figures(exponents.rows()) * exponents;
+    model.prior.precision = exponents.transpose() * precision_of_parameters(exponents.rows()) * exponents;
     // An earlier fit has already used the mass.
     if (const double mass_kg = motor_.nominal.mass_kg; !std::isnan(mass_kg) && !motor_.fit) {
       const double winding_J_per_K = std::exp(model.prior.mean[winding]);
@@ -258,11 +258,11 @@ class ModelBuilder {
       share[stator] = stator_J_per_K / sum_J_per_K;
       const double off = std::log(kSpecificHeat_J_per_kg_K * mass_kg / sum_J_per_K);
       const Eigen::MatrixXd before = model.prior.precision;
-      model.prior.precision += share * share.transpose() / (kMassTells_sd * kMassTells_sd);
-      model.prior.mean += model.prior.precision.ldlt().solve(share) * off / (kMassTells_sd * kMassTells_sd);
+      model.prior.precision += share * share.transpose() / (kMassPrior_sd * kMassPrior_sd);
+      model.prior.mean += model.prior.precision.ldlt().solve(share) * off / (kMassPrior_sd * kMassPrior_sd);
     }
     const Eigen::MatrixXd covariance = model.prior.precision.inverse();
-    for (FittedFigure& each : all_.figures) {
+    for (CalibratedValue& each : all_.figures) {
       if (!each.is_of_file) {
         each.prior_sd = std::sqrt(each.exponents.dot(covariance * each.exponents));
       }
@@ -277,14 +277,14 @@ class ModelBuilder {
 
 }  // namespace
 
-bool is_told(double sd_share, const FittedFigure& figure) {
+bool is_identifiable(double sd_share, const CalibratedValue& figure) {
   // Not identifiable: an interval of a factor of two to each side, or less than 30 % reduction of the prior standard deviation.
   constexpr double kIdentifiable_sd = 0.35;
   constexpr double kNews_share = 0.7;
   return sd_share < kIdentifiable_sd && (figure.origin == Origin::measured || sd_share < kNews_share * figure.prior_sd);
 }
 
-double prior_sd_of(const Figure& figure) {
+double prior_sd_of(const ParameterValue& figure) {
   const auto* const trust = std::ranges::find(kTrust, figure.origin, &Trust::origin);
   if (!figure.spread || !(figure.spread->low > 0.0) || !(figure.spread->high > figure.spread->low)) {
     return trust->unstated_sd;

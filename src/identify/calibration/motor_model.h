@@ -27,7 +27,7 @@ inline constexpr double kSheet_sd = 0.4;
 enum class HeatInput { current, input_power, power_balance };
 
 /// Parameter of the motor file, or a heat capacity computed from two of them. Its logarithm is linear in θ.
-struct FittedFigure {
+struct CalibratedValue {
   std::string name;  ///< key in the file, for example "thermal_time_constant_winding" or "effects.fan.conductance"
   std::string unit;
   bool is_of_file = true;     ///< false: a heat capacity; files contain time constants instead
@@ -39,13 +39,13 @@ struct FittedFigure {
 
 /// Returns true if the data, not only the prior, determine the parameter to a factor of two or better. `sd_share` is the standard deviation
 /// of its logarithm.
-bool is_told(double sd_share, const FittedFigure& figure);
+bool is_identifiable(double sd_share, const CalibratedValue& figure);
 
 struct MotorModel {
   Model model;
   HeatInput heat = HeatInput::current;
   std::vector<Signal> needed;
-  std::vector<FittedFigure> figures;
+  std::vector<CalibratedValue> figures;
   std::vector<int> nuisances;     ///< indices of free parameters that are not parameters of the motor
   std::vector<std::string> held;  ///< sentences: parameters that are not fitted, and why
 };
@@ -75,6 +75,6 @@ MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);
 
 /// Returns the prior standard deviation of a parameter's logarithm: from its spread, widened according to its origin, or a default for the
 /// origin if it has no spread.
-double prior_sd_of(const Figure& figure);
+double prior_sd_of(const ParameterValue& figure);
 
 }  // namespace heatsoak

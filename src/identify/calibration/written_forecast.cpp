@@ -43,16 +43,16 @@ Range declared_range(const Motor& motor, std::string_view key) {
       }
     }
   }
-  const auto specs = motor_figure_specs();
-  const auto found = std::ranges::find(specs, key, [](const MotorFigureSpec& each) { return each.spec.key; });
+  const auto specs = motor_parameter_specs();
+  const auto found = std::ranges::find(specs, key, [](const MotorParameterSpec& each) { return each.spec.key; });
   return found == specs.end() ? Range::positive() : found->spec.range;
 }
 
-std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedFigure> figures) {
+std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> figures) {
   std::vector<std::string> notes;
   Motor declared = motor;
-  for (const CalibratedFigure& each : figures) {
-    const Figure* const figure = each.is_of_file ? find_figure(declared, each.name) : nullptr;
+  for (const CalibratedParameter& each : figures) {
+    const ParameterValue* const figure = each.is_of_file ? find_parameter(declared, each.name) : nullptr;
     if (figure && figure->spread && (each.value < figure->spread->low || each.value > figure->spread->high)) {
       notes.push_back(
           fmt::format("{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether "
@@ -64,9 +64,9 @@ std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<c
   return notes;
 }
 
-void keep_untold(std::span<const CalibratedFigure> before, std::vector<CalibratedFigure>& figures) {
-  for (CalibratedFigure& each : figures) {
-    const auto same = std::ranges::find(before, each.name, &CalibratedFigure::name);
+void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& figures) {
+  for (CalibratedParameter& each : figures) {
+    const auto same = std::ranges::find(before, each.name, &CalibratedParameter::name);
     each.is_identifiable = each.is_identifiable && (same == before.end() || same->is_identifiable);
   }
 }
@@ -86,13 +86,14 @@ void write_forecast(Calibration& calibration) {
 
 std::string what_does_not_describe(const Calibration& calibration) {
   const bool is_extended = calibration.is_forecast_written && !calibration.forecast->accepted.empty();
-  return fmt::format("{} constant values do not describe this motor", is_extended ? "the extended network and its" : "two temperatures with");
+  return fmt::format("{} constant values do not describe this motor",
+                     is_extended ? "the extended network and its" : "two temperatures with");
 }
 
 std::vector<std::string> forecast_in_words(const Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
   std::vector<std::string> words;
-  if (calibration.is_forecast_written && !std::ranges::all_of(calibration.figures, &CalibratedFigure::is_identifiable)) {
+  if (calibration.is_forecast_written && !std::ranges::all_of(calibration.figures, &CalibratedParameter::is_identifiable)) {
     words.emplace_back(
         "values that are not identifiable are written too: the forecast depends on all values together, so take none of these for a "
         "measurement");
@@ -133,7 +134,7 @@ void add_extensions(const Calibration& calibration, const std::string& source, M
       continue;
     }
     motor.effects.push_back(effect);
-    for (Figure& each : motor.effects.back().parameters) {
+    for (ParameterValue& each : motor.effects.back().parameters) {
       each.source = source;
       each.origin = each.spread ? each.origin : Origin::derived;
     }

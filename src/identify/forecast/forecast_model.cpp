@@ -144,7 +144,7 @@ LinearisedRun ForecastModel::along(const MeasuredRun& run, const Eigen::VectorXd
     const SensorFault fault{faults_[i].type, std::exp(theta[own])};
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
       if (run.sensors[static_cast<std::size_t>(sensor)].signal == fault.type->signal) {
-        const Eigen::VectorXd by_size = fault.type->law.by_size(run.time_s, fault.size, out.shown_C.col(sensor));
+        const Eigen::VectorXd by_size = fault.type->law.by_size(run.time_s, fault.size, out.sensor_C.col(sensor));
         add_fault(fault, sensor, run, out);
         out.by_parameter(Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors()), own) = fault.size * by_size;
       }

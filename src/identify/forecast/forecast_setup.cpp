@@ -29,22 +29,22 @@ bool all_have(std::span<const Recording> recordings, Signal signal) {
   });
 }
 
-Figure held(double value) {
-  Figure figure;
+ParameterValue held(double value) {
+  ParameterValue figure;
   figure.value = value;
   figure.derivation = "held by the fit";
   return figure;
 }
 
 /// Free parameter with prior standard deviation `sd` of its logarithm. The range follows from prior_sd_of() for the origin "estimated".
-Figure free_figure(double value, double sd) {
-  Figure figure = held(value);
+ParameterValue free_parameter(double value, double sd) {
+  ParameterValue figure = held(value);
   figure.derivation = "start of the fit";
   figure.spread = Spread{Spread::Kind::range, value * std::exp(-sd), value * std::exp(sd), true};
   return figure;
 }
 
-MotorEffect effect(std::string name, std::string_view type, std::vector<std::string> nodes, std::vector<Figure> parameters) {
+MotorEffect effect(std::string name, std::string_view type, std::vector<std::string> nodes, std::vector<ParameterValue> parameters) {
   return {std::move(name), find_effect(type), std::move(nodes), std::move(parameters), {}, {}};
 }
 
@@ -80,7 +80,7 @@ class Listing {
       return;
     }
     const auto free =
-        static_cast<int>(std::ranges::count_if(effect.parameters, [](const Figure& each) { return each.spread.has_value(); }));
+        static_cast<int>(std::ranges::count_if(effect.parameters, [](const ParameterValue& each) { return each.spread.has_value(); }));
     const std::string name = effect.name == "contact_law"
                                  ? fmt::format("contact_law_of_{}{}{}", effect.parameters[1].spread ? "mean" : "",
                                                effect.parameters[1].spread && effect.parameters[2].spread ? "_and_" : "",
@@ -93,10 +93,10 @@ class Listing {
   void contact(double conductance_W_per_K) {
     constexpr double kVaries_share = 0.5;
     for (const auto& [by_mean, by_difference] : {std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {
-      const auto ratio = [](bool is_free) { return is_free ? free_figure(1.0, kContact_sd) : held(1.0); };
+      const auto ratio = [](bool is_free) { return is_free ? free_parameter(1.0, kContact_sd) : held(1.0); };
       const std::size_t before = all_.size();
       add(effect("contact_law", "contact_law", {"winding", "stator"},
-                 {free_figure(kVaries_share * conductance_W_per_K, kShape_sd), ratio(by_mean), ratio(by_difference)}));
+                 {free_parameter(kVaries_share * conductance_W_per_K, kShape_sd), ratio(by_mean), ratio(by_difference)}));
       if (all_.size() > before) {
         all_.back().start_ratio = {{"winding_stator.thermal_resistance", 1.0 / (1.0 - kVaries_share)}};
       }
@@ -116,16 +116,17 @@ class Listing {
   }
 
   void cooling(double out_W_per_K) {
-    add(effect("natural_convection", "natural_convection", {"stator", "ambient"}, {free_figure(0.3 * out_W_per_K, kLoose_sd), held(0.25)}));
-    add(effect("radiation", "radiation", {"stator", "ambient"}, {free_figure(0.2 * out_W_per_K / kRadiation_W_per_m2_K, kLoose_sd)}));
-    add(effect("winding_to_air", "conduction", {"winding", "ambient"}, {free_figure(10.0 / out_W_per_K, kLoose_sd)}));
+    add(effect("natural_convection", "natural_convection", {"stator", "ambient"},
+               {free_parameter(0.3 * out_W_per_K, kLoose_sd), held(0.25)}));
+    add(effect("radiation", "radiation", {"stator", "ambient"}, {free_parameter(0.2 * out_W_per_K / kRadiation_W_per_m2_K, kLoose_sd)}));
+    add(effect("winding_to_air", "conduction", {"winding", "ambient"}, {free_parameter(10.0 / out_W_per_K, kLoose_sd)}));
   }
 
   void third_nodes(double across_W_per_K, double out_W_per_K) {
     const auto body = [&](const char* node, double conductance_W_per_K, double capacity_J_per_K) {
       const std::string name = fmt::format("body_at_{}", node);
       add(effect(name, "third_node", {node, name, "ambient"},
-                 {free_figure(conductance_W_per_K, kShape_sd), held(0.0), free_figure(capacity_J_per_K, kShape_sd)}));
+                 {free_parameter(conductance_W_per_K, kShape_sd), held(0.0), free_parameter(capacity_J_per_K, kShape_sd)}));
     };
     body("winding", across_W_per_K, 0.5 * value("winding.heat_capacity"));
     body("stator", std::max(3.0 * out_W_per_K, 0.3 * across_W_per_K), 0.5 * value("stator.heat_capacity"));
@@ -134,10 +135,10 @@ class Listing {
   void heat_split() {
     constexpr double kUsual_share = 0.1;
     if (setup_.heat == HeatInput::input_power) {
-      add(effect("input_power_at_stator", "input_power_loss", {"stator"}, {free_figure(kUsual_share, kShape_sd)}));
+      add(effect("input_power_at_stator", "input_power_loss", {"stator"}, {free_parameter(kUsual_share, kShape_sd)}));
     } else {
       add(effect("connection_resistance", "connection_resistance", {"stator"},
-                 {free_figure(kUsual_share * value("copper_loss.terminal_resistance"), kShape_sd)}));
+                 {free_parameter(kUsual_share * value("copper_loss.terminal_resistance"), kShape_sd)}));
     }
   }
 
@@ -164,9 +165,9 @@ class Listing {
     }
     for (const char* node : {"winding", "stator"}) {
       add(effect(fmt::format("speed_loss_{}", node), "iron_loss_hysteresis", {node},
-                 {free_figure(kGuess_share * heat_W / ratio, kLoose_sd)}));
+                 {free_parameter(kGuess_share * heat_W / ratio, kLoose_sd)}));
       add(effect(fmt::format("square_speed_loss_{}", node), "iron_loss_eddy", {node},
-                 {free_figure(kGuess_share * heat_W / (ratio * ratio), kLoose_sd), held(2.0)}));
+                 {free_parameter(kGuess_share * heat_W / (ratio * ratio), kLoose_sd), held(2.0)}));
     }
   }
 
@@ -192,7 +193,7 @@ ForecastSetup forecast_setup(const Motor& motor, std::span<const Recording> reco
   setup.has_speed = all_have(recordings, Signal::speed);
   if (setup.heat == HeatInput::power_balance && !has_remaining_loss(motor)) {
     setup.motor.effects.push_back(effect("remaining_loss", "remaining_loss", {"winding", "stator"},
-                                         {free_figure(1.0, kRemainder_sd), free_figure(0.5, kWindingShare_sd)}));
+                                         {free_parameter(1.0, kRemainder_sd), free_parameter(0.5, kWindingShare_sd)}));
   }
   return setup;
 }

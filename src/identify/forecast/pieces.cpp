@@ -17,8 +17,8 @@ constexpr double kExcited_share = 0.25;
 Eigen::Index watched_sensor(const MeasuredRun& run) { return std::max<Eigen::Index>(0, run.sensor_at("winding")); }
 
 /// Range of the predicted readings of samples [from, to). Predicted readings have no missing samples.
-std::pair<double, double> range_of(const Eigen::MatrixXd& shown_C, Eigen::Index sensor, Eigen::Index from, Eigen::Index to) {
-  const auto part = shown_C.col(sensor).segment(from, to - from);
+std::pair<double, double> range_of(const Eigen::MatrixXd& sensor_C, Eigen::Index sensor, Eigen::Index from, Eigen::Index to) {
+  const auto part = sensor_C.col(sensor).segment(from, to - from);
   return {part.minCoeff(), part.maxCoeff()};
 }
 
@@ -69,22 +69,22 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun
 }  // namespace
 
 std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const MeasuredRun> runs) {
-  std::vector<Eigen::MatrixXd> shown_C;
+  std::vector<Eigen::MatrixXd> sensor_C;
   double low_C = std::numeric_limits<double>::infinity();
   double high_C = -low_C;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const Eigen::VectorXd& start_C = base.starts[r].state_C;
-    shown_C.push_back(model
-                          .along(runs[r], base.theta, base.heat_log[static_cast<Eigen::Index>(r)],
-                                 {start_C.data(), static_cast<std::size_t>(start_C.size())})
-                          .shown_C);
-    const auto [low, high] = range_of(shown_C.back(), watched_sensor(runs[r]), 0, runs[r].samples());
+    sensor_C.push_back(model
+                           .along(runs[r], base.theta, base.heat_log[static_cast<Eigen::Index>(r)],
+                                  {start_C.data(), static_cast<std::size_t>(start_C.size())})
+                           .sensor_C);
+    const auto [low, high] = range_of(sensor_C.back(), watched_sensor(runs[r]), 0, runs[r].samples());
     low_C = std::min(low_C, low);
     high_C = std::max(high_C, high);
   }
   std::vector<Piece> pieces;
   const auto add = [&](std::size_t r, Eigen::Index from, Eigen::Index to, Piece piece) {
-    const auto [low, high] = range_of(shown_C[r], watched_sensor(runs[r]), from, to);
+    const auto [low, high] = range_of(sensor_C[r], watched_sensor(runs[r]), from, to);
     piece.run = r;
     if (high - low >= kExcited_share * (high_C - low_C)) {
       pieces.push_back(std::move(piece));

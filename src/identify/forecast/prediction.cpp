@@ -24,15 +24,15 @@ PredictedSignal signal_of(const MeasuredRun& run, const LinearisedRun& path, con
   double squares_K2 = 0.0;
   double within = 0.0;
   for (Eigen::Index k = 0; k < run.samples(); ++k) {
-    const double shown_C = path.shown_C(k, sensor);
+    const double sensor_C = path.sensor_C(k, sensor);
     const double measured_C = run.measured_C(k, sensor);
     const double reach_K = kBand_sd * sd_K[k * path.sensors() + sensor];
     out.measured_C.push_back(measured_C);
-    out.predicted_C.push_back(shown_C);
-    out.low_C.push_back(shown_C - reach_K);
-    out.high_C.push_back(shown_C + reach_K);
+    out.predicted_C.push_back(sensor_C);
+    out.low_C.push_back(sensor_C - reach_K);
+    out.high_C.push_back(sensor_C + reach_K);
     if (!std::isnan(measured_C)) {
-      const double error_K = std::abs(measured_C - shown_C);
+      const double error_K = std::abs(measured_C - sensor_C);
       squares_K2 += error_K * error_K;
       out.max_abs_K = std::max(out.max_abs_K, error_K);
       within += error_K <= reach_K ? 1.0 : 0.0;

@@ -35,7 +35,7 @@ double median_of_rows(const std::vector<double>& column, std::size_t begin, std:
 }
 
 /// Running median of three values; the two ends are unchanged.
-Eigen::RowVectorXd without_odd_ones(const Eigen::RowVectorXd& raw) {
+Eigen::RowVectorXd without_outliers(const Eigen::RowVectorXd& raw) {
   Eigen::RowVectorXd smooth = raw;
   for (Eigen::Index i = 1; i + 1 < raw.size(); ++i) {
     std::array<double, 3> three{raw(i - 1), raw(i), raw(i + 1)};
@@ -85,7 +85,7 @@ BlockMedians block_medians(const FrictionLog& log, int wheel_count, std::size_t 
     for (Eigen::Index k = 0; k < count; ++k) {
       blocks.raw(s, k) = median_of_rows(column, blocks.first_row[static_cast<std::size_t>(k)], blocks.rows_per_block);
     }
-    blocks.values.row(s) = without_odd_ones(blocks.raw.row(s));
+    blocks.values.row(s) = without_outliers(blocks.raw.row(s));
     blocks.resolution(s) = resolution_of(column);
     blocks.top(s) = top_of(blocks.values.row(s));
   }

@@ -89,17 +89,18 @@ Eigen::Vector2d sine_and_constant_at(const Eigen::MatrixXd& X, const Eigen::Vect
 }
 
 /// Estimates of all terms at φ_0. Their intervals cover the change of each term while φ varies over its uncertainty.
-std::vector<Estimate> estimates_in_doubt(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
-                                         double given_V_s_per_rad, const RobustFit& fit, double left_V, double phase_doubt_rad) {
+std::vector<Estimate> estimates_with_phase_error(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
+                                                 double given_V_s_per_rad, const RobustFit& fit, double left_V,
+                                                 double phase_uncertainty_rad) {
   std::vector<Estimate> estimates;
   for (Eigen::Index term = 0; term < std::ssize(terms); ++term) {
     estimates.push_back(fit.estimate(term));
   }
-  if (phase_doubt_rad == 0.0) {
+  if (phase_uncertainty_rad == 0.0) {
     return estimates;
   }
   const std::pair<double, double> bounds_rad = phase_bounds_rad(points, fit.weights);
-  for (const double end_rad : {std::max(-phase_doubt_rad, bounds_rad.first), std::min(phase_doubt_rad, bounds_rad.second)}) {
+  for (const double end_rad : {std::max(-phase_uncertainty_rad, bounds_rad.first), std::min(phase_uncertainty_rad, bounds_rad.second)}) {
     const auto [X, voltage_V, legs] = regression_of(turned(points, end_rad), wheel, terms, given_V_s_per_rad);
     RobustFit there = robust_fit(X, voltage_V, legs);
     widen(points, X, left_V, there);
@@ -172,8 +173,8 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
   widen(points, X, left_V, fit);
   const auto place = [&](WheelTerm term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
   const auto has = [&](WheelTerm term) { return place(term) < std::ssize(chosen.terms); };
-  const std::vector<Estimate> estimates =
-      estimates_in_doubt(points, wheel, chosen.terms, given, fit, left_V, chosen.phase_is_given ? settings.phase_doubt_rad : 0.0);
+  const std::vector<Estimate> estimates = estimates_with_phase_error(points, wheel, chosen.terms, given, fit, left_V,
+                                                                     chosen.phase_is_given ? settings.phase_uncertainty_rad : 0.0);
   const auto estimate = [&](WheelTerm term) { return has(term) ? estimates[static_cast<std::size_t>(place(term))] : Estimate{}; };
   found.damping_V_s_per_rad = has(WheelTerm::damping) ? estimate(WheelTerm::damping) : Estimate{.value = given};
   found.rotation_V = estimate(WheelTerm::rotation);
@@ -350,7 +351,7 @@ HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, co
   }
   error.headings = error.all_headings / 3;
   FitSettings values_only = settings;
-  values_only.phase_doubt_rad = 0.0;  // affects only intervals; if a and b are indistinguishable, the prediction is not worse
+  values_only.phase_uncertainty_rad = 0.0;  // affects only intervals; if a and b are indistinguishable, the prediction is not worse
   const FrictionFit fit = fit_friction(taught, kinematics, values_only);
   double before_V2 = 0.0;
   double after_V2 = 0.0;

@@ -77,7 +77,7 @@ struct FitSettings {
   double known_damping_V_s_per_rad = std::numeric_limits<double>::quiet_NaN();
   /// Half width of the 95 % interval of φ about the rolling direction if the data do not determine φ. The nine fits of reports/friction
   /// deviate by 4.6° RMS; this is multiplied by Student's quantile for nine.
-  double phase_doubt_rad = 10.0 * std::numbers::pi / 180.0;
+  double phase_uncertainty_rad = 10.0 * std::numbers::pi / 180.0;
 };
 
 /// Returns the heading number of each part; −1 for rotation and for legs that are not used. Headings within 2.5° of each other are one.

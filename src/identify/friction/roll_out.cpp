@@ -68,14 +68,14 @@ struct Rolling {
       : speed(rows), energy_J(rows), smooth_energy_J(rows), turning_rad_per_s(rows), turning_rad2_per_s2(rows) {}
 };
 
-struct RollOutStretch {
+struct RollOutSegment {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
 /// Segments in which the drivers are off, each to the end of its roll-out.
-std::vector<RollOutStretch> stretches(const FrictionLog& log, const std::vector<bool>& off, const std::vector<double>& speed) {
-  std::vector<RollOutStretch> found;
+std::vector<RollOutSegment> segments(const FrictionLog& log, const std::vector<bool>& off, const std::vector<double>& speed) {
+  std::vector<RollOutSegment> found;
   double top = 0.0;
   std::ranges::for_each(speed, [&](double each) { top = std::isfinite(each) ? std::max(top, std::abs(each)) : top; });
   const auto end_of = [&](std::size_t begin, std::size_t limit) {
@@ -105,7 +105,7 @@ std::vector<RollOutStretch> stretches(const FrictionLog& log, const std::vector<
       }
     }
   }
-  std::erase_if(found, [](const RollOutStretch& stretch) { return stretch.end - stretch.begin < kLeastRollOutRows; });
+  std::erase_if(found, [](const RollOutSegment& segment) { return segment.end - segment.begin < kLeastRollOutRows; });
   return found;
 }
 
@@ -115,11 +115,11 @@ struct Turned {
   std::vector<double> sum_rad2_per_s;  ///< Σ∫ω_i² dt
 };
 
-Turned turned_by(const FrictionLog& log, const Rolling& rolling, const RollOutStretch& stretch, const std::vector<bool>& trusted) {
+Turned turned_by(const FrictionLog& log, const Rolling& rolling, const RollOutSegment& segment, const std::vector<bool>& trusted) {
   Turned turned{std::vector<double>(trusted.size()), std::vector<double>(trusted.size())};
   std::optional<std::size_t> last;
-  for (std::size_t row = stretch.begin; row < stretch.end; ++row) {
-    const std::size_t i = row - stretch.begin;
+  for (std::size_t row = segment.begin; row < segment.end; ++row) {
+    const std::size_t i = row - segment.begin;
     if (i > 0) {
       turned.sum_rad[i] = turned.sum_rad[i - 1];
       turned.sum_rad2_per_s[i] = turned.sum_rad2_per_s[i - 1];
@@ -141,13 +141,13 @@ struct EnergyFit {
 };
 
 /// Fits E_0, τ and D. Rows are weighted by 1/√E, so that speed noise has the same effect in all rows. nullopt with too few trusted rows.
-std::optional<EnergyFit> energy_fit(const Rolling& rolling, const RollOutStretch& stretch, const Turned& turned,
+std::optional<EnergyFit> energy_fit(const Rolling& rolling, const RollOutSegment& segment, const Turned& turned,
                                     const std::vector<bool>& trusted) {
-  const double least_J = kEnd_share * kEnd_share * rolling.smooth_energy_J[stretch.begin];
+  const double least_J = kEnd_share * kEnd_share * rolling.smooth_energy_J[segment.begin];
   EnergyFit made{{}, Eigen::MatrixXd(trusted.size(), 3), Eigen::VectorXd(trusted.size())};
   Eigen::Index used = 0;
   for (std::size_t i = 0; i < trusted.size(); ++i) {
-    const std::size_t row = stretch.begin + i;
+    const std::size_t row = segment.begin + i;
     if (trusted[i]) {
       const double weight = 1.0 / std::sqrt(std::max(rolling.energy_J[row], least_J));
       made.X.row(used) << weight, -weight * turned.sum_rad[i], -weight * turned.sum_rad2_per_s[i];
@@ -167,29 +167,29 @@ std::optional<EnergyFit> energy_fit(const Rolling& rolling, const RollOutStretch
 
 /// Marks rows whose speed differs from the expected one by at most a tenth of the first speed. Other rows are ignored.
 template <typename Expected>
-std::vector<bool> trusted_rows(const Rolling& rolling, const RollOutStretch& stretch, Expected expected_J) {
-  std::vector<bool> trusted(stretch.end - stretch.begin);
+std::vector<bool> trusted_rows(const Rolling& rolling, const RollOutSegment& segment, Expected expected_J) {
+  std::vector<bool> trusted(segment.end - segment.begin);
   const double most = kTrusted_share * std::sqrt(std::max(0.0, expected_J(0)));
   for (std::size_t i = 0; i < trusted.size(); ++i) {
-    const double found_J = rolling.energy_J[stretch.begin + i];
+    const double found_J = rolling.energy_J[segment.begin + i];
     trusted[i] = found_J > 0.0 && std::abs(std::sqrt(found_J) - std::sqrt(std::max(0.0, expected_J(i)))) <= most;
   }
   return trusted;
 }
 
-std::optional<RollOutRun> fitted(const FrictionLog& log, const Rolling& rolling, const RollOutStretch& stretch) {
-  std::vector<bool> trusted = trusted_rows(rolling, stretch, [&](std::size_t i) { return rolling.smooth_energy_J[stretch.begin + i]; });
+std::optional<RollOutRun> fitted(const FrictionLog& log, const Rolling& rolling, const RollOutSegment& segment) {
+  std::vector<bool> trusted = trusted_rows(rolling, segment, [&](std::size_t i) { return rolling.smooth_energy_J[segment.begin + i]; });
   std::optional<EnergyFit> found;
   for (int round = 0; round < kMostRollOutRounds; ++round) {
-    const Turned turned = turned_by(log, rolling, stretch, trusted);
-    found = energy_fit(rolling, stretch, turned, trusted);
+    const Turned turned = turned_by(log, rolling, segment, trusted);
+    found = energy_fit(rolling, segment, turned, trusted);
     if (!found) {
       return std::nullopt;
     }
     const auto expected_J = [&](std::size_t i) {
       return found->fit.coefficients.dot(Eigen::Vector3d(1.0, -turned.sum_rad[i], -turned.sum_rad2_per_s[i]));
     };
-    std::vector<bool> now = trusted_rows(rolling, stretch, expected_J);
+    std::vector<bool> now = trusted_rows(rolling, segment, expected_J);
     if (std::exchange(trusted, now) == now) {
       break;
     }
@@ -234,15 +234,15 @@ void add_robot(const FrictionLog& log, const BodyConfig& body, RollOutResult& re
       rolling.turning_rad2_per_s2[row] += measured[i] * measured[i];
     }
   }
-  for (const RollOutStretch& stretch : stretches(log, rows_off(log, kinematics.wheel_count), rolling.speed)) {
-    const BodyVelocity& first = velocity[stretch.begin];
+  for (const RollOutSegment& segment : segments(log, rows_off(log, kinematics.wheel_count), rolling.speed)) {
+    const BodyVelocity& first = velocity[segment.begin];
     const double moving_m_per_s = std::hypot(first.x_m_per_s, first.y_m_per_s);
     const bool turns = kinematics.contact_radius_m * std::abs(first.yaw_rad_per_s) > moving_m_per_s;
     rolling.run = {.kind = turns ? RollOut::rotation : RollOut::translation};
-    if (std::optional<RollOutRun> run = fitted(log, rolling, stretch)) {
+    if (std::optional<RollOutRun> run = fitted(log, rolling, segment)) {
       if (!turns) {
         run->heading_rad = std::atan2(first.y_m_per_s, first.x_m_per_s);
-        run->force_N = run->wheel_torque_Nm * rolling.turning_rad_per_s[stretch.begin] / moving_m_per_s;
+        run->force_N = run->wheel_torque_Nm * rolling.turning_rad_per_s[segment.begin] / moving_m_per_s;
       }
       result.runs.push_back(*run);
     }
@@ -262,8 +262,8 @@ void add_lifted(const FrictionLog& log, const BodyConfig& body, RollOutResult& r
       rolling.energy_J[row] = 0.5 * body.wheel_inertia_kg_m2 * rolling.turning_rad2_per_s2[row];
       rolling.smooth_energy_J[row] = 0.5 * body.wheel_inertia_kg_m2 * rolling.speed[row] * rolling.speed[row];
     }
-    for (const RollOutStretch& stretch : stretches(log, off, rolling.speed)) {
-      if (std::optional<RollOutRun> run = fitted(log, rolling, stretch)) {
+    for (const RollOutSegment& segment : segments(log, off, rolling.speed)) {
+      if (std::optional<RollOutRun> run = fitted(log, rolling, segment)) {
         result.runs.push_back(*run);
       }
     }

@@ -171,8 +171,8 @@ std::optional<Change> change_within(const BlockMedians& blocks, const std::vecto
 }
 
 /// Returns the undivided segments of a leg as [begin, end) of blocks.
-std::vector<std::pair<Eigen::Index, Eigen::Index>> steady_stretches(const BlockMedians& blocks, const std::vector<bool>& counts,
-                                                                    const Leg& leg) {
+std::vector<std::pair<Eigen::Index, Eigen::Index>> steady_segments(const BlockMedians& blocks, const std::vector<bool>& counts,
+                                                                   const Leg& leg) {
   std::vector<std::pair<Eigen::Index, Eigen::Index>> open{{leg.begin, leg.end}};
   std::vector<std::pair<Eigen::Index, Eigen::Index>> steady;
   while (!open.empty()) {
@@ -266,7 +266,7 @@ void add_run(const FrictionLog& log, const Kinematics& kinematics, std::size_t b
   mark_returns(legs, blocks, medians, log);
   for (const Leg& leg : legs) {
     std::vector<SteadyPart> parts;
-    for (const auto& [first, last] : steady_stretches(medians, turning_signals(medians, blocks, leg, kinematics), leg)) {
+    for (const auto& [first, last] : steady_segments(medians, turning_signals(medians, blocks, leg, kinematics), leg)) {
       SteadyPart part;
       part.leg = found.legs;
       part.is_return = leg.is_return;

@@ -41,17 +41,18 @@ Eigen::MatrixXd design(const std::vector<WheelPoint>& points, int wheel, const s
   return X;
 }
 
-bool is_told(const Eigen::MatrixXd& X, const std::vector<WheelTerm>& terms, WheelTerm term) {
+bool is_identifiable(const Eigen::MatrixXd& X, const std::vector<WheelTerm>& terms, WheelTerm term) {
   const auto place = std::ranges::find(terms, term);
   return place != terms.end() && independent_share(X, place - terms.begin()) >= kIndependent_share;
 }
 
 /// True if a and b are identifiable for every φ within its uncertainty. Otherwise both would diverge for some φ.
-bool friction_is_told(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms, double phase_doubt_rad) {
-  const int steps = static_cast<int>(std::ceil(phase_doubt_rad / kPhaseStep_rad));
+bool friction_is_identifiable(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
+                              double phase_uncertainty_rad) {
+  const int steps = static_cast<int>(std::ceil(phase_uncertainty_rad / kPhaseStep_rad));
   for (int step = -steps; step <= steps; ++step) {
-    const Eigen::MatrixXd X = design(turned(points, steps == 0 ? 0.0 : phase_doubt_rad * step / steps), wheel, terms);
-    if (!is_told(X, terms, WheelTerm::sine) || !is_told(X, terms, WheelTerm::constant)) {
+    const Eigen::MatrixXd X = design(turned(points, steps == 0 ? 0.0 : phase_uncertainty_rad * step / steps), wheel, terms);
+    if (!is_identifiable(X, terms, WheelTerm::sine) || !is_identifiable(X, terms, WheelTerm::constant)) {
       return false;
     }
   }
@@ -78,8 +79,8 @@ WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& ki
       expected = should_stand(kinematics.wheels[wheel], part.heading_rad) ? 0.0 : point.sine_ratio;
     }
     // The sign of a mean speed within its own noise is unknown.
-    const double doubt_rad_per_s = 3.0 * part.speed_noise_rad_per_s[wheel] / std::sqrt(std::max(1, part.rows_kept[wheel]));
-    if (expected * speed_rad_per_s <= 0.0 || std::abs(speed_rad_per_s) <= doubt_rad_per_s || !std::isfinite(part.voltage_V[wheel])) {
+    const double uncertainty_rad_per_s = 3.0 * part.speed_noise_rad_per_s[wheel] / std::sqrt(std::max(1, part.rows_kept[wheel]));
+    if (expected * speed_rad_per_s <= 0.0 || std::abs(speed_rad_per_s) <= uncertainty_rad_per_s || !std::isfinite(part.voltage_V[wheel])) {
       ++found.standing;
     } else {
       found.points.push_back(point);
@@ -109,11 +110,11 @@ ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const
   if (turns > 0) {
     terms.push_back(WheelTerm::rotation);
   }
-  if (travels && !is_told(design(points, wheel, terms), terms, WheelTerm::cosine)) {
+  if (travels && !is_identifiable(design(points, wheel, terms), terms, WheelTerm::cosine)) {
     std::erase(terms, WheelTerm::cosine);
     chosen.phase_is_given = true;
   }
-  if (!is_told(design(points, wheel, terms), terms, WheelTerm::damping)) {
+  if (!is_identifiable(design(points, wheel, terms), terms, WheelTerm::damping)) {
     if (!travels || std::isnan(settings.known_damping_V_s_per_rad)) {
       chosen.problem = "all its legs have one speed, so that damping and friction are indistinguishable; drive at two speeds or more";
       return chosen;
@@ -121,7 +122,7 @@ ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const
     std::erase(terms, WheelTerm::damping);
     chosen.damping_is_given = true;
   }
-  if (travels && !friction_is_told(points, wheel, terms, chosen.phase_is_given ? settings.phase_doubt_rad : 0.0)) {
+  if (travels && !friction_is_identifiable(points, wheel, terms, chosen.phase_is_given ? settings.phase_uncertainty_rad : 0.0)) {
     chosen.problem = "too few headings to determine how friction depends on the direction; drive at least six directions all around";
   } else if (points.size() < terms.size() + 3) {
     chosen.problem = "it has too few steady legs";

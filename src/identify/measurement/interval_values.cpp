@@ -19,9 +19,9 @@ double even_change(double from, double to, bool by_square) {
   return by_square ? std::copysign(std::sqrt((from * from + from * to + to * to) / 3.0), mean) : mean;
 }
 
-void to_held(std::span<double> values, InputHabit habit, bool by_square) {
+void to_held(std::span<double> values, InputConvention convention, bool by_square) {
   for (std::size_t i = 0; i + 1 < values.size(); ++i) {
-    values[i] = habit == InputHabit::previous_interval ? values[i + 1] : even_change(values[i], values[i + 1], by_square);
+    values[i] = convention == InputConvention::previous_interval ? values[i + 1] : even_change(values[i], values[i + 1], by_square);
   }
   values.back() = kUnknown;
 }
@@ -73,8 +73,8 @@ std::vector<double> shifted_samples(std::span<const double> time_s, std::span<co
 
 }  // namespace
 
-void to_interval_values(Recording& recording, InputHabit habit, std::span<const double> offsets_s) {
-  recording.inputs = habit;
+void to_interval_values(Recording& recording, InputConvention convention, std::span<const double> offsets_s) {
+  recording.inputs = convention;
   for (std::size_t i = 0; i < recording.channels.size(); ++i) {
     Channel& channel = recording.channels[i];
     const bool is_input = stands_for_an_interval(channel.quantity);
@@ -82,8 +82,8 @@ void to_interval_values(Recording& recording, InputHabit habit, std::span<const 
     for (const auto& [begin, end] : recording.runs()) {
       const std::span<double> values = std::span(channel.values).subspan(begin, end - begin);
       const std::span<const double> time_s = std::span(recording.time_s).subspan(begin, end - begin);
-      if (is_input && habit != InputHabit::held) {
-        to_held(values, habit, by_square);
+      if (is_input && convention != InputConvention::held) {
+        to_held(values, convention, by_square);
       }
       if (offsets_s[i] != 0.0 && values.size() > 1) {
         std::ranges::copy(

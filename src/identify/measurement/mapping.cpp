@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 3> kHabits{"held", "linear", "previous_interval"};
+constexpr std::array<std::string_view, 3> kConventions{"held", "linear", "previous_interval"};
 constexpr std::array<std::string_view, 2> kSigns{"+", "-"};
 constexpr std::array<std::string_view, 2> kDecimals{".", ","};
 
@@ -222,8 +222,8 @@ Mapping read_mapping(const fs::path& file, const fs::path& log) {
         runs->quantity({"longest_gap", "s", Range::positive(), "a longer gap between rows splits the run"}, Need::optional);
     runs->finish();
   }
-  const std::string habit = root.choice("inputs", kHabits, Need::optional).value_or("held");
-  mapping.inputs = static_cast<InputHabit>(std::ranges::find(kHabits, habit) - kHabits.begin());
+  const std::string convention = root.choice("inputs", kConventions, Need::optional).value_or("held");
+  mapping.inputs = static_cast<InputConvention>(std::ranges::find(kConventions, convention) - kConventions.begin());
   read_quantities(root, mapping);
   const std::vector<std::string> patterns =
       document.find("applies_to") != nullptr ? root.texts("applies_to", Need::required) : std::vector<std::string>{"*"};

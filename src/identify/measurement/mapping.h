@@ -48,7 +48,7 @@ struct Mapping {
   std::string run_column;  ///< column whose changes begin a new run; may be empty
   Location run_column_at;
   std::optional<double> longest_gap_s;  ///< a longer gap between rows begins a new run; default: three usual periods
-  InputHabit inputs = InputHabit::held;
+  InputConvention inputs = InputConvention::held;
   std::string motor;
   std::map<std::string, std::string> conditions;
 

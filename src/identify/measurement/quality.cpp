@@ -195,7 +195,7 @@ void Assessment::add(const Recording& part) {
   condensed_.add(part);
 }
 
-void Assessment::tell_channels(const RecordingReport& report) {
+void Assessment::report_channels(const RecordingReport& report) {
   for (std::size_t c = gauges_.size(); c-- > 0;) {
     if (gauges_[c].samples == 0) {
       gauges_.erase(gauges_.begin() + static_cast<std::ptrdiff_t>(c));
@@ -231,7 +231,7 @@ DataQuality Assessment::conclude(const RecordingReport& report, double ambient_C
     each_s = std::abs(each_s - sampling.usual_period_s);
   }
   sampling.jitter_s = 1.4826 * median_of(std::move(deviations_s));
-  tell_channels(report);
+  report_channels(report);
   if (const Channel* const heat_input = heat_input_of(rows)) {
     for (const Channel& channel : rows.channels) {
       if (channel.quantity.kind == QuantityKind::temperature) {
@@ -241,8 +241,8 @@ DataQuality Assessment::conclude(const RecordingReport& report, double ambient_C
   }
   Suspicions suspected = suspicions(rows, quality_, ambient_C);
   quality_.suspicions = std::move(suspected.all);
-  quality_.spoiling = std::move(suspected.spoiling);
-  quality_.spoiling_wheels = std::move(suspected.spoiling_wheels);
+  quality_.blocking = std::move(suspected.blocking);
+  quality_.blocking_for_wheels = std::move(suspected.blocking_for_wheels);
   quality_.thermal = thermal_fitness(rows, rows_, quality_);
   quality_.drive = drive_fitness(rows_, quality_);
   return std::move(quality_);

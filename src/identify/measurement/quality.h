@@ -68,11 +68,11 @@ struct DataQuality {
   std::vector<Gap> gaps;  ///< between runs, the first kMostGaps
   std::vector<ChannelQuality> channels;
   std::vector<ClockOffset> clock_offsets;
-  std::vector<std::string> suspicions;       ///< reported only, nothing is corrected
-  std::vector<std::string> spoiling;         ///< subset about units, signs and sensors that, if true, prevents any fit
-  std::vector<std::string> spoiling_wheels;  ///< same for a robot's wheels and angles, and for the clock
-  Fitness thermal;                           ///< for fitting a thermal network
-  Fitness drive;                             ///< for fitting friction of wheels
+  std::vector<std::string> suspicions;           ///< reported only, nothing is corrected
+  std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<std::string> blocking_for_wheels;  ///< same for a robot's wheels and angles, and for the clock
+  Fitness thermal;                               ///< for fitting a thermal network
+  Fitness drive;                                 ///< for fitting friction of wheels
 };
 
 /// Assesses a log part by part with bounded memory.
@@ -98,7 +98,7 @@ class Assessment {
     void add(std::span<const double> values);
   };
   void add_times(const Recording& part);
-  void tell_channels(const RecordingReport& report);
+  void report_channels(const RecordingReport& report);
 
   CondensedRecording condensed_;
   std::vector<Gauge> gauges_;  ///< per channel

@@ -18,7 +18,7 @@ std::vector<std::pair<std::size_t, std::size_t>> Recording::runs() const {
 }
 
 Recording Recording::slice(std::size_t begin, std::size_t end) const {
-  Recording part{name, file, motor, conditions, {}, {}, {}, {}, content, content_begin_s, spoiling_of_whole, inputs};
+  Recording part{name, file, motor, conditions, {}, {}, {}, {}, content, content_begin_s, blocking_of_whole, inputs};
   const auto first = static_cast<std::ptrdiff_t>(begin);
   const auto last = static_cast<std::ptrdiff_t>(end);
   part.time_s.assign(time_s.begin() + first, time_s.begin() + last);

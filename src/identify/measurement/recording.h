@@ -20,7 +20,7 @@ struct Channel {
 };
 
 /// Meaning of a heat input's sample in the file.
-enum class InputHabit {
+enum class InputConvention {
   held,              ///< value of the interval that begins at the row's time (canonical)
   linear,            ///< value at the row's time, linear between rows
   previous_interval  ///< value of the interval that ends at the row's time
@@ -41,9 +41,10 @@ struct Recording {
   /// content_hash() of the whole log that was read, and the time of its first row. This recording may be a part of it.
   std::string content = {};
   double content_begin_s = 0.0;
-  /// If this is a part: Suspicions::spoiling of the whole log. A part may start warm and only cool down, which misleads the checks.
-  std::optional<std::vector<std::string>> spoiling_of_whole = {};
-  InputHabit inputs = InputHabit::held;  ///< convention of the file before conversion; states to which end of a gap a sample belongs
+  /// If this is a part: Suspicions::blocking of the whole log. A part may start warm and only cool down, which misleads the checks.
+  std::optional<std::vector<std::string>> blocking_of_whole = {};
+  InputConvention inputs =
+      InputConvention::held;  ///< convention of the file before conversion; states to which end of a gap a sample belongs
 
   [[nodiscard]] const Channel* find(std::string_view key) const;
   [[nodiscard]] std::size_t rows() const { return time_s.size(); }

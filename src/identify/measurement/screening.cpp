@@ -15,15 +15,15 @@ namespace heatsoak {
 namespace {
 
 /// Rows [begin, end) with one value, apart from NaN.
-struct Stretch {
+struct Segment {
   std::size_t begin = 0;
   std::size_t end = 0;
   std::size_t samples = 0;
   double value = 0.0;
 };
 
-std::vector<Stretch> stretches_of(std::span<const double> values, std::pair<std::size_t, std::size_t> run) {
-  std::vector<Stretch> found;
+std::vector<Segment> segments_of(std::span<const double> values, std::pair<std::size_t, std::size_t> run) {
+  std::vector<Segment> found;
   for (std::size_t i = run.first; i < run.second; ++i) {
     if (std::isnan(values[i])) {
       continue;
@@ -38,7 +38,7 @@ std::vector<Stretch> stretches_of(std::span<const double> values, std::pair<std:
 }
 
 /// Normal behaviour of the channel.
-struct Habits {
+struct ChannelStatistics {
   double high = 0.0;
   NoiseLevel noise;
   double repeats_share = 0.0;      ///< share of equal neighbours, without long constant segments
@@ -47,7 +47,7 @@ struct Habits {
 
 /// Sufficient number of samples for a noise estimate.
 constexpr std::size_t kMostSamples = 1 << 14;
-constexpr std::size_t kShortStretch = 20;
+constexpr std::size_t kShortSegment = 20;
 constexpr std::size_t kPile = 10;  ///< smallest number of samples at one end of the range that counts as cut off
 
 /// Probability that a sample equals the previous one if the temperature is constant in the middle of a quantisation step (worst case).
@@ -56,77 +56,78 @@ double repeat_probability(const NoiseLevel& noise) {
   return white > 0.0 ? std::erf(0.5 * noise.step / (std::sqrt(2.0) * white)) : 1.0;
 }
 
-Habits habits_of(std::span<const double> values, std::span<const std::vector<Stretch>> runs, const NoiseLevel& noise, double high) {
-  Habits habits;
-  habits.high = high;
-  habits.noise = noise;
+ChannelStatistics statistics_of(std::span<const double> values, std::span<const std::vector<Segment>> runs, const NoiseLevel& noise,
+                                double high) {
+  ChannelStatistics statistics;
+  statistics.high = high;
+  statistics.noise = noise;
   std::size_t samples = 0;
   std::size_t repeats = 0;
-  for (const std::vector<Stretch>& run : runs) {
-    for (const Stretch& stretch : run) {
-      if (stretch.samples < kShortStretch) {
-        samples += stretch.samples;
-        repeats += stretch.samples - 1;
+  for (const std::vector<Segment>& run : runs) {
+    for (const Segment& segment : run) {
+      if (segment.samples < kShortSegment) {
+        samples += segment.samples;
+        repeats += segment.samples - 1;
       }
     }
   }
   constexpr std::size_t kEnoughSamples = 50;
   constexpr double kTooCoarse_share = 0.5;
-  habits.repeats_share = samples > 0 ? static_cast<double>(repeats) / static_cast<double>(samples) : 1.0;
-  const double share = std::max({habits.repeats_share, 0.05, repeat_probability(noise)});
+  statistics.repeats_share = samples > 0 ? static_cast<double>(repeats) / static_cast<double>(samples) : 1.0;
+  const double share = std::max({statistics.repeats_share, 0.05, repeat_probability(noise)});
   if (samples >= kEnoughSamples && share < kTooCoarse_share) {
     // n equal neighbours occur by chance in one of 1000 logs of this length: rows · share^n = 1/1000.
     constexpr double kLogOfThousand = 6.9;
-    habits.longest_chance =
+    statistics.longest_chance =
         1 + static_cast<std::size_t>(std::ceil((std::log(static_cast<double>(values.size())) + kLogOfThousand) / -std::log(share)));
   }
-  return habits;
+  return statistics;
 }
 
 /// True if noise makes such a long constant segment improbable, even for a constant temperature.
-bool is_improbable(const Stretch& stretch, const Habits& habits) {
-  return habits.longest_chance > 0 && stretch.samples > habits.longest_chance;
+bool is_improbable(const Segment& segment, const ChannelStatistics& statistics) {
+  return statistics.longest_chance > 0 && segment.samples > statistics.longest_chance;
 }
 
 /// True if the constant segment ends in a jump much larger than the following changes: the sensor was frozen while the temperature changed.
-bool ends_in_isolated_jump(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
+bool ends_in_isolated_jump(const std::vector<Segment>& run, std::size_t at, const ChannelStatistics& statistics) {
   constexpr std::size_t kLongHold = 30;
   constexpr double kIsolated_ratio = 4.0;
   constexpr std::size_t kAfter = 5;
-  const std::size_t long_hold = habits.longest_chance > 0 ? habits.longest_chance : kLongHold;
+  const std::size_t long_hold = statistics.longest_chance > 0 ? statistics.longest_chance : kLongHold;
   if (run[at].samples <= long_hold || at + 2 >= run.size()) {
     return false;
   }
   const double jump = std::abs(run[at + 1].value - run[at].value);
-  double after = habits.noise.usual;
+  double after = statistics.noise.usual;
   for (std::size_t i = at + 2; i < std::min(run.size(), at + 2 + kAfter); ++i) {
     after = std::max(after, std::abs(run[i].value - run[i - 1].value));
   }
-  return jump > std::max(kIsolated_ratio * after, 6.0 * habits.noise.noise);
+  return jump > std::max(kIsolated_ratio * after, 6.0 * statistics.noise.noise);
 }
 
 /// True if a noisy channel stays constant to the end of the run after a slope that should have continued.
-bool stays_still_to_the_end(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
-  constexpr std::size_t kSlopeStretches = 10;
+bool stays_still_to_the_end(const std::vector<Segment>& run, std::size_t at, const ChannelStatistics& statistics) {
+  constexpr std::size_t kSlopeSegments = 10;
   constexpr double kFarAway_ratio = 20.0;
-  if (at + 1 != run.size() || at < kSlopeStretches || habits.longest_chance == 0 || run[at].samples <= habits.longest_chance) {
+  if (at + 1 != run.size() || at < kSlopeSegments || statistics.longest_chance == 0 || run[at].samples <= statistics.longest_chance) {
     return false;
   }
-  const Stretch& from = run[at - kSlopeStretches];
+  const Segment& from = run[at - kSlopeSegments];
   const double slope = (run[at].value - from.value) / static_cast<double>(run[at].begin - from.begin);
-  return std::abs(slope) * static_cast<double>(run[at].samples) > kFarAway_ratio * std::max(habits.noise.noise, habits.noise.usual);
+  return std::abs(slope) * static_cast<double>(run[at].samples) > kFarAway_ratio * std::max(statistics.noise.noise, statistics.noise.usual);
 }
 
 /// True if three steps of at least the usual size lead to the extreme, followed by a constant segment.
-bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Habits& habits) {
+bool climb_stops_dead(const std::vector<Segment>& run, std::size_t at, const ChannelStatistics& statistics) {
   constexpr std::size_t kStops = 5;
   constexpr std::size_t kClimbs = 4;  // the last one may already be cut
   if (run[at].samples < kStops || at < kClimbs) {
     return false;
   }
-  const double sign_factor = run[at].value == habits.high ? 1.0 : -1.0;
+  const double sign_factor = run[at].value == statistics.high ? 1.0 : -1.0;
   for (std::size_t i = at - kClimbs + 1; i < at; ++i) {
-    if (run[i - 1].samples != 1 || sign_factor * (run[i].value - run[i - 1].value) < habits.noise.usual) {
+    if (run[i - 1].samples != 1 || sign_factor * (run[i].value - run[i - 1].value) < statistics.noise.usual) {
       return false;
     }
   }
@@ -134,22 +135,22 @@ bool climb_stops_dead(const std::vector<Stretch>& run, std::size_t at, const Hab
 }
 
 /// True if the noise of a channel is cut off at `end`: far more samples there than at any other value, reached by changes of usual size.
-bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habits& habits) {
+bool piles_up(std::span<const std::vector<Segment>> runs, double end, const ChannelStatistics& statistics) {
   constexpr double kFine_share = 0.2;
   constexpr std::size_t kPile_ratio = 5;
   constexpr std::size_t kFewestOthers = 5;  // a coarse sensor at rest has only a few neighbouring steps
-  if (habits.repeats_share > kFine_share) {
+  if (statistics.repeats_share > kFine_share) {
     return false;
   }
   std::size_t there = 0;
   std::size_t arrivals = 0;
   std::size_t usual_arrivals = 0;
-  for (const std::vector<Stretch>& run : runs) {
+  for (const std::vector<Segment>& run : runs) {
     for (std::size_t i = 0; i < run.size(); ++i) {
       if (run[i].value == end) {
         there += run[i].samples;
         ++arrivals;
-        usual_arrivals += i > 0 && std::abs(run[i].value - run[i - 1].value) >= 0.5 * habits.noise.usual ? 1 : 0;
+        usual_arrivals += i > 0 && std::abs(run[i].value - run[i - 1].value) >= 0.5 * statistics.noise.usual ? 1 : 0;
       }
     }
   }
@@ -158,10 +159,10 @@ bool piles_up(std::span<const std::vector<Stretch>> runs, double end, const Habi
   }
   std::unordered_map<double, std::size_t> counts;
   std::size_t elsewhere = 0;
-  for (const std::vector<Stretch>& run : runs) {
-    for (const Stretch& stretch : run) {
-      if (stretch.value != end) {
-        elsewhere = std::max(elsewhere, counts[stretch.value] += stretch.samples);
+  for (const std::vector<Segment>& run : runs) {
+    for (const Segment& segment : run) {
+      if (segment.value != end) {
+        elsewhere = std::max(elsewhere, counts[segment.value] += segment.samples);
       }
     }
   }
@@ -203,38 +204,38 @@ struct Reported {
 };
 
 /// Omits frozen and saturated samples. `frozen_at` is the frozen value before the first reported row, on return that of the last (or NaN).
-void leave_out_stretches(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high, double& frozen_at,
-                         const Reported& reported) {
+void leave_out_segments(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high, double& frozen_at,
+                        const Reported& reported) {
   const double was_frozen_at = std::exchange(frozen_at, kUnknown);
   if (never_rests(channel.values, low, high)) {
     return;
   }
-  std::vector<std::vector<Stretch>> runs;
+  std::vector<std::vector<Segment>> runs;
   for (const auto& run : part.runs()) {
-    runs.push_back(stretches_of(channel.values, run));
+    runs.push_back(segments_of(channel.values, run));
   }
-  const Habits habits = habits_of(channel.values, runs, noise, high);
+  const ChannelStatistics statistics = statistics_of(channel.values, runs, noise, high);
   if (!(high > low)) {
     return;  // a constant channel is reported elsewhere
   }
-  const bool low_is_cut = piles_up(runs, low, habits);
-  const bool high_is_cut = piles_up(runs, high, habits);
-  for (const std::vector<Stretch>& run : runs) {
+  const bool low_is_cut = piles_up(runs, low, statistics);
+  const bool high_is_cut = piles_up(runs, high, statistics);
+  for (const std::vector<Segment>& run : runs) {
     for (std::size_t at = 0; at < run.size(); ++at) {
-      const Stretch& stretch = run[at];
-      const bool is_low = stretch.value == low;
-      const bool is_high = stretch.value == high;
+      const Segment& segment = run[at];
+      const bool is_low = segment.value == low;
+      const bool is_high = segment.value == high;
       const bool is_saturated =
-          (is_low && low_is_cut) || (is_high && high_is_cut) || ((is_low || is_high) && climb_stops_dead(run, at, habits));
-      const bool goes_on = stretch.value == was_frozen_at && stretch.begin < reported.first && stretch.end > reported.first;
-      if (!is_saturated && !goes_on && !is_improbable(stretch, habits) && !ends_in_isolated_jump(run, at, habits) &&
-          !stays_still_to_the_end(run, at, habits)) {
+          (is_low && low_is_cut) || (is_high && high_is_cut) || ((is_low || is_high) && climb_stops_dead(run, at, statistics));
+      const bool goes_on = segment.value == was_frozen_at && segment.begin < reported.first && segment.end > reported.first;
+      if (!is_saturated && !goes_on && !is_improbable(segment, statistics) && !ends_in_isolated_jump(run, at, statistics) &&
+          !stays_still_to_the_end(run, at, statistics)) {
         continue;
       }
-      if (!is_saturated && stretch.begin < reported.last && stretch.end >= reported.last) {
-        frozen_at = stretch.value;
+      if (!is_saturated && segment.begin < reported.last && segment.end >= reported.last) {
+        frozen_at = segment.value;
       }
-      for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+      for (std::size_t i = segment.begin; i < segment.end; ++i) {
         if (!std::isnan(channel.values[i])) {
           reported.leave_out(part, channel, i, is_saturated ? LeftOutReason::saturated : LeftOutReason::frozen);
         }
@@ -371,7 +372,7 @@ void Screening::leave_out_bad_samples(Recording& part, std::size_t first, std::s
     Channel& channel = part.channels[c];
     if (channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings) {
       const NoiseLevel noise = noise_level(channel.values, runs, kMostSamples);
-      leave_out_stretches(part, channel, noise, past_[c].low, past_[c].high, past_[c].value, reported);
+      leave_out_segments(part, channel, noise, past_[c].low, past_[c].high, past_[c].value, reported);
       leave_out_outliers(part, channel, noise, reported);
     }
     leave_out_wild_inputs(part, channel, reported);

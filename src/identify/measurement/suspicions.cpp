@@ -33,14 +33,14 @@ class Suspector {
     early_answers();
     const std::size_t of_motors = found_.size();
     clock();
-    std::vector<std::string> spoiling = found_;
+    std::vector<std::string> blocking = found_;
     angles();
     wheels();
-    std::vector<std::string> spoiling_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
+    std::vector<std::string> blocking_for_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
     short_clock();
     constants();
     limits();
-    return {std::move(found_), std::move(spoiling), std::move(spoiling_wheels)};
+    return {std::move(found_), std::move(blocking), std::move(blocking_for_wheels)};
   }
 
  private:

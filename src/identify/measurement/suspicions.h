@@ -11,8 +11,8 @@ namespace heatsoak {
 
 struct Suspicions {
   std::vector<std::string> all;
-  std::vector<std::string> spoiling;         ///< subset about units, signs and sensors that, if true, prevents any fit
-  std::vector<std::string> spoiling_wheels;  ///< subset about a robot's wheels and angles, and about the clock
+  std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<std::string> blocking_for_wheels;  ///< subset about a robot's wheels and angles, and about the clock
 };
 /// Returns the suspicions as sentences. `told` must contain sampling, channels and clock offsets. `ambient_C`: air temperature stated by
 /// the user, NaN if not stated.

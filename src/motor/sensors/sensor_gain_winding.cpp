@@ -12,10 +12,11 @@ SensorEffectType sensor_gain_winding() {
       .size = {"relative_error", "", Range::between(-0.5, 0.5), "of the rise above 25 °C"},
       .typical_size = 0.03,
       .typical = "0.01 to 0.05 for a thermistor with a nominal beta",
-      .look_alike = "A different thermal resistance between winding and stator: where heat comes from speed alone, only the gain remains.",
+      .confounded_with =
+          "A different thermal resistance between winding and stator: where heat comes from speed alone, only the gain remains.",
       .experiment = "warm the motor by speed alone: winding and stator then differ by little, and a gain shows",
       // 25 + 1.1·(75 − 25) = 80 °C; 25 °C is unchanged
-      .example = {.size = 0.1, .time_s = {0.0, 10.0}, .true_C = {25.0, 75.0}, .shown_C = {25.0, 80.0}},
+      .example = {.size = 0.1, .time_s = {0.0, 10.0}, .true_C = {25.0, 75.0}, .sensor_C = {25.0, 80.0}},
       .law = sensor_gain_law(),
   };
 }

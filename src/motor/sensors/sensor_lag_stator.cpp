@@ -12,11 +12,11 @@ SensorEffectType sensor_lag_stator() {
       .size = {"time_constant", "s", Range::between(0.0, 300.0), "after which 63 % of a step is shown"},
       .typical_size = 8.0,
       .typical = "2 to 20 s for a probe glued or taped on",
-      .look_alike =
+      .confounded_with =
           "connection_resistance: heat that goes straight into the stator with I², of the opposite sign; rest and speed-only heating tell.",
       .experiment = "warm the motor by speed alone, without load, then let it rest: a lag delays that too, I² heat is not there",
       // T rises by 10 K in 10 s, τ = 5 s: behind = 5 K, shown = 30 − 5 + (0 + 5)·e^(−2) = 25.6766764 °C
-      .example = {.size = 5.0, .time_s = {0.0, 10.0}, .true_C = {20.0, 30.0}, .shown_C = {20.0, 25.676676416183064}},
+      .example = {.size = 5.0, .time_s = {0.0, 10.0}, .true_C = {20.0, 30.0}, .sensor_C = {20.0, 25.676676416183064}},
       .law = sensor_lag_law(),
   };
 }

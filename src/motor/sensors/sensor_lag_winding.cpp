@@ -12,11 +12,11 @@ SensorEffectType sensor_lag_winding() {
       .size = {"time_constant", "s", Range::between(0.0, 120.0), "after which 63 % of a step is shown"},
       .typical_size = 4.0,
       .typical = "1 to 5 s for a bead between the wires, more on top of tape",
-      .look_alike =
+      .confounded_with =
           "A larger heat capacity of the winding, which slows the true temperature as well; a step of current with a fast log tells.",
       .experiment = "a step of current at standstill, logged at 10 Hz: a lag bends the first seconds, a capacity does not",
       // T rises by 10 K in 10 s, τ = 10 s: behind = 10 K, shown = 30 − 10 + (0 + 10)·e^(−1) = 23.6787944 °C
-      .example = {.size = 10.0, .time_s = {0.0, 10.0}, .true_C = {20.0, 30.0}, .shown_C = {20.0, 23.678794411714423}},
+      .example = {.size = 10.0, .time_s = {0.0, 10.0}, .true_C = {20.0, 30.0}, .sensor_C = {20.0, 23.678794411714423}},
       .law = sensor_lag_law(),
   };
 }

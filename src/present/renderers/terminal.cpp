@@ -36,7 +36,7 @@ std::string toned(const std::string& text, Tone tone, bool with_colors) {
   if (!with_colors || tone == Tone::neutral) {
     return text;
   }
-  const int color = tone == Tone::good ? 32 : tone == Tone::doubtful ? 33 : 31;
+  const int color = tone == Tone::good ? 32 : tone == Tone::undecided ? 33 : 31;
   return fmt::format("\x1b[{}m{}\x1b[0m", color, text);
 }
 

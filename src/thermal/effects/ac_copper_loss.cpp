@@ -28,7 +28,7 @@ EffectType ac_copper_loss() {
       .nodes = {{"winding", "winding"}},
       .parameters = {{"share", "", Range::between(0.0, 10.0), "extra copper loss per copper loss, at 500 rad/s"}},
       .typical = "0.05 to 0.4 of the copper loss at 500 rad/s",
-      .look_alike =
+      .confounded_with =
           "armature_iron_loss has the same product of current and speed at the stator; winding_through_flow cools the winding with speed, "
           "with the opposite sign.",
       // 0.2 · 8 W · (250/500)² = 0.4 W

@@ -28,7 +28,7 @@ EffectType air_gap_stirring() {
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s, beside that at rest"}},
       .typical = "0.02 to 0.08 W/K at 500 rad/s: 10 to 25 % smaller difference between winding and stator",
-      .look_alike = "winding_through_flow takes the heat to ambient instead: the stator's temperature tells.",
+      .confounded_with = "winding_through_flow takes the heat to ambient instead: the stator's temperature tells.",
       // 0.1 W/K · 250/500 · (90 − 60) K = 1.5 W
       .example = {.parameters = {0.1},
                   .at = {.speed_mean_rad_per_s = 250.0},

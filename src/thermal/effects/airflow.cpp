@@ -25,7 +25,7 @@ EffectType airflow() {
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "beside what still air leads away"}},
       .typical = "0.05 to 0.3 W/K for a motor of 0.1 kg; a fan on a large one some W/K",
-      .look_alike =
+      .confounded_with =
           "The resistance to ambient itself: only runs with and without the air, all else equal, tell. At the winding: "
           "winding_through_flow, where "
           "the rotor moves the air.",

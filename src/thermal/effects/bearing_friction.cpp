@@ -32,7 +32,7 @@ EffectType bearing_friction() {
                      {"thinning", "1/K", Range::between(0.0, 0.05),
                       "relative fall of the viscous part per kelvin; mineral grease 0.02 to 0.04"}},
       .typical = "0.2 to 1 W at 500 rad/s",
-      .look_alike =
+      .confounded_with =
           "iron_loss_hysteresis and iron_loss_eddy have the same dependence on speed; only the fall with temperature differs, and without "
           "it no temperature tells them apart.",
       // 1 W · (0.5 · 0.5 + 0.5 · e^(−0.02/K · 50 K) · 0.25) = 0.25 + 0.125·e^(−1) = 0.25 + 0.04598493014643030 = 0.2959849301464303 W

@@ -25,7 +25,7 @@ EffectType braking_heat() {
       .nodes = {{"heated", "stator"}},
       .parameters = {{"share", "", Range::between(0.0, 1.0), "of the braking power that heats the node"}},
       .typical = "0.1 to 1 of the braking power: hard stops make more heat than driving",
-      .look_alike = "load_friction acts while driving too; copper loss of the braking current is in copper_loss already.",
+      .confounded_with = "load_friction acts while driving too; copper loss of the braking current is in copper_loss already.",
       // 0.5 · max(0, 30 W) = 15 W
       .example = {.parameters = {0.5}, .at = {.shaft_power_W = -30.0}, .temperature_C = {40.0}, .expected_heat_W = {15.0}},
       .laws = laws<BrakingHeat>(),

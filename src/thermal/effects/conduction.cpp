@@ -24,7 +24,7 @@ EffectType conduction() {
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
       .parameters = {{"thermal_resistance", "K/W", Range::between(1e-3, std::numeric_limits<double>::infinity()), "between the two nodes"}},
       .typical = "winding to stator 1 to 8 K/W, stator to ambient 1.5 to 18 K/W",
-      .look_alike =
+      .confounded_with =
           "Natural convection and radiation: over one narrow range of temperature they are a resistance too; "
           "a cool-down from 80 K to 5 K above ambient tells.",
       // (80 °C − 30 °C) / 2.5 K/W = 20 W leave the hot node and reach the cold one

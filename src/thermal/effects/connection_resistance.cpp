@@ -24,7 +24,7 @@ EffectType connection_resistance() {
       .nodes = {{"stator", "stator"}},
       .parameters = {{"resistance", "ohm", Range::non_negative(), "of both leads and their contacts, outside the winding"}},
       .typical = "5 to 20 mΩ: 0.3 to 1.3 W at 8 A",
-      .look_alike =
+      .confounded_with =
           "A lag of the stator's sensor; driver_heat (|I|); where it is a few per cent of the heat, a winding of several bodies, loosely "
           "joined. A 4-wire measurement of the resistance between driver and terminals tells.",
       // 0.01 Ω · (8 A)² = 0.64 W

@@ -24,7 +24,7 @@ EffectType constant_heat() {
       .nodes = {{"heated", "stator"}},
       .parameters = {{"power", "W", Range::non_negative(), "that the node takes up"}},
       .typical = "0.5 to 3 W",
-      .look_alike = "An offset of the node's sensor or of the ambient's: the first minutes before power tell.",
+      .confounded_with = "An offset of the node's sensor or of the ambient's: the first minutes before power tell.",
       // 1.5 W, independent of the operating point
       .example = {.parameters = {1.5}, .at = {}, .temperature_C = {40.0}, .expected_heat_W = {1.5}},
       .laws = laws<ConstantHeat>(),

@@ -35,7 +35,8 @@ EffectType contact_ageing() {
                      {"fresh_share", "", Range::between(0.0, 1.0),
                       "1: there when fresh, lost with age; 0: absent when fresh, comes with age"}},
       .typical = "0.03 to 0.1 W/K: 10 to 30 % of the conductance between winding and stator, over hours to hundreds of hours",
-      .look_alike = "contact_temperature_dependence where runs got hotter one after the other; a repeated run at equal temperature tells.",
+      .confounded_with =
+          "contact_temperature_dependence where runs got hotter one after the other; a repeated run at equal temperature tells.",
       // new motor, so e^0 = 1: 0.1 W/K · (0.75·1 + 0.25·0) · (80 − 60) K = 1.5 W
       .example = {.parameters = {0.1, 10.0, 0.75}, .at = {.age_h = 0.0}, .temperature_C = {80.0, 60.0}, .expected_heat_W = {-1.5, 1.5}},
       .laws = laws<ContactAgeing>(),

@@ -38,7 +38,7 @@ EffectType contact_law() {
                      {"mean_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the mean temperature"},
                      {"difference_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the difference"}},
       .typical = "half of the conductance between winding and stator, with ratios of 0.3 to 3",
-      .look_alike =
+      .confounded_with =
           "contact_temperature_dependence, a contact that comes in one step; a winding of several bodies. An effect for forecasts: it "
           "stands for whatever bends the conductance.",
       // mean 110 °C, difference 80 K: 0.5 W/K · 4^0.5 · 4^0.5 · 80 K = 0.5 · 4 · 80 = 160 W

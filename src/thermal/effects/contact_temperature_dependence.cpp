@@ -35,7 +35,7 @@ EffectType contact_temperature_dependence() {
                      {"steepness", "1/K", Range::between(-1.0, 1.0),
                       "more than 0: comes with temperature, less: goes; 1/κ is the width of the step"}},
       .typical = "0.03 to 0.1 W/K with 1/κ of 20 K: 5 to 15 % of the conductance between winding and stator over 30 K",
-      .look_alike = "A wrong temperature coefficient of the copper; contact_ageing. Hot and cold runs in turns tell.",
+      .confounded_with = "A wrong temperature coefficient of the copper; contact_ageing. Hot and cold runs in turns tell.",
       // mean of 80 and 60 °C is the midpoint: half of 0.1 W/K · 20 K = 1 W
       .example = {.parameters = {0.1, 70.0, 0.05}, .at = {}, .temperature_C = {80.0, 60.0}, .expected_heat_W = {-1.0, 1.0}},
       .laws = laws<ContactTemperatureDependence>(),

@@ -28,7 +28,7 @@ EffectType copper_loss() {
       .parameters = {{"terminal_resistance", "ohm", Range::positive(), "between two terminals at 25 °C"},
                      {"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the resistance, at 25 °C; copper 0.0039 1/K"}},
       .typical = "5 to 10 W at nominal current",
-      .look_alike =
+      .confounded_with =
           "A wrong resistance or current gain scales all heat and cannot be told from heat capacities and "
           "thermal resistances; a 4-wire resistance measurement tells.",
       // (3 A)² · 0.6 Ω · (1 + 0.004 /K · 100 K) = 9 · 0.6 · 1.4 = 7.56 W

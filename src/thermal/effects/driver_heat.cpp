@@ -30,7 +30,7 @@ EffectType driver_heat() {
       .parameters = {{"loss", "W", Range::non_negative(), "that reaches the node at 5 A"},
                      {"quadratic_share", "", Range::between(0.0, 1.0), "of it that goes with I²"}},
       .typical = "0.5 to 2 W at 5 A",
-      .look_alike =
+      .confounded_with =
           "connection_resistance (I²) at the same node; a constant standby is constant_heat; a driver that is a lump of metal of its own "
           "answers late, which third_node shows.",
       // 2 W · (0.75 · 2.5/5 + 0.25 · (2.5/5)²) = 2 · (0.375 + 0.0625) = 0.875 W

@@ -33,7 +33,7 @@ EffectType enclosure_warm_up() {
                      {"heat_ratio", "K/W", Range::non_negative(), "the others' heat per this motor's copper loss, over the conductance"},
                      {"heat_capacity", "J/K", Range::positive(), "of enclosed air and shell"}},
       .typical = "0.05 to 0.2 W/K, r = 5, h = 10 K/W: the air rises 5 to 20 K within some ten minutes",
-      .look_alike =
+      .confounded_with =
           "third_node is the same without the others' heat; heat that goes with I² and reaches the stator late, through a driver or a "
           "connection of its own mass, has this equation; a drift of the ambient sensor. A sensor in the enclosed air tells, or lifting "
           "the cover.",

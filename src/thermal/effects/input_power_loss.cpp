@@ -28,7 +28,7 @@ EffectType input_power_loss() {
       .parameters = {{"share", "", Range::between(0.0, 1.0),
                       "of the lost power that heats the node; the rest heats the driver or another node"}},
       .typical = "0.2 to 1; the power of a propeller or a wheel counts as shaft power",
-      .look_alike = "copper_loss and the speed losses are its parts: either them or this, at one node.",
+      .confounded_with = "copper_loss and the speed losses are its parts: either them or this, at one node.",
       // 0.8 · (30 W − 20 W) = 8 W
       .example = {.parameters = {0.8},
                   .at = {.shaft_power_W = 20.0, .input_power_W = 30.0},

@@ -30,7 +30,7 @@ EffectType iron_loss_eddy() {
       .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s"},
                      {"exponent", "", Range::between(1.2, 3.0), "of the speed; 2 for eddy currents, 1.5 for excess loss"}},
       .typical = "1 to 3 W at 500 rad/s",
-      .look_alike =
+      .confounded_with =
           "iron_loss_hysteresis and dry friction are straight in speed, windage grows with ω³; a machine's whole loss may follow one "
           "exponent between them. Eddy currents of the magnets heat the rotor first: third_node with a lag.",
       // 2 W · (250/500)² = 0.5 W

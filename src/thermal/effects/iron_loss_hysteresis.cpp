@@ -27,7 +27,7 @@ EffectType iron_loss_hysteresis() {
       .nodes = {{"stator", "stator"}},
       .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s"}},
       .typical = "1 to 3 W at 500 rad/s",
-      .look_alike =
+      .confounded_with =
           "iron_loss_eddy and windage bend upwards with speed; the dry part of bearing_friction is the same term and cannot be told from "
           "temperatures; no_load_loss of a data sheet is the same term too, and this one then is what the sheet leaves out.",
       // 2 W · 250/500 = 1 W

@@ -25,7 +25,7 @@ EffectType load_friction() {
       .nodes = {{"stator", "stator"}},
       .parameters = {{"share", "", Range::between(0.0, 1.0), "of the shaft's power that heats the node"}},
       .typical = "0.03 to 0.08 of the mechanical power",
-      .look_alike = "speed_dependent_convection with the opposite sign; armature_iron_loss (|I|·ω²).",
+      .confounded_with = "speed_dependent_convection with the opposite sign; armature_iron_loss (|I|·ω²).",
       // 0.05 · |−40 W| = 2 W; braking counts like driving
       .example = {.parameters = {0.05}, .at = {.shaft_power_W = -40.0}, .temperature_C = {40.0}, .expected_heat_W = {2.0}},
       .laws = laws<LoadFriction>(),

@@ -27,7 +27,7 @@ EffectType magnet_weakening() {
       .nodes = {{"winding", "winding"}, {"magnet", "stator"}},
       .parameters = {{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "loss of torque constant per kelvin above 25 °C"}},
       .typical = "0.001 to 0.0012 1/K: 14 % more copper loss at 60 K",
-      .look_alike =
+      .confounded_with =
           "A temperature coefficient of the resistance that is too low. Where the current was measured it is in the measurement already: "
           "then look there first.",
       // ΔT = 1.5 K: soft part (1.5 + √(1.5² + 2²))/2 = (1.5 + 2.5)/2 = 2 K; 2 · 0.001/K · 2 K · 10 W = 0.04 W

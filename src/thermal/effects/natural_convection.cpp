@@ -29,7 +29,7 @@ EffectType natural_convection() {
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at a difference of 40 K"},
                      {"exponent", "", Range::between(0.1, 0.5), "of the difference; 1/4 laminar, 1/3 turbulent"}},
       .typical = "0.03 to 0.1 W/K at 40 K: ±8 % of the resistance to ambient between 20 and 60 K",
-      .look_alike =
+      .confounded_with =
           "A smaller resistance to ambient and radiation: over one range of temperature 99 % of it is such a resistance. A cool-down from "
           "80 K to 5 K above ambient tells.",
       // (2.5/40)^0.25 = (1/16)^0.25 = 0.5; 0.1 W/K · 0.5 · 2.5 K = 0.125 W

@@ -26,7 +26,7 @@ EffectType neighbour_coupling() {
       .nodes = {{"node", "stator"}, {"surroundings", "ambient"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "between the two motors"}},
       .typical = "0.02 to 0.1 W/K between motors on one plate",
-      .look_alike = "third_node and enclosure_warm_up: running the neighbour alone tells.",
+      .confounded_with = "third_node and enclosure_warm_up: running the neighbour alone tells.",
       // 0.05 W/K · (40 − 60) K = −1 W: the hotter neighbour adds 1 W to the node
       .example = {.parameters = {0.05},
                   .at = {.neighbour_C = 60.0, .neighbour_share = 1.0},

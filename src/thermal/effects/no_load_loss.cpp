@@ -24,7 +24,7 @@ EffectType no_load_loss() {
       .nodes = {{"stator", "stator"}},
       .parameters = {{"drag_torque", "N m", Range::non_negative(), "torque constant times no-load current"}},
       .typical = "1 to 5 W at no-load speed",
-      .look_alike = "Hysteresis loss and dry bearing friction are the same term; eddy-current loss grows with ω².",
+      .confounded_with = "Hysteresis loss and dry bearing friction are the same term; eddy-current loss grows with ω².",
       // 0.008 N m · 500 rad/s = 4 W
       .example = {.parameters = {0.008},
                   .at = {.current_rms_A = 0.0, .speed_mean_rad_per_s = 500.0, .speed_rms_rad_per_s = 500.0, .ambient_C = 25.0},

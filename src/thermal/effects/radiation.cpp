@@ -31,7 +31,7 @@ EffectType radiation() {
       .parameters = {{"emissive_area", "m2", Range::between(0.0, 10.0),
                       "emissivity times surface; bare metal 0.1, paint and plastics 0.9"}},
       .typical = "0.004 to 0.01 m²: 0.03 to 0.06 W/K",
-      .look_alike =
+      .confounded_with =
           "A smaller resistance to ambient: 99.9 % of it over one range of temperature. natural_convection bends the same way; a coat of "
           "matt paint changes radiation alone.",
       // 400 K to 300 K over 0.01 m²: 5.670374419e-8 · 0.01 · (2.56e10 − 8.1e9) = 5.670374419e-10 · 1.75e10 = 9.92315523325 W

@@ -28,7 +28,7 @@ EffectType saturation() {
                      {"knee_current", "A", Range::between(0.01, 1e4), "equivalent DC current at which half of it is there"},
                      {"knee_width", "", Range::between(0.01, 1.0), "share of the knee current over which it comes; an ordinary knee: 0.1"}},
       .typical = "0.1 to 0.5 above two to four times the nominal current",
-      .look_alike =
+      .confounded_with =
           "A temperature coefficient of the resistance that is too low: both act where the current is high. Where the current was measured "
           "it is in the measurement already.",
       // half of the excess at the knee current: 0.5 · 0.4 · 30 W = 6 W

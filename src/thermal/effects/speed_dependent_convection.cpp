@@ -29,7 +29,7 @@ EffectType speed_dependent_convection() {
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s, beside what cools at rest"},
                      {"exponent", "", Range::between(0.2, 1.2), "of the speed; 0.5 laminar, 0.8 turbulent"}},
       .typical = "0.05 to 0.2 W/K at 500 rad/s: 20 to 60 % less resistance to ambient",
-      .look_alike =
+      .confounded_with =
           "A speed loss with the opposite sign: only its growth with the difference in temperature tells, so both spinning while hot and "
           "spinning while cold are needed. vehicle_airflow where the wheels drive.",
       // 0.1 W/K · (125/500)^0.5 = 0.05 W/K; · (70 − 30) K = 2 W

@@ -28,7 +28,7 @@ EffectType stall_phase_imbalance() {
       .parameters = {{"excess", "", Range::between(0.0, 1.0), "of the hottest phase over the mean copper loss, at standstill"},
                      {"stall_speed", "rad/s", Range::between(0.1, 1000.0), "below which phases no longer share the heat"}},
       .typical = "0.3 to 1 below some 10 rad/s",
-      .look_alike = "third_node while runs begin with a stall; turning the rotor by 60 electrical degrees between stalls tells.",
+      .confounded_with = "third_node while runs begin with a stall; turning the rotor by 60 electrical degrees between stalls tells.",
       // half of the excess at the stall speed: 0.5 · 0.8 · 10 W = 4 W
       .example = {.parameters = {0.8, 10.0},
                   .at = {.speed_mean_rad_per_s = 10.0, .copper_loss_W = 10.0},

@@ -10,7 +10,7 @@ enum Node { hot, cold, watched, reference };
 enum Parameter { driver, form, first_knot, last_knot, first_value };
 constexpr int kKnots = 7;
 
-enum Driver {
+enum Regressor {
   speed,
   velocity,
   acceleration,
@@ -184,7 +184,7 @@ EffectType tabulated() {
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}, {"watched", "stator"}, {"reference", "ambient"}},
       .parameters = parameters(),
       .typical = "0.1 to 3 W, 0.05 to 1 of the copper loss, 0.02 to 0.3 W/K",
-      .look_alike =
+      .confounded_with =
           "Every effect over the same signal: the curve fits where a law does, but says nothing beyond the values it was measured at.",
       // 2.5 rad/s of 10 lie at knot 1.5 of 6, half way between value_2 = 1 W/K and value_3 = 3 W/K: 2 W/K · (60 − 50) K = 20 W
       .example = {.parameters = {speed, per_difference, 0.0, 10.0, 0.0, 1.0, 3.0, 3.0, 3.0, 3.0, 3.0},

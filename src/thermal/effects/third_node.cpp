@@ -30,7 +30,7 @@ EffectType third_node() {
                      {"leak_ratio", "", Range::between(0.0, 100.0), "conductance from body to ambient per conductance from node to body"},
                      {"heat_capacity", "J/K", Range::positive(), "of the body"}},
       .typical = "0.05 to 0.3 W/K and 30 to 500 J/K (aluminium 900 J/(kg K), steel 460 J/(kg K))",
-      .look_alike =
+      .confounded_with =
           "enclosure_warm_up, a drift of a sensor; a body of another capacity. A long soak with cool-down tells, and weighing the part.",
       // into the body 0.2 W/K · (60 − 40) K = 4 W; out of it 0.5 · 0.2 W/K · (40 − 20) K = 2 W
       .example = {.parameters = {0.2, 0.5, 100.0}, .at = {}, .temperature_C = {60.0, 40.0, 20.0}, .expected_heat_W = {-4.0, 2.0, 2.0}},

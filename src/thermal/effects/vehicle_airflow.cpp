@@ -27,7 +27,7 @@ EffectType vehicle_airflow() {
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at 1 m/s, beside what cools at rest"},
                      {"exponent", "", Range::between(0.2, 1.2), "of the vehicle's speed"}},
       .typical = "0.02 to 0.05 W/K at 1 m/s: 30 % less resistance to ambient at full speed",
-      .look_alike = "speed_dependent_convection: the same drive with the wheels off the ground tells.",
+      .confounded_with = "speed_dependent_convection: the same drive with the wheels off the ground tells.",
       // 0.03 W/K · (4 m/s)^0.5 = 0.06 W/K; · (60 − 20) K = 2.4 W
       .example = {.parameters = {0.03, 0.5},
                   .at = {.vehicle_speed_m_per_s = 4.0},

@@ -27,7 +27,7 @@ EffectType windage() {
       .nodes = {{"stator", "stator"}},
       .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s"}},
       .typical = "below 0.1 W at 500 rad/s for a smooth rotor, 0.5 W with a fan",
-      .look_alike = "iron_loss_eddy (ω²): only the highest speeds tell; a cover over the rotor's openings changes windage alone.",
+      .confounded_with = "iron_loss_eddy (ω²): only the highest speeds tell; a cover over the rotor's openings changes windage alone.",
       // 0.5 W · (250/500)³ = 0.0625 W
       .example = {.parameters = {0.5},
                   .at = {.speed_mean_rad_per_s = 250.0, .speed_rms_rad_per_s = 250.0},

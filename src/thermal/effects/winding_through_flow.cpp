@@ -26,7 +26,7 @@ EffectType winding_through_flow() {
       .nodes = {{"hot", "winding"}, {"cold", "ambient"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s"}},
       .typical = "0.03 to 0.1 W/K at 500 rad/s in outrunners, none in closed motors",
-      .look_alike =
+      .confounded_with =
           "air_gap_stirring takes the heat to the stator instead; ac_copper_loss heats the winding with speed. Tape over the openings "
           "tells.",
       // 0.1 W/K · 250/500 · (90 − 30) K = 3 W

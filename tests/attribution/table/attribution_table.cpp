@@ -35,7 +35,7 @@ const std::vector<Hardship>& hardships() {
 }
 
 struct Marks {
-  Share false_alarm, says_nothing, detected, right_of_detected, right_of_visible, among_look_alikes, pairs_right, one_of_pair,
+  Share false_alarm, says_nothing, detected, right_of_detected, right_of_visible, among_confounded, pairs_right, one_of_pair,
       outsiders_right, left_unnamed, given_a_name, interval_covers, near_floor;
   struct Harder {
     Share false_alarm, detected, right;
@@ -105,7 +105,7 @@ void examine_single(Marks& marks, const Subject& subject, double size, std::uint
   marks.detected.add(!is_silent(answer));
   if (!is_silent(answer)) {
     marks.right_of_detected.add(is_right);
-    marks.among_look_alikes.add(mentions(answer, subject));
+    marks.among_confounded.add(mentions(answer, subject));
   }
   if (subject.visibility == Visibility::visible) {
     marks.right_of_visible.add(is_right);
@@ -263,7 +263,7 @@ void print_table(Marks& marks) {
   row("single effects: detected", "", in_words(marks.detected));
   row("single effects: right, of those detected", ">= 98 %", in_words(marks.right_of_detected));
   row("single effects: right, of those visible", ">= 95 %", in_words(marks.right_of_visible));
-  row("single effects: named or among its look-alikes, of those detected", ">= 99 %", in_words(marks.among_look_alikes));
+  row("single effects: named or among its look-alikes, of those detected", ">= 99 %", in_words(marks.among_confounded));
   row("pairs: both right, nothing else", ">= 90 %", in_words(marks.pairs_right));
   row("pairs: at least one right", "", in_words(marks.one_of_pair));
   row("outside the catalogue: unexplained, node and driver right", ">= 90 %", in_words(marks.outsiders_right));

@@ -363,7 +363,7 @@ void write(const std::filesystem::path& folder, const Subject& subject, std::spa
            const std::string& promise) {
   write_file(folder / "worst_use.md",
              fmt::format("Safety factor on heat {:.2f}, confidence {:.2f}, limit {:.0f} °C. Run time {:.0f} min, one thread.\n\n{}\n{}",
-                         subject.derating.observer.heat_reserve_ratio(), subject.options.guarantee.confidence,
+                         subject.derating.observer.heat_safety_factor(), subject.options.guarantee.confidence,
                          subject.derating.rules.limits.winding_C, elapsed_min, table_text(tallies), promise));
   write_file(folder / "worst_use.csv", csv_text(tallies));
   write_file(folder / "worst_use.svg", draw_svg(chart_of(tallies, subject.derating.rules.limits.winding_C)));

@@ -136,7 +136,7 @@ std::string group_text(const Group& group) {
   return fmt::format(
       "## {}\n\nSafety factor on heat: {:.2f}.\n\n{} matches, nominal motor:\n\n{}\n"
       "{} motors in the first match:\n\n{}\n",
-      group.name, group.guard.derating->observer.heat_reserve_ratio(), kSeeds, seed_table(group), kMotors, motor_table(group));
+      group.name, group.guard.derating->observer.heat_safety_factor(), kSeeds, seed_table(group), kMotors, motor_table(group));
 }
 
 std::string input_table(const HardMatch& match) {

@@ -64,7 +64,7 @@ HardMatch make_hard_match(const Robot& robot, double share) {
     if (spec == specs.end()) {
       throw Failure(ExitCode::bug, fmt::format("a match has no input {}", harder.key));
     }
-    Figure& figure = match.inputs.figures.at(static_cast<std::size_t>(spec - specs.begin()));
+    ParameterValue& figure = match.inputs.figures.at(static_cast<std::size_t>(spec - specs.begin()));
     const std::string unit(spec->spec.unit);
     const double value = std::lerp(figure.value, harder.value, share);
     match.changed.push_back(
@@ -96,7 +96,7 @@ Motor bench_tested(const Motor& motor) {
                                        {"no_load_current", 0.2}};
   Motor tested = motor;
   for (const Tolerance& each : kTolerances) {
-    Figure* const figure = find_figure(tested, each.key);
+    ParameterValue* const figure = find_parameter(tested, each.key);
     if (figure == nullptr) {
       throw Failure(ExitCode::bug, fmt::format("the motor has no {}", each.key));
     }

@@ -31,7 +31,7 @@ Derating exact_derating(const Motor& motor, const Robot& robot) {
   Observer observer(network, motor.nominal, robot, 1.0);
   BarrierRules rules = barrier_rules(motor, robot, options);
   const double reachable_rad_per_s = rules.most_speed_rad_per_s;
-  rules.most_speed_rad_per_s = bearable_speed_rad_per_s(observer, rules);
+  rules.most_speed_rad_per_s = sustainable_speed_rad_per_s(observer, rules);
   if (rules.most_speed_rad_per_s < reachable_rad_per_s) {
     rules.no_current_speed_rad_per_s = 0.0;
   }

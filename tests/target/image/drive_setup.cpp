@@ -68,10 +68,10 @@ constexpr robot_core::GuardModel make_guard() {
                  .most_speed_rad_per_s = kMostSpeed_rad_per_s,
                  .no_current_speed_rad_per_s = 845.12195F,
                  .winding_per_stator_K = 1.0F};
-  guard.belief[robot_core::guard_current_A] = {true, -kMostCurrent_A, kMostCurrent_A, kPossibleCurrent_A.values, kCandidates};
-  guard.belief[robot_core::guard_speed_rad_per_s] = {true, -1.05F * kMostSpeed_rad_per_s, 1.05F * kMostSpeed_rad_per_s,
-                                                     kPossibleSpeed_rad_per_s.values, kCandidates};
-  guard.belief[robot_core::guard_ambient_C] = {true, 0.0F, 40.0F, kPossibleAmbient_C, 1};
+  guard.plausible_range[robot_core::guard_current_A] = {true, -kMostCurrent_A, kMostCurrent_A, kPossibleCurrent_A.values, kCandidates};
+  guard.plausible_range[robot_core::guard_speed_rad_per_s] = {true, -1.05F * kMostSpeed_rad_per_s, 1.05F * kMostSpeed_rad_per_s,
+                                                              kPossibleSpeed_rad_per_s.values, kCandidates};
+  guard.plausible_range[robot_core::guard_ambient_C] = {true, 0.0F, 40.0F, kPossibleAmbient_C, 1};
   guard.rates = rates;
   return guard;
 }

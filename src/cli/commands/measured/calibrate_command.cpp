@@ -41,7 +41,7 @@ std::string with_digits(double value, double half) {
   return significant(value, std::clamp(digits, 1, 6));
 }
 
-present::Table figure_table(const Calibration& result) {
+present::Table parameter_table(const Calibration& result) {
   present::Table table{.columns = {{"value", "", 0, present::Alignment::left},
                                    {"file", "", 0},
                                    {"fit", "", 0},
@@ -49,7 +49,7 @@ present::Table figure_table(const Calibration& result) {
                                    {"unit", "", 0, present::Alignment::left},
                                    {"identifiable", "", 1, present::Alignment::left}},
                        .rows = {}};
-  for (const CalibratedFigure& each : result.figures) {
+  for (const CalibratedParameter& each : result.figures) {
     const double half = 0.5 * (each.high - each.low);
     table.rows.push_back({{each.name},
                           {significant(each.before, 3)},
@@ -75,7 +75,7 @@ void add_errors(present::Table& table, const std::string& what, const std::vecto
 
 std::vector<present::Text> headline_of(const Motor& motor, const Calibration& result) {
   std::vector<std::string> open;
-  for (const CalibratedFigure& each : result.figures) {
+  for (const CalibratedParameter& each : result.figures) {
     if (!each.is_identifiable) {
       open.push_back(each.name);
     }
@@ -98,7 +98,7 @@ present::Document document_of(const Motor& motor, const Calibration& result, std
     document.paragraphs.back() +=
         fmt::format(" {} % of the samples were left out as outliers.", significant(100.0 * result.fit.rejected_share, 2));
   }
-  document.tables.push_back(figure_table(result));
+  document.tables.push_back(parameter_table(result));
   present::Table errors{.title = "Error of the free-running model in K",
                         .columns = {{"runs", "", 0, present::Alignment::left},
                                     {"signal", "", 0, present::Alignment::left},
@@ -164,7 +164,7 @@ nlohmann::ordered_json forecast_json(const Forecast& forecast) {
 
 nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, const std::string& out) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
-  for (const CalibratedFigure& each : result.figures) {
+  for (const CalibratedParameter& each : result.figures) {
     parameters.push_back({{"name", each.name},
                           {"value", number(each.value)},
                           {"unit", each.unit},
@@ -209,7 +209,7 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
 }
 
 /// Adds the steps that the logs require, which come before the experiment that the fit suggests.
-void tell_next_steps(std::vector<std::string> steps, std::string& next_experiment) {
+void report_next_steps(std::vector<std::string> steps, std::string& next_experiment) {
   if (!next_experiment.empty()) {
     steps.push_back(next_experiment);
   }
@@ -222,14 +222,14 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, notes);
   std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.how, notes);
   const std::vector<std::string> of_logs = notes;
-  tell_apart(logs, holdout);
+  make_names_distinct(logs, holdout);
   if (!options.how.takes_logs_as_they_are) {
     refuse_runs_of_the_file(motor, logs, holdout);
   }
   Admission admission = admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C);
   std::ranges::move(admission.notes, std::back_inserter(notes));
   Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C, options.is_for_forecasts});
-  tell_next_steps(admission.next_steps, result.next_experiment);
+  report_next_steps(admission.next_steps, result.next_experiment);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
   if (!options.plot.empty()) {

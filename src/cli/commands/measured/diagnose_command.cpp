@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "attribution/model_file.h"
 #include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/measured/diagnosis_answer.h"
@@ -14,7 +15,6 @@
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
 #include "identify/admission.h"
-#include "attribution/model_file.h"
 #include "identify/log_columns.h"
 #include "identify/open_loop.h"
 #include "motor/write_motor.h"
@@ -77,7 +77,7 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<Recording> train = read_logs(session.folders(), options.train, options.logs, notes);
   std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.logs, notes);
   const std::vector<std::string> of_logs = notes;
-  tell_apart(train, holdout);
+  make_names_distinct(train, holdout);
   std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C).notes,
                     std::back_inserter(notes));
   ModelOfLogs model = model_of_logs(motor, train);

@@ -48,7 +48,7 @@ struct Input {
   std::vector<FrictionLog> logs;
   Findings findings;
   std::vector<std::string> suspicions;
-  std::vector<Diagnostic> spoiling;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
+  std::vector<Diagnostic> blocking;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
 };
 
 /// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it.
@@ -81,11 +81,11 @@ void refuse_repeated(const Recording& recording, std::vector<std::pair<std::file
 
 /// Values from a wrong unit would get into the robot's file and from there into its firmware.
 void refuse_what_looks_wrong(const Options& options, const Input& input) {
-  if (!input.spoiling.empty() && !options.takes_logs_as_they_are) {
+  if (!input.blocking.empty() && !options.takes_logs_as_they_are) {
     throw Failure(ExitCode::bad_input,
                   "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or if they are "
                   "right go on with --as-is",
-                  input.spoiling);
+                  input.blocking);
   }
 }
 
@@ -97,7 +97,7 @@ Input read_input(const Options& options, const Session& session) {
               .logs = {},
               .findings = {},
               .suspicions = {},
-              .spoiling = {}};
+              .blocking = {}};
   find_motor(options, folders, input);
   FrictionLogNeeds needs;
   needs.voltage = options.method == "steady_state";
@@ -119,8 +119,8 @@ Input read_input(const Options& options, const Session& session) {
     for (const std::string& suspicion : quality.suspicions) {
       input.suspicions.push_back(fmt::format("{}: {}", recording.name, suspicion));
     }
-    for (const std::string& suspicion : quality.spoiling_wheels) {
-      input.spoiling.push_back({{recording.file.string()}, {}, suspicion});
+    for (const std::string& suspicion : quality.blocking_for_wheels) {
+      input.blocking.push_back({{recording.file.string()}, {}, suspicion});
     }
     refuse_repeated(recording, seen);
     if (progress) {
@@ -207,7 +207,7 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
     lines += fmt::format(
         "phase (given) is a wheel's rolling direction, as its headings are too few to tell; the intervals allow for {:.0f}° to either "
         "side; six directions or more all around tell it\n",
-        FitSettings{}.phase_doubt_rad * 180.0 / std::numbers::pi);
+        FitSettings{}.phase_uncertainty_rad * 180.0 / std::numbers::pi);
   }
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (fit.wheels[i].phase_is_bounded) {
@@ -328,7 +328,7 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
   for (const std::string& suspicion : friction_suspicions(
            steady, fit, kinematics, input.motor ? std::optional(drive_constants(input.robot, *input.motor)) : std::nullopt)) {
     input.suspicions.push_back(suspicion);
-    input.spoiling.push_back({{options.logs.front()}, {}, suspicion});
+    input.blocking.push_back({{options.logs.front()}, {}, suspicion});
   }
   refuse_what_looks_wrong(options, input);
   if (!fit.is_learned()) {

@@ -29,7 +29,7 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, notes);
   const std::vector<std::string> of_logs = notes;
   std::vector<Recording> none;
-  tell_apart(logs, none);
+  make_names_distinct(logs, none);
   std::ranges::move(admit(motor, none, logs, options.how.takes_logs_as_they_are, options.how.ambient_C).notes, std::back_inserter(notes));
   std::vector<std::string> warnings;
   for (const Recording& log : logs) {

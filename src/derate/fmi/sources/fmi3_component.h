@@ -4,6 +4,6 @@
 #include "fmi3.h"
 
 /* Logs the problem of an instance, if there is one, and says what to return. */
-fmi3Status fmi3_told(fmi3Instance of, const char *problem);
+fmi3Status fmi3_refuse(fmi3Instance of, const char *problem);
 
 #endif

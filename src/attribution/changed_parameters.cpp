@@ -1,8 +1,8 @@
-#include "attribution/changed_figures.h"
+#include "attribution/changed_parameters.h"
 
 namespace heatsoak {
 
-Prior with_doubt(const Prior& prior, Eigen::Index coordinate, double sheet_sd) {
+Prior with_prior_sd(const Prior& prior, Eigen::Index coordinate, double sheet_sd) {
   // The inverse of (Λ⁻¹ + s²·e·eᵀ), which needs no Λ⁻¹ (Sherman and Morrison 1950).
   Prior doubted = prior;
   const Eigen::VectorXd column = prior.precision.col(coordinate);
@@ -10,7 +10,7 @@ Prior with_doubt(const Prior& prior, Eigen::Index coordinate, double sheet_sd) {
   return doubted;
 }
 
-std::vector<Eigen::Index> well_known_figures(const ExtendedModel& model, double sheet_sd) {
+std::vector<Eigen::Index> well_known_values(const ExtendedModel& model, double sheet_sd) {
   std::vector<Eigen::Index> known;
   const Eigen::MatrixXd precision = model.prior().precision;
   for (Eigen::Index i = 0; i < model.model.free_count(); ++i) {

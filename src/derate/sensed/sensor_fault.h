@@ -10,10 +10,12 @@ namespace heatsoak {
 
 /// Simulates one use with a sensor that always reads the air temperature. The current is that of the sensed table for a cold motor, at most
 /// `gain_A` above the allowance of the guard without a sensor. That guard integrates only the current that it allows itself.
-UsePlayed play_lying(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot, const Use& use,
-                     double gain_A);
+UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot,
+                            const LoadPattern& use, double gain_A);
 
-/// Sets most_gain_A to the largest gain at which the nominal motor keeps its limits; sets lying_nominal_C and lying_over accordingly.
-void set_lying_sensor(SensorPlan& plan, const Motor& motor, const Robot& robot, const Derating& model_only, std::span<const Use> uses);
+/// Sets most_gain_A to the largest gain at which the nominal motor keeps its limits; sets sensor_fault_nominal_C and sensor_fault_over
+/// accordingly.
+void set_sensor_fault(SensorPlan& plan, const Motor& motor, const Robot& robot, const Derating& model_only,
+                      std::span<const LoadPattern> uses);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-#include "base/figure.h"
+#include "base/parameter_value.h"
 
 #include <array>
 #include <boost/math/distributions/normal.hpp>
@@ -41,7 +41,7 @@ std::optional<Origin> origin_from(std::string_view text) {
   return std::nullopt;
 }
 
-double Figure::quantile(double uniform) const {
+double ParameterValue::quantile(double uniform) const {
   if (!spread) {
     return value;
   }

@@ -3,17 +3,17 @@
 
 #include <functional>
 
-#include "identify/gap_habits.h"
+#include "identify/gap_statistics.h"
 #include "identify/log_rows.h"
 #include "identify/mean_inputs.h"
 #include "identify/row_steps.h"
 
 namespace heatsoak {
 
-class StretchInputs {
+class SegmentInputs {
  public:
   /// Uses rows first … last. Recording and rows must outlive this object.
-  StretchInputs(const Recording& recording, const LogRows& rows, std::size_t first, std::size_t last);
+  SegmentInputs(const Recording& recording, const LogRows& rows, std::size_t first, std::size_t last);
 
   /// Called for every row at which an interval may end.
   using Ends = std::function<void(std::size_t row)>;
@@ -35,7 +35,7 @@ class StretchInputs {
   };
   void add_gap(const Gap& gap, MeanInputs& mean, const Ends& ends);
   void add_middle(const Gap& gap, const Point& cells, double middle_s, MeanInputs& mean) const;
-  void doubt(const Gap& gap, const Point& cells, double doubted_s, MeanInputs& mean);
+  void doubt(const Gap& gap, const Point& cells, double uncertain_s, MeanInputs& mean);
   /// Quantities that every row of a gap has; NaN for those that at least one row lacks.
   [[nodiscard]] Point always_known(const Gap& gap) const;
   /// Operating point of a row with 0 for unknown quantities (the model does not need them), so that means are not NaN.
@@ -44,7 +44,7 @@ class StretchInputs {
   const Recording& recording_;
   const LogRows& rows_;
   RowSteps steps_;
-  GapHabits square_A2_, speed_rad_per_s_;
+  GapStatisticsTable square_A2_, speed_rad_per_s_;
 };
 
 }  // namespace heatsoak

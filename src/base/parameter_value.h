@@ -34,7 +34,7 @@ struct Confirmation {
   std::string printed;
 };
 
-struct Figure {
+struct ParameterValue {
   double value = 0.0;  ///< in the unit of its ParameterSpec
   Origin origin = Origin::estimated;
   std::string printed;     ///< the text in the file, "36.9 mN m/A"

@@ -1,4 +1,4 @@
-#include "cli/silent_effects.h"
+#include "cli/inactive_effects.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,7 +45,7 @@ std::string effects_under_conditions(std::span<const Motor> motors) {
   return text;
 }
 
-std::string silent_effects(std::span<const Motor> motors) {
+std::string inactive_effects(std::span<const Motor> motors) {
   std::string text = columns_at_their_hottest(motors) + effects_under_conditions(motors);
   for (const Motor& motor : motors) {
     for (const MotorEffect& effect : motor.effects) {

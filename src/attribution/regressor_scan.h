@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "attribution/design.h"
-#include "attribution/drivers.h"
 #include "attribution/flux_grid.h"
+#include "attribution/regressors.h"
 #include "attribution/rules.h"
 #include "attribution/scan_term.h"
 
@@ -41,7 +41,7 @@ struct ScanInput {
   const Model* model = nullptr;
   const std::vector<MeasuredRun>* runs = nullptr;
   const std::vector<LinearisedRun>* fitted = nullptr;
-  const std::vector<Driver>* drivers = nullptr;
+  const std::vector<Regressor>* drivers = nullptr;
   const std::vector<DesignRun>* designs = nullptr;
   ThetaPrior prior;
   ScanMembers members;

@@ -1,4 +1,4 @@
-#include "derate/belief.h"
+#include "derate/plausible_range.h"
 
 #include <algorithm>
 
@@ -37,14 +37,14 @@ Bounds bounds(const Derating& derating, firmware::Signal signal) {
 
 }  // namespace
 
-Belief belief(const Derating& derating, firmware::Signal signal) {
+PlausibleRange plausible_range(const Derating& derating, firmware::Signal signal) {
   if (!derating.observer.uses(signal)) {
     return {};
   }
   BarrierRules reachable = derating.rules;
   reachable.most_speed_rad_per_s = derating.reachable_speed_rad_per_s;
-  const Bounds believed = bounds(derating, signal);
-  Belief made{.is_used = true, .low = believed.low, .high = believed.high, .values = {}};
+  const Bounds validated = bounds(derating, signal);
+  PlausibleRange made{.is_used = true, .low = validated.low, .high = validated.high, .values = {}};
   for (const double value : values_if_unknown(derating.observer, reachable, signal)) {
     made.values.push_back(static_cast<float>(value));
   }

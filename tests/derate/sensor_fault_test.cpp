@@ -94,10 +94,10 @@ TEST_F(LyingSensor, WithoutAReadingItIsTheGuardWithoutASensor) {
   ModelGuard model(guard());
   sensed.start(30.0F);
   model.start(30.0F);
-  Driver driver(5);
+  Regressor driver(5);
   float allowed_A = 0.0F;
   for (int i = 0; i < 100'000; ++i) {
-    const Driver::Wish wish = driver.after(0.01);
+    const Regressor::Wish wish = driver.after(0.01);
     const CompiledGuard::Input in{static_cast<float>(wish.current_share) * allowed_A,
                                   static_cast<float>(wish.speed_share * thermistor_derating().rules.most_speed_rad_per_s), 30.0F};
     const CompiledGuard::Output out = sensed.step(in, std::numeric_limits<float>::quiet_NaN());

@@ -12,7 +12,7 @@ namespace heatsoak {
 inline constexpr float kNeighbourBelowAir_K = 5.0F;
 
 /// Plausible range of one signal, in the signal's unit. Single precision, because the controller compares in it.
-struct Belief {
+struct PlausibleRange {
   bool is_used = false;  ///< false: no law of the motor depends on the signal
   float low = 0.0F;      ///< not used for the neighbour, see kNeighbourBelowAir_K
   float high = 0.0F;
@@ -20,6 +20,6 @@ struct Belief {
 };
 
 /// Returns the plausible range of a signal; all members have their defaults if no law of the motor depends on it.
-Belief belief(const Derating& derating, firmware::Signal signal);
+PlausibleRange plausible_range(const Derating& derating, firmware::Signal signal);
 
 }  // namespace heatsoak

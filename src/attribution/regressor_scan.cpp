@@ -1,4 +1,4 @@
-#include "attribution/driver_scan.h"
+#include "attribution/regressor_scan.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -45,7 +45,7 @@ HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux
 
 /// Whether a curve over `driver` may be multiplied by `multiplier`. A loss depends on two operating signals; heat that depends on a
 /// temperature is cooling, or a loss of current or copper whose size varies with that temperature.
-bool goes_with(const Driver& driver, Multiplier multiplier) {
+bool goes_with(const Regressor& driver, Multiplier multiplier) {
   if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
     return false;
   }
@@ -135,12 +135,12 @@ class Scanner {
       }
       const double usual = kUsual_share * input_.mean_heat_W / std::max(1e-9, std::sqrt(squares / std::max(1.0, count)));
       for (std::size_t driver = 0; driver < input_.drivers->size(); ++driver) {
-        const Driver& of = (*input_.drivers)[driver];
+        const Regressor& of = (*input_.drivers)[driver];
         if (!goes_with(of, term.multiplier)) {
           continue;
         }
         std::vector<std::vector<double>> knots{knots_over(of)};
-        for (const Driver::Range& range : of.inner) {
+        for (const Regressor::Range& range : of.inner) {
           knots.push_back(knots_between(range, of.kind));
         }
         for (std::vector<double>& each : knots) {
@@ -189,7 +189,7 @@ class Scanner {
   /// Knots where something happens: a thermostat or a resonance is narrower than a seventh of all that the driver does.
   void zoom(Family& family) {
     constexpr int kHalvings = 3;
-    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     for (int half = 0; half < kHalvings; ++half) {
       const double low = family.knots.front();
       const double quarter = 0.25 * (family.knots.back() - low);
@@ -248,7 +248,7 @@ class Scanner {
   [[nodiscard]] HatColumns heats_W(const Family& family, std::size_t r) const {
     const double sign = is_taken_out(family.term.multiplier) ? -1.0 : 1.0;
     const DesignRun& design = (*input_.designs)[r];
-    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
     for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
       const double value = driver.values[r][k];
@@ -426,7 +426,7 @@ class Scanner {
 
   void set_heat(ScanResult& out, const Family& family) const {
     std::vector<double> magnitude_W;
-    const Driver& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     for (std::size_t r = 0; r < family.multiplier.size(); ++r) {
       for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
         const double value = driver.values[r][k];

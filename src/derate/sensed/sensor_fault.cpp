@@ -1,4 +1,4 @@
-#include "derate/sensed/lying_sensor.h"
+#include "derate/sensed/sensor_fault.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::uint64_t kLyingStream = std::uint64_t{1} << 42U;
+constexpr std::uint64_t kSensorFaultStream = std::uint64_t{1} << 42U;
 
 std::vector<UsePlayed> play_all(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot,
-                                std::span<const Use> uses, double gain_A) {
+                                std::span<const LoadPattern> uses, double gain_A) {
   std::vector<UsePlayed> played(uses.size());
   in_parallel(uses.size(), model_only.options.guarantee.threads,
-              [&](std::size_t i) { played[i] = play_lying(plan, model_only, motor, robot, uses[i], gain_A); });
+              [&](std::size_t i) { played[i] = play_sensor_fault(plan, model_only, motor, robot, uses[i], gain_A); });
   return played;
 }
 
@@ -39,8 +39,8 @@ NominalPeak nominal_peak(const Motor& motor, const TemperatureLimits& limits, st
 
 }  // namespace
 
-UsePlayed play_lying(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot, const Use& use,
-                     double gain_A) {
+UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot,
+                            const LoadPattern& use, double gain_A) {
   const BarrierRules& rules = model_only.rules;
   const double period_s = model_only.options.period_s;
   UsePlayed result;
@@ -70,7 +70,8 @@ UsePlayed play_lying(const SensorPlan& plan, const Derating& model_only, const M
   return result;
 }
 
-void set_lying_sensor(SensorPlan& plan, const Motor& motor, const Robot& robot, const Derating& model_only, std::span<const Use> uses) {
+void set_sensor_fault(SensorPlan& plan, const Motor& motor, const Robot& robot, const Derating& model_only,
+                      std::span<const LoadPattern> uses) {
   constexpr double kTolerance_A = 0.02;
   const TemperatureLimits& limits = model_only.rules.limits;
   double low_A = 0.0;
@@ -82,8 +83,8 @@ void set_lying_sensor(SensorPlan& plan, const Motor& motor, const Robot& robot, 
   }
   plan.most_gain_A = low_A;
   const std::vector<UsePlayed> played = play_all(plan, model_only, motor, robot, uses, low_A);
-  plan.lying_nominal_C = nominal_peak(motor, limits, played).winding_C;
-  plan.lying_over = check(motor, limits, played, model_only.options.guarantee, kLyingStream).over;
+  plan.sensor_fault_nominal_C = nominal_peak(motor, limits, played).winding_C;
+  plan.sensor_fault_over = check(motor, limits, played, model_only.options.guarantee, kSensorFaultStream).over;
 }
 
 }  // namespace heatsoak

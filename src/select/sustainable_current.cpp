@@ -1,4 +1,4 @@
-#include "select/bearable_current.h"
+#include "select/sustainable_current.h"
 
 #include <cmath>
 #include <limits>
@@ -19,8 +19,8 @@ Lanes worst_excess_K(const std::vector<Lanes>& peak_C, std::span<const NodeLimit
 
 }  // namespace
 
-std::optional<double> bearable_current_factor(const Network& network, std::span<const Interval> intervals,
-                                              std::span<const NodeLimit> limits, bool is_too_much) {
+std::optional<double> sustainable_current_factor(const Network& network, std::span<const Interval> intervals,
+                                                 std::span<const NodeLimit> limits, bool is_too_much) {
   constexpr int kRounds = 4;
   constexpr double kWider = 16.0;
   constexpr double kFarthest = 1e6;

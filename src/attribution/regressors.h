@@ -13,7 +13,7 @@ namespace heatsoak {
 /// What a driver is to the rest of the tool: what every operating point has, a temperature, or what only logs have.
 enum class DriverKind { operating_point, node_temperature, log_only };
 
-struct Driver {
+struct Regressor {
   std::string name;  ///< "speed", "stator_excess", "time", "thrust_N"
   std::string unit;  ///< UDUNITS text, "" for pure numbers
   DriverKind kind = DriverKind::operating_point;
@@ -34,6 +34,6 @@ struct Driver {
 inline constexpr std::string_view kTimeDriver = "time";
 
 /// What varies enough to be described from a constant, without copies of each other.
-std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
+std::vector<Regressor> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
 
 }  // namespace heatsoak

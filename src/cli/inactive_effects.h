@@ -9,7 +9,7 @@
 namespace heatsoak {
 
 /// Returns a line for each effect with an unknown input and how it is treated; empty if there is none.
-std::string silent_effects(std::span<const Motor> motors);
+std::string inactive_effects(std::span<const Motor> motors);
 
 /// Returns the lines of effects that depend on a log column; these use the value of the curve that gives the highest temperature.
 std::string columns_at_their_hottest(std::span<const Motor> motors);

@@ -10,7 +10,7 @@
 namespace heatsoak {
 
 /// A free parameter of the model that is better known than a sheet knows it, given back the uncertainty of a sheet.
-struct ChangedFigure {
+struct ChangedParameter {
   Eigen::Index coordinate = 0;  ///< of θ
   std::string name;             ///< of the network's parameter, "stator_ambient.thermal_resistance"
   std::string unit;
@@ -22,9 +22,9 @@ struct ChangedFigure {
 };
 
 /// Prior with the uncertainty of a data sheet (`sheet_sd`, of the logarithm) added to one coordinate.
-Prior with_doubt(const Prior& prior, Eigen::Index coordinate, double sheet_sd);
+Prior with_prior_sd(const Prior& prior, Eigen::Index coordinate, double sheet_sd);
 
 /// Coordinates of figures that are known more than twice as well as a sheet knows them.
-std::vector<Eigen::Index> well_known_figures(const ExtendedModel& model, double sheet_sd);
+std::vector<Eigen::Index> well_known_values(const ExtendedModel& model, double sheet_sd);
 
 }  // namespace heatsoak

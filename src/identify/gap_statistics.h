@@ -11,29 +11,29 @@ namespace heatsoak {
 /// Deviation of the mean over a gap from the midpoint of the values at its ends: variance = step_share² · (difference of the ends)² +
 /// beyond_sd². Fitted to all windows of that length by least squares. A quantity that changes once within a gap of one row has a
 /// step_share of 0.5. Short pulses give a large beyond_sd even if the ends are equal.
-struct GapHabit {
+struct GapStatistics {
   double step_share = 0.5;
   double beyond_sd = 0.0;  ///< in the unit of the values
 };
 
-class GapHabits {
+class GapStatisticsTable {
  public:
   /// `values` has one entry per row, NaN if unknown; `usual_s` is the usual time between rows. The times must outlive this object.
-  GapHabits(std::span<const double> time_s, std::vector<double> values, double usual_s);
+  GapStatisticsTable(std::span<const double> time_s, std::vector<double> values, double usual_s);
 
   /// Returns the behaviour over gaps of `rows` missing rows (0 counts as 1). Long gaps use the longest length with enough windows; a log
   /// with too few windows gives the default.
-  const GapHabit& over(std::size_t rows);
+  const GapStatistics& over(std::size_t rows);
 
  private:
-  [[nodiscard]] GapHabit told_by_windows(std::size_t rows) const;
+  [[nodiscard]] GapStatistics from_windows(std::size_t rows) const;
 
   std::span<const double> time_s_;
   std::vector<double> values_;
   std::vector<double> sum_;           ///< cumulative sum of the values before each row
   std::vector<std::size_t> unknown_;  ///< number of unknown values before each row
   double usual_s_;
-  std::map<std::size_t, GapHabit> told_;
+  std::map<std::size_t, GapStatistics> told_;
 };
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-#include "identify/gap_habits.h"
+#include "identify/gap_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ constexpr double kFewest = 20.0;
 
 }  // namespace
 
-GapHabits::GapHabits(std::span<const double> time_s, std::vector<double> values, double usual_s)
+GapStatisticsTable::GapStatisticsTable(std::span<const double> time_s, std::vector<double> values, double usual_s)
     : time_s_(time_s), values_(std::move(values)), usual_s_(usual_s) {
   sum_.push_back(0.0);
   unknown_.push_back(0);
@@ -22,13 +22,13 @@ GapHabits::GapHabits(std::span<const double> time_s, std::vector<double> values,
   }
 }
 
-const GapHabit& GapHabits::over(std::size_t rows) {
+const GapStatistics& GapStatisticsTable::over(std::size_t rows) {
   const std::size_t known = std::clamp<std::size_t>(rows, 1, kLongest);
   const auto found = told_.find(known);
-  return found != told_.end() ? found->second : told_.emplace(known, told_by_windows(known)).first->second;
+  return found != told_.end() ? found->second : told_.emplace(known, from_windows(known)).first->second;
 }
 
-GapHabit GapHabits::told_by_windows(std::size_t rows) const {
+GapStatistics GapStatisticsTable::from_windows(std::size_t rows) const {
   double count = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (std::size_t before = 0; before + rows + 1 < values_.size(); ++before) {
     const std::size_t after = before + rows + 1;
@@ -45,7 +45,7 @@ GapHabit GapHabits::told_by_windows(std::size_t rows) const {
     xy += square * off * off;
   }
   if (count < kFewest) {
-    return rows > 1 ? told_by_windows(rows / 2) : GapHabit{};
+    return rows > 1 ? from_windows(rows / 2) : GapStatistics{};
   }
   const double spread = xx - x * x / count;
   const double most = 0.25;

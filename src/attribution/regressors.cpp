@@ -1,4 +1,4 @@
-#include "attribution/drivers.h"
+#include "attribution/regressors.h"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@ constexpr double kSameCorrelation_ratio = 0.9995;
 /// A curve over a driver has seven knots: with fewer samples than a few for each it says nothing.
 constexpr std::size_t kFewestSamples = 30;
 
-Driver driver_of(std::string name, std::string unit, DriverKind kind) {
-  Driver driver;
+Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
+  Regressor driver;
   driver.name = std::move(name);
   driver.unit = std::move(unit);
   driver.kind = kind;
@@ -30,7 +30,7 @@ class Collector {
       : model_(model), fitted_(fitted), runs_(runs) {}
 
   template <class Value>
-  void add(Driver driver, const Value& value) {
+  void add(Regressor driver, const Value& value) {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       Eigen::VectorXd& values = driver.values.emplace_back(runs_[r].samples() - 1);
       for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -47,15 +47,15 @@ class Collector {
         return;
       }
     }
-    Driver driver = driver_of(name, std::move(unit), DriverKind::operating_point);
+    Regressor driver = driver_of(name, std::move(unit), DriverKind::operating_point);
     driver.choice = std::move(name);
     add(std::move(driver), [&](std::size_t r, Eigen::Index k) { return value(runs_[r].at[static_cast<std::size_t>(k)]); });
   }
 
-  std::vector<Driver> take() { return std::move(kept_); }
+  std::vector<Regressor> take() { return std::move(kept_); }
 
  private:
-  void keep(Driver driver) {
+  void keep(Regressor driver) {
     std::vector<double> known;
     for (const Eigen::VectorXd& values : driver.values) {
       std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return !std::isnan(value); });
@@ -83,7 +83,7 @@ class Collector {
   }
 
   /// Hardly moves within any run: it says which run it is, no more.
-  [[nodiscard]] static bool is_label(const Driver& driver) {
+  [[nodiscard]] static bool is_label(const Regressor& driver) {
     constexpr double kLeastWithin_share = 0.2;
     return std::ranges::none_of(driver.values, [&](const Eigen::VectorXd& of_run) {
       double low = driver.high;
@@ -98,11 +98,12 @@ class Collector {
     });
   }
 
-  [[nodiscard]] bool is_copy(const Driver& driver) const {
-    return std::ranges::any_of(kept_, [&](const Driver& other) { return std::abs(correlation(driver, other)) > kSameCorrelation_ratio; });
+  [[nodiscard]] bool is_copy(const Regressor& driver) const {
+    return std::ranges::any_of(kept_,
+                               [&](const Regressor& other) { return std::abs(correlation(driver, other)) > kSameCorrelation_ratio; });
   }
 
-  static double correlation(const Driver& a, const Driver& b) {
+  static double correlation(const Regressor& a, const Regressor& b) {
     double count = 0.0, sum_a = 0.0, sum_b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
     for (std::size_t r = 0; r < a.values.size(); ++r) {
       for (Eigen::Index k = 0; k < a.values[r].size(); ++k) {
@@ -119,7 +120,7 @@ class Collector {
   const Model& model_;
   const std::vector<LinearisedRun>& fitted_;
   const std::vector<MeasuredRun>& runs_;
-  std::vector<Driver> kept_;
+  std::vector<Regressor> kept_;
 };
 
 void add_operating_points(Collector& all) {
@@ -147,19 +148,19 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     if (!is_seen && name != "winding" && name != "stator") {
       continue;  // a body that the model supposes is no signal
     }
-    Driver absolute = driver_of(name + "_temperature", "degC", DriverKind::node_temperature);
+    Regressor absolute = driver_of(name + "_temperature", "degC", DriverKind::node_temperature);
     absolute.choice = "temperature";
     absolute.watched = name;
     absolute.reference = ambient;
     all.add(absolute, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k); });
-    Driver excess = driver_of(name + "_excess", "K", DriverKind::node_temperature);
+    Regressor excess = driver_of(name + "_excess", "K", DriverKind::node_temperature);
     excess.choice = "temperature_difference";
     excess.watched = name;
     excess.reference = ambient;
     all.add(excess, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k) - ambient_C(r, k); });
   }
   if (model.network.state_count() > 1) {
-    Driver between =
+    Regressor between =
         driver_of(fmt::format("{}_above_{}", model.network.node_name(0), model.network.node_name(1)), "K", DriverKind::node_temperature);
     between.choice = "temperature_difference";
     between.watched = model.network.node_name(0);
@@ -167,7 +168,7 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     all.add(between, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(0, k) - fitted[r].state_C(1, k); });
   }
   if (std::ranges::all_of(runs, [](const MeasuredRun& run) { return run.has(Signal::neighbour_temperature); })) {
-    Driver neighbour = driver_of("neighbour_above_stator", "K", DriverKind::node_temperature);
+    Regressor neighbour = driver_of("neighbour_above_stator", "K", DriverKind::node_temperature);
     const int stator = std::max(0, model.network.find_node("stator"));
     neighbour.choice = "neighbour_difference";
     neighbour.watched = model.network.node_name(stator);
@@ -176,7 +177,7 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
       return runs[r].at[static_cast<std::size_t>(k)].neighbour_C - fitted[r].state_C(stator, k);
     });
   }
-  Driver air = driver_of("ambient_temperature", "degC", DriverKind::node_temperature);
+  Regressor air = driver_of("ambient_temperature", "degC", DriverKind::node_temperature);
   air.choice = "temperature";
   air.watched = ambient;
   air.reference = ambient;
@@ -185,7 +186,7 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
 
 }  // namespace
 
-std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
+std::vector<Regressor> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
   Collector all(model, fitted, runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
@@ -199,7 +200,7 @@ std::vector<Driver> drivers_of(const Model& model, const std::vector<LinearisedR
   }
   for (const std::string& name : names) {
     const std::optional<Quantity> quantity = quantity_named(name);
-    Driver driver = driver_of(name, quantity ? quantity->unit : "", DriverKind::log_only);
+    Regressor driver = driver_of(name, quantity ? quantity->unit : "", DriverKind::log_only);
     driver.choice = kColumnChoice;
     all.add(std::move(driver), [&](std::size_t r, Eigen::Index k) {
       const auto found = runs[r].columns.find(name);
